@@ -1,0 +1,185 @@
+// What host/maps and host/estimate use of OpenCL. No OpenCL header is included here: handles are
+// opaque, so that host/device stays the only folder that knows OpenCL.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "photile/device.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::device {
+
+class Context;
+
+/// A device buffer. Move-only; released on destruction.
+class RawBuffer {
+ public:
+  RawBuffer() = default;
+  RawBuffer(RawBuffer&& other) noexcept;
+  RawBuffer& operator=(RawBuffer&& other) noexcept;
+  ~RawBuffer();
+
+  std::size_t bytes() const { return bytes_; }
+  void* handle() const { return handle_; }  ///< a cl_mem
+
+ private:
+  friend class Context;
+  RawBuffer(void* handle, std::size_t bytes) : handle_(handle), bytes_(bytes) {}
+  void* handle_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+/// A device buffer of `size()` elements of T. A buffer of zero elements is a valid kernel argument.
+template <class T>
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(RawBuffer raw, std::size_t size) : raw_(std::move(raw)), size_(size) {}
+  std::size_t size() const { return size_; }
+  std::size_t bytes() const { return size_ * sizeof(T); }
+  const RawBuffer& raw() const { return raw_; }
+
+ private:
+  RawBuffer raw_;
+  std::size_t size_ = 0;
+};
+
+/// A local-memory argument of a kernel.
+struct LocalMemory {
+  std::size_t bytes;
+};
+
+/// Compile-time definitions of a program: "-D NAME=VALUE" each, in order. They are part of the
+/// cache key.
+class Defines {
+ public:
+  Defines& set(std::string name, long long value);
+  Defines& set(std::string name, double value);  ///< as a float literal that round-trips
+  Defines& set(std::string name);                ///< defined, without a value
+  std::string options() const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> entries_;
+};
+
+/// A kernel of a built program. Copyable; arguments are set by each launch.
+class Kernel {
+ public:
+  Kernel() = default;
+  struct Impl;
+  explicit Kernel(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+  Impl& impl() const { return *impl_; }
+
+ private:
+  std::shared_ptr<Impl> impl_;
+};
+
+/// Total time of one kernel, where DeviceOptions::profile is set.
+struct KernelTime {
+  std::string kernel;
+  std::uint64_t launches = 0;
+  double seconds = 0;
+};
+
+/// One device's context and in-order queue. Not thread-safe: one thread drives it.
+/// Every member throws DeviceError naming the call and the status.
+class Context {
+ public:
+  explicit Context(const DeviceOptions& options);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  const DeviceInfo& info() const;
+
+  /// Allocates `size` elements. Errors: DeviceError that names `what`, the bytes and the device's
+  /// limit when it does not fit.
+  template <class T>
+  Buffer<T> allocate(std::size_t size, std::string_view what) {
+    return Buffer<T>(allocate_bytes(size * sizeof(T), what), size);
+  }
+  /// Allocates and fills from the host.
+  template <class T>
+  Buffer<T> upload(std::span<const T> values, std::string_view what) {
+    auto buffer = allocate<T>(values.size(), what);
+    write(buffer, values);
+    return buffer;
+  }
+  template <class T>
+  void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
+    write_bytes(buffer.raw(), values.data(), values.size_bytes(), first * sizeof(T));
+  }
+  /// Blocking read of `out.size()` elements from `first` on.
+  template <class T>
+  void read(const Buffer<T>& buffer, std::span<T> out, std::size_t first = 0) {
+    read_bytes(buffer.raw(), out.data(), out.size_bytes(), first * sizeof(T));
+  }
+  /// Sets every element.
+  template <class T>
+  void fill(Buffer<T>& buffer, T value) {
+    if (buffer.size() != 0) fill_bytes(buffer.raw(), &value, sizeof(T), buffer.bytes());
+  }
+
+  /// The kernel `name` of the embedded kernel file `file` (path below kernels/, e.g.
+  /// "grid/count.cl"), built with `defines`. Programs are built once per (file, defines), from the
+  /// cache on disk where it holds them. Errors: KernelBuildError with the log.
+  Kernel kernel(const std::string& file, const std::string& name, const Defines& defines);
+
+  /// Enqueues `kernel` over `global_size` work-items (rounded up to a multiple of `local_size`;
+  /// kernels check their index). `local_size` 0 lets the device choose. Nothing is enqueued for
+  /// global_size 0. Arguments: Buffer<T>, LocalMemory, or trivially copyable values.
+  template <class... Args>
+  void run(const Kernel& kernel, std::size_t global_size, std::size_t local_size,
+           const Args&... args) {
+    unsigned index = 0;
+    (set_argument(kernel, index++, args), ...);
+    enqueue(kernel, index, global_size, local_size);
+  }
+  /// Waits for everything enqueued.
+  void finish();
+
+  double compile_seconds() const;
+  std::uint64_t programs_built() const;
+  std::uint64_t programs_from_cache() const;
+  std::uint64_t allocated_bytes() const;       ///< live buffers
+  std::uint64_t peak_allocated_bytes() const;  ///< since construction
+  std::vector<KernelTime> kernel_times() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+
+  RawBuffer allocate_bytes(std::size_t bytes, std::string_view what);
+  void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
+                   std::size_t offset);
+  void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
+  void fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
+                  std::size_t bytes);
+  template <class T>
+  void set_argument(const Kernel& kernel, unsigned index, const Buffer<T>& buffer) {
+    set_buffer_argument(kernel, index, buffer.raw());
+  }
+  void set_argument(const Kernel& kernel, unsigned index, const LocalMemory& local) {
+    set_value_argument(kernel, index, nullptr, local.bytes);
+  }
+  template <class T>
+  void set_argument(const Kernel& kernel, unsigned index, const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    set_value_argument(kernel, index, &value, sizeof(T));
+  }
+  void set_buffer_argument(const Kernel& kernel, unsigned index, const RawBuffer& buffer);
+  void set_value_argument(const Kernel& kernel, unsigned index, const void* value,
+                          std::size_t bytes);
+  void enqueue(const Kernel& kernel, unsigned argument_count, std::size_t global_size,
+               std::size_t local_size);
+};
+
+}  // namespace photile::device

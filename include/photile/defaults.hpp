@@ -1,0 +1,39 @@
+// Every default of photile, in one place. Parameter structs and the command line take theirs from
+// here, so the help text cannot drift from the behaviour.
+#pragma once
+
+#include <cstdint>
+
+namespace photile::defaults {
+
+// Picture
+inline constexpr int image_width = 512;              ///< pixels
+inline constexpr int image_height = 384;             ///< pixels
+inline constexpr int samples_per_pixel = 4;          ///< primary hits a pixel
+inline constexpr double exposure = 0.0;              ///< stops, on top of the automatic exposure
+inline constexpr double vertical_field_of_view = 40; ///< degrees, for a camera photile places
+
+// Photons
+inline constexpr std::uint64_t emitted_photons = 1'000'000;  ///< over all lights
+inline constexpr std::uint64_t seed = 1;
+inline constexpr int max_path_length = 64;  ///< a bound that roulette hardly ever reaches
+inline constexpr int roulette_start = 1;    ///< first bounce at which a path may end
+
+// Density estimation
+inline constexpr int neighbours = 50;                ///< k
+inline constexpr double group_angle_degrees = 60.0;  ///< largest angle between normals of a group
+/// The automatic radius is this many times the median distance to the k-th photon.
+inline constexpr double radius_over_median_kth_distance = 2.0;
+
+// Uniform grid
+inline constexpr float photons_per_cell = 4.0f;  ///< aimed at; about 4 is best for k = 50
+
+// Primary rays
+inline constexpr int max_specular_depth = 16;  ///< mirrors and glass followed by a primary ray
+
+// Units
+/// Luminous efficacy that turns watts into lumens: 683 lm/W, as glTF and Blender do. Radiance uses
+/// 179. Written into every output.
+inline constexpr double lumen_per_watt = 683.0;
+
+}  // namespace photile::defaults

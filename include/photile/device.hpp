@@ -1,0 +1,68 @@
+// OpenCL devices, as a user chooses them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace photile {
+
+enum class DeviceType { cpu, gpu, accelerator, other };
+
+struct DeviceInfo {
+  std::string id;  ///< "platform:device", e.g. "0:0"
+  std::string name;
+  std::string platform;
+  std::string vendor;
+  std::string version;         ///< OpenCL version string of the device
+  std::string driver_version;
+  std::string platform_version;
+  DeviceType type = DeviceType::other;
+  std::uint32_t compute_units = 0;
+  std::uint64_t global_memory_bytes = 0;
+  std::uint64_t max_allocation_bytes = 0;  ///< largest single buffer
+  std::uint64_t local_memory_bytes = 0;
+  std::uint64_t max_work_group_size = 0;
+  std::uint32_t native_float_width = 0;  ///< the device's native vector width for float
+  bool is_pocl = false;
+};
+
+/// Every usable device of every platform. A platform without devices is skipped; no platform at all
+/// gives an empty list.
+std::vector<DeviceInfo> list_devices();
+
+struct DeviceOptions {
+  /// "" = the best (a GPU before PoCL before other CPUs); else "platform:device", an index into
+  /// list_devices(), "cpu", "gpu", or a part of the device's or platform's name.
+  std::string selector;
+  bool use_program_cache = true;
+  bool profile = false;  ///< keep event times of every kernel
+};
+
+namespace device {
+class Context;  // host/device/context.hpp
+}
+
+/// An open device: context, queue and program cache. Movable.
+class Device {
+ public:
+  /// Errors: DeviceError when there is no device, or none matches the selector (the message lists
+  /// those there are).
+  explicit Device(const DeviceOptions& options = {});
+  ~Device();
+  Device(Device&&) noexcept;
+  Device& operator=(Device&&) noexcept;
+
+  const DeviceInfo& info() const;
+  double compile_seconds() const;    ///< spent building programs so far
+  std::uint64_t programs_built() const;
+  std::uint64_t programs_from_cache() const;
+
+  device::Context& context() { return *context_; }
+
+ private:
+  std::unique_ptr<device::Context> context_;
+};
+
+}  // namespace photile

@@ -1,0 +1,56 @@
+// The radiance estimate: k nearest photons of each primary hit, on the device.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "photile/defaults.hpp"
+#include "photile/photon_maps.hpp"
+#include "photile/primary_hits.hpp"
+
+namespace photile {
+
+struct EstimateParameters {
+  int neighbours = defaults::neighbours;  ///< k
+  /// Metres; 0 = the maps' radius. No neighbour is farther.
+  double radius = 0;
+};
+
+/// Estimates of a batch of hits, each light at power 1. Row-major [hit][light].
+struct Estimates {
+  std::vector<glm::vec3> irradiance;  ///< W/m2 or lm/m2, linear RGB
+  /// Reflected radiance towards the eye. Empty unless the scene is glossy: then radiance is
+  /// albedo / pi x irradiance.
+  std::vector<glm::vec3> radiance;
+};
+
+/// Neighbours of a batch of hits: photon indices, ascending, `none` beyond the last.
+struct NeighbourLists {
+  int k = 0;
+  std::vector<std::uint32_t> photons;         ///< hits x k
+  std::vector<float> squared_radius;          ///< square of the estimate's radius, per hit
+};
+
+/// Runs the estimate kernels over photon maps. With k photons or more within the radius the
+/// estimate is sum of the flux of the k - 1 nearest over the area of the disc through the k-th
+/// (unbiased under constant density); with fewer, all of them over the disc of the full radius.
+class Estimator {
+ public:
+  /// Errors: UsageError when k or the radius is out of range.
+  Estimator(const PhotonMaps& maps, const Scene& scene, const EstimateParameters& parameters);
+  ~Estimator();
+  Estimator(Estimator&&) noexcept;
+
+  /// Radiance estimates. Hits must be grouped by sided triangle (PrimaryHits are).
+  Estimates estimate(const PrimaryHits& hits);
+
+  /// The neighbours themselves, for tests and inspection.
+  NeighbourLists nearest(const PrimaryHits& hits);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace photile

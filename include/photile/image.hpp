@@ -1,0 +1,50 @@
+// Pictures with named channels, read and written through OpenImageIO.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace photile {
+
+/// Float channels by name ("R", "Combined_lamp.G", ...), all of one size, row 0 at the top.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::string> channel_names;
+  std::vector<std::vector<float>> channels;  ///< one plane per name
+
+  /// EXR attributes: strings, and named 4x4 matrices (row vectors, as OpenEXR stores them).
+  std::map<std::string, std::string> attributes;
+  std::map<std::string, std::array<float, 16>> matrices;
+  std::map<std::string, float> numbers;
+
+  /// The plane of a channel, or nullptr.
+  const std::vector<float>* find(const std::string& channel) const;
+  std::vector<float>& add(const std::string& channel);  ///< a new plane of zeros
+};
+
+/// Reads an EXR (all parts; channels of part P that do not carry its name keep theirs) or any
+/// other picture that OpenImageIO reads. Checks limits.hpp before decoding.
+/// Errors: InputError naming the file.
+Image read_image(const std::filesystem::path& file);
+
+/// Writes a single-part scan-line EXR of 32-bit floats, through a temporary name and a rename.
+/// Errors: OutputError naming the file; an existing file is kept then.
+void write_exr(const std::filesystem::path& file, const Image& image);
+
+/// Writes an 8-bit sRGB PNG of the channels R, G, B, through a temporary name and a rename.
+void write_png(const std::filesystem::path& file, const Image& display_referred);
+
+struct ToneMapping {
+  bool automatic_exposure = true;  ///< scale so that the log-average luminance becomes mid grey
+  double exposure = 0;             ///< stops on top
+};
+
+/// Root R, G, B to display-referred values in [0,1], still linear; `write_png` applies the sRGB
+/// curve. A pixel brighter than white keeps its hue.
+Image tone_map(const Image& scene_referred, const ToneMapping& parameters);
+
+}  // namespace photile

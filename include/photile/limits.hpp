@@ -1,0 +1,40 @@
+// Every limit of photile, in one place, each with its reason. A refusal names the limit and the
+// value found.
+#pragma once
+
+#include <cstdint>
+
+namespace photile::limits {
+
+// Photon counts
+inline constexpr std::uint64_t min_photons = 1;
+/// Photon indices on the device are 32 bits wide, and the largest one marks "none".
+inline constexpr std::uint64_t max_stored_photons = 0xFFFF'FFFEull;
+inline constexpr std::uint64_t max_emitted_photons = 10'000'000'000ull;
+inline constexpr int max_neighbours = 1'000'000;  ///< k
+
+// Scene
+inline constexpr std::uint64_t max_file_bytes = 2ull << 30;       ///< the scene file itself
+inline constexpr std::uint64_t max_external_bytes = 8ull << 30;   ///< buffers and images together
+inline constexpr std::uint64_t max_triangles = 500'000'000ull;    ///< sided indices fit 32 bits
+inline constexpr std::uint64_t max_vertices = 0x7FFF'FFFFull;
+inline constexpr std::uint64_t max_materials = 1'000'000;
+inline constexpr std::uint64_t max_lights = 10'000;
+inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulation is quadratic
+inline constexpr int max_node_depth = 512;
+inline constexpr std::uint64_t max_nodes = 1'000'000;
+inline constexpr std::uint64_t max_node_visits = 10'000'000;  ///< shared children multiply
+inline constexpr int max_json_depth = 256;  ///< recursive parsers overflow the stack
+
+// Pictures
+inline constexpr int max_image_side = 16'384;
+inline constexpr std::uint64_t max_image_pixels = 268'435'456;
+inline constexpr int max_image_channels = 1'024;
+inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
+inline constexpr int max_samples_per_pixel = 65'536;
+
+// Names
+/// Blender keeps pass names in 64 bytes, "Combined_" included.
+inline constexpr int max_light_name_bytes = 50;
+
+}  // namespace photile::limits

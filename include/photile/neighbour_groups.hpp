@@ -1,0 +1,63 @@
+// Neighbour groups: which sided triangles share photons (Graglia et al. 2012, section 4).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "photile/defaults.hpp"
+#include "photile/photons.hpp"
+#include "photile/progress.hpp"
+#include "photile/scene.hpp"
+
+namespace photile {
+
+struct NeighbourGroupParameters {
+  double radius = 0;  ///< metres, > 0: largest distance between two triangles of a group
+  double angle_degrees = defaults::group_angle_degrees;  ///< largest angle between their normals
+};
+
+/// Groups in compressed sparse rows: members of sided triangle s are
+/// members[offsets[s] .. offsets[s + 1]), ascending, s itself among them. The relation is symmetric.
+struct NeighbourGroups {
+  std::vector<std::uint64_t> offsets;  ///< size 2 * triangles + 1
+  std::vector<std::uint32_t> members;
+  double radius = 0;
+  double angle_degrees = 0;
+
+  std::span<const std::uint32_t> of(std::uint32_t sided_triangle) const {
+    return {members.data() + offsets[sided_triangle],
+            members.data() + offsets[sided_triangle + 1]};
+  }
+  std::uint64_t bytes() const {
+    return offsets.size() * sizeof(offsets[0]) + members.size() * sizeof(members[0]);
+  }
+};
+
+/// For each sided triangle all sided triangles at most `radius` away (exact triangle-triangle
+/// distance, Eberly) whose normals differ by at most the angle. A bounding volume hierarchy finds
+/// the candidates; work is shared by TBB. The result does not depend on the number of threads.
+/// Errors: UsageError when the radius is not positive and finite or the angle is outside [0, 180].
+NeighbourGroups find_neighbour_groups(const Scene& scene,
+                                      const NeighbourGroupParameters& parameters,
+                                      Progress& progress = Progress::none());
+
+/// Groups of one: every map holds the photons of its own sided triangle only (figure 1 of the
+/// paper: dark edges).
+NeighbourGroups naive_groups(const Scene& scene);
+
+/// The normal test that groups use, so that oracles can apply the very same one.
+/// `cos_angle` = cos(angle); inclusive up to a rounding slack of 1e-6.
+bool normals_agree(const glm::dvec3& a, const glm::dvec3& b, double cos_angle);
+
+/// A search radius in metres for `k` neighbours: defaults::radius_over_median_kth_distance times
+/// the median, over a sample of photons, of the distance to the k-th nearest photon.
+double automatic_radius(const Photons& photons, int k);
+
+/// Distance between two triangles in metres, exact up to rounding in double precision, 0 where
+/// they intersect (Eberly, "Distance Between Two Triangles in 3D").
+double triangle_triangle_distance(const std::array<glm::dvec3, 3>& a,
+                                  const std::array<glm::dvec3, 3>& b);
+
+}  // namespace photile

@@ -1,0 +1,51 @@
+// Photon paths from the lights.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "photile/defaults.hpp"
+#include "photile/photons.hpp"
+#include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
+
+namespace photile {
+
+/// How emitted photons are shared between the lights.
+enum class PhotonQuota {
+  balanced,  ///< half by power, half equally: dim lights stay clean when they are turned up
+  power,     ///< by power: least noise at the scene's own powers
+  equal      ///< the same number for each light
+};
+
+struct PhotonTracerParameters {
+  std::uint64_t emitted_photons = defaults::emitted_photons;  ///< over all lights
+  PhotonQuota quota = PhotonQuota::balanced;
+  std::uint64_t seed = defaults::seed;
+  int max_path_length = defaults::max_path_length;  ///< surface interactions
+  int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
+};
+
+struct PhotonTracerResult {
+  Photons photons;
+  std::vector<std::uint64_t> stored_per_light;
+  /// Flux that left the scene, per unit of each light's power (luminance): for the energy balance.
+  std::vector<double> escaped_flux_per_light;
+  /// Flux absorbed at surfaces or ended by the bound on path length (luminance, unit power).
+  std::vector<double> absorbed_flux_per_light;
+  double seconds = 0;
+};
+
+/// Paths of each light, by the rules of `quota`; each light at least one. Sums to `total` or to the
+/// number of lights, whichever is larger.
+std::vector<std::uint64_t> photons_per_light(const Scene& scene, std::uint64_t total,
+                                             PhotonQuota quota);
+
+/// Traces photon paths with Embree and TBB and stores a photon at every hit on an opaque surface.
+/// Each light emits flux 1 (Scene::unit). The result depends on the scene, the parameters and the
+/// seed only, bit for bit, whatever the number of threads.
+/// Errors: UsageError for counts out of limits.hpp; Interrupted.
+PhotonTracerResult trace_photons(const RayScene& scene, const PhotonTracerParameters& parameters,
+                                 Progress& progress = Progress::none());
+
+}  // namespace photile

@@ -1,0 +1,33 @@
+// Stored photons: a structure of arrays, ready for the device.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace photile {
+
+/// Photons in the order of their sided triangles (stable: within one in the order light, path,
+/// bounce). Which arrays are filled depends on SceneNeeds.
+struct Photons {
+  std::vector<glm::vec3> position;  ///< metres, on the triangle
+  /// Flux of the photon where its light emits 1 lm or 1 W, linear RGB. Summed over the photons
+  /// that a light emitted, before the first hit, the luminance is 1.
+  std::vector<glm::vec3> flux;
+  std::vector<glm::vec3> incoming;  ///< unit, towards where it came from; empty unless glossy
+  std::vector<std::uint16_t> light;  ///< index into Scene::lights; empty for a single light
+  std::vector<std::uint32_t> sided_triangle;
+
+  /// Photons of sided triangle s are [first_of[s], first_of[s + 1]). Size 2 * triangles + 1.
+  std::vector<std::uint32_t> first_of;
+  std::vector<std::uint64_t> emitted_per_light;  ///< paths started
+
+  std::size_t size() const { return position.size(); }
+  std::uint64_t bytes() const;
+};
+
+/// Photons in any order (`first_of` ignored) brought into the order of their sided triangles by a
+/// stable counting sort; fills `first_of`.
+Photons sort_by_sided_triangle(Photons photons, std::size_t sided_triangle_count);
+
+}  // namespace photile

@@ -1,0 +1,68 @@
+// What the camera sees: the points where the radiance estimate is wanted.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "photile/camera.hpp"
+#include "photile/defaults.hpp"
+#include "photile/ray_scene.hpp"
+
+namespace photile {
+
+/// Specular lobe at a hit, for the estimate of glossy reflection (device/bsdf.h).
+struct HitLobe {
+  glm::vec3 specular;  ///< F0
+  float roughness;     ///< GGX alpha
+  glm::vec3 normal;    ///< unit shading normal, on the side of the ray
+};
+
+/// Hits on opaque surfaces, after mirrors and glass were followed. Structure of arrays. Sorted by
+/// sided triangle, then along a space-filling curve, so that neighbours in memory share a map.
+struct PrimaryHits {
+  std::vector<glm::vec3> position;  ///< metres
+  std::vector<std::uint32_t> sided_triangle;
+  std::vector<std::uint32_t> pixel;       ///< y * width + x
+  std::vector<glm::vec3> throughput;      ///< of the specular chain from the eye to the hit
+  std::vector<glm::vec3> diffuse_albedo;  ///< textured Lambertian albedo at the hit
+  std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
+  std::vector<HitLobe> lobe;              ///< empty unless glossy
+
+  std::size_t size() const { return position.size(); }
+};
+
+/// A lamp seen directly or through mirrors and glass: adds `weight` x the light's radiance at unit
+/// power to the light's layer.
+struct SeenEmission {
+  std::uint32_t pixel;
+  std::uint32_t light;
+  glm::vec3 radiance;  ///< throughput x emitted radiance where the light's power is 1
+};
+
+struct PrimaryHitParameters {
+  int width = defaults::image_width;
+  int height = defaults::image_height;
+  int samples_per_pixel = defaults::samples_per_pixel;
+  std::uint64_t seed = defaults::seed;
+  int max_specular_depth = defaults::max_specular_depth;
+};
+
+struct PrimaryHitBatch {
+  PrimaryHits hits;
+  std::vector<SeenEmission> emission;
+  std::uint64_t rays = 0;
+};
+
+/// Traces all samples of the rows [first_row, last_row). Each sample carries weight 1 /
+/// samples_per_pixel in `throughput` and `radiance`, so that summing gives pixel means. Depends on
+/// the scene, camera, parameters and seed only, not on how rows are split or on threads.
+PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
+                                   const PrimaryHitParameters& parameters, int first_row,
+                                   int last_row);
+
+/// Radiance that a light emits at unit power towards the front of its triangles: 1 / (pi A) x
+/// colour, A counting both sides of two-sided lights. Zero for lights without area.
+std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene);
+
+}  // namespace photile

@@ -1,0 +1,32 @@
+// A scene prepared for ray tracing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "photile/scene.hpp"
+
+namespace photile {
+
+/// The scene's triangles in an Embree BVH. Immutable and shared between threads once built.
+class RayScene {
+ public:
+  /// Builds the BVH. `scene` must outlive this object.
+  /// Errors: Error(failure) when Embree cannot allocate.
+  explicit RayScene(const Scene& scene);
+  ~RayScene();
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+
+  const Scene& scene() const;
+  std::uint64_t bytes() const;  ///< held by Embree
+
+  /// Embree's handle (an RTCScene), for host/trace only.
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace photile

@@ -1,0 +1,45 @@
+// The whole method in one call: trace, group, build, estimate.
+#pragma once
+
+#include "photile/camera.hpp"
+#include "photile/device.hpp"
+#include "photile/estimator.hpp"
+#include "photile/light_layers.hpp"
+#include "photile/neighbour_groups.hpp"
+#include "photile/photon_maps.hpp"
+#include "photile/photon_tracer.hpp"
+#include "photile/primary_hits.hpp"
+#include "photile/progress.hpp"
+#include "photile/scene.hpp"
+#include "photile/statistics.hpp"
+
+namespace photile {
+
+/// Which maps a photon is entered in.
+enum class MapMode {
+  naive,   ///< its own sided triangle's only (figure 1 of the paper: dark edges)
+  grouped  ///< those of its triangle's neighbour group
+};
+
+struct RenderParameters {
+  PhotonTracerParameters photons;
+  MapMode maps = MapMode::grouped;
+  double radius = 0;  ///< metres; 0 = automatic_radius
+  double angle_degrees = defaults::group_angle_degrees;
+  int neighbours = defaults::neighbours;
+  float photons_per_cell = defaults::photons_per_cell;
+  PrimaryHitParameters film;
+};
+
+struct RenderResult {
+  LightLayers layers;
+  RunStatistics statistics;
+  double radius = 0;  ///< the one used, metres
+  std::uint64_t stored_photons = 0;
+};
+
+/// Renders the picture of `camera`, one layer per light.
+RenderResult render(const Scene& scene, const Camera& camera, Device& device,
+                    const RenderParameters& parameters, Progress& progress = Progress::none());
+
+}  // namespace photile

@@ -1,0 +1,170 @@
+// A scene as every later stage sees it: triangles, materials, lights and cameras, validated, in
+// metres and linear RGB with Rec.709 primaries.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "photile/camera.hpp"
+#include "photile/defaults.hpp"
+
+namespace photile {
+
+inline constexpr std::uint32_t none = 0xFFFF'FFFFu;  ///< "no light", "no texture", ...
+
+/// Relative luminance of linear Rec.709 RGB.
+inline double luminance(const glm::dvec3& rgb) {
+  return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
+}
+
+/// What light powers and radiances in the scene are measured in.
+enum class PowerUnit {
+  lumen,  ///< photometric (glTF): powers in lm, picture in cd/m2
+  watt    ///< radiometric (OBJ): powers in W, picture in W/(m2 sr)
+};
+
+/// A picture used as a texture: 8-bit sRGB texels decoded to linear on lookup.
+class Texture {
+ public:
+  Texture() = default;
+  /// `texels`: width x height, row 0 at the top, RGBA in sRGB.
+  Texture(std::string name, int width, int height, std::vector<std::array<std::uint8_t, 4>> texels);
+
+  /// Bilinear lookup of linear RGB. `uv` (0,0) is the top left corner of the picture, as in glTF;
+  /// it repeats outside [0,1).
+  glm::vec3 sample(glm::vec2 uv) const;
+
+  const std::string& name() const { return name_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ private:
+  std::string name_;
+  int width_ = 0, height_ = 0;
+  std::vector<std::array<std::uint8_t, 4>> texels_;
+};
+
+/// How a surface scatters. Each material has one interaction; `opaque` may have two lobes.
+enum class Interaction : std::uint8_t {
+  opaque,  ///< Lambertian lobe plus, where `specular` is not black, a GGX lobe; photons are stored
+  mirror,  ///< perfect mirror with reflectance `specular`; nothing is stored
+  glass    ///< smooth dielectric: Fresnel reflection and refraction; nothing is stored
+};
+
+/// Reflection of one surface; the same on both of its sides.
+struct Material {
+  std::string name;
+  Interaction interaction = Interaction::opaque;
+  glm::vec3 diffuse{0.0f};   ///< Lambertian albedo in [0,1], multiplied by the texture
+  std::uint32_t diffuse_texture = none;
+  glm::vec3 specular{0.0f};  ///< reflectance at normal incidence, F0; black = no specular lobe
+  float roughness = 1.0f;    ///< GGX alpha in [min_ggx_alpha, 1]; only where `specular` is not black
+  glm::vec3 transmission{1.0f};  ///< colour of what passes a glass surface
+  float index_of_refraction = 1.5f;
+  bool thin = false;  ///< glass without volume: refraction does not bend the ray
+
+  bool glossy() const {
+    return interaction == Interaction::opaque && specular != glm::vec3(0.0f);
+  }
+};
+
+enum class LightKind : std::uint8_t { area, point, spot, directional };
+
+/// A light. Its photons carry `color` with luminance 1, so that `power` alone scales its layer.
+struct Light {
+  std::string name;  ///< unique; no dots; at most limits::max_light_name_bytes bytes
+  LightKind kind = LightKind::area;
+  glm::vec3 color{1.0f};  ///< linear RGB scaled to luminance 1
+  /// Emitted flux in `Scene::unit`s (luminance-weighted). For a directional light: the flux that
+  /// falls on a disc as large as the scene's bounding sphere.
+  double power = 0;
+
+  // Area lights: uniform radiance over the triangles' front sides, or both sides.
+  std::vector<std::uint32_t> triangles;
+  bool two_sided = false;
+
+  // Point, spot and directional lights.
+  glm::vec3 position{0.0f};
+  glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit, where the light shines to
+  float inner_cone_angle = 0.0f;           ///< radians, spot
+  float outer_cone_angle = 0.7853982f;     ///< radians, spot
+};
+
+/// What the import found worth telling.
+struct ImportReport {
+  std::vector<std::string> warnings;  ///< one line each: object, what was found, what was done
+  std::uint64_t degenerate_triangles = 0;  ///< zero area; dropped
+  std::uint64_t non_finite_triangles = 0;  ///< NaN or infinite corner; dropped
+  std::uint64_t polygons_triangulated = 0;
+};
+
+/// Geometry is one indexed triangle soup. Corners of a triangle are stored in canonical order (the
+/// lexicographically smallest position first, then the smaller of the other two), so that the same
+/// mesh with another winding gives the same bits everywhere. `Scene::front_side` keeps what the
+/// winding said. Side 0 of a triangle is the one that its canonical geometric normal points to.
+struct Scene {
+  std::filesystem::path source;
+  PowerUnit unit = PowerUnit::lumen;
+
+  std::vector<glm::vec3> vertices;                     ///< metres
+  std::vector<glm::uvec3> triangles;                   ///< vertex indices, canonical order
+  std::vector<std::uint8_t> front_side;                ///< per triangle: 0 or 1
+  std::vector<std::uint32_t> triangle_material;        ///< per triangle
+  std::vector<std::uint32_t> triangle_light;           ///< per triangle: area light, or none
+  std::vector<std::array<glm::vec2, 3>> corner_uv;     ///< empty when nothing is textured
+  /// Shading normals per corner, on the front side; empty when no material is specular or glossy
+  /// or the file has none. A zero vector means "use the geometric normal".
+  std::vector<std::array<glm::vec3, 3>> corner_normal;
+
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;  ///< never empty after load_scene
+  ImportReport report;
+
+  std::size_t triangle_count() const { return triangles.size(); }
+  std::array<glm::vec3, 3> corners(std::size_t triangle) const {
+    const glm::uvec3& t = triangles[triangle];
+    return {vertices[t.x], vertices[t.y], vertices[t.z]};
+  }
+};
+
+/// A sided triangle is the unit of photon maps: 2 * triangle + side.
+inline constexpr std::uint32_t sided(std::uint32_t triangle, std::uint32_t side) {
+  return 2 * triangle + side;
+}
+inline constexpr std::uint32_t triangle_of(std::uint32_t sided_triangle) {
+  return sided_triangle >> 1;
+}
+inline constexpr std::uint32_t side_of(std::uint32_t sided_triangle) { return sided_triangle & 1; }
+
+/// Unit geometric normal of a sided triangle, computed in double precision.
+glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle);
+
+/// Area of a triangle in square metres, in double precision.
+double triangle_area(const Scene& scene, std::uint32_t triangle);
+
+/// What later stages must provide for; whatever is false costs nothing anywhere.
+struct SceneNeeds {
+  bool glossy = false;          ///< some opaque material has a specular lobe
+  bool textures = false;        ///< some material has a texture
+  bool specular_paths = false;  ///< some material is a mirror or glass
+  std::uint32_t light_count = 0;
+};
+SceneNeeds needs_of(const Scene& scene);
+
+struct SceneLoadOptions {
+  float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 mends Blender files
+  bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
+};
+
+/// Reads a scene from OBJ+MTL (.obj) or glTF 2.0 (.gltf, .glb).
+/// Errors: InputError naming the file and the remedy when it is missing, unreadable, malformed,
+/// beyond a limit of limits.hpp, without triangles or without lights.
+Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
+
+}  // namespace photile
