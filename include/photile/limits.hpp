@@ -13,6 +13,10 @@ inline constexpr std::uint64_t max_stored_photons = 0xFFFF'FFFEull;
 inline constexpr std::uint64_t max_emitted_photons = 10'000'000'000ull;
 inline constexpr int max_neighbours = 1'000'000;  ///< k
 
+// Neighbour groups
+/// 4 GB of members; a radius as large as the scene would fill any memory.
+inline constexpr std::uint64_t max_group_members = 1'000'000'000;
+
 // Scene
 inline constexpr std::uint64_t max_file_bytes = 2ull << 30;       ///< the scene file itself
 inline constexpr std::uint64_t max_external_bytes = 8ull << 30;   ///< buffers and images together
