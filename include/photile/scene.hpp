@@ -148,6 +148,14 @@ glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle);
 /// Area of a triangle in square metres, in double precision.
 double triangle_area(const Scene& scene, std::uint32_t triangle);
 
+/// The sphere whose disc the photons of directional lights start from: about the centre of the
+/// triangles' bounding box, through the farthest corner.
+struct BoundingSphere {
+  glm::dvec3 center{0.0};
+  double radius = 0;  ///< metres
+};
+BoundingSphere bounding_sphere(const Scene& scene);
+
 /// What later stages must provide for; whatever is false costs nothing anywhere.
 struct SceneNeeds {
   bool glossy = false;          ///< some opaque material has a specular lobe

@@ -1,0 +1,81 @@
+#include "trace/eye_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "photile/device/bsdf.h"
+#include "trace/scatter.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+
+namespace {
+
+EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
+               std::uint32_t pixel, const glm::vec3& throughput) {
+  const Material& material = material_of(scene, point);
+  const float alpha = std::clamp(material.roughness, PHOTILE_MIN_GGX_ALPHA, 1.0f);
+  return {point.position,
+          point.sided_triangle(),
+          pixel,
+          throughput,
+          diffuse_albedo(scene, point),
+          -direction,
+          {material.specular, alpha, shading_normal(scene, point, direction)}};
+}
+
+/// Whether the light of the point's triangle, if any, shines from this side.
+bool emits(const Scene& scene, const SurfacePoint& point) {
+  const std::uint32_t light = scene.triangle_light[point.where.triangle];
+  return light != none && (on_front(scene, point) || scene.lights[light].two_sided);
+}
+
+}  // namespace
+
+glm::dvec2 stratified(int index, int count, double u1, double u2) {
+  // Rows hold count / rows cells each, rounded down or up; a row is as high as its share of cells.
+  const std::int64_t n = count;
+  const auto rows = static_cast<std::int64_t>(std::sqrt(static_cast<double>(count)));
+  const auto first_of = [&](std::int64_t row) { return (row * n + rows - 1) / rows; };
+  const std::int64_t row = index * rows / n;
+  const auto first = static_cast<double>(first_of(row));
+  const auto cells = static_cast<double>(first_of(row + 1) - first_of(row));
+  return {(index - first + u1) / cells, (first + cells * u2) / count};
+}
+
+void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record) {
+  const Scene& scene = *setup.rays->scene;
+  const PrimaryHitParameters& film = *setup.parameters;
+  const auto pixel = static_cast<std::uint32_t>(y) * film.width + x;
+  const RandomStream random(film.seed, std::uint64_t{pixel} * film.samples_per_pixel + sample, 0);
+  const RandomBlock place = random.block(Purpose::film_position, 0);
+  const glm::dvec2 offset =
+      stratified(sample, film.samples_per_pixel, place.uniform_double(0), place.uniform_double(2));
+
+  glm::vec3 origin(setup.camera->position);
+  glm::vec3 direction(setup.camera->direction(x + offset.x, y + offset.y, film.width, film.height));
+  glm::vec3 throughput(1.0f / static_cast<float>(film.samples_per_pixel));
+  for (int depth = 0;; ++depth) {
+    ++record.rays;
+    const auto hit = setup.rays->intersect(origin, direction);
+    if (!hit) return;
+    const SurfacePoint point = surface_hit(scene, *hit, direction);
+    if (emits(scene, point)) {
+      const std::uint32_t light = scene.triangle_light[point.where.triangle];
+      record.emission.push_back({pixel, light, throughput * (*setup.emitted_radiance)[light]});
+    }
+    if (material_of(scene, point).interaction == Interaction::opaque) {
+      record.hits.push_back(eye_hit(scene, point, direction, pixel, throughput));
+      return;
+    }
+    if (depth >= film.max_specular_depth) return;
+    const RandomBlock numbers = random.block(Purpose::eye_scattering, depth);
+    const Scattered scattered =
+        scatter_specular(scene, point, direction, numbers.uniform(choice_word));
+    throughput *= scattered.weight;
+    direction = scattered.direction;
+    origin = point.origin_towards(direction);
+  }
+}
+
+}  // namespace photile::trace

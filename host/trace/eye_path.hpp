@@ -1,0 +1,47 @@
+// One sample of a pixel: the ray from the eye, through mirrors and glass, to an opaque surface.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "photile/camera.hpp"
+#include "photile/primary_hits.hpp"
+#include "trace/ray_scene_impl.hpp"
+
+namespace photile::trace {
+
+/// One element of PrimaryHits.
+struct EyeHit {
+  glm::vec3 position;
+  std::uint32_t sided_triangle;
+  std::uint32_t pixel;
+  glm::vec3 throughput;
+  glm::vec3 diffuse_albedo;
+  glm::vec3 outgoing;
+  HitLobe lobe;
+};
+
+/// What a run of samples saw, in the order pixel, sample.
+struct EyeRecord {
+  std::vector<EyeHit> hits;
+  std::vector<SeenEmission> emission;
+  std::uint64_t rays = 0;
+};
+
+/// What all samples of a picture share.
+struct EyeSetup {
+  const RayScene::Impl* rays;
+  const Camera* camera;
+  const PrimaryHitParameters* parameters;
+  const std::vector<glm::vec3>* emitted_radiance;  ///< per light, at unit power
+};
+
+/// Place of sample `index` of `count` in the unit square, given two numbers in [0, 1): one in each
+/// of `count` cells of equal area, as square as their number allows.
+glm::dvec2 stratified(int index, int count, double u1, double u2);
+
+/// Traces sample `sample` of pixel (x, y) and appends what it sees to `record`.
+void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record);
+
+}  // namespace photile::trace

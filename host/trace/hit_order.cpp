@@ -1,0 +1,59 @@
+#include "trace/hit_order.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace photile::trace {
+
+namespace {
+
+constexpr std::uint64_t cells_per_axis = 1ull << 21;
+
+/// Puts two zero bits between the 21 lowest bits.
+std::uint64_t spread(std::uint64_t x) {
+  x = (x | x << 32) & 0x001F00000000FFFFull;
+  x = (x | x << 16) & 0x001F0000FF0000FFull;
+  x = (x | x << 8) & 0x100F00F00F00F00Full;
+  x = (x | x << 4) & 0x10C30C30C30C30C3ull;
+  return (x | x << 2) & 0x1249249249249249ull;
+}
+
+std::uint64_t cell(double position, double low, double high) {
+  const double part = high > low ? (position - low) / (high - low) : 0.0;
+  return static_cast<std::uint64_t>(std::clamp(part, 0.0, 1.0) * (cells_per_axis - 1));
+}
+
+struct Key {
+  std::uint32_t sided_triangle;
+  std::uint32_t index;
+  std::uint64_t code;
+  bool operator<(const Key& other) const {
+    return std::tie(sided_triangle, code, index) <
+           std::tie(other.sided_triangle, other.code, other.index);
+  }
+};
+
+}  // namespace
+
+std::uint64_t morton_code(const glm::vec3& position, const Box& box) {
+  return spread(cell(position.x, box.low.x, box.high.x)) |
+         spread(cell(position.y, box.low.y, box.high.y)) << 1 |
+         spread(cell(position.z, box.low.z, box.high.z)) << 2;
+}
+
+std::vector<std::uint32_t> sorted_order(const std::vector<EyeHit>& hits, const Box& box) {
+  std::vector<Key> keys(hits.size());
+  tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t i) {
+    keys[i] = {hits[i].sided_triangle, static_cast<std::uint32_t>(i),
+               morton_code(hits[i].position, box)};
+  });
+  tbb::parallel_sort(keys.begin(), keys.end());
+  std::vector<std::uint32_t> order(hits.size());
+  std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.index; });
+  return order;
+}
+
+}  // namespace photile::trace

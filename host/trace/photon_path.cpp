@@ -1,0 +1,68 @@
+#include "trace/photon_path.hpp"
+
+#include <algorithm>
+
+#include "trace/scatter.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+
+namespace {
+
+float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+double luminance_of(const glm::vec3& flux) { return luminance(glm::dvec3(flux)); }
+
+void store(const PathSetup& setup, const SurfacePoint& point, const glm::vec3& direction,
+           const glm::vec3& flux, PathRecord& record) {
+  record.position.push_back(point.position);
+  record.flux.push_back(flux);
+  if (setup.keep_incoming) record.incoming.push_back(-direction);
+  record.sided_triangle.push_back(point.sided_triangle());
+}
+
+/// Flux after the interaction, black where the path ends. From `roulette_start` on, a path survives
+/// with the share of its largest channel that is left, and keeps that channel's flux: photons of a
+/// light all weigh the same, which is what keeps the noise of the estimate low.
+glm::vec3 play_roulette(const glm::vec3& before, const glm::vec3& after, bool may_end, float u) {
+  if (!may_end) return after;
+  const float survival = std::min(1.0f, largest(after) / largest(before));
+  return u < survival ? after / survival : glm::vec3(0.0f);
+}
+
+}  // namespace
+
+void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record) {
+  const Scene& scene = *setup.rays->scene;
+  const RandomStream random(setup.parameters->seed, path, setup.light);
+  glm::vec3 flux = setup.emitted_flux;
+  EmittedRay ray = setup.emitter->emit(random);
+
+  for (int bounce = 1;; ++bounce) {
+    const auto hit = setup.rays->intersect(ray.origin, ray.direction);
+    if (!hit) {
+      record.escaped += luminance_of(flux);
+      return;
+    }
+    const SurfacePoint point = surface_hit(scene, *hit, ray.direction);
+    const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
+    if (opaque) store(setup, point, ray.direction, flux, record);
+    if (bounce >= setup.parameters->max_path_length) break;
+
+    const RandomBlock numbers = random.block(Purpose::photon_scattering, bounce);
+    const std::optional<Scattered> scattered =
+        opaque ? scatter_opaque(scene, point, ray.direction, numbers)
+               : scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word));
+    if (!scattered) break;
+    const glm::vec3 left =
+        play_roulette(flux, flux * scattered->weight, bounce >= setup.parameters->roulette_start,
+                      numbers.uniform(roulette_word));
+    if (!(largest(left) > 0.0f)) break;
+    record.absorbed += luminance_of(flux) - luminance_of(left);
+    flux = left;
+    ray = {point.origin_towards(scattered->direction), scattered->direction};
+  }
+  record.absorbed += luminance_of(flux);
+}
+
+}  // namespace photile::trace

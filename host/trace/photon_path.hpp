@@ -1,0 +1,39 @@
+// One photon's path from its light to its end.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "photile/photon_tracer.hpp"
+#include "trace/light_emitter.hpp"
+#include "trace/ray_scene_impl.hpp"
+
+namespace photile::trace {
+
+/// What a run of paths of one light left, in the order path, bounce. Arrays as in Photons.
+struct PathRecord {
+  std::vector<glm::vec3> position;
+  std::vector<glm::vec3> flux;
+  std::vector<glm::vec3> incoming;  ///< empty unless `keep_incoming`
+  std::vector<std::uint32_t> sided_triangle;
+  double escaped = 0;   ///< luminance that left the scene
+  double absorbed = 0;  ///< luminance that surfaces, or the bound on path length, took
+};
+
+/// What all paths of one light share.
+struct PathSetup {
+  const RayScene::Impl* rays;
+  const PhotonTracerParameters* parameters;
+  const LightEmitter* emitter;
+  std::uint32_t light;
+  glm::vec3 emitted_flux;  ///< of one path
+  bool keep_incoming;
+};
+
+/// Traces path number `path` and appends what it leaves to `record`. Emitted luminance equals
+/// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
+/// absorption.
+void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
+
+}  // namespace photile::trace

@@ -1,0 +1,156 @@
+#include "photile/photon_tracer.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <string>
+#include <utility>
+
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/statistics.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/photon_path.hpp"
+
+namespace photile {
+
+namespace {
+
+using trace::PathRecord;
+
+/// Paths of one light that one task traces.
+struct Chunk {
+  std::uint32_t light;
+  std::uint64_t first_path, last_path;
+};
+
+/// Large enough to make a task's cost vanish, small enough to share work and to stop soon.
+constexpr std::uint64_t paths_per_chunk = 4096;
+
+void check(const PhotonTracerParameters& parameters) {
+  if (parameters.emitted_photons < limits::min_photons ||
+      parameters.emitted_photons > limits::max_emitted_photons)
+    throw UsageError("emitted photons: " + std::to_string(parameters.emitted_photons) +
+                     " is not between " + std::to_string(limits::min_photons) + " and " +
+                     std::to_string(limits::max_emitted_photons));
+  if (parameters.max_path_length < 1)
+    throw UsageError("longest path: " + std::to_string(parameters.max_path_length) +
+                     " surface interactions; give at least 1");
+  if (parameters.roulette_start < 1)
+    throw UsageError("start of Russian roulette: bounce " +
+                     std::to_string(parameters.roulette_start) + "; give at least 1");
+}
+
+std::vector<Chunk> chunks_of(const std::vector<std::uint64_t>& paths_per_light) {
+  std::vector<Chunk> chunks;
+  for (std::uint32_t light = 0; light < paths_per_light.size(); ++light)
+    for (std::uint64_t first = 0; first < paths_per_light[light]; first += paths_per_chunk)
+      chunks.push_back({light, first, std::min(first + paths_per_chunk, paths_per_light[light])});
+  return chunks;
+}
+
+std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
+  const BoundingSphere bounds = bounding_sphere(scene);
+  std::vector<trace::LightEmitter> emitters;
+  emitters.reserve(scene.lights.size());
+  for (std::uint32_t light = 0; light < scene.lights.size(); ++light)
+    emitters.emplace_back(scene, light, bounds);
+  return emitters;
+}
+
+/// Traces all chunks. Slot i holds what chunk i left, whichever thread traced it.
+std::vector<PathRecord> trace_chunks(const RayScene& scene,
+                                     const PhotonTracerParameters& parameters,
+                                     const std::vector<Chunk>& chunks,
+                                     const std::vector<std::uint64_t>& paths_per_light,
+                                     bool keep_incoming, Progress& progress) {
+  const std::vector<trace::LightEmitter> emitters = emitters_of(scene.scene());
+  std::vector<PathRecord> records(chunks.size());
+  std::atomic<std::uint64_t> stored{0};
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
+    progress.throw_if_cancelled();
+    const trace::FlushDenormals flush_denormals;
+    const Chunk& chunk = chunks[c];
+    const trace::PathSetup setup{&scene.impl(),
+                                 &parameters,
+                                 &emitters[chunk.light],
+                                 chunk.light,
+                                 glm::vec3(glm::dvec3(scene.scene().lights[chunk.light].color) /
+                                           static_cast<double>(paths_per_light[chunk.light])),
+                                 keep_incoming};
+    for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
+      trace::trace_photon_path(setup, path, records[c]);
+
+    const std::uint64_t so_far = stored += records[c].position.size();
+    if (so_far > limits::max_stored_photons)
+      throw UsageError("emitted photons: " + std::to_string(parameters.emitted_photons) +
+                       " leave more than " + std::to_string(limits::max_stored_photons) +
+                       " stored photons; emit fewer");
+    progress.advance(chunk.last_path - chunk.first_path);
+  });
+  return records;
+}
+
+/// One array of all records in chunk order. The records' own are freed on the way.
+template <class T>
+std::vector<T> concatenate(std::vector<PathRecord>& records, std::vector<T> PathRecord::*array) {
+  std::vector<std::size_t> first(records.size() + 1, 0);
+  for (std::size_t r = 0; r < records.size(); ++r)
+    first[r + 1] = first[r] + (records[r].*array).size();
+  std::vector<T> all(first.back());
+  tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t r) {
+    const std::vector<T> part = std::move(records[r].*array);
+    std::copy(part.begin(), part.end(), all.begin() + static_cast<std::ptrdiff_t>(first[r]));
+  });
+  return all;
+}
+
+}  // namespace
+
+PhotonTracerResult trace_photons(const RayScene& ray_scene,
+                                 const PhotonTracerParameters& parameters, Progress& progress) {
+  const Stopwatch stopwatch;
+  check(parameters);
+  const Scene& scene = ray_scene.scene();
+  const SceneNeeds needs = needs_of(scene);
+  const std::size_t light_count = scene.lights.size();
+
+  PhotonTracerResult result;
+  Photons& photons = result.photons;
+  photons.emitted_per_light =
+      photons_per_light(scene, parameters.emitted_photons, parameters.quota);
+  const std::vector<Chunk> chunks = chunks_of(photons.emitted_per_light);
+
+  std::uint64_t paths = 0;
+  for (const std::uint64_t count : photons.emitted_per_light) paths += count;
+  progress.begin("trace photons", paths, "paths");
+  std::vector<PathRecord> records = trace_chunks(ray_scene, parameters, chunks,
+                                                 photons.emitted_per_light, needs.glossy, progress);
+
+  result.stored_per_light.assign(light_count, 0);
+  result.escaped_flux_per_light.assign(light_count, 0.0);
+  result.absorbed_flux_per_light.assign(light_count, 0.0);
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    const std::uint32_t light = chunks[c].light;
+    result.stored_per_light[light] += records[c].position.size();
+    result.escaped_flux_per_light[light] += records[c].escaped;
+    result.absorbed_flux_per_light[light] += records[c].absorbed;
+  }
+  photons.position = concatenate(records, &PathRecord::position);
+  photons.flux = concatenate(records, &PathRecord::flux);
+  photons.incoming = concatenate(records, &PathRecord::incoming);
+  photons.sided_triangle = concatenate(records, &PathRecord::sided_triangle);
+  if (light_count > 1) {
+    photons.light.reserve(photons.size());
+    for (std::uint32_t light = 0; light < light_count; ++light)
+      photons.light.insert(photons.light.end(), result.stored_per_light[light],
+                           static_cast<std::uint16_t>(light));
+  }
+  photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  progress.end();
+  result.seconds = stopwatch.seconds();
+  return result;
+}
+
+}  // namespace photile

@@ -1,0 +1,128 @@
+#include "photile/primary_hits.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <glm/gtc/constants.hpp>
+#include <string>
+
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "trace/eye_path.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/hit_order.hpp"
+
+namespace photile {
+
+namespace {
+
+using trace::EyeHit;
+using trace::EyeRecord;
+
+void check_range(const char* what, std::int64_t value, std::int64_t low, std::int64_t high) {
+  if (value < low || value > high)
+    throw UsageError(std::string(what) + ": " + std::to_string(value) + " is not between " +
+                     std::to_string(low) + " and " + std::to_string(high));
+}
+
+void check(const PrimaryHitParameters& film, int first_row, int last_row) {
+  check_range("picture width", film.width, 1, limits::max_image_side);
+  check_range("picture height", film.height, 1, limits::max_image_side);
+  check_range("samples per pixel", film.samples_per_pixel, 1, limits::max_samples_per_pixel);
+  check_range("specular depth", film.max_specular_depth, 0, 1'000'000);
+  check_range("first row", first_row, 0, film.height);
+  check_range("last row", last_row, first_row, film.height);
+  check_range("samples in one batch",
+              std::int64_t{last_row - first_row} * film.width * film.samples_per_pixel, 0,
+              static_cast<std::int64_t>(limits::max_stored_photons));
+}
+
+/// One record of all rows, in their order.
+EyeRecord concatenate(std::vector<EyeRecord>& rows) {
+  EyeRecord all;
+  std::size_t hits = 0, emission = 0;
+  for (const EyeRecord& row : rows) {
+    hits += row.hits.size();
+    emission += row.emission.size();
+    all.rays += row.rays;
+  }
+  all.hits.reserve(hits);
+  all.emission.reserve(emission);
+  for (EyeRecord& row : rows) {
+    all.hits.insert(all.hits.end(), row.hits.begin(), row.hits.end());
+    all.emission.insert(all.emission.end(), row.emission.begin(), row.emission.end());
+    row = {};
+  }
+  return all;
+}
+
+template <class T>
+std::vector<T> gather(const std::vector<EyeHit>& hits, const std::vector<std::uint32_t>& order,
+                      T EyeHit::*member) {
+  std::vector<T> values(order.size());
+  tbb::parallel_for(std::size_t{0}, order.size(),
+                    [&](std::size_t i) { values[i] = hits[order[i]].*member; });
+  return values;
+}
+
+PrimaryHits sorted(const std::vector<EyeHit>& hits, const trace::Box& box, bool glossy) {
+  const std::vector<std::uint32_t> order = trace::sorted_order(hits, box);
+  PrimaryHits result;
+  result.position = gather(hits, order, &EyeHit::position);
+  result.sided_triangle = gather(hits, order, &EyeHit::sided_triangle);
+  result.pixel = gather(hits, order, &EyeHit::pixel);
+  result.throughput = gather(hits, order, &EyeHit::throughput);
+  result.diffuse_albedo = gather(hits, order, &EyeHit::diffuse_albedo);
+  if (glossy) {
+    result.outgoing = gather(hits, order, &EyeHit::outgoing);
+    result.lobe = gather(hits, order, &EyeHit::lobe);
+  }
+  return result;
+}
+
+/// The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the renderer
+/// rounds, must not depend on how rows are split into batches.
+trace::Box box_of(const RayScene& scene) {
+  RTCBounds bounds;
+  rtcGetSceneBounds(scene.impl().bvh, &bounds);
+  return {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
+          {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+}
+
+}  // namespace
+
+PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& camera,
+                                   const PrimaryHitParameters& parameters, int first_row,
+                                   int last_row) {
+  check(parameters, first_row, last_row);
+  const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(ray_scene.scene());
+  const trace::EyeSetup setup{&ray_scene.impl(), &camera, &parameters, &radiance};
+  std::vector<EyeRecord> rows(static_cast<std::size_t>(last_row - first_row));
+  tbb::parallel_for(first_row, last_row, [&](int y) {
+    const trace::FlushDenormals flush_denormals;
+    EyeRecord& row = rows[static_cast<std::size_t>(y - first_row)];
+    for (int x = 0; x < parameters.width; ++x)
+      for (int sample = 0; sample < parameters.samples_per_pixel; ++sample)
+        trace::trace_eye_path(setup, x, y, sample, row);
+  });
+
+  EyeRecord all = concatenate(rows);
+  PrimaryHitBatch batch;
+  batch.rays = all.rays;
+  batch.emission = std::move(all.emission);
+  batch.hits = sorted(all.hits, box_of(ray_scene), needs_of(ray_scene.scene()).glossy);
+  return batch;
+}
+
+std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene) {
+  std::vector<glm::vec3> radiance;
+  for (const Light& light : scene.lights) {
+    double area = 0;
+    for (const std::uint32_t triangle : light.triangles) area += triangle_area(scene, triangle);
+    if (light.two_sided) area *= 2;
+    radiance.push_back(area > 0 ? glm::vec3(glm::dvec3(light.color) / (glm::pi<double>() * area))
+                                : glm::vec3(0.0f));
+  }
+  return radiance;
+}
+
+}  // namespace photile

@@ -1,0 +1,51 @@
+// The random numbers of one path: a slice of Philox's counter space that no other path touches.
+#pragma once
+
+#include <cstdint>
+
+#include "trace/philox.hpp"
+
+namespace photile::trace {
+
+/// What a number is for. Part of the counter, so that two uses never share numbers.
+enum class Purpose : std::uint32_t { emission, photon_scattering, film_position, eye_scattering };
+
+/// Four independent random words.
+class RandomBlock {
+ public:
+  explicit RandomBlock(const PhiloxCounter& words) : words_(words) {}
+  /// Uniform in [0, 1), a multiple of 2^-24.
+  float uniform(int word) const { return static_cast<float>(words_[word] >> 8) * 0x1p-24f; }
+  /// Uniform in [0, 1), a multiple of 2^-53, from this word and the next.
+  double uniform_double(int word) const {
+    const std::uint64_t bits = std::uint64_t{words_[word]} << 32 | words_[word + 1];
+    return static_cast<double>(bits >> 11) * 0x1p-53;
+  }
+  bool bit(int word) const { return words_[word] >> 31; }
+
+ private:
+  PhiloxCounter words_;
+};
+
+/// Random numbers of path `path` of stream `stream` (a light, or 0). Paths below 2^48, streams
+/// below 2^16.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::uint64_t path, std::uint32_t stream)
+      : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)},
+        path_low_(static_cast<std::uint32_t>(path)),
+        path_high_and_stream_(static_cast<std::uint32_t>(path >> 32) << 16 | stream) {}
+
+  /// Block `index` (a bounce, say) of one purpose. The same arguments give the same numbers.
+  RandomBlock block(Purpose purpose, std::uint32_t index) const {
+    return RandomBlock(philox4x32_10(
+        {path_low_, path_high_and_stream_, index, static_cast<std::uint32_t>(purpose)}, key_));
+  }
+
+ private:
+  PhiloxKey key_;
+  std::uint32_t path_low_;
+  std::uint32_t path_high_and_stream_;
+};
+
+}  // namespace photile::trace

@@ -1,0 +1,40 @@
+// RayScene as the rest of host/trace sees it: one function that intersects a ray.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <atomic>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "photile/ray_scene.hpp"
+
+namespace photile {
+
+/// Where a ray meets a triangle first.
+struct TriangleHit {
+  std::uint32_t triangle;
+  float u, v;  ///< barycentric weights of the second and third corner
+};
+
+struct RayScene::Impl {
+  explicit Impl(const Scene& scene);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  /// Nearest hit of the ray, or nothing. Thread-safe. A ray with a NaN or infinity hits nothing.
+  std::optional<TriangleHit> intersect(const glm::vec3& origin, const glm::vec3& direction) const;
+
+  const Scene* scene;
+  std::atomic<std::int64_t> bytes{0};  ///< outlives the device, which reports to it
+  RTCDevice device = nullptr;
+  RTCScene bvh = nullptr;
+
+ private:
+  void build();
+  void release();
+};
+
+}  // namespace photile

@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <cmath>
+
+#include "trace/scatter.hpp"
+
+namespace photile::trace {
+
+namespace {
+
+struct Deflected {
+  glm::vec3 direction;
+  bool transmitted;
+};
+
+glm::vec3 reflect(const glm::vec3& direction, const glm::vec3& normal) {
+  return glm::normalize(direction - 2.0f * glm::dot(direction, normal) * normal);
+}
+
+/// Snell's law; only where there is no total internal reflection.
+glm::vec3 refract(const glm::vec3& direction, const glm::vec3& normal, float cos_i, float eta) {
+  const float sin2_t = eta * eta * std::max(0.0f, 1.0f - cos_i * cos_i);
+  const float cos_t = std::sqrt(std::max(0.0f, 1.0f - sin2_t));
+  return glm::normalize(eta * direction + (eta * cos_i - cos_t) * normal);
+}
+
+/// A pane has two faces and light bounces between them: R = F + (1 - F)^2 F / (1 - F^2).
+float pane_reflectance(float fresnel) { return 2.0f * fresnel / (1.0f + fresnel); }
+
+Deflected deflect(const Material& material, bool entering, const glm::vec3& direction,
+                  const glm::vec3& normal, float choice) {
+  if (material.interaction == Interaction::mirror) return {reflect(direction, normal), false};
+  const float cos_i = std::min(1.0f, -glm::dot(direction, normal));
+  const float eta = entering || material.thin ? 1.0f / material.index_of_refraction
+                                              : material.index_of_refraction;
+  const float fresnel = fresnel_dielectric(cos_i, eta);
+  if (choice < (material.thin ? pane_reflectance(fresnel) : fresnel))
+    return {reflect(direction, normal), false};
+  return {material.thin ? direction : refract(direction, normal, cos_i, eta), true};
+}
+
+}  // namespace
+
+float fresnel_dielectric(float cos_i, float eta) {
+  const float sin2_t = eta * eta * std::max(0.0f, 1.0f - cos_i * cos_i);
+  if (sin2_t >= 1.0f) return 1.0f;
+  const float cos_t = std::sqrt(1.0f - sin2_t);
+  const float perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+  const float parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  return 0.5f * (perpendicular * perpendicular + parallel * parallel);
+}
+
+Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
+                           const glm::vec3& direction, float choice) {
+  const Material& material = material_of(scene, point);
+  const bool entering = on_front(scene, point);
+  Deflected deflected =
+      deflect(material, entering, direction, shading_normal(scene, point, direction), choice);
+  // A shading normal far from the geometric one can send the ray to the wrong side of the surface,
+  // where it would leak; the geometric normal never does.
+  const bool beyond = glm::dot(deflected.direction, point.normal) < 0.0f;
+  if (beyond != deflected.transmitted)
+    deflected = deflect(material, entering, direction, point.normal, choice);
+
+  if (material.interaction == Interaction::mirror) return {deflected.direction, material.specular};
+  return {deflected.direction, deflected.transmitted ? material.transmission : glm::vec3(1.0f)};
+}
+
+}  // namespace photile::trace

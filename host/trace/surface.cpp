@@ -1,0 +1,83 @@
+#include "trace/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photile::trace {
+
+namespace {
+
+/// Clearance over the largest coordinate of the triangle's corners. The position is interpolated in
+/// double precision and rounded once (2^-24 of a coordinate), and Embree's plane distance is wrong
+/// by a few roundings of the corners' distances, so 2^-19 leaves a margin of an order of magnitude.
+/// The idea of an offset in units of rounding is Waechter and Binder's ("A fast and robust method
+/// for avoiding self-intersection", Ray Tracing Gems, 2019); theirs scales with the point, which
+/// is too little at the origin of a large triangle and too much on a small scene.
+constexpr double clearance_per_coordinate = 0x1p-19;
+
+struct Interpolated {
+  glm::dvec3 position;
+  glm::dvec3 normal;  ///< unit, of side 0
+  double clearance;
+};
+
+double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
+
+Interpolated interpolate(const Scene& scene, const TriangleHit& where) {
+  const glm::uvec3& t = scene.triangles[where.triangle];
+  const glm::dvec3 a(scene.vertices[t.x]), b(scene.vertices[t.y]), c(scene.vertices[t.z]);
+  const glm::dvec3 cross = glm::cross(b - a, c - a);
+  // Robust intersection may report weights a rounding outside the triangle.
+  const double u = std::clamp(static_cast<double>(where.u), 0.0, 1.0);
+  const double v = std::clamp(static_cast<double>(where.v), 0.0, 1.0 - u);
+  return {a + u * (b - a) + v * (c - a), cross / glm::length(cross),
+          clearance_per_coordinate *
+              std::max({largest(glm::abs(a)), largest(glm::abs(b)), largest(glm::abs(c))})};
+}
+
+SurfacePoint on_side(const TriangleHit& where, const Interpolated& at, std::uint32_t side) {
+  SurfacePoint point;
+  point.where = where;
+  point.side = side;
+  point.position = glm::vec3(at.position);
+  point.normal = glm::vec3(side == 0 ? at.normal : -at.normal);
+  point.clearance = static_cast<float>(at.clearance);
+  return point;
+}
+
+}  // namespace
+
+SurfacePoint surface_point(const Scene& scene, const TriangleHit& where, std::uint32_t side) {
+  return on_side(where, interpolate(scene, where), side);
+}
+
+SurfacePoint surface_hit(const Scene& scene, const TriangleHit& where, const glm::vec3& direction) {
+  const Interpolated at = interpolate(scene, where);
+  return on_side(where, at, glm::dot(at.normal, glm::dvec3(direction)) > 0.0 ? 1 : 0);
+}
+
+glm::vec3 diffuse_albedo(const Scene& scene, const SurfacePoint& point) {
+  const Material& material = material_of(scene, point);
+  if (material.diffuse_texture == none || scene.corner_uv.empty()) return material.diffuse;
+  const auto& uv = scene.corner_uv[point.where.triangle];
+  const float u = point.where.u, v = point.where.v;
+  return material.diffuse * scene.textures[material.diffuse_texture].sample((1.0f - u - v) * uv[0] +
+                                                                            u * uv[1] + v * uv[2]);
+}
+
+glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point,
+                         const glm::vec3& direction) {
+  if (scene.corner_normal.empty()) return point.normal;
+  const auto& corner = scene.corner_normal[point.where.triangle];
+  if (corner[0] == glm::vec3(0.0f) || corner[1] == glm::vec3(0.0f) || corner[2] == glm::vec3(0.0f))
+    return point.normal;
+  const float u = point.where.u, v = point.where.v;
+  glm::vec3 normal = (1.0f - u - v) * corner[0] + u * corner[1] + v * corner[2];
+  if (!on_front(scene, point)) normal = -normal;
+  const float length = glm::length(normal);
+  if (!(length > 0.0f)) return point.normal;
+  normal /= length;
+  return glm::dot(normal, direction) < 0.0f ? normal : point.normal;
+}
+
+}  // namespace photile::trace

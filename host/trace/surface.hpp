@@ -1,0 +1,51 @@
+// A point on a triangle, with everything scattering asks about it.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "photile/scene.hpp"
+#include "trace/ray_scene_impl.hpp"
+
+namespace photile::trace {
+
+/// A point on one side of a triangle.
+struct SurfacePoint {
+  TriangleHit where;
+  std::uint32_t side = 0;
+  glm::vec3 position{0.0f};  ///< metres
+  glm::vec3 normal{0.0f};    ///< unit geometric normal on this side
+  /// How far from the position a ray has to start so that it cannot meet its own triangle, metres.
+  float clearance = 0;
+
+  std::uint32_t sided_triangle() const { return sided(where.triangle, side); }
+  /// Origin of a ray that leaves in `direction`, to this side or the other.
+  glm::vec3 origin_towards(const glm::vec3& direction) const {
+    return position + (glm::dot(direction, normal) < 0.0f ? -clearance : clearance) * normal;
+  }
+};
+
+/// The point `where` on the given side of its triangle.
+SurfacePoint surface_point(const Scene& scene, const TriangleHit& where, std::uint32_t side);
+
+/// The point `where` on the side that a ray of this direction arrives at.
+SurfacePoint surface_hit(const Scene& scene, const TriangleHit& where, const glm::vec3& direction);
+
+/// Material of the point's triangle.
+inline const Material& material_of(const Scene& scene, const SurfacePoint& point) {
+  return scene.materials[scene.triangle_material[point.where.triangle]];
+}
+
+/// Whether the point lies on the side that the file calls the front.
+inline bool on_front(const Scene& scene, const SurfacePoint& point) {
+  return scene.front_side[point.where.triangle] == point.side;
+}
+
+/// Lambertian albedo, textured. Each channel in [0, 1].
+glm::vec3 diffuse_albedo(const Scene& scene, const SurfacePoint& point);
+
+/// Unit shading normal on the side of the point; the geometric one where the file has none, or
+/// where a ray of this direction would arrive at the shading normal's back.
+glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction);
+
+}  // namespace photile::trace
