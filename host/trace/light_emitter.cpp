@@ -14,9 +14,6 @@ namespace {
 
 enum Block : std::uint32_t { place_block = 0, direction_block = 1 };
 
-/// KHR_lights_punctual never lets the edge of a spot be narrower than this, in cosines.
-constexpr double narrowest_spot_edge = 0.001;
-
 }  // namespace
 
 LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds)
@@ -72,17 +69,15 @@ EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {
 }
 
 float LightEmitter::spot_cosine(double u) const {
-  // Intensity over t = cosine - outer: (t / edge)^2 up to the edge, then 1, up to `end`. Its
-  // integral is inverted.
+  // KHR_lights_punctual: over t = cosine - outer the intensity is (t / edge)^2 up to the edge of
+  // the inner cone, then 1. Its integral is inverted.
   const double outer = std::cos(static_cast<double>(light_->outer_cone_angle));
   const double inner = std::cos(static_cast<double>(light_->inner_cone_angle));
-  const double edge = std::max(narrowest_spot_edge, inner - outer);
-  const double end = 1.0 - outer;
-  const double edge_end = std::min(edge, end);
-  const double edge_share = edge_end * edge_end * edge_end / (3.0 * edge * edge);
-  const double target = u * (edge_share + end - edge_end);
+  const double edge = inner - outer;
+  const double edge_share = edge / 3.0;
+  const double target = u * (edge_share + 1.0 - inner);
   const double t = target < edge_share ? std::cbrt(3.0 * edge * edge * target)
-                                       : edge_end + (target - edge_share);
+                                       : edge + (target - edge_share);
   return static_cast<float>(outer + t);
 }
 

@@ -80,7 +80,7 @@ struct Light {
   LightKind kind = LightKind::area;
   glm::vec3 color{1.0f};  ///< linear RGB scaled to luminance 1
   /// Emitted flux in `Scene::unit`s (luminance-weighted). For a directional light: the flux that
-  /// falls on a disc as large as the scene's bounding sphere.
+  /// falls on the disc of `bounding_sphere`.
   double power = 0;
 
   // Area lights: uniform radiance over the triangles' front sides, or both sides.
@@ -148,8 +148,8 @@ glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle);
 /// Area of a triangle in square metres, in double precision.
 double triangle_area(const Scene& scene, std::uint32_t triangle);
 
-/// The sphere whose disc the photons of directional lights start from: about the centre of the
-/// triangles' bounding box, through the farthest corner.
+/// A sphere that encloses the scene: around the centre of its bounding box, through the box's
+/// corners. Directional lights take their flux from its disc.
 struct BoundingSphere {
   glm::dvec3 center{0.0};
   double radius = 0;  ///< metres
