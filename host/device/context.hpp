@@ -2,6 +2,7 @@
 // opaque, so that host/device stays the only folder that knows OpenCL.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -9,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,12 @@
 namespace photile::device {
 
 class Context;
+
+/// Bytes in the live buffers of a context. Shared with them: a buffer may outlive its context.
+struct MemoryCounter {
+  std::atomic<std::uint64_t> live{0};
+  std::uint64_t peak = 0;
+};
 
 /// A device buffer. Move-only; released on destruction.
 class RawBuffer {
@@ -32,9 +40,10 @@ class RawBuffer {
 
  private:
   friend class Context;
-  RawBuffer(void* handle, std::size_t bytes) : handle_(handle), bytes_(bytes) {}
+  RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory);
   void* handle_ = nullptr;
   std::size_t bytes_ = 0;
+  std::shared_ptr<MemoryCounter> memory_;
 };
 
 /// A device buffer of `size()` elements of T. A buffer of zero elements is a valid kernel argument.
@@ -104,7 +113,7 @@ class Context {
   /// limit when it does not fit.
   template <class T>
   Buffer<T> allocate(std::size_t size, std::string_view what) {
-    return Buffer<T>(allocate_bytes(size * sizeof(T), what), size);
+    return Buffer<T>(allocate_elements(size, sizeof(T), what), size);
   }
   /// Allocates and fills from the host.
   template <class T>
@@ -157,7 +166,7 @@ class Context {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 
-  RawBuffer allocate_bytes(std::size_t bytes, std::string_view what);
+  RawBuffer allocate_elements(std::size_t count, std::size_t element_bytes, std::string_view what);
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);

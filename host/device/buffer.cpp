@@ -1,0 +1,115 @@
+// Buffers: allocation, transfers, fills.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <vector>
+
+#include "device/context_impl.hpp"
+
+namespace photile::device {
+namespace {
+
+cl_mem memory_of(const RawBuffer& buffer) { return static_cast<cl_mem>(buffer.handle()); }
+
+void check_range(const RawBuffer& buffer, std::size_t bytes, std::size_t offset, const char* verb) {
+  if (offset > buffer.bytes() || bytes > buffer.bytes() - offset) {
+    throw DeviceError(fmt::format("{} of {} bytes at byte {} of a buffer of {} bytes", verb, bytes,
+                                  offset, buffer.bytes()),
+                      CL_INVALID_VALUE);
+  }
+}
+
+}  // namespace
+
+RawBuffer::RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory)
+    : handle_(handle), bytes_(bytes), memory_(std::move(memory)) {
+  memory_->live += bytes_;
+  memory_->peak = std::max(memory_->peak, memory_->live.load());
+}
+
+RawBuffer::RawBuffer(RawBuffer&& other) noexcept
+    : handle_(std::exchange(other.handle_, nullptr)),
+      bytes_(std::exchange(other.bytes_, 0)),
+      memory_(std::move(other.memory_)) {}
+
+RawBuffer& RawBuffer::operator=(RawBuffer&& other) noexcept {
+  std::swap(handle_, other.handle_);
+  std::swap(bytes_, other.bytes_);
+  std::swap(memory_, other.memory_);
+  return *this;
+}
+
+RawBuffer::~RawBuffer() {
+  if (handle_ == nullptr) return;
+  clReleaseMemObject(static_cast<cl_mem>(handle_));
+  memory_->live -= bytes_;
+}
+
+RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_bytes,
+                                     std::string_view what) {
+  // OpenCL has no empty buffers; 16 bytes hold an element of any basic type.
+  constexpr std::size_t smallest = 16;
+  const auto asked = [&] {
+    return fmt::format("allocating {} ({} x {} bytes)", what, count, element_bytes);
+  };
+  const auto& info = impl_->info;
+  if (count > std::numeric_limits<std::size_t>::max() / element_bytes ||
+      count * element_bytes > info.max_allocation_bytes) {
+    impl_->check(CL_INVALID_BUFFER_SIZE, "clCreateBuffer", asked());
+  }
+  const std::size_t bytes = count * element_bytes;
+  // Runtimes that allocate on first use accept more than there is and fail, or are killed, later.
+  if (bytes > info.global_memory_bytes -
+                  std::min<std::uint64_t>(info.global_memory_bytes, impl_->memory->live)) {
+    impl_->check(CL_MEM_OBJECT_ALLOCATION_FAILURE, "clCreateBuffer", asked());
+  }
+  cl_int status = CL_SUCCESS;
+  const cl_mem memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_WRITE,
+                                       std::max(bytes, smallest), nullptr, &status);
+  if (status != CL_SUCCESS) impl_->check(status, "clCreateBuffer", asked());
+  return RawBuffer(memory, bytes, impl_->memory);
+}
+
+void Context::write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
+                          std::size_t offset) {
+  check_range(buffer, bytes, offset, "write");
+  if (bytes == 0) return;
+  // Blocking, so that the caller's memory may go away.
+  impl_->check(clEnqueueWriteBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes,
+                                    data, 0, nullptr, nullptr),
+               "clEnqueueWriteBuffer", fmt::format("{} bytes", bytes));
+}
+
+void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
+                         std::size_t offset) {
+  check_range(buffer, bytes, offset, "read");
+  if (bytes == 0) return;
+  impl_->check(clEnqueueReadBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes,
+                                   data, 0, nullptr, nullptr),
+               "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
+}
+
+void Context::fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
+                         std::size_t bytes) {
+  check_range(buffer, bytes, 0, "fill");
+  if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
+    impl_->check(clEnqueueFillBuffer(impl_->queue.get(), memory_of(buffer), pattern, pattern_bytes,
+                                     0, bytes, 0, nullptr, nullptr),
+                 "clEnqueueFillBuffer", fmt::format("{} bytes", bytes));
+    return;
+  }
+  // OpenCL fills with powers of two only: other elements are written block by block.
+  const auto* const first = static_cast<const unsigned char*>(pattern);
+  const std::size_t block_elements = std::max<std::size_t>(1, (1u << 20) / pattern_bytes);
+  std::vector<unsigned char> block;
+  for (std::size_t i = 0; i < block_elements && block.size() < bytes; ++i) {
+    block.insert(block.end(), first, first + pattern_bytes);
+  }
+  for (std::size_t offset = 0; offset < bytes; offset += block.size()) {
+    write_bytes(buffer, block.data(), std::min(block.size(), bytes - offset), offset);
+  }
+}
+
+}  // namespace photile::device

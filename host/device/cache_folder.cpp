@@ -1,0 +1,63 @@
+#include "device/cache_folder.hpp"
+
+#include <fmt/format.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+
+namespace photile::device {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The value of an environment variable where it is an absolute path; XDG says to ignore others.
+std::optional<fs::path> folder_from_environment(const char* variable) {
+  const char* const value = std::getenv(variable);
+  if (value == nullptr || value[0] != '/') return std::nullopt;
+  return fs::path(value);
+}
+
+/// Permissions do not bind root and do not know of quotas: only a write tells.
+bool can_write(const fs::path& folder) {
+  std::string name = (folder / "probe-XXXXXX").string();
+  const int file = ::mkstemp(name.data());
+  if (file < 0) return false;
+  const bool written = ::write(file, "x", 1) == 1;
+  ::close(file);
+  ::unlink(name.c_str());
+  return written;
+}
+
+}  // namespace
+
+std::string folder_problem(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return error.message();
+  struct statvfs system {};
+  if (::statvfs(folder.c_str(), &system) != 0) return std::strerror(errno);
+  if (system.f_flag & ST_NOEXEC) return "mounted noexec";
+  const auto free_bytes = static_cast<std::uint64_t>(system.f_bavail) * system.f_frsize;
+  if (free_bytes < min_free_cache_bytes) {
+    return fmt::format("{} MiB free, {} MiB needed", free_bytes >> 20, min_free_cache_bytes >> 20);
+  }
+  return can_write(folder) ? "" : "not writable";
+}
+
+std::optional<fs::path> persistent_cache_folder() {
+  if (const auto base = folder_from_environment("XDG_CACHE_HOME")) {
+    if (const auto folder = *base / "photile"; folder_problem(folder).empty()) return folder;
+  }
+  if (const auto home = folder_from_environment("HOME")) {
+    if (const auto folder = *home / ".cache" / "photile"; folder_problem(folder).empty()) {
+      return folder;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace photile::device

@@ -1,0 +1,22 @@
+// Where photile may keep files between runs, and where it may keep them during one.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace photile::device {
+
+/// Free space below which a folder is not used: PoCL ends the process when its disk is full.
+inline constexpr std::uint64_t min_free_cache_bytes = 64ull << 20;
+
+/// photile's own cache folder, created if need be: $XDG_CACHE_HOME/photile, else
+/// $HOME/.cache/photile. None where neither can be written or has room.
+std::optional<std::filesystem::path> persistent_cache_folder();
+
+/// "" where compiled code can be kept in and loaded from `folder`, which is created if need be;
+/// else what is wrong.
+std::string folder_problem(const std::filesystem::path& folder);
+
+}  // namespace photile::device

@@ -1,0 +1,115 @@
+#include "device/device_list.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "device/pocl_work_folder.hpp"
+
+namespace photile::device {
+namespace {
+
+/// The loader's answer (cl_khr_icd) where no runtime is installed.
+constexpr cl_int no_platform = -1001;
+
+DeviceType type_of(cl_device_type type) {
+  // Oclgrind's simulator claims every type at once; it runs on the CPU.
+  if (type & CL_DEVICE_TYPE_CPU) return DeviceType::cpu;
+  if (type & CL_DEVICE_TYPE_GPU) return DeviceType::gpu;
+  if (type & CL_DEVICE_TYPE_ACCELERATOR) return DeviceType::accelerator;
+  return DeviceType::other;
+}
+
+DeviceInfo describe(cl_platform_id platform, cl_device_id device) {
+  DeviceInfo info;
+  info.name = device_text(device, CL_DEVICE_NAME);
+  info.platform = platform_text(platform, CL_PLATFORM_NAME);
+  info.vendor = device_text(device, CL_DEVICE_VENDOR);
+  info.version = device_text(device, CL_DEVICE_VERSION);
+  info.driver_version = device_text(device, CL_DRIVER_VERSION);
+  info.platform_version = platform_text(platform, CL_PLATFORM_VERSION);
+  info.type = type_of(device_property<cl_device_type>(device, CL_DEVICE_TYPE));
+  info.compute_units = device_property<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS);
+  info.global_memory_bytes = device_property<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
+  info.max_allocation_bytes = device_property<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+  info.local_memory_bytes = device_property<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
+  info.max_work_group_size = device_property<std::size_t>(device, CL_DEVICE_MAX_WORK_GROUP_SIZE);
+  info.native_float_width = device_property<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
+  info.is_pocl = info.platform == "Portable Computing Language";
+  return info;
+}
+
+/// Why photile cannot use a device, or "".
+std::string refusal(const DeviceInfo& info, cl_device_id device) {
+  if (info.platform == "Clover") return "Mesa Clover computes wrong results; not supported";
+  if (!device_property<cl_bool>(device, CL_DEVICE_AVAILABLE)) return "not available";
+  if (!device_property<cl_bool>(device, CL_DEVICE_COMPILER_AVAILABLE)) return "has no compiler";
+  if (!device_property<cl_bool>(device, CL_DEVICE_ENDIAN_LITTLE)) return "is big-endian";
+  int major = 0, minor = 0;
+  if (std::sscanf(info.version.c_str(), "OpenCL %d.%d", &major, &minor) != 2 ||
+      major * 10 + minor < 12) {
+    return fmt::format("has '{}', photile needs OpenCL 1.2", info.version);
+  }
+  return {};
+}
+
+std::vector<cl_device_id> devices_of(cl_platform_id platform) {
+  cl_uint count = 0;
+  // CL_DEVICE_NOT_FOUND is the usual answer of a platform without devices, but some fail otherwise:
+  // none of that is a reason to stop.
+  if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) return {};
+  std::vector<cl_device_id> devices(count);
+  if (count == 0 ||
+      clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, devices.data(), nullptr) != CL_SUCCESS) {
+    return {};
+  }
+  return devices;
+}
+
+std::vector<cl_platform_id> platforms() {
+  cl_uint count = 0;
+  const cl_int status = clGetPlatformIDs(0, nullptr, &count);
+  if (status == no_platform || (status == CL_SUCCESS && count == 0)) return {};
+  check(status, "clGetPlatformIDs");
+  std::vector<cl_platform_id> found(count);
+  check(clGetPlatformIDs(count, found.data(), nullptr), "clGetPlatformIDs");
+  return found;
+}
+
+}  // namespace
+
+DeviceList enumerate_devices() {
+  prepare_pocl_work_folder();
+  DeviceList list;
+  const auto found = platforms();
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    const auto devices = devices_of(found[p]);
+    if (devices.empty()) {
+      list.left_out.push_back(platform_text(found[p], CL_PLATFORM_NAME) + ": has no devices");
+    }
+    for (std::size_t d = 0; d < devices.size(); ++d) {
+      ListedDevice listed{describe(found[p], devices[d]), found[p], devices[d]};
+      listed.info.id = fmt::format("{}:{}", p, d);
+      if (const auto reason = refusal(listed.info, devices[d]); !reason.empty()) {
+        list.left_out.push_back(listed.info.name + ": " + reason);
+      } else {
+        list.usable.push_back(std::move(listed));
+      }
+    }
+  }
+  return list;
+}
+
+}  // namespace photile::device
+
+namespace photile {
+
+std::vector<DeviceInfo> list_devices() {
+  std::vector<DeviceInfo> devices;
+  for (auto& listed : device::enumerate_devices().usable) {
+    devices.push_back(std::move(listed.info));
+  }
+  return devices;
+}
+
+}  // namespace photile

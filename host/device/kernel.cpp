@@ -1,0 +1,65 @@
+// Kernels: creation, arguments, launches.
+#include <fmt/format.h>
+
+#include "device/context_impl.hpp"
+
+namespace photile::device {
+
+Kernel Context::kernel(const std::string& file, const std::string& name, const Defines& defines) {
+  const auto options = defines.options();
+  const auto key = std::make_tuple(file, name, options);
+  if (const auto found = impl_->kernels.find(key); found != impl_->kernels.end()) {
+    return found->second;
+  }
+  cl_int status = CL_SUCCESS;
+  auto made = std::make_shared<Kernel::Impl>();
+  made->kernel =
+      KernelHandle(clCreateKernel(impl_->programs->get(file, options), name.c_str(), &status));
+  impl_->check(status, "clCreateKernel", fmt::format("kernel '{}' of '{}'", name, file));
+  made->name = name;
+  cl_uint count = 0;
+  impl_->check(
+      clGetKernelInfo(made->kernel.get(), CL_KERNEL_NUM_ARGS, sizeof count, &count, nullptr),
+      "clGetKernelInfo", name);
+  made->argument_count = count;
+  return impl_->kernels.emplace(key, Kernel(std::move(made))).first->second;
+}
+
+void Context::set_buffer_argument(const Kernel& kernel, unsigned index, const RawBuffer& buffer) {
+  void* const memory = buffer.handle();
+  set_value_argument(kernel, index, &memory, sizeof memory);
+}
+
+void Context::set_value_argument(const Kernel& kernel, unsigned index, const void* value,
+                                 std::size_t bytes) {
+  const auto& impl = kernel.impl();
+  const auto status = clSetKernelArg(impl.kernel.get(), index, bytes, value);
+  if (status != CL_SUCCESS) {
+    impl_->check(status, "clSetKernelArg",
+                 fmt::format("argument {} of kernel '{}', {} bytes", index, impl.name, bytes));
+  }
+}
+
+void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t global_size,
+                      std::size_t local_size) {
+  const auto& impl = kernel.impl();
+  if (argument_count != impl.argument_count) {
+    throw DeviceError(fmt::format("kernel '{}' takes {} arguments, {} given", impl.name,
+                                  impl.argument_count, argument_count),
+                      CL_INVALID_KERNEL_ARGS);
+  }
+  if (global_size == 0) return;
+  if (local_size != 0) global_size = (global_size + local_size - 1) / local_size * local_size;
+  cl_event event = nullptr;
+  const auto status = clEnqueueNDRangeKernel(impl_->queue.get(), impl.kernel.get(), 1, nullptr,
+                                             &global_size, local_size == 0 ? nullptr : &local_size,
+                                             0, nullptr, impl_->profile ? &event : nullptr);
+  if (status != CL_SUCCESS) {
+    impl_->check(status, "clEnqueueNDRangeKernel",
+                 fmt::format("kernel '{}', {} work-items in groups of {}", impl.name, global_size,
+                             local_size));
+  }
+  if (impl_->profile) impl_->times.add(impl.name, EventHandle(event));
+}
+
+}  // namespace photile::device

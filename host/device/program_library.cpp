@@ -1,0 +1,78 @@
+#include "device/program_library.hpp"
+
+#include <chrono>
+
+#include "device/cache_folder.hpp"
+#include "device/pocl_work_folder.hpp"
+#include "device/program_source.hpp"
+#include "device/warning.hpp"
+
+namespace photile::device {
+namespace {
+
+/// The cache over this process's work folder; null where PoCL keeps its files elsewhere or nothing
+/// can be kept.
+PoclCache* shared_pocl_cache() {
+  static const auto cache = []() -> std::unique_ptr<PoclCache> {
+    const auto work = pocl_work_folder();
+    const auto folder = persistent_cache_folder();
+    if (!work || !folder) return nullptr;
+    return std::make_unique<PoclCache>(*work, *folder / "kernels");
+  }();
+  return cache.get();
+}
+
+}  // namespace
+
+ProgramLibrary::ProgramLibrary(const BuildTarget& target, bool use_cache)
+    : target_(target), base_options_(base_options(target.device)) {
+  if (!use_cache) return;
+  if (target.info->is_pocl) {
+    pocl_cache_ = shared_pocl_cache();
+  } else if (const auto folder = persistent_cache_folder()) {
+    cache_.emplace(*folder / "kernels");
+  }
+}
+
+ProgramLibrary::~ProgramLibrary() {
+  if (pocl_cache_ != nullptr) pocl_cache_->publish();
+}
+
+cl_program ProgramLibrary::get(const std::string& file, const std::string& defines) {
+  const auto key = std::make_pair(file, defines);
+  if (const auto found = programs_.find(key); found != programs_.end()) return found->second.get();
+  const auto start = std::chrono::steady_clock::now();
+  const auto options = defines.empty() ? base_options_ : base_options_ + " " + defines;
+  auto program = load_or_build(file, options);
+  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return programs_.emplace(key, std::move(program)).first->second.get();
+}
+
+ProgramHandle ProgramLibrary::load_or_build(const std::string& file, const std::string& options) {
+  const auto source = assemble_source(file);
+  const auto key = program_key(*target_.info, options, source);
+  if (pocl_cache_ != nullptr) {
+    ProgramHandle program;
+    const bool found = pocl_cache_->build(
+        key, [&] { program = build_from_source(target_, file, source, options); });
+    ++(found ? from_cache_ : built_);
+    return program;
+  }
+  if (cache_) {
+    if (const auto binary = cache_->load(key)) {
+      if (auto program = build_from_binary(target_, *binary, options)) {
+        ++from_cache_;
+        return program;
+      }
+      warn("the device refuses '" + cache_->file(key).string() + "'; compiling again");
+    }
+  }
+  auto program = build_from_source(target_, file, source, options);
+  ++built_;
+  if (cache_) {
+    if (const auto binary = program_binary(program.get())) cache_->store(key, *binary);
+  }
+  return program;
+}
+
+}  // namespace photile::device

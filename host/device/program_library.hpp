@@ -1,0 +1,44 @@
+// The programs of one context: built once each, from the caches on disk where they hold them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "device/pocl_cache.hpp"
+#include "device/program.hpp"
+#include "device/program_cache.hpp"
+
+namespace photile::device {
+
+class ProgramLibrary {
+ public:
+  ProgramLibrary(const BuildTarget& target, bool use_cache);
+  /// Publishes what PoCL compiled.
+  ~ProgramLibrary();
+  ProgramLibrary(const ProgramLibrary&) = delete;
+  ProgramLibrary& operator=(const ProgramLibrary&) = delete;
+
+  /// The program of kernel file `file` built with `defines` ("-D NAME=VALUE ..."). Lives as long as
+  /// the library. Errors: KernelBuildError.
+  cl_program get(const std::string& file, const std::string& defines);
+
+  double compile_seconds() const { return seconds_; }
+  std::uint64_t built() const { return built_; }
+  std::uint64_t from_cache() const { return from_cache_; }
+
+ private:
+  ProgramHandle load_or_build(const std::string& file, const std::string& options);
+
+  BuildTarget target_;
+  std::string base_options_;
+  PoclCache* pocl_cache_ = nullptr;    ///< on PoCL, unless switched off
+  std::optional<ProgramCache> cache_;  ///< on others, unless switched off
+  std::map<std::pair<std::string, std::string>, ProgramHandle> programs_;  ///< by file, defines
+  double seconds_ = 0;
+  std::uint64_t built_ = 0, from_cache_ = 0;
+};
+
+}  // namespace photile::device

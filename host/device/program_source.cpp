@@ -1,0 +1,128 @@
+#include "device/program_source.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+
+#include "device/embedded_files.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::device {
+namespace {
+
+struct Registry {
+  std::mutex mutex;
+  std::map<std::string, std::string> texts;
+};
+
+Registry& registry() {
+  static Registry registered;
+  return registered;
+}
+
+std::optional<std::string> registered_source(const std::string& name) {
+  const std::lock_guard lock(registry().mutex);
+  const auto found = registry().texts.find(name);
+  return found == registry().texts.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::string> source_in_folder(const std::string& name) {
+  const char* const folder = std::getenv(kernel_folder_variable);
+  if (folder == nullptr || *folder == '\0') return std::nullopt;
+  std::ifstream file(std::filesystem::path(folder) / name, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(file), {}};
+}
+
+std::optional<std::string> embedded_source(const std::string& name) {
+  for (const auto& file : embedded_files()) {
+    if (file.path == name) return std::string(file.text);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_source(const std::string& name) {
+  if (auto text = registered_source(name)) return text;
+  if (auto text = source_in_folder(name)) return text;
+  return embedded_source(name);
+}
+
+std::string_view without_leading_blanks(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view{} : text.substr(first);
+}
+
+/// What follows `#<name>` on a line, or none.
+std::optional<std::string_view> directive(std::string_view line, std::string_view name) {
+  line = without_leading_blanks(line);
+  if (!line.starts_with('#')) return std::nullopt;
+  line = without_leading_blanks(line.substr(1));
+  if (!line.starts_with(name)) return std::nullopt;
+  return without_leading_blanks(line.substr(name.size()));
+}
+
+/// The path of an `#include "path"` line, or none.
+std::optional<std::string> included_path(std::string_view line) {
+  const auto rest = directive(line, "include");
+  if (!rest || !rest->starts_with('"')) return std::nullopt;
+  const auto end = rest->find('"', 1);
+  if (end == std::string_view::npos) return std::nullopt;
+  return std::string(rest->substr(1, end - 1));
+}
+
+class Assembler {
+ public:
+  void add(const std::string& name, const std::string& includer) {
+    if (!seen_.insert(name).second) return;
+    const auto text = find_source(name);
+    if (!text) {
+      throw KernelBuildError(fmt::format("there is no kernel file '{}'{}", name, includer), {}, 0);
+    }
+    output_ += fmt::format("#line 1 \"{}\"\n", name);
+    std::size_t line_number = 0;
+    for (std::size_t begin = 0; begin < text->size();) {
+      const auto end = std::min(text->find('\n', begin), text->size());
+      add_line(std::string_view(*text).substr(begin, end - begin), name, ++line_number);
+      begin = end + 1;
+    }
+  }
+  std::string take() { return std::move(output_); }
+
+ private:
+  void add_line(std::string_view line, const std::string& name, std::size_t line_number) {
+    if (const auto path = included_path(line)) {
+      add(*path, fmt::format(" (included by '{}' line {})", name, line_number));
+      output_ += fmt::format("#line {} \"{}\"\n", line_number + 1, name);
+    } else if (directive(line, "pragma").value_or("").starts_with("once")) {
+      output_ += '\n';  // a file comes once anyway, and compilers warn about it in a main file
+    } else {
+      output_ += line;
+      output_ += '\n';
+    }
+  }
+
+  std::set<std::string> seen_;
+  std::string output_;
+};
+
+}  // namespace
+
+std::string assemble_source(const std::string& file) {
+  Assembler assembler;
+  assembler.add(file, "");
+  return assembler.take();
+}
+
+void register_kernel_source(const std::string& name, std::string text) {
+  const std::lock_guard lock(registry().mutex);
+  registry().texts[name] = std::move(text);
+}
+
+}  // namespace photile::device

@@ -1,0 +1,104 @@
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "device/context.hpp"
+
+namespace {
+
+using photile::device::Context;
+
+std::vector<int> counted(std::size_t size) {
+  std::vector<int> values(size);
+  std::iota(values.begin(), values.end(), 0);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("an uploaded buffer reads back as it was") {
+  Context context({});
+  const auto values = counted(1000);
+  const auto buffer = context.upload<int>(values, "values");
+  REQUIRE(buffer.size() == 1000);
+  std::vector<int> back(1000);
+  context.read<int>(buffer, back);
+  CHECK(back == values);
+}
+
+TEST_CASE("a write and a read at an offset touch those elements only") {
+  Context context({});
+  auto buffer = context.upload<int>(counted(10), "values");
+  const std::vector<int> inserted = {-1, -2, -3};
+  context.write<int>(buffer, inserted, 4);
+  std::vector<int> back(10);
+  context.read<int>(buffer, back);
+  CHECK(back == std::vector<int>{0, 1, 2, 3, -1, -2, -3, 7, 8, 9});
+  std::vector<int> part(2);
+  context.read<int>(buffer, part, 6);
+  CHECK(part == std::vector<int>{-3, 7});
+}
+
+TEST_CASE("a transfer past the end of a buffer is refused") {
+  Context context({});
+  auto buffer = context.allocate<int>(10, "values");
+  std::vector<int> values(3);
+  CHECK_THROWS_AS(context.read<int>(buffer, values, 8), photile::DeviceError);
+  CHECK_THROWS_AS(context.write<int>(buffer, values, 8), photile::DeviceError);
+  CHECK_THROWS_AS(context.read<int>(buffer, values, 11), photile::DeviceError);
+}
+
+TEST_CASE("fill sets every element, also of sizes that OpenCL has no pattern for") {
+  struct Triple {
+    float x, y, z;
+  };
+  Context context({});
+  auto numbers = context.allocate<unsigned>(1001, "numbers");
+  context.fill(numbers, 0xDEADBEEFu);
+  std::vector<unsigned> back(1001);
+  context.read<unsigned>(numbers, back);
+  CHECK(back == std::vector<unsigned>(1001, 0xDEADBEEFu));
+
+  // 12 bytes; more than one of the blocks of 1 MiB that such a fill goes by.
+  const std::size_t count = 200'003;
+  auto triples = context.allocate<Triple>(count, "triples");
+  context.fill(triples, Triple{1, 2, 3});
+  std::vector<Triple> triples_back(count);
+  context.read<Triple>(triples, triples_back);
+  std::size_t wrong = 0;
+  for (const auto& t : triples_back) wrong += !(t.x == 1 && t.y == 2 && t.z == 3);
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("a buffer of zero elements can be allocated, filled, written and read") {
+  Context context({});
+  auto buffer = context.allocate<float>(0, "nothing");
+  CHECK(buffer.size() == 0);
+  CHECK(buffer.raw().handle() != nullptr);
+  context.fill(buffer, 1.0f);
+  context.write<float>(buffer, {});
+  context.read<float>(buffer, {});
+  context.finish();
+}
+
+TEST_CASE("live and peak bytes count buffers, also those moved") {
+  Context context({});
+  CHECK(context.allocated_bytes() == 0);
+  {
+    auto first = context.allocate<char>(1000, "first");
+    auto second = context.allocate<char>(500, "second");
+    CHECK(context.allocated_bytes() == 1500);
+    first = std::move(second);
+    CHECK(context.allocated_bytes() >= 500);
+  }
+  CHECK(context.allocated_bytes() == 0);
+  CHECK(context.peak_allocated_bytes() == 1500);
+}
+
+TEST_CASE("a buffer may outlive its context") {
+  photile::device::Buffer<int> buffer;
+  {
+    Context context({});
+    buffer = context.allocate<int>(10, "survivor");
+  }
+  CHECK(buffer.size() == 10);
+}
