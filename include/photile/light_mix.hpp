@@ -14,9 +14,13 @@ namespace photile {
 /// State of one light in a mix.
 struct MixedLight {
   std::string name;
-  double power = 0;        ///< in `unit`
+  double power = 0;  ///< in `unit`
   PowerUnit unit = PowerUnit::lumen;
-  glm::vec3 tint{1.0f};    ///< multiplies the layer, on top of the light's own colour
+  glm::vec3 color{1.0f};  ///< the light's own colour, as its photons carried it; luminance 1
+  /// Multiplies the layer, on top of `color`. Scaled so that luminance(tint * color) = 1: a tinted
+  /// light emits `power` as before and keeps its direct illuminance. What it gives by reflection
+  /// from coloured surfaces changes, which one plane of illuminance cannot follow.
+  glm::vec3 tint{1.0f};
 };
 
 struct LightMix {
@@ -27,29 +31,34 @@ struct LightMix {
   static LightMix of(const Scene& scene, double lumen_per_watt);
 };
 
-/// A change asked for on the command line: NAME=POWER[lm|W] | NAME=xFACTOR | NAME=#RRGGBB | NAME=off.
-/// Several changes of one light apply in order.
+/// A change asked for on the command line: NAME=POWER[lm|W] | NAME=xFACTOR | NAME=#RRGGBB |
+/// NAME=off. POWER is in the light's own unit unless it says otherwise; #RRGGBB is an sRGB colour
+/// of which only the hue and saturation count. Several changes of one light apply in order.
 struct LightChange {
   std::string name;
   std::string value;
-  /// Errors: UsageError when `text` has no '=' or an empty side.
+  /// Splits at the last '=', so that names may hold one. Errors: UsageError when `text` has no '='
+  /// or an empty side.
   static LightChange parse(const std::string& text);
 };
 
 /// Applies changes. Errors: UsageError for an unknown light (the message lists those there are), a
-/// negative or non-finite power, a malformed value.
+/// negative or non-finite power, a malformed value, a colour that the light does not emit.
 void apply(LightMix& mix, const std::vector<LightChange>& changes);
 
 /// Layers x powers, as channels: root R G B A (the sum, alpha 1), `Combined_<light>.R/G/B` and
-/// `Illuminance_<light>.Y` in lux, with attribute `photile.lights` (JSON) and units. The root is the
-/// float sum of the layers in order.
+/// `Illuminance_<light>.Y` in lux, with attribute `photile.lights` (JSON) and units. The root is
+/// the float sum of the layers in order. Errors: UsageError when the mix lacks a layer's light.
 Image mix_layers(const LightLayers& layers, const LightMix& mix);
 
 /// Changes powers from a picture alone. Reads layers named `Combined_<light>`, Blender's
 /// `ViewLayer.Combined_<light>`, Arnold's `RGBA_<light>`; powers from `photile.lights` where the
 /// file has it, else every light has power 1 and only factors, colours and "off" are accepted.
-/// Errors: InputError when the picture has no light layers; UsageError as in `apply`; UsageError
-/// when a light that is off in the picture is to be turned up.
+/// Returns the channels of `mix_layers`: the root is the sum of the layers, so light that another
+/// program left out of every layer is not in it. The root's alpha and the attributes are kept.
+/// Errors: InputError when the picture has no light layers, several views of them, or damaged
+/// records; UsageError as in `apply`; UsageError when a light that is off in the picture, or a
+/// colour that it lacks there, is to be turned up.
 Image relight(const Image& layered, const std::vector<LightChange>& changes);
 
 /// The lights of a picture, as `relight` sees them.

@@ -1,0 +1,146 @@
+#include "image/light_change.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "image/srgb.hpp"
+#include "photile/errors.hpp"
+
+namespace photile {
+namespace image {
+namespace {
+
+/// Names that a message lists before it only counts the rest.
+constexpr std::size_t listed_lights = 20;
+
+[[noreturn]] void refuse(const LightChange& change, const char* reason) {
+  throw UsageError(fmt::format("light '{}': '{}' {}", change.name, change.value, reason));
+}
+
+/// A finite number >= 0 that fills the whole text; independent of the locale.
+std::optional<double> parse_amount(std::string_view text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value) || value < 0.0) return {};
+  return value;
+}
+
+SetColor parse_color(const LightChange& change) {
+  const std::string_view digits = std::string_view(change.value).substr(1);
+  std::uint32_t code = 0;
+  const char* const end = digits.data() + digits.size();
+  const auto [rest, error] = std::from_chars(digits.data(), end, code, 16);
+  if (digits.size() != 6 || error != std::errc() || rest != end) {
+    refuse(change, "is no colour; use six hexadecimal digits such as #FFD8A0");
+  }
+  if (code == 0) refuse(change, "is black; to turn the light off use 'off'");
+  const auto channel = [&](unsigned shift) {
+    return linear_from_srgb(((code >> shift) & 0xFFu) / 255.0);
+  };
+  return {{channel(16), channel(8), channel(0)}};
+}
+
+bool remove_suffix(std::string_view& text, std::string_view suffix) {
+  if (!text.ends_with(suffix)) return false;
+  text.remove_suffix(suffix.size());
+  return true;
+}
+
+SetPower parse_power(const LightChange& change) {
+  std::string_view number = change.value;
+  std::optional<PowerUnit> unit;
+  if (remove_suffix(number, "lm")) {
+    unit = PowerUnit::lumen;
+  } else if (remove_suffix(number, "W")) {
+    unit = PowerUnit::watt;
+  }
+  const std::optional<double> power = parse_amount(number);
+  if (!power) {
+    refuse(change,
+           "is no change of a light; use POWER, POWERlm or POWERW (0 or more), xFACTOR, #RRGGBB "
+           "or off");
+  }
+  return {*power, unit};
+}
+
+}  // namespace
+
+Request understand(const LightChange& change) {
+  if (change.value == "off") return ScalePower{0.0};
+  if (change.value.starts_with('#')) return parse_color(change);
+  if (change.value.starts_with('x')) {
+    const std::optional<double> factor = parse_amount(std::string_view(change.value).substr(1));
+    if (!factor) refuse(change, "is no factor; use x and a number of 0 or more such as x1.5");
+    return ScalePower{*factor};
+  }
+  return parse_power(change);
+}
+
+void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
+  if (const auto* color = std::get_if<SetColor>(&request)) {
+    const double emitted = luminance(color->linear * glm::dvec3(light.color));
+    if (!(emitted > 0.0)) {
+      throw UsageError(fmt::format(
+          "light '{}' emits nothing of that colour; choose one that its own colour holds",
+          light.name));
+    }
+    light.tint = glm::vec3(color->linear / emitted);
+    return;
+  }
+  double power = light.power;
+  if (const auto* factor = std::get_if<ScalePower>(&request)) {
+    power *= factor->factor;
+  } else {
+    const SetPower& set = std::get<SetPower>(request);
+    power = set.power;
+    if (set.unit && *set.unit != light.unit) {
+      power = light.unit == PowerUnit::lumen ? power * lumen_per_watt : power / lumen_per_watt;
+    }
+  }
+  if (!std::isfinite(power)) {
+    throw UsageError(fmt::format("light '{}': its power would be infinite; use less", light.name));
+  }
+  light.power = power;
+}
+
+std::size_t index_of(const LightMix& mix, const std::string& name) {
+  std::string list;
+  for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+    if (mix.lights[i].name == name) return i;
+    if (i < listed_lights) list += fmt::format("{}'{}'", i == 0 ? "" : ", ", mix.lights[i].name);
+  }
+  if (mix.lights.size() > listed_lights) {
+    list += fmt::format(" and {} more", mix.lights.size() - listed_lights);
+  }
+  throw UsageError(fmt::format("there is no light '{}'; there {} {}", name,
+                               mix.lights.size() == 1 ? "is" : "are",
+                               list.empty() ? "none" : list));
+}
+
+}  // namespace image
+
+LightChange LightChange::parse(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw UsageError(
+        fmt::format("'{}' is no change of a light; use NAME=POWER, NAME=xFACTOR, NAME=#RRGGBB or "
+                    "NAME=off",
+                    text));
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+void apply(LightMix& mix, const std::vector<LightChange>& changes) {
+  LightMix changed = mix;  // a refused change leaves the mix as it was
+  for (const LightChange& change : changes) {
+    image::apply(changed.lights[image::index_of(changed, change.name)], image::understand(change),
+                 changed.lumen_per_watt);
+  }
+  mix = std::move(changed);
+}
+
+}  // namespace photile

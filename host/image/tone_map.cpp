@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "photile/errors.hpp"
+#include "photile/image.hpp"
+#include "photile/scene.hpp"
+
+namespace photile {
+namespace {
+
+constexpr double mid_grey = 0.18;  ///< reflectance of a photographer's grey card
+
+/// Luminances farther than this factor from the median say nothing about the room: a lamp seen
+/// directly, a black background.
+constexpr double outlier_factor = 20.0;
+
+struct RootPlanes {
+  const std::vector<float>&r, &g, &b;
+  glm::dvec3 operator[](std::size_t pixel) const { return {r[pixel], g[pixel], b[pixel]}; }
+};
+
+RootPlanes root_of(const Image& image) {
+  const std::vector<float>*r = image.find("R"), *g = image.find("G"), *b = image.find("B");
+  if (!r || !g || !b) {
+    throw InputError("the picture has no channels R, G and B to show; relight it first");
+  }
+  return {*r, *g, *b};
+}
+
+/// Factor that brings the log-average luminance to mid grey, over pixels of finite positive
+/// luminance within `outlier_factor` of their median (Reinhard et al. 2002, without the outliers).
+/// 1 where no pixel has any.
+double automatic_exposure(const RootPlanes& root) {
+  std::vector<double> luminances;
+  for (std::size_t pixel = 0; pixel < root.r.size(); ++pixel) {
+    const double value = luminance(root[pixel]);
+    if (value > 0.0 && std::isfinite(value)) luminances.push_back(value);
+  }
+  if (luminances.empty()) return 1.0;
+  const auto middle = luminances.begin() + static_cast<std::ptrdiff_t>(luminances.size() / 2);
+  std::nth_element(luminances.begin(), middle, luminances.end());
+  const double median = *middle;
+
+  double sum_of_logs = 0.0;
+  std::size_t count = 0;
+  for (const double value : luminances) {
+    if (value > outlier_factor * median || value < median / outlier_factor) continue;
+    sum_of_logs += std::log(value);
+    ++count;
+  }
+  return mid_grey / std::exp(sum_of_logs / static_cast<double>(count));
+}
+
+/// Into [0,1]: NaN and negative values to 0, and colours brighter than white scaled as a whole, so
+/// that they keep their hue.
+glm::dvec3 into_display_range(glm::dvec3 rgb) {
+  for (int channel = 0; channel < 3; ++channel) {
+    double& value = rgb[channel];
+    if (!(value > 0.0)) value = 0.0;  // NaN too
+  }
+  const double largest = std::max({rgb.r, rgb.g, rgb.b});
+  if (std::isinf(largest)) {
+    for (int channel = 0; channel < 3; ++channel) rgb[channel] = std::isinf(rgb[channel]) ? 1 : 0;
+    return rgb;
+  }
+  return largest > 1.0 ? rgb / largest : rgb;
+}
+
+}  // namespace
+
+Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
+  if (!std::isfinite(parameters.exposure)) {
+    throw UsageError("exposure must be a finite number of stops");
+  }
+  const RootPlanes root = root_of(scene_referred);
+  const double scale = std::exp2(parameters.exposure) *
+                       (parameters.automatic_exposure ? automatic_exposure(root) : 1.0);
+
+  Image display;
+  display.width = scene_referred.width;
+  display.height = scene_referred.height;
+  for (const char* channel : {"R", "G", "B"}) display.add(channel);
+  for (std::size_t pixel = 0; pixel < root.r.size(); ++pixel) {
+    const glm::dvec3 rgb = into_display_range(scale * root[pixel]);
+    for (int channel = 0; channel < 3; ++channel) {
+      display.channels[static_cast<std::size_t>(channel)][pixel] = static_cast<float>(rgb[channel]);
+    }
+  }
+  return display;
+}
+
+}  // namespace photile

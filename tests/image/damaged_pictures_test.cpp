@@ -1,0 +1,66 @@
+// A damaged file gives an error or a picture, never a crash; the sanitizers preset makes this
+// sharp.
+#include <array>
+
+#include "picture_support.hpp"
+
+using namespace photile;
+using namespace photile::test;
+
+namespace {
+
+/// The bytes of an EXR to relight, of a size that takes several blocks.
+std::string layered_exr() {
+  const TemporaryFolder folder;
+  LightMix mix;
+  mix.lights = {mixed("window", 5000.0), mixed("lamp", 800.0)};
+  write_exr(folder / "a.exr", mix_layers(random_layers(37, 50, {"window", "lamp"}), mix));
+  return bytes_of(folder / "a.exr");
+}
+
+enum class Outcome { picture, refused };
+
+Outcome relight_bytes(const TemporaryFolder& folder, const std::string& bytes) {
+  write_bytes(folder / "damaged.exr", bytes);
+  try {
+    const Image relit = relight(read_image(folder / "damaged.exr"), {{"lamp", "x2"}});
+    for (const std::vector<float>& plane : relit.channels) {
+      CHECK(plane.size() == static_cast<std::size_t>(relit.width) * relit.height);
+    }
+    return Outcome::picture;
+  } catch (const Error& error) {
+    CHECK(std::string(error.what()).find('\n') == std::string::npos);
+    return Outcome::refused;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("an EXR cut at any 64th of its length is refused") {
+  const TemporaryFolder folder;
+  const std::string whole = layered_exr();
+  REQUIRE(relight_bytes(folder, whole) == Outcome::picture);
+  for (std::size_t part = 0; part < 64; ++part) {
+    INFO("cut at " << part << "/64");
+    CHECK(relight_bytes(folder, whole.substr(0, whole.size() * part / 64)) == Outcome::refused);
+  }
+}
+
+TEST_CASE("an EXR with one bit flipped gives an error or a picture, 300 times") {
+  const TemporaryFolder folder;
+  const std::string whole = layered_exr();
+  std::mt19937 engine(2026);
+  // Half of the flips in the header, where they do most.
+  std::uniform_int_distribution<std::size_t> header(0, 1'500), anywhere(0, whole.size() - 1);
+  std::uniform_int_distribution<int> bit(0, 7);
+  std::array<int, 2> outcomes{};
+  for (int flip = 0; flip < 300; ++flip) {
+    std::string damaged = whole;
+    const std::size_t position = flip % 2 == 0 ? header(engine) : anywhere(engine);
+    damaged[position] = static_cast<char>(damaged[position] ^ (1 << bit(engine)));
+    INFO("flip " << flip << " at byte " << position);
+    ++outcomes[relight_bytes(folder, damaged) == Outcome::picture ? 0 : 1];
+  }
+  CHECK(outcomes[0] + outcomes[1] == 300);
+  CHECK(outcomes[1] > 0);
+}

@@ -1,0 +1,141 @@
+#include <nlohmann/json.hpp>
+
+#include "picture_support.hpp"
+
+using namespace photile;
+using namespace photile::test;
+
+TEST_CASE("the root is the float sum of the layers in order, alpha one") {
+  LightMix mix;
+  mix.lights = {mixed("z", 812.5), mixed("a", 3.1), mixed("m", 47.0)};
+  const Image picture = mix_layers(random_layers(7, 5, {"z", "a", "m"}), mix);
+  for (const std::string channel : {"R", "G", "B"}) {
+    std::vector<float> sum(35, 0.0f);
+    for (const std::string light : {"z", "a", "m"}) {
+      const std::vector<float>& layer = *picture.find("Combined_" + light + "." + channel);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += layer[i];
+    }
+    CHECK(same_bits(*picture.find(channel), sum));
+  }
+  CHECK(*picture.find("A") == std::vector<float>(35, 1.0f));
+  const std::vector<std::string> first(picture.channel_names.begin(),
+                                       picture.channel_names.begin() + 4);
+  CHECK(first == std::vector<std::string>{"R", "G", "B", "A"});
+}
+
+TEST_CASE("a layer is radiance x power x tint, and lux are illuminance x power") {
+  const LightLayers layers = random_layers(3, 2, {"lamp"});
+  LightMix mix;
+  mix.lights = {mixed("lamp", 800.0)};
+  mix.lights[0].tint = {2.0f, 1.0f, 0.5f};
+  const Image picture = mix_layers(layers, mix);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const glm::vec3 radiance = layers.layers[0].radiance[i];
+    CHECK((*picture.find("Combined_lamp.R"))[i] == Approx(radiance.r * 1600.0).epsilon(1e-6));
+    CHECK((*picture.find("Combined_lamp.G"))[i] == Approx(radiance.g * 800.0).epsilon(1e-6));
+    CHECK((*picture.find("Combined_lamp.B"))[i] == Approx(radiance.b * 400.0).epsilon(1e-6));
+    CHECK((*picture.find("Illuminance_lamp.Y"))[i] ==
+          Approx(layers.layers[0].illuminance[i] * 800.0).epsilon(1e-6));
+  }
+  CHECK(picture.attributes.at("photile.units") == "cd/m2");
+  CHECK(picture.attributes.at("photile.illuminance.units") == "lux");
+  CHECK(picture.numbers.at("whiteLuminance") == 1.0f);
+}
+
+TEST_CASE("a scene in watts keeps W/(m2 sr) in its picture and gives lux by the efficacy") {
+  const LightLayers layers = random_layers(3, 2, {"lamp"});
+  LightMix mix;
+  mix.lumen_per_watt = 179.0;
+  mix.lights = {mixed("lamp", 12.0, PowerUnit::watt)};
+  const Image picture = mix_layers(layers, mix);
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK((*picture.find("R"))[i] == Approx(layers.layers[0].radiance[i].r * 12.0).epsilon(1e-6));
+    CHECK((*picture.find("Illuminance_lamp.Y"))[i] ==
+          Approx(layers.layers[0].illuminance[i] * 12.0 * 179.0).epsilon(1e-6));
+  }
+  CHECK(picture.attributes.at("photile.units") == "W/(m2 sr)");
+  CHECK(picture.attributes.at("photile.illuminance.units") == "lux");
+  CHECK(picture.attributes.at("photile.efficacy") == "179");
+  CHECK(picture.numbers.at("whiteLuminance") == 179.0f);
+}
+
+TEST_CASE("photile.lights names every light with its power, unit, colour and tint") {
+  LightMix mix;
+  mix.lights = {mixed("b", 5.5), mixed("a \"x\" = ü", 0.0)};
+  mix.lights[0].color = {1.5f, 0.75f, 2.0f};
+  mix.lights[0].tint = {0.5f, 1.25f, 0.25f};
+  const Image picture = mix_layers(random_layers(2, 2, {"b", "a \"x\" = ü"}), mix);
+  const auto lights = nlohmann::json::parse(picture.attributes.at("photile.lights"));
+  REQUIRE(lights.size() == 2);
+  CHECK(lights[0]["name"] == "b");
+  CHECK(lights[0]["power"] == 5.5);
+  CHECK(lights[0]["unit"] == "lm");
+  CHECK(lights[0]["color"] == nlohmann::json{1.5, 0.75, 2.0});
+  CHECK(lights[0]["tint"] == nlohmann::json{0.5, 1.25, 0.25});
+  CHECK(lights[1]["name"] == "a \"x\" = ü");
+  CHECK(lights[1]["power"] == 0.0);
+}
+
+TEST_CASE("a mix is read back from an EXR, whatever order the file keeps channels in") {
+  const TemporaryFolder folder;
+  LightMix mix;
+  mix.lumen_per_watt = 179.0;
+  mix.lights = {mixed("z", 5.5, PowerUnit::watt), mixed("a", 0.1, PowerUnit::watt)};
+  mix.lights[1].tint = {0.1f, 0.2f, 0.3f};
+  mix.lights[1].color = {0.7f, 1.1f, 0.9f};
+  write_exr(folder / "a.exr", mix_layers(random_layers(2, 2, {"z", "a"}), mix));
+  const LightMix read = read_light_mix(read_image(folder / "a.exr"));
+  CHECK(read.lumen_per_watt == 179.0);
+  REQUIRE(read.lights.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(read.lights[i].name == mix.lights[i].name);
+    CHECK(read.lights[i].power == mix.lights[i].power);
+    CHECK(read.lights[i].unit == mix.lights[i].unit);
+    CHECK(read.lights[i].color == mix.lights[i].color);
+    CHECK(read.lights[i].tint == mix.lights[i].tint);
+  }
+}
+
+TEST_CASE("a scene's own mix has its lights' names, powers, unit and colours") {
+  Scene scene;
+  scene.unit = PowerUnit::watt;
+  scene.lights.resize(2);
+  scene.lights[0].name = "one";
+  scene.lights[0].power = 3.0;
+  scene.lights[1].name = "two";
+  scene.lights[1].color = {2.0f, 0.5f, 1.0f};
+  const LightMix mix = LightMix::of(scene, 683.0);
+  REQUIRE(mix.lights.size() == 2);
+  CHECK(mix.lights[0].name == "one");
+  CHECK(mix.lights[0].power == 3.0);
+  CHECK(mix.lights[0].unit == PowerUnit::watt);
+  CHECK(mix.lights[1].color == glm::vec3(2.0f, 0.5f, 1.0f));
+  CHECK(mix.lights[1].tint == glm::vec3(1.0f));
+}
+
+TEST_CASE("layers start black, one per light, in the scene's order") {
+  std::vector<Light> lights(2);
+  lights[0].name = "one";
+  lights[1].name = "two";
+  const LightLayers layers(4, 3, lights);
+  REQUIRE(layers.layers.size() == 2);
+  CHECK(layers.layers[1].light == "two");
+  CHECK(layers.layers[1].radiance == std::vector<glm::vec3>(12, glm::vec3(0.0f)));
+  CHECK(layers.layers[1].illuminance == std::vector<float>(12, 0.0f));
+}
+
+TEST_CASE("a light at power 0 is black even where its layer is not finite") {
+  LightLayers layers = random_layers(2, 1, {"lamp"});
+  layers.layers[0].radiance[0] = glm::vec3(std::numeric_limits<float>::quiet_NaN());
+  LightMix mix;
+  mix.lights = {mixed("lamp", 0.0)};
+  CHECK((*mix_layers(layers, mix).find("R"))[0] == 0.0f);
+}
+
+TEST_CASE("a layer whose light the mix lacks is refused by name") {
+  LightMix mix;
+  mix.lights = {mixed("other", 1.0)};
+  const std::string message =
+      message_of<UsageError>([&] { mix_layers(random_layers(2, 2, {"lamp"}), mix); });
+  CHECK(message.find("'lamp'") != std::string::npos);
+}

@@ -1,0 +1,148 @@
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <cstring>
+
+#include "picture_support.hpp"
+
+using namespace photile;
+using namespace photile::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+Image noise(int width, int height) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> value(0.0f, 1.0f);
+  for (const char* name : {"R", "G", "B"}) {
+    for (float& pixel : image.add(name)) pixel = value(engine);
+  }
+  return image;
+}
+
+using Writer = void (*)(const fs::path&, const Image&);
+
+std::size_t files_in(const fs::path& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+std::string refusal(Writer write, const fs::path& file) {
+  const std::string message = message_of<OutputError>([&] { write(file, noise(64, 64)); });
+  CHECK(message.find(file.string()) != std::string::npos);
+  return message;
+}
+
+/// The largest file that the process may write, until the end of the scope: the file system's "no
+/// space" without a file system of one's own.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    previous_action_ = ::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &previous_);
+    const rlimit limited{bytes, previous_.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limited) == 0);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &previous_);
+    ::signal(SIGXFSZ, previous_action_);
+  }
+
+ private:
+  rlimit previous_{};
+  void (*previous_action_)(int) = SIG_DFL;
+};
+
+}  // namespace
+
+TEST_CASE("a device is refused as an output and stays the device it was") {
+  for (const Writer write : {Writer{write_exr}, Writer{write_png}}) {
+    CHECK(refusal(write, "/dev/full").find("not a regular file") != std::string::npos);
+    struct stat status {};
+    REQUIRE(::stat("/dev/full", &status) == 0);
+    CHECK(S_ISCHR(status.st_mode));
+  }
+}
+
+TEST_CASE("a folder that is missing, is a file, or cannot be written is refused by name") {
+  const TemporaryFolder folder;
+  write_bytes(folder / "file", "x");
+  for (const Writer write : {Writer{write_exr}, Writer{write_png}}) {
+    refusal(write, folder / "missing/a.exr");
+    refusal(write, folder / "file/a.exr");
+    refusal(write, folder.path());        // a folder itself
+    refusal(write, "/proc/photile.exr");  // not even root can
+  }
+  if (::geteuid() == 0) {
+    WARN("skipped for root: a read-only folder");
+    return;
+  }
+  fs::create_directory(folder / "locked");
+  REQUIRE(::chmod((folder / "locked").c_str(), 0555) == 0);
+  refusal(write_exr, folder / "locked/a.exr");
+}
+
+TEST_CASE("a write that runs out of space is an error, leaves no file and keeps an earlier one") {
+  const TemporaryFolder folder;
+  for (const Writer write : {Writer{write_exr}, Writer{write_png}}) {
+    {
+      const FileSizeLimit limit(4096);
+      refusal(write, folder / "new");
+    }
+    CHECK(files_in(folder.path()) == 0);
+    write(folder / "kept", noise(8, 8));
+    const std::string before = bytes_of(folder / "kept");
+    {
+      const FileSizeLimit limit(4096);
+      const std::string message = refusal(write, folder / "kept");
+      CHECK(message.find(std::strerror(EFBIG)) != std::string::npos);
+    }
+    CHECK(bytes_of(folder / "kept") == before);
+    CHECK(files_in(folder.path()) == 1);
+    fs::remove(folder / "kept");
+  }
+}
+
+TEST_CASE("every limit of the space gives an error or the whole file, nothing between") {
+  const TemporaryFolder folder;
+  const Image picture = noise(16, 16);
+  write_exr(folder / "a.exr", picture);
+  const std::string whole = bytes_of(folder / "a.exr");
+  fs::remove(folder / "a.exr");
+  for (std::size_t bytes = 0; bytes <= whole.size(); bytes += 97) {
+    {
+      const FileSizeLimit limit(bytes);
+      CHECK_THROWS_AS(write_exr(folder / "a.exr", picture), OutputError);
+    }
+    CHECK(files_in(folder.path()) == 0);
+  }
+  {
+    const FileSizeLimit limit(whole.size());
+    write_exr(folder / "a.exr", picture);
+  }
+  CHECK(bytes_of(folder / "a.exr") == whole);
+}
+
+TEST_CASE("a finished file replaces an earlier one, alone in its folder, and follows a link") {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.exr", "old");
+  fs::create_symlink("a.exr", folder / "link.exr");
+  write_exr(folder / "link.exr", noise(4, 4));
+  CHECK(fs::is_symlink(folder / "link.exr"));
+  CHECK(read_image(folder / "a.exr").width == 4);
+  CHECK(files_in(folder.path()) == 2);
+}
+
+TEST_CASE("a picture without pixels or without R, G, B cannot be written") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_AS(write_exr(folder / "a.exr", Image{}), OutputError);
+  Image grey;
+  grey.width = grey.height = 1;
+  grey.add("Y");
+  CHECK_THROWS_AS(write_png(folder / "a.png", grey), OutputError);
+  CHECK(files_in(folder.path()) == 0);
+}

@@ -1,0 +1,100 @@
+// What the tests of pictures share: a folder that vanishes, small layered pictures, bit comparison.
+#pragma once
+
+#include <unistd.h>
+
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "photile/errors.hpp"
+#include "photile/light_mix.hpp"
+
+namespace photile::test {
+
+/// A new folder, removed with all it holds at the end of the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "photile-image-XXXXXX").string();
+    REQUIRE(::mkdtemp(name.data()) != nullptr);
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+inline void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+/// Equal bit for bit, so that NaN equals itself and 0 differs from -0.
+inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::bit_cast<std::uint32_t>(a[i]) != std::bit_cast<std::uint32_t>(b[i])) return false;
+  }
+  return true;
+}
+
+/// Layers of random positive radiance and illuminance; the seed is fixed.
+inline LightLayers random_layers(int width, int height, const std::vector<std::string>& names) {
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<float> value(0.01f, 3.0f);
+  LightLayers layers;
+  layers.width = width;
+  layers.height = height;
+  for (const std::string& name : names) {
+    LightLayers::Layer layer{name, {}, {}};
+    for (int pixel = 0; pixel < width * height; ++pixel) {
+      const float r = value(engine), g = value(engine), b = value(engine);
+      layer.radiance.emplace_back(r, g, b);
+      layer.illuminance.push_back(value(engine));
+    }
+    layers.layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+inline MixedLight mixed(const std::string& name, double power, PowerUnit unit = PowerUnit::lumen) {
+  MixedLight light;
+  light.name = name;
+  light.power = power;
+  light.unit = unit;
+  return light;
+}
+
+/// The message of the Failure that an action throws; fails where it throws none.
+template <class Failure, class Action>
+std::string message_of(Action&& action) {
+  try {
+    action();
+  } catch (const Failure& error) {
+    const std::string message = error.what();
+    CHECK(message.find('\n') == std::string::npos);
+    return message;
+  }
+  FAIL("nothing was thrown");
+  return {};
+}
+
+}  // namespace photile::test
