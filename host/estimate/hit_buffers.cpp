@@ -1,0 +1,47 @@
+#include "estimate/hit_buffers.hpp"
+
+#include <span>
+#include <vector>
+
+namespace photile::estimate {
+namespace {
+
+std::span<const float> floats(const std::vector<glm::vec3>& values, std::size_t first,
+                              std::size_t count) {
+  return {&values[first].x, 3 * count};
+}
+
+/// One member of every lobe, packed for the device.
+template <class Member>
+device::Buffer<float> upload_lobes(device::Context& context, const PrimaryHits& hits,
+                                   std::size_t first, std::size_t count, Member member,
+                                   std::string_view what) {
+  std::vector<glm::vec3> values(count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = hits.lobe[first + i].*member;
+  return context.upload(floats(values, 0, count), what);
+}
+
+}  // namespace
+
+HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
+                       std::size_t count, bool glossy) {
+  HitBuffers buffers;
+  buffers.count = static_cast<std::uint32_t>(count);
+  if (count == 0) return buffers;
+  buffers.position = context.upload(floats(hits.position, first, count), "hit positions");
+  buffers.map = context.upload(
+      std::span<const std::uint32_t>(hits.sided_triangle).subspan(first, count), "hit triangles");
+  if (!glossy) return buffers;
+  buffers.outgoing = context.upload(floats(hits.outgoing, first, count), "hit directions");
+  buffers.albedo = context.upload(floats(hits.diffuse_albedo, first, count), "hit albedos");
+  buffers.normal =
+      upload_lobes(context, hits, first, count, &HitLobe::normal, "hit shading normals");
+  buffers.specular =
+      upload_lobes(context, hits, first, count, &HitLobe::specular, "hit specular colours");
+  std::vector<float> roughness(count);
+  for (std::size_t i = 0; i < count; ++i) roughness[i] = hits.lobe[first + i].roughness;
+  buffers.roughness = context.upload(std::span<const float>(roughness), "hit roughness");
+  return buffers;
+}
+
+}  // namespace photile::estimate

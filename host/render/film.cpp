@@ -1,0 +1,36 @@
+#include "render/film.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <glm/gtc/constants.hpp>
+
+namespace photile {
+namespace {
+
+void add_hits(LightLayers::Layer& layer, std::size_t light, std::size_t light_count,
+              const PrimaryHits& hits, const Estimates& estimates, float sample_weight) {
+  const bool glossy = !estimates.radiance.empty();
+  for (std::size_t hit = 0; hit < hits.size(); ++hit) {
+    const glm::vec3& irradiance = estimates.irradiance[hit * light_count + light];
+    const glm::vec3 radiance =
+        glossy ? estimates.radiance[hit * light_count + light]
+               : hits.diffuse_albedo[hit] * glm::one_over_pi<float>() * irradiance;
+    layer.radiance[hits.pixel[hit]] += hits.throughput[hit] * radiance;
+    layer.illuminance[hits.pixel[hit]] += sample_weight * static_cast<float>(luminance(irradiance));
+  }
+}
+
+}  // namespace
+
+void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estimates& estimates,
+                 float sample_weight) {
+  const std::size_t light_count = layers.layers.size();
+  tbb::parallel_for(std::size_t{0}, light_count, [&](std::size_t light) {
+    add_hits(layers.layers[light], light, light_count, batch.hits, estimates, sample_weight);
+  });
+  for (const SeenEmission& seen : batch.emission) {
+    layers.layers[seen.light].radiance[seen.pixel] += seen.radiance;
+  }
+}
+
+}  // namespace photile

@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <utility>
+
+#include "photile/renderer.hpp"
+#include "render/film.hpp"
+
+namespace photile {
+namespace {
+
+/// Primary hits estimated at a time: enough to fill a device, little enough to stay in memory.
+constexpr std::int64_t hits_per_batch = 1 << 20;
+
+PhotonTracerResult trace(const RayScene& rays, const RenderParameters& parameters,
+                         RunStatistics& statistics, Progress& progress) {
+  PhotonTracerResult traced = trace_photons(rays, parameters.photons, progress);
+  const auto stored = static_cast<double>(traced.photons.size());
+  std::uint64_t emitted = 0;
+  for (const std::uint64_t count : traced.photons.emitted_per_light) emitted += count;
+  statistics.push_back({"trace photons",
+                        traced.seconds,
+                        traced.photons.bytes(),
+                        0,
+                        {{"emitted photons", static_cast<double>(emitted)},
+                         {"stored photons", stored},
+                         {"stored photons per second", stored / traced.seconds}}});
+  return traced;
+}
+
+NeighbourGroups group(const Scene& scene, const RenderParameters& parameters, double radius,
+                      RunStatistics& statistics, Progress& progress) {
+  const Stopwatch stopwatch;
+  NeighbourGroups groups =
+      parameters.maps == MapMode::naive
+          ? naive_groups(scene)
+          : find_neighbour_groups(scene, {radius, parameters.angle_degrees}, progress);
+  const auto members = static_cast<double>(groups.members.size());
+  statistics.push_back(
+      {"neighbour groups",
+       stopwatch.seconds(),
+       groups.bytes(),
+       0,
+       {{"members", members},
+        {"members per sided triangle", members / static_cast<double>(groups.offsets.size() - 1)}}});
+  return groups;
+}
+
+PhotonMaps build_maps(Device& device, const Scene& scene, const Photons& photons,
+                      const NeighbourGroups& groups, const PhotonMapParameters& parameters,
+                      RunStatistics& statistics, Progress& progress) {
+  PhotonMaps maps(device, scene, photons, groups, parameters, progress);
+  const PhotonMapStatistics& built = maps.statistics();
+  statistics.push_back({"build photon maps",
+                        built.seconds,
+                        0,
+                        built.device_bytes,
+                        {{"maps", static_cast<double>(built.maps)},
+                         {"references", static_cast<double>(built.references)},
+                         {"references per photon",
+                          static_cast<double>(built.references) /
+                              static_cast<double>(std::max<std::uint64_t>(1, built.photons))},
+                         {"largest map", static_cast<double>(built.largest_map)},
+                         {"kernel compilation seconds", device.compile_seconds()}}});
+  return maps;
+}
+
+LightLayers estimate_picture(const RayScene& rays, const Camera& camera, Estimator& estimator,
+                             const PrimaryHitParameters& film, RunStatistics& statistics,
+                             Progress& progress) {
+  StageStatistics hit_stage{"primary hits", 0, 0, 0, {}};
+  StageStatistics estimate_stage{"radiance estimate", 0, 0, 0, {}};
+  StageStatistics film_stage{"film", 0, 0, 0, {}};
+  LightLayers layers(film.width, film.height, rays.scene().lights);
+  const std::int64_t samples_per_row = std::int64_t{film.width} * film.samples_per_pixel;
+  const int rows =
+      static_cast<int>(std::clamp<std::int64_t>(hits_per_batch / samples_per_row, 1, film.height));
+  std::uint64_t ray_count = 0, hit_count = 0;
+  progress.begin("estimate radiance", static_cast<std::uint64_t>(film.height), "rows");
+  for (int first = 0; first < film.height; first += rows) {
+    progress.throw_if_cancelled();
+    const int last = std::min(first + rows, film.height);
+    const Stopwatch hit_watch;
+    const PrimaryHitBatch batch = trace_primary_hits(rays, camera, film, first, last);
+    hit_stage.seconds += hit_watch.seconds();
+    const Stopwatch estimate_watch;
+    const Estimates estimates = estimator.estimate(batch.hits);
+    estimate_stage.seconds += estimate_watch.seconds();
+    const Stopwatch film_watch;
+    add_to_film(layers, batch, estimates, 1.0f / static_cast<float>(film.samples_per_pixel));
+    film_stage.seconds += film_watch.seconds();
+    ray_count += batch.rays;
+    hit_count += batch.hits.size();
+    progress.advance(static_cast<std::uint64_t>(last - first));
+  }
+  progress.end();
+  hit_stage.figures = {{"rays", static_cast<double>(ray_count)},
+                       {"rays per second", static_cast<double>(ray_count) / hit_stage.seconds}};
+  estimate_stage.figures = {
+      {"hits", static_cast<double>(hit_count)},
+      {"microseconds per hit",
+       1e6 * estimate_stage.seconds / static_cast<double>(std::max<std::uint64_t>(1, hit_count))}};
+  film_stage.host_bytes = static_cast<std::uint64_t>(film.width) *
+                          static_cast<std::uint64_t>(film.height) * layers.layers.size() *
+                          (sizeof(glm::vec3) + sizeof(float));
+  statistics.insert(statistics.end(), {hit_stage, estimate_stage, film_stage});
+  return layers;
+}
+
+}  // namespace
+
+RenderResult render(const Scene& scene, const Camera& camera, Device& device,
+                    const RenderParameters& parameters, Progress& progress) {
+  RenderResult result;
+  RunStatistics& statistics = result.statistics;
+
+  const Stopwatch bvh_watch;
+  const RayScene rays(scene);
+  statistics.push_back({"ray tracing structure", bvh_watch.seconds(), rays.bytes(), 0, {}});
+
+  PhotonTracerResult traced = trace(rays, parameters, statistics, progress);
+  result.stored_photons = traced.photons.size();
+  result.radius = parameters.radius > 0 ? parameters.radius
+                                        : automatic_radius(traced.photons, parameters.neighbours);
+  const NeighbourGroups groups = group(scene, parameters, result.radius, statistics, progress);
+  const PhotonMaps maps =
+      build_maps(device, scene, traced.photons, groups,
+                 {result.radius, parameters.photons_per_cell}, statistics, progress);
+  traced.photons = Photons{};  // the maps hold copies
+
+  Estimator estimator(maps, scene, {parameters.neighbours, 0});
+  result.layers = estimate_picture(rays, camera, estimator, parameters.film, statistics, progress);
+  return result;
+}
+
+}  // namespace photile

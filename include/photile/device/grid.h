@@ -1,0 +1,33 @@
+/* The uniform grid of one photon map, as C++ and OpenCL C both see it. Scalar members only: a
+   float3 is 16 bytes on the device. The size is asserted in host/maps/uniform_grid.hpp and compared
+   with the device's in tests/maps. */
+#ifndef PHOTILE_DEVICE_GRID_H
+#define PHOTILE_DEVICE_GRID_H
+
+/* Grid over the plane of a triangle. A point p projects to
+     u = (p - origin) . u_axis,  v = (p - origin) . v_axis      (metres)
+   and falls in cell (column, row) = ((u, v) - minimum) / cell_size, clamped to the grid.
+
+       v ^   rows
+         |  +--+--+--+--+
+         |  |  |  |  |  |      cells in row-major order, first_cell + row * columns + column;
+         |  +--+--+--+--+      their entries are contiguous, so the cells
+         |  |  |  |  |  |      [column0, column1] of a row are one range of entries
+         |  +--+--+--+--+
+   minimum ----------------> u   columns
+
+   The grid covers the triangle's rectangle grown by the radius. A map without photons has no
+   columns. */
+typedef struct {
+  float origin_x, origin_y, origin_z;
+  float u_axis_x, u_axis_y, u_axis_z;
+  float v_axis_x, v_axis_y, v_axis_z;
+  float minimum_u, minimum_v;
+  float cell_size;
+  float inverse_cell_size;
+  float slack; /* how far rounding may move a projected point across a cell border, metres */
+  unsigned int columns, rows;
+  unsigned int first_cell; /* into cell_start of the map's page */
+} PhotileGrid;
+
+#endif

@@ -1,0 +1,185 @@
+// The radiance estimate (Jensen 2001, equation 7.6; Graglia et al. 2012, section 5): per hit and
+// light, the flux of the nearest photons over the area they fell on.
+//
+// Symbols the host defines, by what the scene needs:
+//   VECTOR_WIDTH      see shared/wide.clh
+//   CAPACITY          see estimate/candidates.clh
+//   MULTIPLE_LIGHTS   photons carry a light; one estimate per light
+//   GLOSSY            surfaces have a specular lobe; radiance is estimated beside irradiance
+
+#include "estimate/area.clh"
+#include "estimate/neighbourhood.clh"
+#ifdef GLOSSY
+#include "photile/device/bsdf.h"
+#endif
+
+// What the entries of a page hold, beside their positions.
+typedef struct {
+  __global const float* flux;  // planes r, g, b
+#ifdef MULTIPLE_LIGHTS
+  __global const ushort* light;
+#endif
+#ifdef GLOSSY
+  __global const float* incoming;  // planes x, y, z
+#endif
+} Entries;
+
+#ifdef GLOSSY
+typedef struct {
+  float3 outgoing, normal, albedo, specular;
+  float roughness;
+} Surface;
+
+// Reflected radiance per flux density of light from `incoming`: the BSDF of photile/device/bsdf.h.
+float3 reflect_flux(const Surface* surface, float3 incoming) {
+  const float3 sum = surface->outgoing + incoming;
+  const float3 half_vector = sum / sqrt(fmax(squared_length(sum), 1e-12f));
+  const float n_dot_i = dot3(surface->normal, incoming);
+  const float n_dot_o = dot3(surface->normal, surface->outgoing);
+  const float schlick = photile_schlick(dot3(incoming, half_vector));
+  const float lobe = photile_ggx_lobe(n_dot_i, n_dot_o, dot3(surface->normal, half_vector),
+                                      surface->roughness);
+  return (float3)(photile_opaque_bsdf(surface->albedo.x, surface->specular.x, schlick, lobe),
+                  photile_opaque_bsdf(surface->albedo.y, surface->specular.y, schlick, lobe),
+                  photile_opaque_bsdf(surface->albedo.z, surface->specular.z, schlick, lobe));
+}
+#endif
+
+// Adds entry i to the sums of its light.
+void add_entry(const Entries* entries, uint i, uint stride,
+#ifdef GLOSSY
+               const Surface* surface, __global float* radiance,
+#endif
+               __global float* irradiance) {
+  const float3 flux = (float3)(entries->flux[i], entries->flux[stride + i],
+                               entries->flux[2 * stride + i]);
+#ifdef MULTIPLE_LIGHTS
+  const uint light = entries->light[i];
+#else
+  const uint light = 0;
+#endif
+  vstore3(vload3(light, irradiance) + flux, light, irradiance);
+#ifdef GLOSSY
+  const float3 incoming = (float3)(entries->incoming[i], entries->incoming[stride + i],
+                                   entries->incoming[2 * stride + i]);
+  vstore3(vload3(light, radiance) + flux * reflect_flux(surface, incoming), light, radiance);
+#endif
+}
+
+// One work-item per hit of one map page.
+//   hit_count, first_hit   the hits [first_hit, first_hit + hit_count) of the batch lie in this page
+//   hit_position           3 floats per hit of the batch; hit_map: its sided triangle
+//   first_map              the page's first sided triangle
+//   entry_stride           plane distance of entry_position, entry_flux, entry_incoming
+//   k, radius              at most k neighbours, none farther than radius
+//   light_count            estimates per hit
+// After: irradiance[(hit * light_count + light) * 3 ...] in flux per square metre; radiance likewise.
+__kernel void estimate(uint hit_count, uint first_hit, __global const float* hit_position,
+                       __global const uint* hit_map, uint first_map,
+                       __global const PhotileGrid* grids, __global const uint* cell_start,
+                       uint entry_stride, __global const float* entry_position,
+                       __global const float* entry_flux, __global const uint* entry_photon,
+#ifdef MULTIPLE_LIGHTS
+                       __global const ushort* entry_light,
+#endif
+#ifdef GLOSSY
+                       __global const float* entry_incoming, __global const float* hit_outgoing,
+                       __global const float* hit_normal, __global const float* hit_albedo,
+                       __global const float* hit_specular, __global const float* hit_roughness,
+                       __global float* radiance,
+#endif
+                       uint k, float radius, uint light_count, __global float* irradiance) {
+  for (uint h = get_global_id(0); h < hit_count; h += get_global_size(0)) {
+    const uint hit = first_hit + h;
+    __global float* hit_irradiance = irradiance + 3 * hit * light_count;
+    for (uint i = 0; i < 3 * light_count; ++i) hit_irradiance[i] = 0.0f;
+#ifdef GLOSSY
+    __global float* hit_radiance = radiance + 3 * hit * light_count;
+    for (uint i = 0; i < 3 * light_count; ++i) hit_radiance[i] = 0.0f;
+    const Surface surface = {vload3(hit, hit_outgoing), vload3(hit, hit_normal),
+                             vload3(hit, hit_albedo), vload3(hit, hit_specular),
+                             hit_roughness[hit]};
+#endif
+
+    __global const PhotileGrid* grid = &grids[hit_map[hit] - first_map];
+    if (grid->columns == 0) continue;
+
+    Candidates candidates;
+    candidates.hit = vload3(hit, hit_position);
+    candidates.cell_start = cell_start;
+    candidates.position = entry_position;
+    candidates.stride = entry_stride;
+    float stored[CAPACITY + 2 * VECTOR_WIDTH];
+    const Neighbourhood near =
+        find_neighbourhood(&candidates, stored, k, max(k - 1u, 1u), radius, grid);
+
+    Entries entries;
+    entries.flux = entry_flux;
+#ifdef MULTIPLE_LIGHTS
+    entries.light = entry_light;
+#endif
+#ifdef GLOSSY
+    entries.incoming = entry_incoming;
+#endif
+
+    uint found = 0;
+#if !defined(MULTIPLE_LIGHTS) && !defined(GLOSSY)
+    wide_float red = 0.0f, green = 0.0f, blue = 0.0f;
+    wide_int lanes_found = 0;
+#endif
+    uint cell = candidates.block.first_cell;
+    for (uint row = 0; row < candidates.block.height; ++row, cell += candidates.block.columns) {
+      const uint end = cell_start[cell + candidates.block.width];
+      for (uint entry = cell_start[cell]; entry < end; entry += VECTOR_WIDTH) {
+        const wide_int is_near = (squared_distances(&candidates, entry) < near.below) &
+                                 (WIDE_LANES < (wide_int)((int)(end - entry)));
+#if !defined(MULTIPLE_LIGHTS) && !defined(GLOSSY)
+        const wide_float zero = 0.0f;
+        red += select(zero, wide_load(entry_flux + entry), is_near);
+        green += select(zero, wide_load(entry_flux + entry_stride + entry), is_near);
+        blue += select(zero, wide_load(entry_flux + 2 * entry_stride + entry), is_near);
+        lanes_found += TRUE_LANES(is_near);
+#else
+        int lanes[VECTOR_WIDTH];
+        wide_store(is_near, lanes);
+        for (uint lane = 0; lane < VECTOR_WIDTH; ++lane) {
+          if (!lanes[lane]) continue;
+          ++found;
+          add_entry(&entries, entry + lane, entry_stride,
+#ifdef GLOSSY
+                    &surface, hit_radiance,
+#endif
+                    hit_irradiance);
+        }
+#endif
+      }
+    }
+#if !defined(MULTIPLE_LIGHTS) && !defined(GLOSSY)
+    found = (uint)count_lanes(lanes_found);
+    vstore3((float3)(sum_lanes(red), sum_lanes(green), sum_lanes(blue)), 0, hit_irradiance);
+#endif
+
+    if (found < near.count) {
+      const uint last = last_tied_photon(&candidates, near.below, near.count - found, entry_photon);
+      cell = candidates.block.first_cell;
+      for (uint row = 0; row < candidates.block.height; ++row, cell += candidates.block.columns) {
+        const uint end = cell_start[cell + candidates.block.width];
+        for (uint entry = cell_start[cell]; entry < end; ++entry) {
+          if (entry_photon[entry] > last) continue;
+          if (squared_distance(&candidates, entry) != near.below) continue;
+          add_entry(&entries, entry, entry_stride,
+#ifdef GLOSSY
+                    &surface, hit_radiance,
+#endif
+                    hit_irradiance);
+        }
+      }
+    }
+
+    const float per_area = 1.0f / estimate_area(near.squared_radius, radius);
+    for (uint i = 0; i < 3 * light_count; ++i) hit_irradiance[i] *= per_area;
+#ifdef GLOSSY
+    for (uint i = 0; i < 3 * light_count; ++i) hit_radiance[i] *= per_area;
+#endif
+  }
+}

@@ -1,0 +1,50 @@
+// The k nearest photons of each hit, as a list: for tests and inspection. The estimate itself needs
+// no list.
+
+#include "estimate/neighbourhood.clh"
+
+// One work-item per hit of one map page; arguments as in estimate.cl.
+// After: neighbours[hit * k ...] holds photon indices in any order, 0xFFFFFFFF beyond the last;
+// squared_radius[hit] is that of the estimate's disc.
+__kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_position,
+                      __global const uint* hit_map, uint first_map,
+                      __global const PhotileGrid* grids, __global const uint* cell_start,
+                      uint entry_stride, __global const float* entry_position,
+                      __global const uint* entry_photon, uint k, float radius,
+                      __global uint* neighbours, __global float* squared_radius) {
+  for (uint h = get_global_id(0); h < hit_count; h += get_global_size(0)) {
+    const uint hit = first_hit + h;
+    __global uint* list = neighbours + hit * k;
+    for (uint i = 0; i < k; ++i) list[i] = 0xFFFFFFFFu;
+    squared_radius[hit] = radius * radius;
+
+    __global const PhotileGrid* grid = &grids[hit_map[hit] - first_map];
+    if (grid->columns == 0) continue;
+
+    Candidates candidates;
+    candidates.hit = vload3(hit, hit_position);
+    candidates.cell_start = cell_start;
+    candidates.position = entry_position;
+    candidates.stride = entry_stride;
+    float stored[CAPACITY + 2 * VECTOR_WIDTH];
+    const Neighbourhood near = find_neighbourhood(&candidates, stored, k, k, radius, grid);
+    squared_radius[hit] = near.squared_radius;
+
+    uint found = 0;
+    uint last_tied = 0;
+    for (int pass = 0; pass < 2; ++pass) {
+      uint cell = candidates.block.first_cell;
+      for (uint row = 0; row < candidates.block.height; ++row, cell += candidates.block.columns) {
+        const uint end = cell_start[cell + candidates.block.width];
+        for (uint entry = cell_start[cell]; entry < end; ++entry) {
+          const float d = squared_distance(&candidates, entry);
+          const bool is_near = pass == 0 ? d < near.below
+                                         : d == near.below && entry_photon[entry] <= last_tied;
+          if (is_near) list[found++] = entry_photon[entry];
+        }
+      }
+      if (found >= near.count) break;
+      last_tied = last_tied_photon(&candidates, near.below, near.count - found, entry_photon);
+    }
+  }
+}

@@ -1,0 +1,54 @@
+// Build, steps 3 and 5: count the photons of each cell, then scatter references to them.
+
+#include "grid/entry.clh"
+
+// Arguments of both kernels:
+//   photon_count ... squared_reach   as in count_photons
+//   first_map, last_map   the maps of the page: sided triangles [first_map, last_map)
+//   grids                 one per map of the page
+
+// One work-item per photon. Before: cell_count is zero. After: photons per cell.
+__kernel void count_cells(uint photon_count, __global const float* position,
+                          __global const uint* own_map, uint first_group,
+                          __global const uint* group_offsets, __global const uint* group_members,
+                          __global const float* corners, float squared_reach, uint first_map,
+                          uint last_map, __global const PhotileGrid* grids,
+                          __global uint* cell_count) {
+  for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
+    const float3 photon = vload3(i, position);
+    const uint own = own_map[i];
+    const uint end = group_offsets[own - first_group + 1];
+    for (uint m = group_offsets[own - first_group]; m < end; ++m) {
+      const uint map = group_members[m];
+      if (map < first_map || map >= last_map) continue;
+      if (!enters_map(photon, own, map, corners, squared_reach)) continue;
+      atomic_inc(&cell_count[cell_index(photon, &grids[map - first_map])]);
+    }
+  }
+}
+
+// One work-item per photon. Before: cell_start is the exclusive scan of cell_count.
+//   first_photon   index of the page's first photon among all photons
+// After: entry_photon holds the photons of each cell in the order in which work-items came
+// (sort_cells makes it stable); cell_count is zero again.
+__kernel void scatter(uint photon_count, __global const float* position,
+                      __global const uint* own_map, uint first_group,
+                      __global const uint* group_offsets, __global const uint* group_members,
+                      __global const float* corners, float squared_reach, uint first_map,
+                      uint last_map, __global const PhotileGrid* grids,
+                      __global const uint* cell_start, __global uint* cell_count,
+                      uint first_photon, __global uint* entry_photon) {
+  for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
+    const float3 photon = vload3(i, position);
+    const uint own = own_map[i];
+    const uint end = group_offsets[own - first_group + 1];
+    for (uint m = group_offsets[own - first_group]; m < end; ++m) {
+      const uint map = group_members[m];
+      if (map < first_map || map >= last_map) continue;
+      if (!enters_map(photon, own, map, corners, squared_reach)) continue;
+      const uint cell = cell_index(photon, &grids[map - first_map]);
+      const uint slot = cell_start[cell] + atomic_dec(&cell_count[cell]) - 1u;
+      entry_photon[slot] = first_photon + i;
+    }
+  }
+}
