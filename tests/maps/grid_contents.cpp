@@ -1,0 +1,224 @@
+// The grids on the device against a host reference: every photon is in the maps that it must be in,
+// in the cell that its projection falls in, in ascending order.
+#include <catch2/catch.hpp>
+#include <glm/gtc/constants.hpp>
+#include <map>
+#include <set>
+
+#include "maps/uniform_grid.hpp"
+#include "photile/photon_maps.hpp"
+#include "photon_sets.hpp"
+#include "test_device.hpp"
+
+using namespace photile;
+
+namespace {
+
+template <class T>
+std::vector<T> download(const device::Buffer<T>& buffer) {
+  std::vector<T> values(buffer.size());
+  test::device().context().read(buffer, std::span(values));
+  return values;
+}
+
+/// Distance from a point to a triangle in double precision by dense subdivision of the problem:
+/// the closest point of the plane if it is inside, else the closest point of the three edges.
+double distance_to_triangle(glm::dvec3 p, const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a = corners[0], b = corners[1], c = corners[2];
+  const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+  const glm::dvec3 foot = p - normal * glm::dot(p - a, normal);
+  const auto inside = [&](glm::dvec3 from, glm::dvec3 to) {
+    return glm::dot(glm::cross(to - from, foot - from), normal) >= 0;
+  };
+  if (inside(a, b) && inside(b, c) && inside(c, a)) return glm::length(p - foot);
+  const auto to_edge = [&](glm::dvec3 from, glm::dvec3 to) {
+    const glm::dvec3 edge = to - from;
+    const double t = glm::clamp(glm::dot(p - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
+    return glm::length(p - (from + t * edge));
+  };
+  return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+}
+
+struct Contents {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> photons_of_map;
+  bool cells_ascend = true;
+  bool cells_agree = true;
+  bool records_agree = true;
+};
+
+Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
+  Contents contents;
+  for (const maps::MapPage& page : photon_maps.grid().pages) {
+    const auto grids = download(page.grids);
+    const auto cell_start = download(page.cell_start);
+    const auto entry_photon = download(page.entry_photon);
+    const auto position = download(page.entry_position);
+    const auto flux = download(page.entry_flux);
+    for (std::uint32_t map = page.first_map; map < page.last_map; ++map) {
+      const PhotileGrid& grid = grids[map - page.first_map];
+      for (std::uint32_t cell = 0; cell < grid.columns * grid.rows; ++cell) {
+        const std::uint32_t start = cell_start[grid.first_cell + cell];
+        const std::uint32_t end = cell_start[grid.first_cell + cell + 1];
+        for (std::uint32_t entry = start; entry < end; ++entry) {
+          const std::uint32_t photon = entry_photon[entry];
+          contents.photons_of_map[map].push_back(photon);
+          if (entry > start && entry_photon[entry - 1] >= photon) contents.cells_ascend = false;
+          const glm::dvec3 local = glm::dvec3(photons.position[photon]) -
+                                   glm::dvec3(grid.origin_x, grid.origin_y, grid.origin_z);
+          const double u = glm::dot(local, glm::dvec3(grid.u_axis_x, grid.u_axis_y, grid.u_axis_z));
+          const double v = glm::dot(local, glm::dvec3(grid.v_axis_x, grid.v_axis_y, grid.v_axis_z));
+          const double low_u = grid.minimum_u + (cell % grid.columns) * double{grid.cell_size};
+          const double low_v = grid.minimum_v + (cell / grid.columns) * double{grid.cell_size};
+          const double slack = grid.slack;
+          if (u < low_u - slack || u > low_u + grid.cell_size + slack || v < low_v - slack ||
+              v > low_v + grid.cell_size + slack) {
+            contents.cells_agree = false;
+          }
+          for (int c = 0; c < 3; ++c) {
+            const std::size_t plane = c * std::size_t{page.entry_stride} + entry;
+            if (position[plane] != photons.position[photon][c] ||
+                flux[plane] != photons.flux[photon][c]) {
+              contents.records_agree = false;
+            }
+          }
+        }
+      }
+    }
+  }
+  return contents;
+}
+
+void check_against_reference(const Scene& scene, const Photons& photons, double radius) {
+  const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
+  const PhotonMaps photon_maps(test::device(), scene, photons, groups, {radius, 4});
+  Contents contents = read_contents(photon_maps, photons);
+  CHECK(contents.cells_ascend);
+  CHECK(contents.cells_agree);
+  CHECK(contents.records_agree);
+
+  const double cos_angle = std::cos(glm::radians(60.0));
+  std::uint64_t missing = 0, surplus = 0, references = 0;
+  for (std::uint32_t map = 0; map < 2 * scene.triangle_count(); ++map) {
+    const auto& found = contents.photons_of_map[map];
+    const std::set<std::uint32_t> held(found.begin(), found.end());
+    CHECK(held.size() == found.size());
+    references += found.size();
+    for (std::uint32_t photon = 0; photon < photons.size(); ++photon) {
+      const std::uint32_t own = photons.sided_triangle[photon];
+      const bool agrees = own == map || normals_agree(sided_normal(scene, own),
+                                                      sided_normal(scene, map), cos_angle);
+      const double distance =
+          triangle_of(own) == triangle_of(map)
+              ? 0.0
+              : distance_to_triangle(photons.position[photon], scene.corners(triangle_of(map)));
+      // Between the radius and the reach that rounding is given, either is right.
+      if (agrees && distance <= radius && !held.contains(photon)) ++missing;
+      if ((!agrees || distance > radius * 1.0001) && held.contains(photon)) ++surplus;
+    }
+  }
+  CHECK(missing == 0);
+  CHECK(surplus == 0);
+  CHECK(photon_maps.statistics().references == references);
+}
+
+}  // namespace
+
+TEST_CASE("the shared grid struct has the same size on the device as on the host") {
+  auto& context = test::device().context();
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  const Photons photons = test::uniform_photons(scene, 100, 1, false);
+  const PhotonMaps photon_maps(test::device(), scene, photons,
+                               find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
+  // A device that laid the struct out otherwise would not return the values it was sized with.
+  const auto grids = download(photon_maps.grid().pages.at(0).grids);
+  for (const PhotileGrid& grid : grids) {
+    if (grid.columns == 0) continue;
+    CHECK(grid.minimum_u == Approx(-0.1));
+    CHECK(grid.inverse_cell_size * grid.cell_size == Approx(1.0));
+    CHECK(grid.u_axis_x * grid.u_axis_x + grid.u_axis_y * grid.u_axis_y == Approx(1.0));
+  }
+  context.finish();
+}
+
+TEST_CASE("grid contents equal the host reference on a folded plate") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
+  test::add_plate(scene, {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 2);
+  test::add_plate(scene, {0, 0, -0.02f}, {1, 0, 0}, {0, 1, 0}, 1);
+  check_against_reference(scene, test::uniform_photons(scene, 3000, 11), 0.15);
+}
+
+TEST_CASE("grid contents equal the host reference on a torus, triangles smaller than the radius") {
+  Scene scene = test::empty_scene(3);
+  test::add_torus(scene, 1.0f, 0.4f, 24, 12);
+  check_against_reference(scene, test::uniform_photons(scene, 2000, 12), 0.3);
+}
+
+TEST_CASE("grid contents equal the host reference far from the origin") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {148376, 1234, -223423}, {4, 0, 1}, {0, 4, 1}, 3);
+  check_against_reference(scene, test::uniform_photons(scene, 1000, 13), 0.5);
+}
+
+TEST_CASE("a needle triangle and photons in one point are entered like any other") {
+  Scene scene = test::empty_scene();
+  test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0.5f, 1e-6f, 0});
+  test::add_plate(scene, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  std::mt19937_64 random(5);
+  Photons photons;
+  for (int i = 0; i < 500; ++i) test::add_photon(photons, scene, {0.5f, 0, 0}, 0, random);
+  for (int i = 0; i < 500; ++i) {
+    test::add_photon(photons, scene, test::random_point(scene, 1, random), 2, random);
+  }
+  check_against_reference(scene, sort_by_sided_triangle(std::move(photons), 6), 0.2);
+}
+
+TEST_CASE("naive maps hold exactly the photons of their own sided triangle") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  const Photons photons = test::uniform_photons(scene, 4000, 14);
+  const PhotonMaps photon_maps(test::device(), scene, photons, naive_groups(scene), {0.2, 4});
+  Contents contents = read_contents(photon_maps, photons);
+  CHECK(photon_maps.statistics().references == photons.size());
+  for (const auto& [map, held] : contents.photons_of_map) {
+    CHECK(held.size() == photons.first_of[map + 1] - photons.first_of[map]);
+    for (const std::uint32_t photon : held) CHECK(photons.sided_triangle[photon] == map);
+  }
+}
+
+TEST_CASE("maps without any photon are built and empty") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  const Photons photons = sort_by_sided_triangle(Photons{}, 4);
+  const PhotonMaps photon_maps(test::device(), scene, photons,
+                               find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
+  CHECK(photon_maps.statistics().references == 0);
+  CHECK(photon_maps.grid().pages.empty());
+}
+
+TEST_CASE("two builds give the same bits") {
+  Scene scene = test::empty_scene();
+  test::add_torus(scene, 1.0f, 0.4f, 16, 8);
+  const Photons photons = test::uniform_photons(scene, 50'000, 15);
+  const NeighbourGroups groups = find_neighbour_groups(scene, {0.2, 60});
+  const PhotonMaps first(test::device(), scene, photons, groups, {0.2, 4});
+  const PhotonMaps second(test::device(), scene, photons, groups, {0.2, 4});
+  REQUIRE(first.grid().pages.size() == second.grid().pages.size());
+  for (std::size_t i = 0; i < first.grid().pages.size(); ++i) {
+    CHECK(download(first.grid().pages[i].entry_photon) ==
+          download(second.grid().pages[i].entry_photon));
+    CHECK(download(first.grid().pages[i].cell_start) ==
+          download(second.grid().pages[i].cell_start));
+  }
+}
+
+TEST_CASE("a radius beyond the groups' or no number is refused") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  const Photons photons = test::uniform_photons(scene, 10, 1);
+  const NeighbourGroups groups = find_neighbour_groups(scene, {0.1, 60});
+  for (const double radius : {0.2, 0.0, -1.0, std::nan("")}) {
+    CHECK_THROWS_AS(PhotonMaps(test::device(), scene, photons, groups, {radius, 4}), UsageError);
+  }
+}

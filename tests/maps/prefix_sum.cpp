@@ -1,0 +1,34 @@
+#include "maps/prefix_sum.hpp"
+
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <random>
+
+#include "test_device.hpp"
+
+using namespace photile;
+
+TEST_CASE("the device's prefix sum equals the host's for awkward sizes") {
+  auto& context = test::device().context();
+  for (const std::size_t size :
+       {1u, 2u, 7u, 93u, 2047u, 2048u, 2049u, 4096u, (1u << 20) + 1u, 5u * 1024u * 1024u}) {
+    std::mt19937 random(static_cast<unsigned>(size));
+    std::vector<std::uint32_t> values(size);
+    for (auto& value : values) value = random() % 500;
+    std::vector<std::uint32_t> expected(size);
+    std::exclusive_scan(values.begin(), values.end(), expected.begin(), 0u);
+
+    auto buffer = context.upload(std::span<const std::uint32_t>(values), "test values");
+    maps::exclusive_prefix_sum(context, buffer);
+    std::vector<std::uint32_t> scanned(size);
+    context.read(buffer, std::span(scanned));
+    CAPTURE(size);
+    CHECK(scanned == expected);
+  }
+}
+
+TEST_CASE("the prefix sum of nothing is nothing") {
+  auto& context = test::device().context();
+  auto buffer = context.allocate<std::uint32_t>(0, "test values");
+  CHECK_NOTHROW(maps::exclusive_prefix_sum(context, buffer));
+}
