@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "groups/proximity_test.hpp"
@@ -195,6 +196,8 @@ NeighbourGroups naive_groups(const Scene& scene) {
   std::iota(result.offsets.begin(), result.offsets.end(), std::uint64_t{0});
   result.members.resize(count);
   std::iota(result.members.begin(), result.members.end(), std::uint32_t{0});
+  // No radius is too large for maps that hold their own photons only.
+  result.radius = std::numeric_limits<double>::infinity();
   return result;
 }
 

@@ -44,7 +44,7 @@ NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       Progress& progress = Progress::none());
 
 /// Groups of one: every map holds the photons of its own sided triangle only (figure 1 of the
-/// paper: dark edges).
+/// paper: dark edges). Their radius is infinite: no other triangle's photon is ever looked for.
 NeighbourGroups naive_groups(const Scene& scene);
 
 /// The normal test that groups use, so that oracles can apply the very same one.

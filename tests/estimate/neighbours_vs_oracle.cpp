@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "neighbour_comparison.hpp"
+#include "photile/errors.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
@@ -79,8 +80,8 @@ TEST_CASE("crowded photons: all in one point, all on a line, one crowd and many 
   std::mt19937_64 random(31);
   Photons point, line, crowd;
   for (int i = 0; i < 3000; ++i) {
-    test::add_photon(point, scene, {0.75f, 0.25f, 0}, 0, random);
-    test::add_photon(line, scene, {static_cast<float>(i) / 3000.0f, 0.125f, 0}, 0, random);
+    test::add_photon(point, scene, {0.4f, 0.2f, 0}, 0, random);
+    test::add_photon(line, scene, {0.2f + static_cast<float>(i) / 10'000.0f, 0.125f, 0}, 0, random);
     const bool loner = i % 10 == 0;
     test::add_photon(crowd, scene,
                      loner ? test::random_point(scene, 0, random) : glm::vec3(0.3f, 0.1f, 0), 0,

@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
 
+#include "photile/estimator.hpp"
+#include "photile/neighbour_groups.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
