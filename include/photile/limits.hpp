@@ -30,11 +30,18 @@ inline constexpr std::uint64_t max_nodes = 1'000'000;
 inline constexpr std::uint64_t max_node_visits = 10'000'000;  ///< shared children multiply
 inline constexpr int max_json_depth = 256;  ///< recursive parsers overflow the stack
 
+/// Elements of a glTF accessor that has no buffer view: zeros that cost a file nothing.
+inline constexpr std::uint64_t max_implicit_elements = 16'000'000;
+
 // Pictures
 inline constexpr int max_image_side = 16'384;
 inline constexpr std::uint64_t max_image_pixels = 268'435'456;
 inline constexpr int max_image_channels = 1'024;
 inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
+/// Decoded bytes for each encoded one, in pictures above the size that is not worth a check: a
+/// picture of a few kilobytes must not fill the memory.
+inline constexpr std::uint64_t max_image_expansion = 1'000;
+inline constexpr std::uint64_t unchecked_image_bytes = 64ull << 20;
 inline constexpr int max_samples_per_pixel = 65'536;
 
 // Names

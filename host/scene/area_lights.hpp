@@ -1,0 +1,53 @@
+// Emissive triangles, gathered to area lights.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "photile/scene.hpp"
+#include "scene/warnings.hpp"
+
+namespace photile::scene_io {
+
+/// What a material emits, in cd/m2 or W/(m2 sr).
+struct Emission {
+  glm::dvec3 radiance{0.0};
+  bool two_sided = false;
+};
+
+/// One light per object (a glTF node, an OBJ object or group) and emissive material.
+class AreaLights {
+ public:
+  explicit AreaLights(Scene& scene) : scene_(scene) {}
+
+  /// The light of `object` and `material`, or `none` when the material emits nothing. Errors:
+  /// InputError beyond limits::max_lights.
+  std::uint32_t find_or_add(std::uint64_t object, const std::string& object_name,
+                            std::uint32_t material, const Emission& emission);
+
+  /// Lists each light's triangles and computes its power. Lights that got no triangle are dropped
+  /// with a warning. Call once, after the last triangle.
+  void finish(Warnings& warnings);
+
+ private:
+  struct Pending {
+    std::uint64_t object;
+    std::string object_name;
+    std::uint32_t material;
+    Emission emission;
+  };
+  std::string name_of(const Pending& light) const;
+
+  Scene& scene_;
+  std::vector<Pending> pending_;
+  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> index_;
+  std::map<std::uint64_t, int> materials_of_object_;
+};
+
+/// `light.color` and the luminance of `rgb`, which may be any radiometric colour; false if black.
+bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_rgb);
+
+}  // namespace photile::scene_io

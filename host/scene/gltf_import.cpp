@@ -1,0 +1,24 @@
+#include "scene/gltf_import.hpp"
+
+#include "scene/gltf_accessor.hpp"
+#include "scene/gltf_cameras.hpp"
+#include "scene/gltf_document.hpp"
+#include "scene/gltf_lights.hpp"
+#include "scene/gltf_materials.hpp"
+#include "scene/gltf_meshes.hpp"
+#include "scene/gltf_nodes.hpp"
+
+namespace photile::scene_io {
+
+void import_gltf(ImportContext& context) {
+  const tinygltf::Model model = read_gltf(context);
+  const AccessorReader accessors(model, context);
+  context.scene.unit = PowerUnit::lumen;
+  const std::vector<TextureCoordinates> coordinates = add_gltf_materials(model, accessors, context);
+  const std::vector<NodeVisit> visits = visit_nodes(model, context);
+  add_gltf_cameras(model, visits, context);
+  add_gltf_lights(model, visits, context);
+  add_gltf_meshes(model, accessors, visits, coordinates, context);
+}
+
+}  // namespace photile::scene_io

@@ -1,0 +1,29 @@
+// glTF materials to photile's.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scene/gltf_accessor.hpp"
+#include "scene/import_context.hpp"
+#include "scene/tiny_gltf.hpp"
+
+namespace photile::scene_io {
+
+/// Which texture coordinates a material's base colour takes, and the affine map of
+/// KHR_texture_transform on them.
+struct TextureCoordinates {
+  int set = 0;
+  glm::dmat2 linear{1.0};
+  glm::dvec2 offset{0.0};
+
+  glm::dvec2 operator()(const glm::dvec2& uv) const { return linear * uv + offset; }
+};
+
+/// Converts all materials, and appends glTF's default material at the end. What photile
+/// approximates is named in a warning. Returns the texture coordinates of each material.
+std::vector<TextureCoordinates> add_gltf_materials(const tinygltf::Model& model,
+                                                   const AccessorReader& accessors,
+                                                   ImportContext& context);
+
+}  // namespace photile::scene_io

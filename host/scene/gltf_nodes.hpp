@@ -1,0 +1,27 @@
+// The node tree of a glTF scene, flattened.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/import_context.hpp"
+#include "scene/tiny_gltf.hpp"
+
+namespace photile::scene_io {
+
+/// One appearance of a node in the scene.
+struct NodeVisit {
+  int node;
+  glm::dmat4 world;  ///< node to world space
+};
+
+/// Every node of the default scene (or of the first; or all root nodes when there is no scene), in
+/// depth-first order. Empty nodes, which are what remains of Blender's area lights, are named in a
+/// warning. Errors: InputError for cycles, wrong node numbers and trees beyond the limits.
+std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& context);
+
+/// A node's name, or "node <number>".
+std::string node_name(const tinygltf::Model& model, int node);
+
+}  // namespace photile::scene_io

@@ -1,0 +1,63 @@
+#include "scene/light_names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <unordered_set>
+
+#include "photile/limits.hpp"
+
+namespace photile::scene_io {
+namespace {
+
+/// Bytes of the UTF-8 sequence at the start of `text`, or 0 where it is none.
+std::size_t utf8_sequence_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  std::size_t length = 0;
+  if (byte(0) < 0x80) {
+    length = 1;
+  } else if (byte(0) >= 0xC2 && byte(0) <= 0xDF) {
+    length = 2;
+  } else if (byte(0) >= 0xE0 && byte(0) <= 0xEF) {
+    length = 3;
+  } else if (byte(0) >= 0xF0 && byte(0) <= 0xF4) {
+    length = 4;
+  }
+  if (length == 0 || length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  return length;
+}
+
+}  // namespace
+
+std::string clean_light_name(std::string_view name, std::size_t max_bytes) {
+  std::string clean;
+  while (!name.empty()) {
+    const std::size_t length = utf8_sequence_length(name);
+    const std::size_t consumed = std::max<std::size_t>(length, 1);
+    if (clean.size() + consumed > max_bytes) break;
+    const auto first = static_cast<unsigned char>(name[0]);
+    const bool kept = length > 1 || (length == 1 && (std::isalnum(first) || first == '-'));
+    clean += kept ? name.substr(0, length) : std::string_view("_");
+    name.remove_prefix(consumed);
+  }
+  return clean.empty() ? std::string("light").substr(0, max_bytes) : clean;
+}
+
+void make_light_names_unique(std::vector<Light>& lights) {
+  std::unordered_set<std::string> taken;
+  for (Light& light : lights) {
+    const std::string original = light.name;
+    light.name = clean_light_name(original, limits::max_light_name_bytes);
+    for (int number = 2; !taken.insert(light.name).second; ++number) {
+      const std::string suffix = fmt::format("_{}", number);
+      light.name =
+          clean_light_name(original, limits::max_light_name_bytes - suffix.size()) + suffix;
+    }
+  }
+}
+
+}  // namespace photile::scene_io

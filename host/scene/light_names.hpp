@@ -1,0 +1,20 @@
+// Light names that EXR layers and the command line can carry.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "photile/scene.hpp"
+
+namespace photile::scene_io {
+
+/// `name` with every byte that separates things elsewhere ('.' in EXR channel names, '=' in
+/// `--light NAME=POWER`, blanks, ...) or is not valid UTF-8 replaced by '_', cut to at most
+/// `max_bytes` bytes between characters. "light" when nothing is left.
+std::string clean_light_name(std::string_view name, std::size_t max_bytes);
+
+/// Cleans the names of all lights and numbers those that occur twice: lamp, lamp_2, lamp_3.
+void make_light_names_unique(std::vector<Light>& lights);
+
+}  // namespace photile::scene_io

@@ -1,0 +1,106 @@
+// From a file of either format to a scene that later stages can trust.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <new>
+
+#include "photile/errors.hpp"
+#include "photile/scene.hpp"
+#include "scene/area_lights.hpp"
+#include "scene/default_camera.hpp"
+#include "scene/gltf_import.hpp"
+#include "scene/import_context.hpp"
+#include "scene/light_names.hpp"
+#include "scene/obj_import.hpp"
+#include "scene/photometry.hpp"
+
+namespace photile {
+namespace {
+
+using namespace scene_io;
+
+void import_by_extension(ImportContext& context) {
+  std::string extension = context.folder.scene_file().extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".obj") {
+    import_obj(context);
+  } else if (extension == ".gltf" || extension == ".glb") {
+    import_gltf(context);
+  } else {
+    throw context.error(
+        fmt::format("unknown scene format '{}'; give an .obj, .gltf or .glb file", extension));
+  }
+}
+
+void report_dropped_triangles(const ImportReport& report, Warnings& warnings) {
+  if (report.degenerate_triangles > 0) {
+    warnings.add(fmt::format("{} triangles without area are dropped", report.degenerate_triangles));
+  }
+  if (report.non_finite_triangles > 0) {
+    warnings.add(fmt::format("{} triangles with a NaN or infinite corner are dropped",
+                             report.non_finite_triangles));
+  }
+}
+
+/// An error about a scene that lacks something. What the import warned about is often the reason: a
+/// missing material library, lamps that the exporter dropped.
+InputError lacks(const std::string& what, const ImportContext& context) {
+  constexpr std::size_t warnings_told = 3;
+  std::vector<std::string> lines = context.warnings.lines();
+  if (lines.size() > warnings_told) lines.resize(warnings_told);
+  const std::string reasons =
+      lines.empty() ? "" : fmt::format(" (import: {})", fmt::join(lines, "; "));
+  return context.error(what + reasons);
+}
+
+/// Importers leave the irradiance of a directional light in `power`, since the size of the scene is
+/// known only now.
+void finish_directional_lights(Scene& scene) {
+  const double radius = bounding_sphere(scene).radius;
+  for (Light& light : scene.lights) {
+    if (light.kind == LightKind::directional) {
+      light.power = directional_flux(light.power, radius);
+    }
+  }
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options) {
+  Scene scene;
+  scene.source = file;
+  SceneFolder folder(file, options.allow_outside);
+  Warnings warnings;
+  AreaLights area_lights(scene);
+  ImportContext context{scene, folder, options, warnings, area_lights, {}};
+  try {
+    import_by_extension(context);
+    if (scene.triangles.empty()) {
+      throw lacks("no triangles with an area; export the scene with its geometry", context);
+    }
+    area_lights.finish(warnings);
+    if (scene.lights.empty()) {
+      throw lacks(
+          "no lights; give a material an emission (Ke in MTL, emissiveFactor in glTF) or add "
+          "KHR_lights_punctual lights",
+          context);
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw context.error("not enough memory to load the scene; split it");
+  } catch (const std::exception& error) {
+    // The importer libraries throw what they like on malformed files.
+    throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
+  }
+  finish_directional_lights(scene);
+  make_light_names_unique(scene.lights);
+  if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
+  report_dropped_triangles(scene.report, warnings);
+  scene.report.warnings = warnings.lines();
+  return scene;
+}
+
+}  // namespace photile

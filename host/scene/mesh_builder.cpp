@@ -1,0 +1,120 @@
+#include "scene/mesh_builder.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::scene_io {
+namespace {
+
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Rounded to float, with -0 made +0 so that equal positions have equal bits.
+glm::vec3 rounded(const glm::dvec3& position) { return glm::vec3(position) + glm::vec3(0.0f); }
+
+bool comes_before(const glm::vec3& a, const glm::vec3& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+}  // namespace
+
+std::size_t MeshBuilder::PositionHash::operator()(const std::array<std::uint32_t, 3>& bits) const {
+  std::uint64_t hash = 0;
+  for (const std::uint32_t word : bits) {
+    // Multiplication by the golden ratio spreads the low entropy of float bits over the word.
+    hash = (std::rotl(hash, 29) ^ word) * 0x9E37'79B9'7F4A'7C15ull;
+  }
+  return static_cast<std::size_t>(hash ^ (hash >> 32));
+}
+
+MeshBuilder::MeshBuilder(Scene& scene, bool keep_uv, bool keep_normals)
+    : scene_(scene), keep_uv_(keep_uv), keep_normals_(keep_normals) {}
+
+std::uint32_t MeshBuilder::vertex_index(const glm::vec3& position) {
+  const auto next = static_cast<std::uint32_t>(scene_.vertices.size());
+  const auto [entry, inserted] =
+      index_of_position_.try_emplace(std::bit_cast<std::array<std::uint32_t, 3>>(position), next);
+  if (inserted) {
+    if (scene_.vertices.size() >= limits::max_vertices) {
+      throw InputError(fmt::format("{}: more than {} vertices; split the scene",
+                                   scene_.source.string(), limits::max_vertices));
+    }
+    scene_.vertices.push_back(position);
+  }
+  return entry->second;
+}
+
+bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t material,
+                      std::uint32_t light) {
+  std::array<const Corner*, 3> sorted{&corners[0], &corners[1], &corners[2]};
+  std::array<glm::vec3, 3> p{rounded(corners[0].position), rounded(corners[1].position),
+                             rounded(corners[2].position)};
+  if (!is_finite(p[0]) || !is_finite(p[1]) || !is_finite(p[2])) {
+    ++scene_.report.non_finite_triangles;
+    return false;
+  }
+  // Sorting three corners: each exchange turns the winding round once.
+  std::uint8_t front_side = 0;
+  for (const auto& [i, j] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 1)}) {
+    if (comes_before(p[j], p[i])) {
+      std::swap(p[i], p[j]);
+      std::swap(sorted[i], sorted[j]);
+      front_side ^= 1;
+    }
+  }
+  const glm::dvec3 normal =
+      glm::cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0]));
+  // Below the smallest normal float a device could not hold the area, nor a normal made from it.
+  if (glm::length(normal) < static_cast<double>(std::numeric_limits<float>::min())) {
+    ++scene_.report.degenerate_triangles;
+    return false;
+  }
+  if (scene_.triangles.size() >= limits::max_triangles) {
+    throw InputError(fmt::format("{}: more than {} triangles; split the scene",
+                                 scene_.source.string(), limits::max_triangles));
+  }
+  glm::uvec3 triangle;
+  for (int i = 0; i < 3; ++i) triangle[i] = vertex_index(p[static_cast<std::size_t>(i)]);
+  scene_.triangles.push_back(triangle);
+  scene_.front_side.push_back(front_side);
+  scene_.triangle_material.push_back(material);
+  scene_.triangle_light.push_back(light);
+  if (keep_uv_) {
+    scene_.corner_uv.push_back(
+        {glm::vec2(sorted[0]->uv), glm::vec2(sorted[1]->uv), glm::vec2(sorted[2]->uv)});
+  }
+  if (keep_normals_) add_normals(sorted, front_side == 0 ? normal : -normal);
+  return true;
+}
+
+void MeshBuilder::add_normals(const std::array<const Corner*, 3>& sorted, const glm::dvec3& front) {
+  std::array<glm::dvec3, 3> normals{};
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double length = glm::length(sorted[i]->normal);
+    if (!std::isfinite(length) || length <= 0.0) continue;
+    normals[i] = sorted[i]->normal / length;
+    sum += normals[i];
+    any_normal_ = true;
+  }
+  // Files whose winding and normals disagree are common; the winding says which side is the front.
+  const double sign = glm::dot(sum, front) < 0.0 ? -1.0 : 1.0;
+  std::array<glm::vec3, 3> stored;
+  for (std::size_t i = 0; i < 3; ++i) stored[i] = glm::vec3(sign * normals[i]);
+  scene_.corner_normal.push_back(stored);
+}
+
+void MeshBuilder::finish() {
+  if (!any_normal_) scene_.corner_normal.clear();
+}
+
+}  // namespace photile::scene_io

@@ -1,0 +1,49 @@
+// From loose triangles to the scene's indexed soup in canonical order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+
+#include "photile/scene.hpp"
+
+namespace photile::scene_io {
+
+/// One corner as the file gives it, in world space.
+struct Corner {
+  glm::dvec3 position{0.0};
+  glm::dvec2 uv{0.0};
+  glm::dvec3 normal{0.0};  ///< any length; zero when the file has none
+};
+
+/// Appends triangles to a scene. Positions are rounded to float and welded where their bits agree;
+/// vertices are numbered in the order in which canonical corners are met, so nothing but
+/// `front_side` and the signs of shading normals depends on the winding.
+class MeshBuilder {
+ public:
+  /// `keep_uv`, `keep_normals`: whether some material needs them.
+  MeshBuilder(Scene& scene, bool keep_uv, bool keep_normals);
+
+  /// Adds a triangle whose front is the side from which `corners` run counter-clockwise. Triangles
+  /// with a corner that is not finite and triangles without area are counted and left out; false
+  /// then. `light` is an area light's index, or `none`. Errors: InputError beyond a limit.
+  bool add(const std::array<Corner, 3>& corners, std::uint32_t material, std::uint32_t light);
+
+  /// Drops normals when the file turned out to have none.
+  void finish();
+
+ private:
+  struct PositionHash {
+    std::size_t operator()(const std::array<std::uint32_t, 3>& bits) const;
+  };
+
+  std::uint32_t vertex_index(const glm::vec3& position);
+  void add_normals(const std::array<const Corner*, 3>& sorted, const glm::dvec3& front);
+
+  Scene& scene_;
+  bool keep_uv_, keep_normals_;
+  bool any_normal_ = false;
+  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, PositionHash> index_of_position_;
+};
+
+}  // namespace photile::scene_io

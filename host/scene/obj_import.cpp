@@ -1,0 +1,137 @@
+#include "scene/obj_import.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "photile/limits.hpp"
+#include "scene/mesh_builder.hpp"
+#include "scene/mtl_materials.hpp"
+#include "scene/obj_reader.hpp"
+#include "scene/obj_text.hpp"
+#include "scene/polygon_triangulator.hpp"
+#include "scene/resource_error.hpp"
+
+namespace photile::scene_io {
+namespace {
+
+void report_findings(const ObjTextFindings& findings, Warnings& warnings) {
+  if (findings.vertex_colors) warnings.add("vertex colours are ignored");
+  for (const auto& [keyword, lines] : findings.ignored_statements) {
+    warnings.add("statement", keyword, "not a surface or not understood; ignored");
+  }
+}
+
+/// Adds the materials that faces use. Returns the scene's material of each usemtl name, and one
+/// more for faces without any.
+std::vector<std::uint32_t> add_materials(const ObjFile& file, ImportContext& context) {
+  if (file.material_names.size() + 1 > limits::max_materials) {
+    throw context.error(fmt::format("more than {} materials", limits::max_materials));
+  }
+  std::map<std::string, const tinyobj::material_t*> library;
+  for (const tinyobj::material_t& material : file.library) {
+    library.emplace(material.name, &material);
+  }
+  TextureStore textures(context.scene, context.folder);
+  std::vector<std::uint32_t> index;
+  for (const std::string& name : file.material_names) {
+    index.push_back(static_cast<std::uint32_t>(context.scene.materials.size()));
+    if (const auto found = library.find(name); found != library.end()) {
+      add_mtl_material(*found->second, textures, context);
+    } else {
+      context.warnings.add("material", name, "not defined in any material library; mid grey (0.5)");
+      add_missing_material(name, context);
+    }
+  }
+  const bool some_without = std::any_of(file.faces.begin(), file.faces.end(),
+                                        [](const ObjFace& face) { return face.material == none; });
+  index.push_back(static_cast<std::uint32_t>(context.scene.materials.size()));
+  if (some_without) {
+    context.warnings.add("faces without usemtl become mid grey (0.5)");
+    add_missing_material("default", context);
+  }
+  return index;
+}
+
+Corner corner_of(const ObjFile& file, const tinyobj::index_t& index) {
+  Corner corner;
+  corner.position = file.positions[static_cast<std::size_t>(index.vertex_index)];
+  if (index.normal_index >= 0) {
+    corner.normal = file.normals[static_cast<std::size_t>(index.normal_index)];
+  }
+  if (index.texcoord_index >= 0) {
+    const glm::dvec2 uv = file.texcoords[static_cast<std::size_t>(index.texcoord_index)];
+    corner.uv = {uv.x, 1.0 - uv.y};  // OBJ puts (0,0) at the lower left corner
+  }
+  return corner;
+}
+
+bool any_corner_unbounded(const std::vector<glm::dvec3>& positions) {
+  return std::any_of(positions.begin(), positions.end(), [](const glm::dvec3& p) {
+    return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
+  });
+}
+
+void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
+              MeshBuilder& builder, ImportContext& context) {
+  std::vector<Corner> corners;
+  std::vector<glm::dvec3> positions;
+  for (std::uint64_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+    corners.push_back(corner_of(file, file.corners[c]));
+    positions.push_back(corners.back().position);
+  }
+  const std::uint32_t light = context.area_lights.find_or_add(
+      face.object, file.objects[face.object], material, context.emission[material]);
+  if (corners.size() == 3) {
+    builder.add({corners[0], corners[1], corners[2]}, material, light);
+    return;
+  }
+  ++context.scene.report.polygons_triangulated;
+  if (any_corner_unbounded(positions)) {
+    // No plane to triangulate in: the whole polygon is lost, as many triangles as it would give.
+    context.scene.report.non_finite_triangles += corners.size() - 2;
+    return;
+  }
+  const Triangulation triangulation = triangulate_polygon(positions);
+  if (!triangulation.simple) {
+    context.warnings.add("object", file.objects[face.object],
+                         "a polygon crosses itself; its triangulation may overlap or leave gaps");
+  }
+  for (const auto& [a, b, c] : triangulation.triangles) {
+    builder.add({corners[a], corners[b], corners[c]}, material, light);
+  }
+}
+
+}  // namespace
+
+void import_obj(ImportContext& context) {
+  const std::vector<unsigned char> bytes = context.folder.read_scene_file();
+  std::string text(bytes.begin(), bytes.end());
+  ObjTextFindings findings;
+  try {
+    findings = examine_obj_text(text);
+  } catch (const ResourceError& error) {
+    throw context.error(error.what());
+  }
+  report_findings(findings, context.warnings);
+  ObjFile file = read_obj(text, context);
+  for (const std::uint64_t vertex : findings.unreadable_vertices) {
+    if (vertex < file.positions.size()) {
+      file.positions[vertex] = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  context.scene.unit = PowerUnit::watt;
+  const std::vector<std::uint32_t> material_index = add_materials(file, context);
+  const SceneNeeds needs = needs_of(context.scene);
+  MeshBuilder builder(context.scene, needs.textures, needs.glossy || needs.specular_paths);
+  for (const ObjFace& face : file.faces) {
+    const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;
+    add_face(file, face, material_index[name], builder, context);
+  }
+  builder.finish();
+}
+
+}  // namespace photile::scene_io

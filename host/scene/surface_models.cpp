@@ -1,0 +1,58 @@
+#include "scene/surface_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photile::scene_io {
+
+float ggx_alpha_from_roughness(double roughness) {
+  return static_cast<float>(
+      std::clamp(roughness * roughness, static_cast<double>(min_ggx_alpha), 1.0));
+}
+
+float ggx_alpha_from_phong_exponent(double exponent) {
+  const double alpha = std::sqrt(2.0 / (std::max(exponent, 0.0) + 2.0));
+  return static_cast<float>(std::clamp(alpha, static_cast<double>(min_ggx_alpha), 1.0));
+}
+
+double f0_from_index_of_refraction(double index) {
+  const double ratio = (index - 1.0) / (index + 1.0);
+  return ratio * ratio;
+}
+
+void set_metallic_roughness(const MetallicRoughness& model, Material& material) {
+  const glm::dvec3 base = glm::clamp(model.base_color, 0.0, 1.0);
+  const double metallic = std::clamp(model.metallic, 0.0, 1.0);
+  const double roughness = std::clamp(model.roughness, 0.0, 1.0);
+  const glm::dvec3 dielectric =
+      glm::min(f0_from_index_of_refraction(model.index_of_refraction) * model.specular_color,
+               glm::dvec3(1.0)) *
+      std::clamp(model.specular_factor, 0.0, 1.0);
+  const glm::dvec3 specular = glm::clamp(glm::mix(dielectric, base, metallic), 0.0, 1.0);
+  const glm::dvec3 diffuse = glm::min(base * (1.0 - metallic), 1.0 - specular);
+  const bool no_diffuse = base == glm::dvec3(0.0) || metallic >= mirror_metallic;
+  if (no_diffuse && roughness <= mirror_roughness && specular != glm::dvec3(0.0)) {
+    material.interaction = Interaction::mirror;
+    material.diffuse = glm::vec3(0.0f);
+    material.diffuse_texture = none;
+    material.specular = glm::vec3(specular);
+    return;
+  }
+  material.interaction = Interaction::opaque;
+  material.diffuse = glm::vec3(diffuse);
+  material.specular = glm::vec3(specular);
+  material.roughness = ggx_alpha_from_roughness(roughness);
+}
+
+bool conserve_energy(Material& material) {
+  const glm::vec3 sum = material.diffuse + material.specular;
+  const float largest = std::max({sum.r, sum.g, sum.b});
+  // Factors such as 0.9 + 0.1 round to a little more than 1: not worth a warning.
+  constexpr float tolerance = 1.0f + 1e-5f;
+  if (largest <= 1.0f) return false;
+  material.diffuse /= largest;
+  material.specular /= largest;
+  return largest > tolerance;
+}
+
+}  // namespace photile::scene_io

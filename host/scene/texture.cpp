@@ -1,0 +1,64 @@
+// Texture lookup.
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "photile/scene.hpp"
+
+namespace photile {
+namespace {
+
+/// Linear values of the 256 sRGB bytes (IEC 61966-2-1).
+const std::array<float, 256>& linear_of_srgb() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double c = static_cast<double>(i) / 255.0;
+      values[i] = static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    }
+    return values;
+  }();
+  return table;
+}
+
+/// The two texels beside a coordinate that repeats, and the weight of the second.
+struct Neighbours {
+  std::size_t first, second;
+  float weight;
+};
+
+Neighbours neighbours(float coordinate, int size) {
+  // Beyond 2^24 a float has no fraction left, and infinity and NaN have no texel.
+  if (!(std::abs(coordinate) < 16'777'216.0f)) coordinate = 0.0f;
+  const float repeated = coordinate - std::floor(coordinate);
+  const float texel = repeated * static_cast<float>(size) - 0.5f;  // texel centres lie at 0.5
+  const float floor = std::floor(texel);
+  const int first = (static_cast<int>(floor) + size) % size;
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>((first + 1) % size),
+          texel - floor};
+}
+
+}  // namespace
+
+Texture::Texture(std::string name, int width, int height,
+                 std::vector<std::array<std::uint8_t, 4>> texels)
+    : name_(std::move(name)), width_(width), height_(height), texels_(std::move(texels)) {
+  if (width < 1 || height < 1 ||
+      texels_.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    throw std::invalid_argument("Texture: the number of texels is not width x height");
+  }
+}
+
+glm::vec3 Texture::sample(glm::vec2 uv) const {
+  const Neighbours x = neighbours(uv.x, width_), y = neighbours(uv.y, height_);
+  const std::array<float, 256>& linear = linear_of_srgb();
+  const auto texel = [&](std::size_t column, std::size_t row) {
+    const auto& t = texels_[row * static_cast<std::size_t>(width_) + column];
+    return glm::vec3(linear[t[0]], linear[t[1]], linear[t[2]]);
+  };
+  const glm::vec3 upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.weight);
+  const glm::vec3 lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.weight);
+  return glm::mix(upper, lower, y.weight);
+}
+
+}  // namespace photile

@@ -1,0 +1,138 @@
+#include "scene/texture_decoder.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "photile/limits.hpp"
+#include "scene/resource_error.hpp"
+
+namespace photile::scene_io {
+namespace {
+
+/// OpenImageIO's name of the format, by signature, or else by the extension of the few formats
+/// without one. Empty when unknown: OpenImageIO's own guessing would also try video and archives.
+std::string format_of(const std::string& name, std::span<const unsigned char> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  using namespace std::string_view_literals;
+  if (text.starts_with("\x89PNG"sv)) return "png";
+  if (text.starts_with("\xFF\xD8"sv)) return "jpeg";
+  if (text.starts_with("\x76\x2F\x31\x01"sv)) return "openexr";
+  if (text.starts_with("#?"sv)) return "hdr";
+  if (text.starts_with("II*\0"sv) || text.starts_with("MM\0*"sv)) return "tiff";
+  if (text.starts_with("BM"sv)) return "bmp";
+  if (text.starts_with("GIF8"sv)) return "gif";
+  if (text.starts_with("RIFF"sv) && text.substr(8).starts_with("WEBP"sv)) return "webp";
+  std::string extension = std::filesystem::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".tga") return "targa";
+  if (extension == ".ppm" || extension == ".pgm" || extension == ".pnm") return "pnm";
+  return "";
+}
+
+void check_limits(const OIIO::ImageSpec& spec, std::size_t encoded_bytes) {
+  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.deep || spec.nchannels <= 0) {
+    throw ResourceError("not a plain two-dimensional picture");
+  }
+  const auto pixels =
+      static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  if (spec.width > limits::max_image_side || spec.height > limits::max_image_side ||
+      pixels > limits::max_image_pixels) {
+    throw ResourceError(fmt::format("{} x {} pixels; the limit is {} a side and {} in all",
+                                    spec.width, spec.height, limits::max_image_side,
+                                    limits::max_image_pixels));
+  }
+  if (spec.nchannels > limits::max_image_channels) {
+    throw ResourceError(
+        fmt::format("{} channels; the limit is {}", spec.nchannels, limits::max_image_channels));
+  }
+  const std::uint64_t decoded = spec.image_bytes(true);
+  if (decoded > limits::max_image_bytes) {
+    throw ResourceError(
+        fmt::format("{} bytes decoded; the limit is {}", decoded, limits::max_image_bytes));
+  }
+  if (decoded > limits::unchecked_image_bytes &&
+      decoded / std::max<std::size_t>(encoded_bytes, 1) > limits::max_image_expansion) {
+    throw ResourceError(fmt::format("{} bytes decode to {}; the limit is a factor of {}",
+                                    encoded_bytes, decoded, limits::max_image_expansion));
+  }
+}
+
+std::uint8_t srgb_byte(float linear) {
+  const float c = std::isnan(linear) ? 0.0f : std::clamp(linear, 0.0f, 1.0f);
+  const float encoded = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
+  return static_cast<std::uint8_t>(encoded * 255.0f + 0.5f);
+}
+
+/// Red, green, blue and alpha of a pixel of 1 (grey), 2 (grey, alpha), 3 or 4 channels.
+template <typename T>
+std::array<T, 4> rgba(const T* pixel, int channels, T opaque) {
+  if (channels < 3) return {pixel[0], pixel[0], pixel[0], channels == 2 ? pixel[1] : opaque};
+  return {pixel[0], pixel[1], pixel[2], channels == 4 ? pixel[3] : opaque};
+}
+
+template <typename T>
+std::vector<T> read_pixels(OIIO::ImageInput& input, int channels, OIIO::TypeDesc type) {
+  const OIIO::ImageSpec& spec = input.spec();
+  std::vector<T> pixels(static_cast<std::size_t>(spec.width) *
+                        static_cast<std::size_t>(spec.height) * static_cast<std::size_t>(channels));
+  if (!input.read_image(0, 0, 0, channels, type, pixels.data())) {
+    throw ResourceError(input.geterror());
+  }
+  return pixels;
+}
+
+std::vector<std::array<std::uint8_t, 4>> decode(const std::string& name,
+                                                std::span<const unsigned char> bytes,
+                                                OIIO::ImageSpec& spec) {
+  const std::string format = format_of(name, bytes);
+  if (format.empty()) throw ResourceError("not a picture format that is read (PNG, JPEG, ...)");
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
+  if (!input || !input->supports("ioproxy")) throw ResourceError(format + " pictures are not read");
+  OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(bytes.data()), bytes.size());
+  input->set_ioproxy(&memory);
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;  // colours as stored: alpha is not used
+  if (!input->open(name, spec, config)) throw ResourceError(input->geterror());
+  check_limits(spec, bytes.size());
+
+  const int channels = std::min(spec.nchannels, 4);
+  const auto stride = static_cast<std::size_t>(channels);
+  std::vector<std::array<std::uint8_t, 4>> texels(static_cast<std::size_t>(spec.width) *
+                                                  static_cast<std::size_t>(spec.height));
+  if (spec.format.is_floating_point()) {
+    const auto pixels = read_pixels<float>(*input, channels, OIIO::TypeDesc::FLOAT);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      const std::array<float, 4> pixel = rgba(&pixels[i * stride], channels, 1.0f);
+      for (std::size_t c = 0; c < 4; ++c) texels[i][c] = srgb_byte(pixel[c]);
+    }
+  } else {
+    const auto pixels = read_pixels<std::uint8_t>(*input, channels, OIIO::TypeDesc::UINT8);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      texels[i] = rgba<std::uint8_t>(&pixels[i * stride], channels, 255);
+    }
+  }
+  return texels;
+}
+
+}  // namespace
+
+Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes) {
+  try {
+    OIIO::ImageSpec spec;
+    auto texels = decode(name, bytes, spec);
+    return Texture(name, spec.width, spec.height, std::move(texels));
+  } catch (const ResourceError& error) {
+    throw ResourceError(fmt::format("texture '{}': {}", name, error.what()));
+  }
+}
+
+}  // namespace photile::scene_io

@@ -1,0 +1,17 @@
+// Pictures of a scene, decoded by OpenImageIO.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "photile/scene.hpp"
+
+namespace photile::scene_io {
+
+/// Decodes an encoded picture. Size and channels are checked against limits.hpp before any pixel is
+/// decoded. Linear pictures (EXR, HDR) are clamped to [0,1] and encoded as 8-bit sRGB. `name` names
+/// the texture and, by its extension, formats that have no signature.
+/// Errors: ResourceError naming the picture and the reason.
+Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes);
+
+}  // namespace photile::scene_io

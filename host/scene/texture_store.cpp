@@ -1,0 +1,34 @@
+#include "scene/texture_store.hpp"
+
+#include <vector>
+
+#include "scene/surface_models.hpp"
+#include "scene/texture_decoder.hpp"
+
+namespace photile::scene_io {
+
+std::uint32_t TextureStore::from_file(const std::string& name) {
+  if (const auto found = index_.find(name); found != index_.end()) return found->second;
+  return add(name, folder_.read(name));
+}
+
+std::uint32_t TextureStore::from_memory(const std::string& key,
+                                        std::span<const unsigned char> bytes) {
+  if (const auto found = index_.find(key); found != index_.end()) return found->second;
+  return add(key, bytes);
+}
+
+std::uint32_t TextureStore::add(const std::string& name, std::span<const unsigned char> bytes) {
+  scene_.textures.push_back(decode_texture(name, bytes));
+  const auto index = static_cast<std::uint32_t>(scene_.textures.size() - 1);
+  index_.emplace(name, index);
+  return index;
+}
+
+void use_missing_texture_colour(Material& material) {
+  material.diffuse = glm::vec3(missing_albedo);
+  material.diffuse_texture = none;
+  conserve_energy(material);
+}
+
+}  // namespace photile::scene_io

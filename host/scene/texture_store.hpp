@@ -1,0 +1,36 @@
+// The textures of a scene, each decoded once.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+
+#include "photile/scene.hpp"
+#include "scene/scene_folder.hpp"
+
+namespace photile::scene_io {
+
+class TextureStore {
+ public:
+  TextureStore(Scene& scene, SceneFolder& folder) : scene_(scene), folder_(folder) {}
+
+  /// Index in Scene::textures of a picture file named by the scene. Errors: ResourceError.
+  std::uint32_t from_file(const std::string& name);
+
+  /// The same for a picture inside the scene file; `key` tells it from others. Errors:
+  /// ResourceError.
+  std::uint32_t from_memory(const std::string& key, std::span<const unsigned char> bytes);
+
+ private:
+  std::uint32_t add(const std::string& name, std::span<const unsigned char> bytes);
+
+  Scene& scene_;
+  SceneFolder& folder_;
+  std::map<std::string, std::uint32_t> index_;
+};
+
+/// Makes the lack of a texture visible but harmless: a mid-grey Lambertian part.
+void use_missing_texture_colour(Material& material);
+
+}  // namespace photile::scene_io

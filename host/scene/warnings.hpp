@@ -1,0 +1,29 @@
+// Warnings of an import, gathered so that a hundred materials with one trouble give one line.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace photile::scene_io {
+
+class Warnings {
+ public:
+  /// A warning about the whole file.
+  void add(const std::string& message);
+
+  /// A warning about one object: `kind` is "material", "node", ... Objects of one kind with the
+  /// same message share a line.
+  void add(const std::string& kind, const std::string& name, const std::string& message);
+
+  /// One line each, in the order in which they were first met.
+  std::vector<std::string> lines() const;
+
+ private:
+  struct Entry {
+    std::string kind, message;
+    std::vector<std::string> names;
+  };
+  std::vector<Entry> entries_;
+};
+
+}  // namespace photile::scene_io
