@@ -44,6 +44,12 @@ inline constexpr std::uint64_t max_image_expansion = 1'000;
 inline constexpr std::uint64_t unchecked_image_bytes = 64ull << 20;
 inline constexpr int max_samples_per_pixel = 65'536;
 
+/// Beyond, 2^stops times a bright pixel leaves the range of a float.
+inline constexpr double max_exposure_stops = 64;
+
+// Host
+inline constexpr int max_threads = 1'024;  ///< each costs a stack; no machine has more cores
+
 // Names
 /// Blender keeps pass names in 64 bytes, "Combined_" included.
 inline constexpr int max_light_name_bytes = 50;

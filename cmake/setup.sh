@@ -1,0 +1,66 @@
+#!/bin/bash
+# Installs the Debian packages that photile is built from and tested with (Debian 12 "bookworm").
+# It says what it installs and does nothing when everything is there, so it also works offline.
+# Usage: cmake/setup.sh [--dry-run]
+set -euo pipefail
+
+# package | what it is for
+packages=$(cat <<'END'
+build-essential        | the C++20 compiler
+cmake                  | builds everything, 3.25 or newer
+ninja-build            | the generator of the CMake presets
+pkg-config             | finds the libraries without a CMake file of their own
+git                    | the commit that photile --version prints
+ca-certificates        | lets git and apt talk https
+opencl-c-headers       | OpenCL headers
+ocl-icd-opencl-dev     | OpenCL loader
+pocl-opencl-icd        | OpenCL device on the CPU
+libembree-dev          | ray tracing
+libtbb-dev             | threads
+libglm-dev             | vectors
+libopenimageio-dev     | pictures: EXR, PNG, textures
+libtinygltf-dev        | reads glTF
+libtinyobjloader-dev   | reads OBJ
+libstb-dev             | picture decoder that tinygltf's header names
+nlohmann-json3-dev     | JSON
+libfmt-dev             | text output
+libcli11-dev           | command line
+libxxhash-dev          | checksums of the program cache
+catch2                 | tests
+libfcl-dev             | tests: an independent triangle distance
+libnanoflann-dev       | tests and benches: an independent nearest-neighbour search
+libbenchmark-dev       | benches
+oclgrind               | tests: checks every memory access of the kernels
+openimageio-tools      | tests: reads the pictures as other tools do
+python3                | scripts of the docs and the tests
+END
+)
+
+missing=()
+while IFS='|' read -r package purpose; do
+  package=${package// /}
+  if [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
+    missing+=("$package")
+    printf 'to install: %-22s%s\n' "$package" "$purpose"
+  fi
+done <<<"$packages"
+
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "all packages are installed"
+  exit 0
+fi
+if [ "${1:-}" = --dry-run ]; then
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || {
+    echo "cmake/setup.sh: error: not root and no sudo; install the packages above as root" >&2
+    exit 1
+  }
+  as_root=(sudo)
+fi
+"${as_root[@]}" apt-get update
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install --yes --no-install-recommends "${missing[@]}"

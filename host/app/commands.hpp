@@ -1,0 +1,16 @@
+// The subcommands. Each function adds one to the command line; its callback does the work and
+// throws photile::Error.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace photile::app {
+
+void add_render_command(CLI::App& photile);
+void add_relight_command(CLI::App& photile);
+void add_devices_command(CLI::App& photile);
+void add_info_command(CLI::App& photile);
+
+}  // namespace photile::app

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.hpp"
+#include "app/number_format.hpp"
+#include "photile/device.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::app {
+namespace {
+
+using nlohmann::json;
+
+struct DevicesOptions {
+  std::string selector;
+  bool json = false;
+};
+
+const char* type_name(DeviceType type) {
+  switch (type) {
+    case DeviceType::cpu:
+      return "cpu";
+    case DeviceType::gpu:
+      return "gpu";
+    case DeviceType::accelerator:
+      return "accelerator";
+    case DeviceType::other:
+      return "other";
+  }
+  return "";
+}
+
+json device_json(const DeviceInfo& device, bool selected) {
+  return {{"id", device.id},
+          {"name", device.name},
+          {"platform", device.platform},
+          {"vendor", device.vendor},
+          {"type", type_name(device.type)},
+          {"version", device.version},
+          {"driver_version", device.driver_version},
+          {"platform_version", device.platform_version},
+          {"compute_units", device.compute_units},
+          {"global_memory_bytes", device.global_memory_bytes},
+          {"max_allocation_bytes", device.max_allocation_bytes},
+          {"local_memory_bytes", device.local_memory_bytes},
+          {"max_work_group_size", device.max_work_group_size},
+          {"native_float_width", device.native_float_width},
+          {"selected", selected}};
+}
+
+std::string device_line(const DeviceInfo& device, bool selected) {
+  return fmt::format("{} {:<5} {:<4} {} ({}), {}, {} compute units, {}, largest buffer {}",
+                     selected ? '*' : ' ', device.id, type_name(device.type), device.name,
+                     device.platform, device.version, device.compute_units,
+                     format_bytes(device.global_memory_bytes),
+                     format_bytes(device.max_allocation_bytes));
+}
+
+void run_devices(const DevicesOptions& options) {
+  // Opening the device asks the very code that `render` asks; without any device it says so.
+  const std::string selected = Device({.selector = options.selector}).info().id;
+  json list = json::array();
+  for (const DeviceInfo& device : list_devices()) {
+    const bool is_selected = device.id == selected;
+    if (options.json) {
+      list.push_back(device_json(device, is_selected));
+    } else {
+      std::cout << device_line(device, is_selected) << '\n';
+    }
+  }
+  if (options.json) {
+    std::cout << list.dump(2, ' ', false, json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << "* = what photile render uses"
+              << (options.selector.empty() ? " by default\n" : "\n");
+  }
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& photile) {
+  auto options = std::make_shared<DevicesOptions>();
+  CLI::App* command = photile.add_subcommand("devices", "List the OpenCL devices");
+  command->add_flag("--json", options->json, "as JSON");
+  command
+      ->add_option("--device", options->selector,
+                   "mark the one that this selector chooses, as in photile render")
+      ->type_name("SELECTOR")
+      ->envname("PHOTILE_DEVICE");
+  command->callback([options] { run_devices(*options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.hpp"
+#include "app/scene_report.hpp"
+#include "app/validators.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::app {
+namespace {
+
+struct InfoOptions {
+  std::string scene;
+  SceneLoadOptions load;
+  double lumen_per_watt = defaults::lumen_per_watt;
+  bool json = false;
+};
+
+void print_text(const Scene& scene, const LightMix& mix) {
+  for (const auto& line : scene_summary(scene, mix)) std::cout << line << '\n';
+  // Names and colours are laid out once, in scene_json.
+  const nlohmann::json facts = scene_json(scene, mix);
+  for (const auto& material : facts["materials"]) {
+    std::cout << fmt::format("material: {}: {}\n", material["name"].get<std::string>(),
+                             material["interaction"].get<std::string>());
+  }
+  for (const Camera& camera : scene.cameras) {
+    std::cout << fmt::format("camera: {}: at ({:.4g}, {:.4g}, {:.4g}), {:.4g} degrees high\n",
+                             camera.name, camera.position.x, camera.position.y, camera.position.z,
+                             glm::degrees(camera.vertical_field_of_view));
+  }
+  for (const auto& line : scene_warnings(scene)) std::cout << "warning: " << line << '\n';
+}
+
+void run_info(const InfoOptions& options) {
+  const Scene scene = load_scene(options.scene, options.load);
+  const LightMix mix = LightMix::of(scene, options.lumen_per_watt);
+  if (options.json) {
+    // Names come from files: bytes that are no UTF-8 are replaced, not fatal.
+    std::cout
+        << scene_json(scene, mix).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+        << '\n';
+  } else {
+    print_text(scene, mix);
+  }
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& photile) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = photile.add_subcommand("info", "Say what a scene file holds");
+  command->add_option("SCENE", options->scene, "scene file: .obj, .gltf or .glb")
+      ->required()
+      ->type_name("");
+  command->add_flag("--json", options->json, "as JSON");
+  command
+      ->add_option("--emissive-scale", options->load.emissive_scale,
+                   "multiplies emissive materials; 683 mends files from Blender")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str();
+  command->add_option("--lumen-per-watt", options->lumen_per_watt, "683 or, as Radiance, 179")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str();
+  command->add_flag("--allow-outside", options->load.allow_outside,
+                    "the scene may name files outside its folder");
+  command->callback([options] { run_info(*options); });
+}
+
+}  // namespace photile::app

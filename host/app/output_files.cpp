@@ -1,0 +1,34 @@
+#include "app/output_files.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "image/output_file.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::app {
+
+void check_outputs(std::span<const std::filesystem::path> outputs,
+                   const std::filesystem::path& input) {
+  std::set<std::filesystem::path> seen;
+  for (const auto& output : outputs) {
+    std::error_code ignored;  // files that do not exist are told apart by name
+    if (std::filesystem::equivalent(output, input, ignored)) {
+      throw UsageError(
+          fmt::format("{}: is the input, too; choose another output", output.string()));
+    }
+    const image::OutputFile probe(output);
+    if (!seen.insert(std::filesystem::weakly_canonical(output)).second) {
+      throw UsageError(fmt::format("{}: is named as output twice; remove one", output.string()));
+    }
+  }
+}
+
+void write_text_file(const std::filesystem::path& file, const std::string& text) {
+  image::OutputFile output(file);
+  output.write(text.data(), text.size());  // a short write is reported by commit
+  output.commit();
+}
+
+}  // namespace photile::app

@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/number_format.hpp"
+#include "app/output_files.hpp"
+#include "app/picture_outputs.hpp"
+#include "app/signals.hpp"
+#include "photile/errors.hpp"
+#include "photile/image.hpp"
+#include "photile/light_mix.hpp"
+
+namespace photile::app {
+namespace {
+
+struct RelightOptions {
+  std::string input;
+  std::vector<std::string> lights;
+  PictureOptions pictures;
+};
+
+void print_lights(const LightMix& mix) {
+  for (const MixedLight& light : mix.lights) {
+    std::cout << fmt::format("light: {}: {}\n", light.name,
+                             format_power_in_both(light.power, light.unit, mix.lumen_per_watt));
+  }
+}
+
+void run_relight(const RelightOptions& options) {
+  handle_signals();
+  std::vector<LightChange> changes;
+  for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
+  const PictureOutputs outputs(options.pictures);
+  if (outputs.empty() && !changes.empty()) {
+    throw UsageError("no output; give -o FILE.exr or -o FILE.png");
+  }
+  check_outputs(outputs.files(), options.input);
+
+  const Image layered = read_image(options.input);
+  if (outputs.empty()) {
+    print_lights(read_light_mix(layered));
+    return;
+  }
+  const Image picture = relight(layered, changes);
+  throw_if_stop_requested();
+  outputs.write(picture);
+}
+
+}  // namespace
+
+void add_relight_command(CLI::App& photile) {
+  auto options = std::make_shared<RelightOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "relight", "Change the lights of a rendered EXR; without --light and -o, list them");
+  command->add_option("PICTURE", options->input, "EXR with a layer per light")
+      ->required()
+      ->type_name("");
+  command
+      ->add_option("--light", options->lights,
+                   "power in the light's unit, a factor (x2), a colour or off; repeatable")
+      ->type_name("NAME=POWER|xFACTOR|#RRGGBB|off")
+      ->allow_extra_args(false);
+  add_picture_options(*command, options->pictures);
+  command->callback([options] { run_relight(*options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.hpp"
+#include "app/number_format.hpp"
+#include "app/output_files.hpp"
+#include "app/render_options.hpp"
+#include "app/run_record.hpp"
+#include "app/scene_report.hpp"
+#include "app/signals.hpp"
+#include "app/summary.hpp"
+#include "app/terminal_progress.hpp"
+#include "app/threads.hpp"
+#include "device/context.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::app {
+namespace {
+
+constexpr std::size_t shown_warnings = 20;  // a broken file may have thousands
+
+PictureOutputs check_outputs_of(const RenderOptions& options) {
+  PictureOutputs outputs(options.pictures);
+  if (outputs.empty()) throw UsageError("no output; give -o FILE.exr or -o FILE.png");
+  auto files = outputs.files();
+  if (!options.statistics.empty()) files.emplace_back(options.statistics);
+  check_outputs(files, options.scene);
+  return outputs;
+}
+
+/// An EXR with more channels than the limit could not be read back.
+void check_channels(const PictureOutputs& outputs, const Scene& scene) {
+  const std::size_t channels = 4 + 4 * scene.lights.size();
+  if (outputs.has_exr() && channels > limits::max_image_channels) {
+    throw UsageError(fmt::format(
+        "{}: {} lights need {} channels and an EXR may have {}; write a PNG only",
+        scene.source.string(), scene.lights.size(), channels, limits::max_image_channels));
+  }
+}
+
+void tell_device(const DeviceInfo& device, Progress& progress) {
+  progress.note(fmt::format("device: {} ({}, {}), {} compute units, {}", device.name,
+                            device.platform, device.version, device.compute_units,
+                            format_bytes(device.global_memory_bytes)));
+}
+
+void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress) {
+  for (const auto& line : scene_summary(scene, mix)) progress.note(line);
+  const auto warnings = scene_warnings(scene);
+  for (std::size_t i = 0; i < std::min(warnings.size(), shown_warnings); ++i) {
+    progress.note("warning: " + warnings[i]);
+  }
+  if (warnings.size() > shown_warnings) {
+    progress.note(
+        fmt::format("warning: {} more; photile info shows all", warnings.size() - shown_warnings));
+  }
+}
+
+/// Runs `work` as a stage of its own and returns what it cost.
+template <class Work>
+StageStatistics timed_stage(const char* name, Progress& progress, const Work& work) {
+  progress.throw_if_cancelled();
+  progress.begin(name, 0, "");
+  const Stopwatch stopwatch;
+  work();
+  progress.end();
+  StageStatistics cost;
+  cost.stage = name;
+  cost.seconds = stopwatch.seconds();
+  return cost;
+}
+
+void tell_summary(const RunRecord& record, Device& device, bool profile, Progress& progress) {
+  for (const auto& line : summary_table(record)) progress.note(line);
+  progress.note(fmt::format("kernels: {} compiled, {} from the cache, {}", device.programs_built(),
+                            device.programs_from_cache(),
+                            format_seconds(device.compile_seconds())));
+  if (!profile) return;
+  for (const auto& line : kernel_table(device.context().kernel_times())) progress.note(line);
+}
+
+void run_render(RenderOptions& options) {
+  handle_signals();
+  const Stopwatch stopwatch;
+  apply_words(options);
+  std::vector<LightChange> changes;
+  for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
+  const PictureOutputs outputs = check_outputs_of(options);
+
+  const ThreadLimit threads(options.threads);
+  TerminalProgress progress(options.quiet);
+  Device device(options.device);
+  tell_device(device.info(), progress);
+
+  Scene scene;
+  RunStatistics stages;
+  stages.push_back(timed_stage("load scene", progress,
+                               [&] { scene = load_scene(options.scene, options.load); }));
+  LightMix mix = LightMix::of(scene, options.lumen_per_watt);
+  photile::apply(mix, changes);  // qualified: std::apply would match better
+  tell_scene(scene, mix, progress);
+  check_channels(outputs, scene);
+  const Camera& camera = choose_camera(scene, options.camera);
+  set_film_size(options.parameters.film, options.size, camera);
+
+  const RenderResult result = render(scene, camera, device, options.parameters, progress);
+  stages.insert(stages.end(), result.statistics.begin(), result.statistics.end());
+
+  RunRecord record{.scene = scene.source.filename().string(),
+                   .camera = camera.name,
+                   .maps = options.maps,
+                   .parameters = options.parameters,
+                   .device = device.info(),
+                   .mix = mix,
+                   .radius = result.radius,
+                   .stored_photons = result.stored_photons,
+                   .stages = stages};
+  record.stages.push_back(timed_stage("write pictures", progress, [&] {
+    Image picture = mix_layers(result.layers, mix);
+    set_run_attributes(picture, record);
+    outputs.write(picture);
+  }));
+  record.total_seconds = stopwatch.seconds();
+  if (!options.statistics.empty()) {
+    write_text_file(
+        options.statistics,
+        run_json(record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+  tell_summary(record, device, options.device.profile, progress);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& photile) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = photile.add_subcommand("render", "Render a scene to an EXR and a PNG");
+  add_render_options(*command, *options);
+  command->callback([options] { run_render(*options); });
+}
+
+}  // namespace photile::app

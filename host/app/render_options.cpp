@@ -1,0 +1,214 @@
+#include "app/render_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "app/validators.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::app {
+namespace {
+
+constexpr std::array quotas{std::pair{"balanced", PhotonQuota::balanced},
+                            std::pair{"power", PhotonQuota::power},
+                            std::pair{"equal", PhotonQuota::equal}};
+constexpr std::array map_modes{std::pair{"naive", MapMode::naive},
+                               std::pair{"grouped", MapMode::grouped}};
+
+template <class Table>
+std::vector<std::string> words_of(const Table& table) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : table) words.emplace_back(word);
+  return words;
+}
+
+template <class Table, class Value>
+std::string word_for(const Table& table, Value wanted) {
+  for (const auto& [word, value] : table) {
+    if (value == wanted) return word;
+  }
+  return {};
+}
+
+template <class Table>
+auto value_for(const Table& table, const std::string& wanted) {
+  for (const auto& [word, value] : table) {
+    if (word == wanted) return value;
+  }
+  throw UsageError(fmt::format("'{}' is not known; see photile render --help", wanted));
+}
+
+void add_picture_group(CLI::App& command, RenderOptions& options) {
+  PrimaryHitParameters& film = options.parameters.film;
+  command.add_option("--camera", options.camera, "name or index; default: the first")
+      ->type_name("NAME|INDEX")
+      ->group("Picture");
+  command
+      .add_option(
+          "--size", options.size,
+          fmt::format("pixels; default: {} high, as wide as the camera says, else {}x{}",
+                      defaults::image_height, defaults::image_width, defaults::image_height))
+      ->type_name("WxH")
+      ->transform(picture_size())
+      ->group("Picture");
+  command.add_option("--samples", film.samples_per_pixel, "primary rays per pixel")
+      ->type_name("N")
+      ->transform(count_between(1, limits::max_samples_per_pixel))
+      ->capture_default_str()
+      ->group("Picture");
+  command
+      .add_option("--light", options.lights,
+                  "power of a light in its unit, a factor (x2), a colour or off; repeatable")
+      ->type_name("NAME=POWER|xFACTOR|#RRGGBB|off")
+      ->allow_extra_args(false)
+      ->group("Picture");
+}
+
+void add_photon_group(CLI::App& command, RenderOptions& options) {
+  RenderParameters& parameters = options.parameters;
+  command.add_option("--photons", parameters.photons.emitted_photons, "paths over all lights")
+      ->type_name("N")
+      ->transform(count_between(limits::min_photons, limits::max_emitted_photons))
+      ->capture_default_str()
+      ->group("Photons");
+  options.quota = word_for(quotas, parameters.photons.quota);
+  command.add_option("--quota", options.quota, "how the lights share the paths")
+      ->type_name("")
+      ->check(CLI::IsMember(words_of(quotas)))
+      ->capture_default_str()
+      ->group("Photons");
+  command.add_option("--seed", parameters.photons.seed, "the same seed gives the same picture")
+      ->type_name("N")
+      ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str()
+      ->group("Photons");
+}
+
+void add_estimate_group(CLI::App& command, RenderOptions& options) {
+  RenderParameters& parameters = options.parameters;
+  command.add_option("-k,--neighbours", parameters.neighbours, "photons of an estimate")
+      ->type_name("N")
+      ->transform(count_between(1, limits::max_neighbours))
+      ->capture_default_str()
+      ->group("Estimate");
+  command.add_option("--radius", parameters.radius, "metres; default: from the photons' density")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Estimate");
+  command.add_option("--angle", parameters.angle_degrees, "between the normals of a group")
+      ->type_name("DEGREES")
+      ->transform(number_between(0, 180))
+      ->capture_default_str()
+      ->group("Estimate");
+  options.maps = word_for(map_modes, parameters.maps);
+  command.add_option("--maps", options.maps, "naive: no neighbour groups, dark edges")
+      ->type_name("")
+      ->check(CLI::IsMember(words_of(map_modes)))
+      ->capture_default_str()
+      ->group("Estimate");
+  command.add_option("--photons-per-cell", parameters.photons_per_cell, "fineness of the grids")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Estimate");
+}
+
+void add_scene_group(CLI::App& command, RenderOptions& options) {
+  command.add_option("--lumen-per-watt", options.lumen_per_watt, "683 or, as Radiance, 179")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Scene");
+  command
+      .add_option("--emissive-scale", options.load.emissive_scale,
+                  "multiplies emissive materials; 683 mends files from Blender")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Scene");
+  command
+      .add_flag("--allow-outside", options.load.allow_outside,
+                "the scene may name files outside its folder")
+      ->group("Scene");
+}
+
+void add_run_group(CLI::App& command, RenderOptions& options) {
+  command
+      .add_option("--device", options.device.selector,
+                  "OpenCL device: platform:device, index, cpu, gpu or a part of its name")
+      ->type_name("SELECTOR")
+      ->envname("PHOTILE_DEVICE")
+      ->group("Run");
+  command.add_option("--threads", options.threads, "of the host; 0 = all cores")
+      ->type_name("N")
+      ->transform(count_between(0, limits::max_threads))
+      ->capture_default_str()
+      ->group("Run");
+  command.add_flag("--no-cache", options.no_cache, "compile the kernels anew")->group("Run");
+  command.add_flag("--profile", options.device.profile, "print the time of every kernel")
+      ->group("Run");
+  command.add_option("--stats", options.statistics, "write the summary as JSON")
+      ->type_name("FILE")
+      ->group("Run");
+  command.add_flag("-q,--quiet", options.quiet, "print errors only")->group("Run");
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  command.add_option("SCENE", options.scene, "scene file: .obj, .gltf or .glb")
+      ->required()
+      ->type_name("");
+  add_picture_options(command, options.pictures);
+  add_picture_group(command, options);
+  add_photon_group(command, options);
+  add_estimate_group(command, options);
+  add_scene_group(command, options);
+  add_run_group(command, options);
+}
+
+void apply_words(RenderOptions& options) {
+  options.parameters.photons.quota = value_for(quotas, options.quota);
+  options.parameters.maps = value_for(map_modes, options.maps);
+  options.parameters.film.seed = options.parameters.photons.seed;
+  options.device.use_program_cache = !options.no_cache;
+}
+
+const Camera& choose_camera(const Scene& scene, const std::string& selector) {
+  if (selector.empty()) return scene.cameras.front();
+  for (const Camera& camera : scene.cameras) {
+    if (camera.name == selector) return camera;
+  }
+  const auto index = parse_count(selector);
+  if (index && *index < scene.cameras.size()) return scene.cameras[*index];
+  std::string known;
+  for (const Camera& camera : scene.cameras) {
+    known += (known.empty() ? "'" : ", '") + camera.name + "'";
+  }
+  throw UsageError(
+      fmt::format("no camera '{}' in {}; it has {}", selector, scene.source.string(), known));
+}
+
+void set_film_size(PrimaryHitParameters& film, const std::string& size, const Camera& camera) {
+  if (const auto pixels = parse_size(size)) {
+    film.width = pixels->width;
+    film.height = pixels->height;
+  } else if (camera.aspect_ratio > 0) {
+    const double width = std::round(camera.aspect_ratio * film.height);
+    if (width > limits::max_image_side) {
+      throw UsageError(
+          fmt::format("the camera's aspect ratio {} makes the picture wider than {} "
+                      "pixels; give --size",
+                      camera.aspect_ratio, limits::max_image_side));
+    }
+    film.width = std::max(1, static_cast<int>(width));
+  }
+}
+
+}  // namespace photile::app

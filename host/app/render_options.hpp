@@ -1,0 +1,56 @@
+// The options of `photile render`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/picture_outputs.hpp"
+#include "photile/camera.hpp"
+#include "photile/device.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/renderer.hpp"
+#include "photile/scene.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace photile::app {
+
+/// As typed, checked against the limits.
+struct RenderOptions {
+  std::string scene;
+  PictureOptions pictures;
+  RenderParameters parameters;
+  std::string quota;  ///< "balanced", "power" or "equal"
+  std::string maps;   ///< "naive" or "grouped"
+  std::string camera;
+  std::string size;  ///< "" = by the camera
+  std::vector<std::string> lights;
+  DeviceOptions device;
+  bool no_cache = false;
+  SceneLoadOptions load;
+  double lumen_per_watt = defaults::lumen_per_watt;
+  int threads = 0;
+  std::string statistics;  ///< file, "" = none
+  bool quiet = false;
+};
+
+/// Adds all options to the subcommand.
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// Sets what `options` holds as words: the quota, the maps and the cache.
+/// Errors: none, CLI11 has checked the words.
+void apply_words(RenderOptions& options);
+
+/// The camera named by `selector`: a name, an index, or "" for the first.
+/// Errors: UsageError listing those there are.
+const Camera& choose_camera(const Scene& scene, const std::string& selector);
+
+/// Width and height into `film`: `size` if given, else the default height and the camera's aspect
+/// ratio, else the default size. Errors: UsageError when the aspect ratio makes the picture too
+/// wide.
+void set_film_size(PrimaryHitParameters& film, const std::string& size, const Camera& camera);
+
+}  // namespace photile::app

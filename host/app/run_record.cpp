@@ -1,0 +1,105 @@
+#include "app/run_record.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/number_format.hpp"
+#include "app/version.hpp"
+
+namespace photile::app {
+namespace {
+
+using nlohmann::json;
+
+/// Names in the order of the run, unlike the sorted keys of a plain json object.
+using ordered = nlohmann::ordered_json;
+
+std::string times_text(const RunStatistics& stages) {
+  ordered times = ordered::object();
+  for (const StageStatistics& stage : stages) times[stage.stage] = stage.seconds;
+  return times.dump();
+}
+
+json stage_json(const StageStatistics& stage) {
+  json entry{{"stage", stage.stage},
+             {"seconds", stage.seconds},
+             {"host_bytes", stage.host_bytes},
+             {"device_bytes", stage.device_bytes},
+             {"figures", json::object()}};
+  for (const auto& [name, value] : stage.figures) entry["figures"][name] = value;
+  return entry;
+}
+
+json parameters_json(const RunRecord& record) {
+  const RenderParameters& parameters = record.parameters;
+  return {{"photons_emitted", parameters.photons.emitted_photons},
+          {"seed", parameters.photons.seed},
+          {"neighbours", parameters.neighbours},
+          {"radius", record.radius},
+          {"angle_degrees", parameters.angle_degrees},
+          {"maps", record.maps},
+          {"photons_per_cell", parameters.photons_per_cell},
+          {"width", parameters.film.width},
+          {"height", parameters.film.height},
+          {"samples_per_pixel", parameters.film.samples_per_pixel}};
+}
+
+}  // namespace
+
+void set_run_attributes(Image& picture, const RunRecord& record) {
+  const RenderParameters& parameters = record.parameters;
+  auto& attributes = picture.attributes;
+  attributes["photile.version"] = version_number();
+  attributes["photile.scene"] = record.scene;
+  attributes["photile.camera"] = record.camera;
+  attributes["photile.lumen_per_watt"] = fmt::format("{}", record.mix.lumen_per_watt);
+  attributes["photile.seed"] = std::to_string(parameters.photons.seed);
+  attributes["photile.photons_emitted"] = std::to_string(parameters.photons.emitted_photons);
+  attributes["photile.photons_stored"] = std::to_string(record.stored_photons);
+  attributes["photile.neighbours"] = std::to_string(parameters.neighbours);
+  attributes["photile.radius"] = fmt::format("{} m", record.radius);
+  attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
+  attributes["photile.maps"] = record.maps;
+  attributes["photile.samples_per_pixel"] = std::to_string(parameters.film.samples_per_pixel);
+  attributes["photile.device"] = fmt::format("{} ({}, driver {})", record.device.name,
+                                             record.device.platform, record.device.driver_version);
+  attributes["photile.times"] = times_text(record.stages);
+}
+
+json run_json(const RunRecord& record) {
+  json result{{"photile", version_number()},
+              {"scene", record.scene},
+              {"camera", record.camera},
+              {"device",
+               {{"id", record.device.id},
+                {"name", record.device.name},
+                {"platform", record.device.platform},
+                {"driver_version", record.device.driver_version}}},
+              {"parameters", parameters_json(record)},
+              {"lumen_per_watt", record.mix.lumen_per_watt},
+              {"lights", json::array()},
+              {"photons_stored", record.stored_photons},
+              {"stages", json::array()},
+              {"total_seconds", record.total_seconds},
+              {"peak_host_bytes", peak_host_bytes()}};
+  for (const MixedLight& light : record.mix.lights) {
+    result["lights"].push_back({{"name", light.name},
+                                {"power", light.power},
+                                {"unit", unit_symbol(light.unit)},
+                                {"tint", {light.tint.r, light.tint.g, light.tint.b}}});
+  }
+  for (const StageStatistics& stage : record.stages) {
+    result["stages"].push_back(stage_json(stage));
+  }
+  return result;
+}
+
+std::uint64_t peak_host_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+}
+
+}  // namespace photile::app

@@ -1,0 +1,39 @@
+// What a run was asked for, what it used and what it cost: for the picture's attributes, the
+// summary and --stats.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "photile/device.hpp"
+#include "photile/image.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/renderer.hpp"
+#include "photile/statistics.hpp"
+
+namespace photile::app {
+
+struct RunRecord {
+  std::string scene;  ///< the file's name, without folders: a picture should not tell them
+  std::string camera;
+  std::string maps;  ///< "naive" or "grouped"
+  RenderParameters parameters;
+  DeviceInfo device;
+  LightMix mix;
+  double radius = 0;  ///< the one used, metres
+  std::uint64_t stored_photons = 0;
+  RunStatistics stages;
+  double total_seconds = 0;
+};
+
+/// Sets the string attributes `photile.*` of a picture.
+void set_run_attributes(Image& picture, const RunRecord& record);
+
+/// The content of --stats FILE.
+nlohmann::json run_json(const RunRecord& record);
+
+/// Largest memory that the process has had so far, bytes.
+std::uint64_t peak_host_bytes();
+
+}  // namespace photile::app

@@ -1,0 +1,34 @@
+// What a scene holds, as text and as JSON.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "photile/light_mix.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::app {
+
+/// Axis-aligned box around all vertices, metres.
+struct Extents {
+  glm::dvec3 lowest{0.0}, highest{0.0};
+  glm::dvec3 size() const { return highest - lowest; }
+};
+Extents extents_of(const Scene& scene);
+
+/// "" or a line that doubts the file's unit of length: an interior is neither kilometres wide nor a
+/// few millimetres.
+std::string doubtful_unit(const Extents& extents);
+
+/// The counts and every light with its power in `mix`, a line each.
+std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
+
+/// The import's warnings, dropped triangles and a doubtful unit, a line each.
+std::vector<std::string> scene_warnings(const Scene& scene);
+
+/// Everything that `photile info` tells.
+nlohmann::json scene_json(const Scene& scene, const LightMix& mix);
+
+}  // namespace photile::app

@@ -1,0 +1,123 @@
+#include "app/validators.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "photile/limits.hpp"
+
+namespace photile::app {
+namespace {
+
+/// The number that all of `text` spells; nothing if something else is left over.
+template <class Number>
+std::optional<Number> parse_number(std::string_view text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || rest != end) return std::nullopt;
+  return value;
+}
+
+std::optional<double> parse_finite(std::string_view text) {
+  const auto value = parse_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+/// 1000 for "k" and so on; 0 if `suffix` is no suffix.
+double factor_of(char suffix) {
+  switch (suffix) {
+    case 'k':
+    case 'K':
+      return 1e3;
+    case 'm':
+    case 'M':
+      return 1e6;
+    case 'g':
+    case 'G':
+      return 1e9;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> parse_count(std::string_view text) {
+  // Digits alone keep all 64 bits; a double would round a large seed.
+  if (const auto digits = parse_number<std::uint64_t>(text)) return digits;
+  double factor = 1;
+  if (!text.empty() && factor_of(text.back()) != 0) {
+    factor = factor_of(text.back());
+    text.remove_suffix(1);
+  }
+  const auto number = parse_finite(text);
+  if (!number) return std::nullopt;
+  const double value = std::round(*number * factor * 1e3) / 1e3;  // 1.1M is whole, rounding aside
+  constexpr double beyond = 18446744073709551616.0;               // 2^64
+  if (value < 0 || value >= beyond || value != std::floor(value)) return std::nullopt;
+  return static_cast<std::uint64_t>(value);
+}
+
+std::optional<PixelSize> parse_size(std::string_view text) {
+  const auto separator = text.find('x');
+  if (separator == std::string_view::npos) return std::nullopt;
+  const auto width = parse_number<int>(text.substr(0, separator));
+  const auto height = parse_number<int>(text.substr(separator + 1));
+  if (!width || !height) return std::nullopt;
+  return PixelSize{*width, *height};
+}
+
+CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest) {
+  const std::string range = highest == std::numeric_limits<std::uint64_t>::max()
+                                ? fmt::format("a whole number from {}", lowest)
+                                : fmt::format("a whole number from {} to {}", lowest, highest);
+  const auto check = [=](std::string& text) -> std::string {
+    const auto count = parse_count(text);
+    if (!count || *count < lowest || *count > highest) {
+      return fmt::format("'{}' is not {}", text, range);
+    }
+    text = std::to_string(*count);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator number_between(double lowest, double highest) {
+  const auto check = [=](std::string& text) -> std::string {
+    const auto number = parse_finite(text);
+    if (!number || *number < lowest || *number > highest) {
+      return fmt::format("'{}' is not a number from {} to {}", text, lowest, highest);
+    }
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator positive_number() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto number = parse_finite(text);
+    // What is zero or infinite as a float would come back as one from the kernels.
+    const bool usable = number && *number >= std::numeric_limits<float>::min() &&
+                        *number <= std::numeric_limits<float>::max();
+    return usable ? std::string{} : fmt::format("'{}' is not a number greater than 0", text);
+  };
+  return {check, ""};
+}
+
+CLI::Validator picture_size() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto size = parse_size(text);
+    const auto fits = [](int side) { return side >= 1 && side <= limits::max_image_side; };
+    if (!size || !fits(size->width) || !fits(size->height)) {
+      return fmt::format("'{}' is not WIDTHxHEIGHT with sides from 1 to {}", text,
+                         limits::max_image_side);
+    }
+    return {};
+  };
+  return {check, ""};
+}
+
+}  // namespace photile::app
