@@ -15,6 +15,7 @@
 #include "app/terminal_progress.hpp"
 #include "app/threads.hpp"
 #include "device/context.hpp"
+#include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -121,6 +122,7 @@ void run_render(RenderOptions& options) {
                    .stages = stages};
   record.stages.push_back(timed_stage("write pictures", progress, [&] {
     Image picture = mix_layers(result.layers, mix);
+    set_camera_attributes(picture, camera, result.layers.width, result.layers.height);
     set_run_attributes(picture, record);
     outputs.write(picture);
   }));

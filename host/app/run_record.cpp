@@ -54,7 +54,6 @@ void set_run_attributes(Image& picture, const RunRecord& record) {
   attributes["photile.version"] = version_number();
   attributes["photile.scene"] = record.scene;
   attributes["photile.camera"] = record.camera;
-  attributes["photile.lumen_per_watt"] = fmt::format("{}", record.mix.lumen_per_watt);
   attributes["photile.seed"] = std::to_string(parameters.photons.seed);
   attributes["photile.photons_emitted"] = std::to_string(parameters.photons.emitted_photons);
   attributes["photile.photons_stored"] = std::to_string(record.stored_photons);

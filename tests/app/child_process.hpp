@@ -1,0 +1,44 @@
+// Runs the command `photile` as a child process and keeps what it printed.
+#pragma once
+
+#include <csignal>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace photile::test {
+
+struct Run {
+  std::vector<std::string> arguments;
+  std::map<std::string, std::string> environment;  ///< on top of the test's own
+  bool terminal = false;                           ///< standard error is a terminal, 100 columns
+  std::string standard_output;                     ///< a file to write it to; "" = keep it
+  std::optional<std::uint64_t> file_size_limit;    ///< bytes; writes beyond it fail
+  std::string signal_when;  ///< once standard error holds this text, `signal` is sent
+  int signal = SIGINT;
+};
+
+struct Outcome {
+  int exit_code = -1;  ///< 128 + signal where a signal ended it
+  std::string output;  ///< standard output
+  std::string errors;  ///< standard error
+
+  /// Lines of standard error.
+  std::vector<std::string> error_lines() const;
+};
+
+/// Runs photile to its end. Ends it after two minutes, so that a hang fails and does not block.
+Outcome run_photile(const Run& run);
+Outcome run_photile(const std::vector<std::string>& arguments);
+
+/// The one line that a failed command prints: fails the test unless standard error is exactly one
+/// line "photile: error: ..." and the exit code is `exit_code`.
+std::string only_error(const Outcome& outcome, int exit_code);
+
+/// The last line of standard error, where progress came before: fails the test unless it is the
+/// only line with "photile: error: " and the exit code is `exit_code`.
+std::string last_error(const Outcome& outcome, int exit_code);
+
+}  // namespace photile::test

@@ -1,0 +1,80 @@
+// `photile devices` and the choice of a device.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "child_process.hpp"
+#include "temporary_folder.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+constexpr int no_device = 4;
+
+/// `run` where the OpenCL loader finds no platform.
+Run without_platforms(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+  std::filesystem::create_directory(folder / "vendors");
+  Run run;
+  run.arguments = std::move(arguments);
+  run.environment["OCL_ICD_VENDORS"] = folder / "vendors/";
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("the list of devices is JSON and marks exactly one as selected") {
+  const Outcome outcome = run_photile({"devices", "--json"});
+  REQUIRE(outcome.exit_code == 0);
+  const auto devices = nlohmann::json::parse(outcome.output);
+  REQUIRE(devices.size() >= 1);
+  CHECK(std::count_if(devices.begin(), devices.end(),
+                      [](const auto& device) { return device["selected"] == true; }) == 1);
+  for (const auto& device : devices) {
+    CHECK(device["max_allocation_bytes"] <= device["global_memory_bytes"]);
+  }
+}
+
+TEST_CASE("the list of devices has a line for each and marks the selected one with a star") {
+  const auto count = nlohmann::json::parse(run_photile({"devices", "--json"}).output).size();
+  const Outcome outcome = run_photile({"devices"});
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(static_cast<std::size_t>(std::count(outcome.output.begin(), outcome.output.end(), '\n')) ==
+        count + 1);
+  CHECK_THAT(outcome.output, Contains("* 0:0"));
+}
+
+TEST_CASE("without any OpenCL platform every command that needs one says so and exits with 4") {
+  const TemporaryFolder folder;
+  const std::string scene = write_box(folder);
+  const auto arguments = GENERATE_COPY(
+      std::vector<std::string>{"devices"}, std::vector<std::string>{"devices", "--json"},
+      std::vector<std::string>{"render", scene, "-o", folder / "out.exr"});
+  only_error(run_photile(without_platforms(folder, arguments)), no_device);
+  CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
+}
+
+TEST_CASE("what needs no device works without any OpenCL platform") {
+  const TemporaryFolder folder;
+  CHECK(run_photile(without_platforms(folder, {"info", write_box(folder)})).exit_code == 0);
+}
+
+TEST_CASE("an unknown device is refused with the list of those there are") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_photile(
+      {"render", write_box(folder), "-o", folder / "out.exr", "--device", "no-such-device"});
+  CHECK_THAT(only_error(outcome, no_device), Contains("no-such-device") && Contains("0:0"));
+}
+
+TEST_CASE("PHOTILE_DEVICE chooses the device where --device does not") {
+  Run run;
+  run.arguments = {"devices"};
+  run.environment["PHOTILE_DEVICE"] = "no-such-device";
+  CHECK_THAT(only_error(run_photile(run), no_device), Contains("no-such-device"));
+  run.arguments = {"devices", "--device", "0:0"};
+  CHECK(run_photile(run).exit_code == 0);
+}
+
+}  // namespace photile::test

@@ -1,0 +1,75 @@
+// `photile info` against what the written scene is known to hold.
+#include <catch2/catch.hpp>
+#include <glm/gtc/constants.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/scene_report.hpp"
+#include "child_process.hpp"
+#include "temporary_folder.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+nlohmann::json info(const std::string& scene, std::vector<std::string> options = {}) {
+  options.insert(options.begin(), {"info", "--json", scene});
+  const Outcome outcome = run_photile(options);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(outcome.errors.empty());
+  return nlohmann::json::parse(outcome.output);
+}
+
+}  // namespace
+
+TEST_CASE("info counts the triangles, materials, lights and extents of a box") {
+  const TemporaryFolder folder;
+  const auto facts = info(write_box(folder));
+  CHECK(facts["triangles"] == 16);  // 6 walls and 2 lamps, two triangles each
+  CHECK(facts["materials"].size() == 3);
+  CHECK(facts["lights"].size() == 2);
+  CHECK(facts["cameras"].size() == 1);
+  CHECK(facts["extents"]["size"] == nlohmann::json::array({2.0, 2.0, 2.0}));
+  CHECK(facts["warnings"].empty());
+}
+
+TEST_CASE("info gives a lamp's power as pi x area x luminance of its radiance") {
+  const TemporaryFolder folder;
+  const auto facts = info(write_box(folder));
+  const auto& left = facts["lights"][0];
+  CHECK(left["name"] == "left");
+  const double radiance = 0.2126 * 20 + 0.7152 * 5 + 0.0722 * 5;
+  const double watts = glm::pi<double>() * 0.4 * 0.4 * radiance;
+  CHECK(left["watts"].get<double>() == Approx(watts).epsilon(1e-6));
+  CHECK(left["lumens"].get<double>() == Approx(683 * watts).epsilon(1e-6));
+}
+
+TEST_CASE("info applies the emissive scale and the lumens per watt that it is given") {
+  const TemporaryFolder folder;
+  const std::string scene = write_box(folder);
+  const double plain = info(scene)["lights"][0]["watts"];
+  const auto scaled = info(scene, {"--emissive-scale", "10", "--lumen-per-watt", "179"});
+  CHECK(scaled["lights"][0]["watts"].get<double>() == Approx(10 * plain).epsilon(1e-6));
+  CHECK(scaled["lights"][0]["lumens"].get<double>() == Approx(1790 * plain).epsilon(1e-6));
+}
+
+TEST_CASE("info as text names every light and material") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_photile({"info", write_box(folder)});
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("light: left: area") && Contains("light: right: area") &&
+                                 Contains("material: wall: diffuse"));
+}
+
+TEST_CASE("only a scene of a doubtful size is doubted") {
+  const auto doubt = [](double size) {
+    return app::doubtful_unit({glm::dvec3(0.0), glm::dvec3(size, 1e-3, 1e-3)});
+  };
+  CHECK_THAT(doubt(3000), Contains("3000 m") && Contains("millimetres"));
+  CHECK(doubt(5).empty());
+  CHECK(doubt(100).empty());
+  CHECK_THAT(doubt(0.005), Contains("0.005 m"));
+}
+
+}  // namespace photile::test

@@ -1,0 +1,130 @@
+// `photile relight` on pictures of the program's own.
+#include <catch2/catch.hpp>
+
+#include "child_process.hpp"
+#include "photile/image.hpp"
+#include "temporary_folder.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+/// Renders the box to `name` with some more options.
+std::string render(const TemporaryFolder& folder, const std::string& name,
+                   const std::vector<std::string>& options = {}) {
+  std::vector<std::string> arguments{
+      "render", write_box(folder), "-o", folder / name, "--photons", "50k", "--size", "24x16"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  const Outcome outcome = run_photile(arguments);
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  return folder / name;
+}
+
+void check_same_root(const std::string& a, const std::string& b, double relative) {
+  const Image first = read_image(a), second = read_image(b);
+  double brightest = 0;
+  for (const char* channel : {"R", "G", "B"}) {
+    REQUIRE(first.find(channel) != nullptr);
+    REQUIRE(second.find(channel) != nullptr);
+    const auto& left = *first.find(channel);
+    const auto& right = *second.find(channel);
+    REQUIRE(left.size() == right.size());
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      brightest = std::max(brightest, static_cast<double>(left[i]));
+      if (left[i] == Approx(right[i]).epsilon(relative).margin(1e-12)) continue;
+      FAIL(channel << " of pixel " << i << ": " << left[i] << " and " << right[i]);
+    }
+  }
+  CHECK(brightest > 0);  // two black pictures would agree as well
+}
+
+}  // namespace
+
+TEST_CASE("relighting equals rendering with that power up to float rounding") {
+  const std::string change = GENERATE("left=x2.5", "left=7", "right=off", "left=1500lm");
+  INFO(change);
+  const TemporaryFolder folder;
+  const std::string original = render(folder, "original.exr");
+  const std::string rendered = render(folder, "rendered.exr", {"--light", change});
+  const Outcome outcome =
+      run_photile({"relight", original, "--light", change, "-o", folder / "relit.exr"});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  check_same_root(folder / "relit.exr", rendered, 4 * std::numeric_limits<float>::epsilon());
+}
+
+TEST_CASE("a relit picture can be relit again and comes back to the original") {
+  const TemporaryFolder folder;
+  const std::string original = render(folder, "original.exr");
+  REQUIRE(
+      run_photile({"relight", original, "--light", "left=x4", "-o", folder / "a.exr"}).exit_code ==
+      0);
+  REQUIRE(
+      run_photile({"relight", folder / "a.exr", "--light", "left=x0.25", "-o", folder / "b.exr"})
+          .exit_code == 0);
+  check_same_root(original, folder / "b.exr", 0);  // powers of two are exact
+}
+
+TEST_CASE("relight without a change and an output lists the lights with their powers") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_photile({"relight", render(folder, "a.exr", {"--light", "left=7"})});
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("light: left: 7 W") && Contains("light: right: "));
+}
+
+TEST_CASE("relight writes a PNG that changes with the exposure") {
+  const TemporaryFolder folder;
+  const std::string original = render(folder, "a.exr");
+  for (const auto& [name, stops] : {std::pair{"dark.png", "-2"}, std::pair{"light.png", "1"}}) {
+    REQUIRE(
+        run_photile({"relight", original, "-o", folder / name, "--exposure", stops}).exit_code ==
+        0);
+  }
+  const auto mean = [&](const char* name) {
+    const Image picture = read_image(folder / name);
+    double sum = 0;
+    for (const float value : *picture.find("G")) sum += static_cast<double>(value);
+    return sum;
+  };
+  CHECK(mean("light.png") > 1.5 * mean("dark.png"));
+}
+
+TEST_CASE("relight refuses what it cannot do with one line and the right exit code") {
+  const TemporaryFolder folder;
+  const std::string original = render(folder, "a.exr");
+  const std::string out = folder / "out.png";
+  SECTION("an unknown light") {
+    const Outcome outcome = run_photile({"relight", original, "--light", "sun=x2", "-o", out});
+    CHECK_THAT(only_error(outcome, 2), Contains("sun") && Contains("left"));
+  }
+  SECTION("a value that is none") {
+    const std::string value = GENERATE("left=", "left=x", "left=bright", "left=-1", "left=nan",
+                                       "left=x-2", "left=#12", "left=xinf");
+    INFO(value);
+    only_error(run_photile({"relight", original, "--light", value, "-o", out}), 2);
+  }
+  SECTION("a change without an output") {
+    only_error(run_photile({"relight", original, "--light", "left=x2"}), 2);
+  }
+  SECTION("a missing picture") {
+    const Outcome outcome = run_photile({"relight", folder / "none.exr", "-o", out});
+    CHECK_THAT(only_error(outcome, 3), Contains("none.exr"));
+  }
+  SECTION("an empty picture") {
+    only_error(run_photile({"relight", folder.write("empty.exr", ""), "-o", out}), 3);
+  }
+  SECTION("a picture without layers") {
+    REQUIRE(run_photile({"relight", original, "-o", folder / "flat.png"}).exit_code == 0);
+    const Outcome outcome = run_photile({"relight", folder / "flat.png", "-o", out});
+    CHECK_THAT(only_error(outcome, 3), Contains("flat.png") || Contains("layer"));
+  }
+  SECTION("the input as output") {
+    only_error(run_photile({"relight", original, "--light", "left=x2", "-o", original}), 2);
+  }
+  CHECK_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace photile::test

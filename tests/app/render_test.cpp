@@ -1,0 +1,151 @@
+// `photile render` as a whole: what it writes, and that the same seed gives the same bits.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "child_process.hpp"
+#include "photile/image.hpp"
+#include "temporary_folder.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+void render(const TemporaryFolder& folder, const std::vector<std::string>& options) {
+  std::vector<std::string> arguments{"render", write_box(folder), "--photons", "100k"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  const Outcome outcome = run_photile(arguments);
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+}
+
+double mean(const Image& picture, const std::string& channel) {
+  const auto* plane = picture.find(channel);
+  REQUIRE(plane != nullptr);
+  double sum = 0;
+  for (const float value : *plane) sum += static_cast<double>(value);
+  return sum / static_cast<double>(plane->size());
+}
+
+}  // namespace
+
+TEST_CASE("the same seed gives the same bits on one and on two threads") {
+  const std::string maps = GENERATE("grouped", "naive");
+  const TemporaryFolder folder;
+  const std::vector<std::string> options{"--size", "32x24", "--seed", "7", "--maps", maps};
+  const auto with = [&](const char* threads, const char* name) {
+    auto all = options;
+    all.insert(all.end(), {"--threads", threads, "-o", folder / name});
+    render(folder, all);
+    return read_image(folder / name);
+  };
+  const Image one = with("1", "one.exr"), two = with("2", "two.exr");
+  REQUIRE(one.channel_names == two.channel_names);
+  CHECK(one.channels == two.channels);
+  CHECK(mean(one, "G") > 0);
+}
+
+TEST_CASE("another seed gives another picture of the same brightness") {
+  const TemporaryFolder folder;
+  render(folder, {"--size", "32x24", "--seed", "1", "-o", folder / "a.exr"});
+  render(folder, {"--size", "32x24", "--seed", "2", "-o", folder / "b.exr"});
+  const Image a = read_image(folder / "a.exr"), b = read_image(folder / "b.exr");
+  CHECK(*a.find("G") != *b.find("G"));
+  // 100,000 photons: the mean of a picture is known to well below a percent.
+  CHECK(mean(a, "G") == Approx(mean(b, "G")).epsilon(0.02));
+}
+
+TEST_CASE("the layers of an EXR sum to the picture") {
+  const TemporaryFolder folder;
+  render(folder, {"--size", "32x24", "-o", folder / "out.exr"});
+  const Image picture = read_image(folder / "out.exr");
+  for (const std::string component : {"R", "G", "B"}) {
+    const auto& root = *picture.find(component);
+    const auto* left = picture.find("Combined_left." + component);
+    const auto* right = picture.find("Combined_right." + component);
+    REQUIRE(left != nullptr);
+    REQUIRE(right != nullptr);
+    for (std::size_t i = 0; i < root.size(); ++i) {
+      if (root[i] != (*left)[i] + (*right)[i]) FAIL(component << " of pixel " << i);
+    }
+    CHECK(mean(picture, "Combined_left." + component) > 0);
+    CHECK(mean(picture, "Combined_right." + component) > 0);
+  }
+  CHECK(mean(picture, "Illuminance_left.Y") > 0);
+  CHECK(mean(picture, "A") == 1);
+}
+
+TEST_CASE("an EXR tells how it was made") {
+  const TemporaryFolder folder;
+  render(folder, {"--size", "16x12", "--seed", "9", "-k", "30", "--radius", "0.25", "--angle", "45",
+                  "--lumen-per-watt", "179", "-o", folder / "out.exr"});
+  const Image picture = read_image(folder / "out.exr");
+  const auto attribute = [&](const char* name) { return picture.attributes.at(name); };
+  CHECK(attribute("photile.scene") == "box.obj");
+  CHECK(attribute("photile.seed") == "9");
+  CHECK(attribute("photile.photons_emitted") == "100000");
+  CHECK(attribute("photile.neighbours") == "30");
+  CHECK(attribute("photile.radius") == "0.25 m");
+  CHECK(attribute("photile.angle") == "45 degrees");
+  CHECK(attribute("photile.maps") == "grouped");
+  CHECK(attribute("photile.efficacy") == "179");
+  CHECK(attribute("photile.units") == "W/(m2 sr)");
+  CHECK_FALSE(attribute("photile.device").empty());
+  CHECK_FALSE(attribute("photile.version").empty());
+  CHECK(std::stoull(attribute("photile.photons_stored")) > 0);
+  CHECK(nlohmann::json::parse(attribute("photile.times")).contains("load scene"));
+  CHECK(nlohmann::json::parse(attribute("photile.lights")).size() == 2);
+  CHECK(picture.matrices.size() == 2);  // worldToCamera and worldToNDC
+}
+
+TEST_CASE("a render writes every output that it is asked for, in the size asked for") {
+  const TemporaryFolder folder;
+  render(folder, {"--size", "20x10", "-o", folder / "a.exr", "-o", folder / "b.png", "--png",
+                  folder / "c.png"});
+  for (const char* name : {"a.exr", "b.png", "c.png"}) {
+    const Image picture = read_image(folder / name);
+    CHECK(picture.width == 20);
+    CHECK(picture.height == 10);
+  }
+  CHECK(folder.read("b.png") == folder.read("c.png"));
+}
+
+TEST_CASE("the statistics are JSON with every stage, the parameters and the lights") {
+  const TemporaryFolder folder;
+  render(folder, {"--size", "16x12", "-o", folder / "a.png", "--stats", folder / "a.json"});
+  const auto statistics = nlohmann::json::parse(folder.read("a.json"));
+  CHECK(statistics["scene"] == "box.obj");
+  CHECK(statistics["parameters"]["photons_emitted"] == 100'000);
+  CHECK(statistics["lights"].size() == 2);
+  CHECK(statistics["photons_stored"] > 0);
+  double seconds = 0;
+  std::vector<std::string> names;
+  for (const auto& stage : statistics["stages"]) {
+    names.push_back(stage["stage"]);
+    seconds += stage["seconds"].get<double>();
+    CHECK(stage["seconds"] >= 0);
+  }
+  CHECK_THAT(names, Catch::VectorContains(std::string("load scene")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("write pictures")));
+  CHECK(names.size() >= 6);  // and trace, group, build, estimate between them
+  CHECK(seconds <= statistics["total_seconds"].get<double>());
+}
+
+TEST_CASE("naive maps are darker than grouped ones at borders, hence in the mean") {
+  const TemporaryFolder folder;
+  render(folder, {"--size", "32x24", "-o", folder / "grouped.exr"});
+  render(folder, {"--size", "32x24", "-o", folder / "naive.exr", "--maps", "naive"});
+  CHECK(mean(read_image(folder / "naive.exr"), "G") <
+        mean(read_image(folder / "grouped.exr"), "G"));
+}
+
+TEST_CASE("--profile lists the time of kernels") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_photile({"render", write_box(folder), "--photons", "10k", "--size",
+                                       "16x12", "-o", folder / "a.png", "--profile"});
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.errors, Contains("\nkernel ") && Contains("launches"));
+}
+
+}  // namespace photile::test

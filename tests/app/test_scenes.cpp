@@ -1,0 +1,29 @@
+#include "test_scenes.hpp"
+
+namespace photile::test {
+
+std::string box_mtl() {
+  return "newmtl wall\nKd 0.7 0.6 0.5\n"
+         "newmtl red_lamp\nKd 0 0 0\nKe 20 5 5\n"
+         "newmtl blue_lamp\nKd 0 0 0\nKe 5 5 20\n";
+}
+
+std::string box_obj() {
+  return "mtllib box.mtl\n"
+         "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
+         "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+         "o walls\nusemtl wall\n"
+         "f 1 2 3 4\nf 8 7 6 5\nf 1 4 8 5\nf 2 6 7 3\nf 4 3 7 8\nf 1 5 6 2\n"
+         // The lamps shine down: counter-clockwise as seen from below.
+         "v -0.8 0.99 -0.2\nv -0.4 0.99 -0.2\nv -0.4 0.99 0.2\nv -0.8 0.99 0.2\n"
+         "o left\nusemtl red_lamp\nf 9 10 11 12\n"
+         "v 0.4 0.99 -0.2\nv 0.8 0.99 -0.2\nv 0.8 0.99 0.2\nv 0.4 0.99 0.2\n"
+         "o right\nusemtl blue_lamp\nf 13 14 15 16\n";
+}
+
+std::string write_box(const TemporaryFolder& folder) {
+  folder.write("box.mtl", box_mtl());
+  return folder.write("box.obj", box_obj());
+}
+
+}  // namespace photile::test

@@ -1,0 +1,20 @@
+// Tiny scenes, written to a folder.
+#pragma once
+
+#include <string>
+
+#include "temporary_folder.hpp"
+
+namespace photile::test {
+
+/// A closed box of 2 x 2 x 2 m with diffuse walls and two lamps under its ceiling, "left" and
+/// "right", as OBJ with its MTL. Returns the path of the OBJ.
+std::string write_box(const TemporaryFolder& folder);
+
+/// The text of the box's OBJ, to be spoilt by a test; it names box.mtl.
+std::string box_obj();
+
+/// The text of box.mtl.
+std::string box_mtl();
+
+}  // namespace photile::test

@@ -1,0 +1,108 @@
+// What the command line refuses before anything starts: exit code 2 and one line.
+#include <catch2/catch.hpp>
+
+#include "child_process.hpp"
+#include "photile/defaults.hpp"
+#include "temporary_folder.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+constexpr int usage = 2;
+
+/// `photile render` of a good scene with one more option.
+Outcome render_with(const TemporaryFolder& folder, const std::string& option,
+                    const std::string& value) {
+  return run_photile({"render", write_box(folder), "-o", folder / "out.exr", option + "=" + value});
+}
+
+}  // namespace
+
+TEST_CASE("an unknown option is a usage error of one line that names it") {
+  const std::string line = only_error(run_photile({"render", "a.obj", "--fast"}), usage);
+  CHECK_THAT(line, Contains("--fast") && Contains("photile render --help"));
+}
+
+TEST_CASE("an unknown subcommand is a usage error of one line") {
+  CHECK_THAT(only_error(run_photile({"paint"}), usage), Contains("photile --help"));
+}
+
+TEST_CASE("no subcommand is a usage error of one line") {
+  only_error(run_photile(std::vector<std::string>{}), usage);
+}
+
+TEST_CASE("a scene is required") {
+  CHECK_THAT(only_error(run_photile({"render", "-o", "a.exr"}), usage), Contains("SCENE"));
+}
+
+TEST_CASE("an output is required") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_photile({"render", write_box(folder)});
+  CHECK_THAT(only_error(outcome, usage), Contains("-o"));
+}
+
+TEST_CASE("values out of range are usage errors that name the option and the value") {
+  const auto [option, value] = GENERATE(table<std::string, std::string>({
+      {"--neighbours", "0"},    {"--neighbours", "-3"},      {"--neighbours", "2000000"},
+      {"--neighbours", "many"}, {"--radius", "0"},           {"--radius", "-1"},
+      {"--radius", "nan"},      {"--radius", "inf"},         {"--radius", "1e-60"},
+      {"--photons", "0"},       {"--photons", "1e11"},       {"--photons", "1.5"},
+      {"--samples", "0"},       {"--samples", "70000"},      {"--angle", "181"},
+      {"--angle", "-1"},        {"--photons-per-cell", "0"}, {"--seed", "-1"},
+      {"--seed", "1e30"},       {"--size", "0x10"},          {"--size", "10"},
+      {"--size", "10x20x30"},   {"--size", "100000x10"},     {"--maps", "magic"},
+      {"--quota", "magic"},     {"--threads", "-1"},         {"--threads", "1000000"},
+      {"--exposure", "nan"},    {"--lumen-per-watt", "0"},   {"--emissive-scale", "-1"},
+  }));
+  INFO(option << "=" << value);
+  const TemporaryFolder folder;
+  const std::string line = only_error(render_with(folder, option, value), usage);
+  CHECK_THAT(line, Contains(option) && Contains(value));
+  CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
+}
+
+TEST_CASE("a change of a light without a value is a usage error") {
+  const TemporaryFolder folder;
+  const Outcome outcome = render_with(folder, "--light", "left");
+  CHECK_THAT(only_error(outcome, usage), Contains("left"));
+}
+
+TEST_CASE("an unknown light is a usage error that lists the lights") {
+  const TemporaryFolder folder;
+  const Outcome outcome = render_with(folder, "--light", "middle=x2");
+  CHECK_THAT(last_error(outcome, usage),
+             Contains("middle") && Contains("left") && Contains("right"));
+}
+
+TEST_CASE("an unknown camera is a usage error that lists the cameras") {
+  const TemporaryFolder folder;
+  const Outcome outcome = render_with(folder, "--camera", "nobody");
+  CHECK_THAT(last_error(outcome, usage), Contains("nobody"));
+}
+
+TEST_CASE("the version names photile and what it was built with") {
+  const Outcome outcome = run_photile({"--version"});
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("photile 0.") && Contains("Embree          3.") &&
+                                 Contains("OpenImageIO     2.") && Contains("TBB") &&
+                                 Contains("OpenCL headers"));
+}
+
+TEST_CASE("the help of render shows the defaults of defaults.hpp") {
+  const Outcome outcome = run_photile({"render", "--help"});
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("N=" + std::to_string(defaults::emitted_photons)) &&
+                                 Contains("N=" + std::to_string(defaults::neighbours)));
+}
+
+TEST_CASE("a full disk behind standard output is a failure") {
+  Run run;
+  run.arguments = {"--version"};
+  run.standard_output = "/dev/full";
+  CHECK_THAT(only_error(run_photile(run), 1), Contains("standard output"));
+}
+
+}  // namespace photile::test
