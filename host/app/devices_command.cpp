@@ -75,8 +75,7 @@ void run_devices(const DevicesOptions& options) {
   if (options.json) {
     std::cout << list.dump(2, ' ', false, json::error_handler_t::replace) << '\n';
   } else {
-    std::cout << "* = what photile render uses"
-              << (options.selector.empty() ? " by default\n" : "\n");
+    std::cout << "* = what photile render uses; choose with --device or PHOTILE_DEVICE\n";
   }
 }
 
@@ -89,8 +88,7 @@ void add_devices_command(CLI::App& photile) {
   command
       ->add_option("--device", options->selector,
                    "mark the one that this selector chooses, as in photile render")
-      ->type_name("SELECTOR")
-      ->envname("PHOTILE_DEVICE");
+      ->type_name("SELECTOR");
   command->callback([options] { run_devices(*options); });
 }
 

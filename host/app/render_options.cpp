@@ -141,9 +141,9 @@ void add_scene_group(CLI::App& command, RenderOptions& options) {
 void add_run_group(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--device", options.device.selector,
-                  "OpenCL device: platform:device, index, cpu, gpu or a part of its name")
+                  "OpenCL device: platform:device, index, cpu, gpu or a part of its name; "
+                  "default: the environment's PHOTILE_DEVICE, else the best")
       ->type_name("SELECTOR")
-      ->envname("PHOTILE_DEVICE")
       ->group("Run");
   command.add_option("--threads", options.threads, "of the host; 0 = all cores")
       ->type_name("N")

@@ -4,19 +4,27 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
+#include <string_view>
 
 namespace photile::device {
 namespace {
 
-/// The "POCL_NAME=value" entries of the environment, sorted. Its cache folder and what it prints do
-/// not change the code.
+/// Variables of PoCL that do not change the code: where its cache is, what it prints, how many
+/// threads it starts (`photile render --threads` sets the last two).
+constexpr std::array<std::string_view, 4> without_effect{
+    "POCL_CACHE_DIR=", "POCL_DEBUG", "POCL_MAX_PTHREAD_COUNT=", "POCL_CPU_MAX_CU_COUNT="};
+
+/// The "POCL_NAME=value" entries of the environment, sorted, but for those without effect.
 std::set<std::string> pocl_variables() {
   std::set<std::string> entries;
   for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
-    if (text.starts_with("POCL_") && !text.starts_with("POCL_CACHE_DIR=") &&
-        !text.starts_with("POCL_DEBUG")) {
+    if (text.starts_with("POCL_") &&
+        std::none_of(without_effect.begin(), without_effect.end(),
+                     [&](std::string_view variable) { return text.starts_with(variable); })) {
       entries.emplace(text);
     }
   }
