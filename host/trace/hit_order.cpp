@@ -22,8 +22,8 @@ std::uint64_t spread(std::uint64_t x) {
 }
 
 std::uint64_t cell(double position, double low, double high) {
-  const double part = high > low ? (position - low) / (high - low) : 0.0;
-  return static_cast<std::uint64_t>(std::clamp(part, 0.0, 1.0) * (cells_per_axis - 1));
+  const double part = high > low ? std::clamp((position - low) / (high - low), 0.0, 1.0) : 0.0;
+  return std::min(static_cast<std::uint64_t>(part * cells_per_axis), cells_per_axis - 1);
 }
 
 struct Key {

@@ -9,11 +9,6 @@
 
 namespace photile::trace {
 
-/// Axis-aligned box, metres.
-struct Box {
-  glm::vec3 low, high;
-};
-
 /// Distance along the Morton curve through a box, 21 bits an axis. Positions outside count as on
 /// its border.
 std::uint64_t morton_code(const glm::vec3& position, const Box& box);

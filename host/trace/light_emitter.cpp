@@ -76,8 +76,8 @@ float LightEmitter::spot_cosine(double u) const {
   const double edge = inner - outer;
   const double edge_share = edge / 3.0;
   const double target = u * (edge_share + 1.0 - inner);
-  const double t = target < edge_share ? std::cbrt(3.0 * edge * edge * target)
-                                       : edge + (target - edge_share);
+  const double t =
+      target < edge_share ? std::cbrt(3.0 * edge * edge * target) : edge + (target - edge_share);
   return static_cast<float>(outer + t);
 }
 

@@ -64,7 +64,7 @@ std::vector<T> gather(const std::vector<EyeHit>& hits, const std::vector<std::ui
   return values;
 }
 
-PrimaryHits sorted(const std::vector<EyeHit>& hits, const trace::Box& box, bool glossy) {
+PrimaryHits sorted(const std::vector<EyeHit>& hits, const Box& box, bool glossy) {
   const std::vector<std::uint32_t> order = trace::sorted_order(hits, box);
   PrimaryHits result;
   result.position = gather(hits, order, &EyeHit::position);
@@ -77,15 +77,6 @@ PrimaryHits sorted(const std::vector<EyeHit>& hits, const trace::Box& box, bool 
     result.lobe = gather(hits, order, &EyeHit::lobe);
   }
   return result;
-}
-
-/// The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the renderer
-/// rounds, must not depend on how rows are split into batches.
-trace::Box box_of(const RayScene& scene) {
-  RTCBounds bounds;
-  rtcGetSceneBounds(scene.impl().bvh, &bounds);
-  return {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
-          {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
 }
 
 }  // namespace
@@ -109,7 +100,9 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
   PrimaryHitBatch batch;
   batch.rays = all.rays;
   batch.emission = std::move(all.emission);
-  batch.hits = sorted(all.hits, box_of(ray_scene), needs_of(ray_scene.scene()).glossy);
+  // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
+  // renderer rounds, must not depend on how rows are split into batches.
+  batch.hits = sorted(all.hits, ray_scene.impl().bounds(), needs_of(ray_scene.scene()).glossy);
   return batch;
 }
 

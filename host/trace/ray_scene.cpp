@@ -121,6 +121,13 @@ std::optional<TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
   return TriangleHit{query.hit.primID, query.hit.u, query.hit.v};
 }
 
+Box RayScene::Impl::bounds() const {
+  RTCBounds bounds;
+  rtcGetSceneBounds(bvh, &bounds);
+  return {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
+          {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+}
+
 RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;

@@ -9,13 +9,13 @@
 #include <optional>
 
 #include "photile/ray_scene.hpp"
+#include "trace/triangle_hit.hpp"
 
 namespace photile {
 
-/// Where a ray meets a triangle first.
-struct TriangleHit {
-  std::uint32_t triangle;
-  float u, v;  ///< barycentric weights of the second and third corner
+/// Axis-aligned box, metres.
+struct Box {
+  glm::vec3 low, high;
 };
 
 struct RayScene::Impl {
@@ -26,6 +26,9 @@ struct RayScene::Impl {
 
   /// Nearest hit of the ray, or nothing. Thread-safe. A ray with a NaN or infinity hits nothing.
   std::optional<TriangleHit> intersect(const glm::vec3& origin, const glm::vec3& direction) const;
+
+  /// Encloses all triangles.
+  Box bounds() const;
 
   const Scene* scene;
   std::atomic<std::int64_t> bytes{0};  ///< outlives the device, which reports to it

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "photile/scene.hpp"
-#include "trace/ray_scene_impl.hpp"
+#include "trace/triangle_hit.hpp"
 
 namespace photile::trace {
 

@@ -1,0 +1,209 @@
+// What the camera sees, against geometry worked out by hand.
+#include "photile/primary_hits.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "photile/errors.hpp"
+#include "statistical_tests.hpp"
+#include "test_scenes.hpp"
+#include "trace/hit_order.hpp"
+#include "trace/ray_scene_impl.hpp"
+
+using namespace photile;
+using namespace photile::test;
+
+namespace {
+
+/// 2 m above the origin, looking down; up in the picture is +y, right is +x. The film spans 2 x 2 m
+/// of the plane z = 0.
+Camera camera_above() {
+  Camera camera;
+  camera.position = {0, 0, 2};
+  camera.forward = {0, 0, -1};
+  camera.up = {0, 1, 0};
+  camera.right = {1, 0, 0};
+  camera.vertical_field_of_view = 2 * std::atan(0.5);
+  return camera;
+}
+
+PrimaryHitBatch photograph(const Scene& scene, const PrimaryHitParameters& film) {
+  return trace_primary_hits(RayScene(scene), camera_above(), film, 0, film.height);
+}
+
+glm::dvec3 total_emission(const PrimaryHitBatch& batch) {
+  glm::dvec3 sum(0.0);
+  for (const SeenEmission& seen : batch.emission) sum += seen.radiance;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("Each sample of a pixel hits the plate in that pixel's own square, in its own stratum") {
+  const Scene scene = plate(diffuse({0.2f, 0.4f, 0.6f}), 4);
+  const PrimaryHitParameters film{.width = 10, .height = 10, .samples_per_pixel = 4};
+  const PrimaryHitBatch batch = photograph(scene, film);
+  REQUIRE(batch.hits.size() == 400);
+  CHECK(batch.rays == 400);
+  CHECK(batch.emission.empty());
+  std::set<std::array<int, 2>> strata;
+  for (std::size_t i = 0; i < batch.hits.size(); ++i) {
+    const glm::vec3 p = batch.hits.position[i];
+    const double x = (p.x + 1) * 5, y = (1 - p.y) * 5;  // film coordinates, y down
+    const auto pixel = static_cast<int>(batch.hits.pixel[i]);
+    CHECK(x == Approx(pixel % 10 + 0.5).margin(0.5 + 1e-5));
+    CHECK(y == Approx(pixel / 10 + 0.5).margin(0.5 + 1e-5));
+    strata.insert({static_cast<int>(2 * x), static_cast<int>(2 * y)});
+    CHECK(p.z == 0.0f);
+    CHECK(batch.hits.throughput[i] == glm::vec3(0.25f));
+    CHECK(batch.hits.diffuse_albedo[i] == glm::vec3(0.2f, 0.4f, 0.6f));
+    CHECK(sided_normal(scene, batch.hits.sided_triangle[i]).z == 1.0);
+  }
+  CHECK(strata.size() == 400);
+  CHECK(batch.hits.outgoing.empty());
+  CHECK(batch.hits.lobe.empty());
+}
+
+TEST_CASE("Samples fall evenly over a pixel, and rays beside the plate hit nothing") {
+  const Scene scene = plate(diffuse(glm::vec3(0.5f)), 1);  // a quarter of the film
+  const PrimaryHitBatch batch =
+      photograph(scene, {.width = 1, .height = 1, .samples_per_pixel = 40'000});
+  CHECK(batch.rays == 40'000);
+  // With 200 x 200 strata only those on the border vary.
+  CHECK(static_cast<double>(batch.hits.size()) == Approx(10'000).margin(200));
+  std::vector<double> counts(64, 0.0);
+  for (const glm::vec3& p : batch.hits.position)
+    ++counts[static_cast<std::size_t>(8 * (p.x + 0.5f)) * 8 +
+             static_cast<std::size_t>(8 * (p.y + 0.5f))];
+  CHECK_VERDICT(
+      counts_agree(counts, std::vector<double>(64, static_cast<double>(batch.hits.size()) / 64)));
+}
+
+TEST_CASE("Hits are sorted by sided triangle, then by Morton code") {
+  const Scene scene = furnished_room(2);
+  const RayScene rays(scene);
+  Camera camera = camera_above();
+  camera.position = {2, 1.5, 2.3};
+  camera.vertical_field_of_view = 2.0;
+  const PrimaryHits hits =
+      trace_primary_hits(rays, camera, {.width = 64, .height = 48}, 0, 48).hits;
+  REQUIRE(hits.size() > 10'000);
+  const Box box = rays.impl().bounds();
+  const auto key = [&](std::size_t i) {
+    return std::pair{hits.sided_triangle[i], trace::morton_code(hits.position[i], box)};
+  };
+  for (std::size_t i = 1; i < hits.size(); ++i) REQUIRE(key(i - 1) <= key(i));
+}
+
+TEST_CASE("The Morton code interleaves the bits of the cells of the three axes") {
+  // Cells of 1 m in a box of 2^21 m.
+  const Box box{glm::vec3(0.0f), glm::vec3(static_cast<float>(1 << 21))};
+  CHECK(trace::morton_code({0.0f, 0.0f, 0.0f}, box) == 0);
+  CHECK(trace::morton_code({1.0f, 0.0f, 0.0f}, box) == 1);
+  CHECK(trace::morton_code({0.0f, 1.0f, 0.0f}, box) == 2);
+  CHECK(trace::morton_code({0.0f, 0.0f, 1.0f}, box) == 4);
+  CHECK(trace::morton_code({5.0f, 3.0f, 0.0f}, box) == 0b001'010'011);
+  CHECK(trace::morton_code(box.high, box) == (1ull << 63) - 1);
+  CHECK(trace::morton_code(box.high + 10.0f, box) == (1ull << 63) - 1);
+}
+
+TEST_CASE("Glossy scenes tell the direction to the eye and the lobe of each hit") {
+  Scene scene = plate(glossy(glm::vec3(0.3f), {0.1f, 0.2f, 0.3f}, 0.4f), 4);
+  const glm::vec3 tilted = glm::normalize(glm::vec3(0.1f, 0.0f, 1.0f));
+  scene.corner_normal.assign(scene.triangle_count(), {tilted, tilted, tilted});
+  const PrimaryHits hits = photograph(scene, {.width = 4, .height = 4}).hits;
+  REQUIRE(hits.lobe.size() == 64);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const glm::vec3 to_eye = glm::normalize(glm::vec3(0, 0, 2) - hits.position[i]);
+    CHECK(glm::distance(hits.outgoing[i], to_eye) < 1e-6f);
+    CHECK(glm::distance(hits.lobe[i].normal, tilted) < 1e-6f);
+    CHECK(hits.lobe[i].specular == glm::vec3(0.1f, 0.2f, 0.3f));
+    CHECK(hits.lobe[i].roughness == 0.4f);
+  }
+}
+
+TEST_CASE("A lamp in view is seen from its front only, at 1 / (pi A), and reflects as well") {
+  const bool two_sided = GENERATE(false, true);
+  const bool facing = GENERATE(false, true);
+  SceneBuilder builder;
+  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  Light light = area_light("lamp", 70, two_sided);
+  light.color = glm::vec3(2.0f, 1.0f, 0.5f) / static_cast<float>(luminance({2.0, 1.0, 0.5}));
+  const std::uint32_t lamp = builder.add(light);
+  const glm::vec3 u(4, 0, 0), v(0, 4, 0), corner(-2, -2, 0);
+  builder.grid(corner, facing ? u : v, facing ? v : u, 2, grey, lamp);
+  const Scene scene = builder.build();
+  const PrimaryHitBatch batch = photograph(scene, {.width = 8, .height = 8});
+  CHECK(batch.hits.size() == 8 * 8 * 4);
+  const glm::dvec3 radiance = facing || two_sided
+                                  ? glm::dvec3(light.color) / (M_PI * 16 * (two_sided ? 2 : 1))
+                                  : glm::dvec3(0.0);
+  CHECK(glm::distance(total_emission(batch) / 64.0, radiance) < 1e-6);
+  CHECK(batch.emission.size() == (facing || two_sided ? batch.hits.size() : 0));
+  CHECK(glm::distance(glm::dvec3(emitted_radiance_at_unit_power(scene)[0]),
+                      glm::dvec3(light.color) / (M_PI * 16 * (two_sided ? 2 : 1))) < 1e-6);
+}
+
+TEST_CASE("A mirror shows the lamp above it, tinted, and stores no hit of its own") {
+  SceneBuilder builder;
+  const std::uint32_t silver = builder.add(mirror({0.9f, 0.8f, 0.7f}));
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, silver);
+  // Behind the camera, facing down, and large enough to fill the mirror.
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))), lamp);
+  const PrimaryHitBatch batch = photograph(builder.build(), {.width = 8, .height = 8});
+  CHECK(batch.rays == 2 * 8 * 8 * 4);
+  REQUIRE(batch.hits.size() == 8 * 8 * 4);
+  for (std::size_t i = 0; i < batch.hits.size(); ++i) {
+    CHECK(batch.hits.position[i].z == 3.0f);
+    CHECK(glm::distance(batch.hits.throughput[i], 0.25f * glm::vec3(0.9f, 0.8f, 0.7f)) < 1e-6f);
+  }
+  const glm::dvec3 seen = total_emission(batch) / 64.0;
+  CHECK(glm::distance(seen, glm::dvec3(0.9, 0.8, 0.7) / (M_PI * 100)) < 1e-6);
+}
+
+TEST_CASE("A window splits rays by Fresnel's probability and conserves their number") {
+  SceneBuilder builder;
+  builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(glass(1.5f, true)));
+  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, grey);
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
+  Camera camera = camera_above();
+  camera.vertical_field_of_view = 0.01;  // normal incidence
+  const PrimaryHits hits =
+      trace_primary_hits(RayScene(builder.build()), camera,
+                         {.width = 64, .height = 64, .samples_per_pixel = 16}, 0, 64)
+          .hits;
+  const double all = 64 * 64 * 16;
+  double reflected = 0;
+  for (const glm::vec3& p : hits.position) reflected += p.z > 2;
+  CHECK(static_cast<double>(hits.size()) == all);
+  const double reflectance = 2 * 0.04 / 1.04;
+  CHECK_VERDICT(
+      counts_agree({reflected, all - reflected}, {all * reflectance, all * (1 - reflectance)}));
+}
+
+TEST_CASE("A ray between two mirrors ends at the bound on its depth") {
+  SceneBuilder builder;
+  const std::uint32_t silver = builder.add(mirror(glm::vec3(1.0f)));
+  builder.grid({-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 1, silver);
+  builder.grid({-50, -50, 3}, {0, 100, 0}, {100, 0, 0}, 1, silver);
+  const PrimaryHitBatch batch = photograph(
+      builder.build(), {.width = 2, .height = 2, .samples_per_pixel = 1, .max_specular_depth = 7});
+  CHECK(batch.hits.size() == 0);
+  CHECK(batch.rays == 4 * 8);
+}
+
+TEST_CASE("Films and rows out of range are refused") {
+  const Scene scene = plate(diffuse(glm::vec3(0.5f)), 1);
+  const RayScene rays(scene);
+  const auto traced = [&](const PrimaryHitParameters& film, int first, int last) {
+    trace_primary_hits(rays, camera_above(), film, first, last);
+  };
+  CHECK_THROWS_AS(traced({.width = 0}, 0, 1), UsageError);
+  CHECK_THROWS_AS(traced({.height = 100'000}, 0, 1), UsageError);
+  CHECK_THROWS_AS(traced({.samples_per_pixel = 0}, 0, 1), UsageError);
+  CHECK_THROWS_AS(traced({.max_specular_depth = -1}, 0, 1), UsageError);
+  CHECK_THROWS_AS(traced({.height = 10}, 3, 2), UsageError);
+  CHECK_THROWS_AS(traced({.height = 10}, 0, 11), UsageError);
+}

@@ -1,0 +1,153 @@
+// The same seed gives the same bits, whatever the number of threads, the winding and the batches.
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "photile/photon_tracer.hpp"
+#include "photile/primary_hits.hpp"
+#include "test_scenes.hpp"
+
+using namespace photile;
+using namespace photile::test;
+
+namespace {
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool same_bits(const Photons& a, const Photons& b) {
+  return same_bits(a.position, b.position) && same_bits(a.flux, b.flux) &&
+         same_bits(a.incoming, b.incoming) && same_bits(a.light, b.light) &&
+         same_bits(a.sided_triangle, b.sided_triangle) && same_bits(a.first_of, b.first_of);
+}
+
+bool same_bits(const PrimaryHits& a, const PrimaryHits& b) {
+  return same_bits(a.position, b.position) && same_bits(a.sided_triangle, b.sided_triangle) &&
+         same_bits(a.pixel, b.pixel) && same_bits(a.throughput, b.throughput) &&
+         same_bits(a.diffuse_albedo, b.diffuse_albedo) && same_bits(a.outgoing, b.outgoing) &&
+         same_bits(a.lobe, b.lobe);
+}
+
+/// A room with glossy walls, a mirror and glass, whose floor is covered twice: of two triangles in
+/// the same place a ray must always choose the same one.
+Scene difficult_room() {
+  SceneBuilder builder("difficult room");
+  const std::uint32_t wall = builder.add(glossy({0.6f, 0.5f, 0.4f}, glm::vec3(0.04f), 0.3f));
+  const std::uint32_t carpet = builder.add(diffuse({0.3f, 0.1f, 0.1f}));
+  builder.box(glm::vec3(0.0f), glm::vec3(3.0f), wall, true, 20);
+  builder.grid(glm::vec3(0.0f), {3, 0, 0}, {0, 3, 0}, 20, carpet);
+  builder.grid(glm::vec3(0.0f), {3, 0, 0}, {0, 3, 0}, 20, wall);
+  builder.box(glm::vec3(0.5f), glm::vec3(1.0f), builder.add(glass(1.5f)), false);
+  builder.box({1.5f, 1.5f, 0.2f}, {2.0f, 2.5f, 1.0f}, builder.add(mirror(glm::vec3(0.9f))), false);
+  const std::uint32_t lamp = builder.add(area_light("lamp", 100));
+  builder.grid({1, 1, 2.9f}, {0, 1, 0}, {1, 0, 0}, 2, carpet, lamp);
+  builder.add(point_light("bulb", {2.5f, 0.5f, 1.5f}, 10));
+  return builder.build();
+}
+
+Camera camera_into_room() {
+  Camera camera;
+  camera.position = {0.3, 0.3, 1.7};
+  camera.forward = glm::normalize(glm::dvec3(1.0, 1.1, 0.3));
+  camera.right = glm::normalize(glm::cross(camera.forward, glm::dvec3(0, 0, 1)));
+  camera.up = glm::cross(camera.right, camera.forward);
+  camera.vertical_field_of_view = 1.2;
+  return camera;
+}
+
+template <class F>
+auto with_threads(int threads, F&& f) {
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  return arena.execute(f);
+}
+
+constexpr PrimaryHitParameters film{.width = 61, .height = 47, .samples_per_pixel = 5};
+
+}  // namespace
+
+TEST_CASE("The photons have the same bits on 1, 2, 3 and 8 threads, the tree included") {
+  const Scene scene = difficult_room();
+  const auto trace = [&] {
+    return trace_photons(RayScene(scene), {.emitted_photons = 60'000, .seed = 5});
+  };
+  const PhotonTracerResult one = with_threads(1, trace);
+  REQUIRE(one.photons.size() > 60'000);
+  for (const int threads : {2, 3, 8}) {
+    const PhotonTracerResult many = with_threads(threads, trace);
+    CHECK(same_bits(one.photons, many.photons));
+    CHECK(same_bits(one.absorbed_flux_per_light, many.absorbed_flux_per_light));
+    CHECK(same_bits(one.escaped_flux_per_light, many.escaped_flux_per_light));
+  }
+}
+
+TEST_CASE("Another seed gives other photons, and each light its own") {
+  const Scene scene = furnished_room();
+  const RayScene rays(scene);
+  const Photons a = trace_photons(rays, {.emitted_photons = 1000, .seed = 5}).photons;
+  const Photons b = trace_photons(rays, {.emitted_photons = 1000, .seed = 6}).photons;
+  CHECK_FALSE(same_bits(a.position, b.position));
+
+  Scene twins = closed_box(diffuse(glm::vec3(0.0f)));
+  twins.lights.push_back(twins.lights[0]);
+  const Photons photons = trace_photons(RayScene(twins), {.emitted_photons = 2}).photons;
+  REQUIRE(photons.size() == 2);
+  CHECK(photons.position[0] != photons.position[1]);
+}
+
+TEST_CASE("The photons have the same bits when triangles are wound the other way") {
+  // Lamps emit from their fronts and glass has an inside, so these keep their winding.
+  const Scene scene = difficult_room();
+  const Scene other = rewound(scene, [&](std::size_t t) {
+    return t % 3 != 0 && scene.triangle_light[t] == none &&
+           scene.materials[scene.triangle_material[t]].interaction != Interaction::glass;
+  });
+  const PhotonTracerParameters parameters{.emitted_photons = 20'000, .seed = 5};
+  CHECK(same_bits(trace_photons(RayScene(scene), parameters).photons,
+                  trace_photons(RayScene(other), parameters).photons));
+}
+
+TEST_CASE("Primary hits have the same bits on 1, 2, 3 and 8 threads") {
+  const Scene scene = difficult_room();
+  const auto trace = [&] {
+    return trace_primary_hits(RayScene(scene), camera_into_room(), film, 0, film.height);
+  };
+  const PrimaryHitBatch one = with_threads(1, trace);
+  REQUIRE(one.hits.size() > 10'000);
+  REQUIRE(one.emission.size() > 10);
+  for (const int threads : {2, 3, 8}) {
+    const PrimaryHitBatch many = with_threads(threads, trace);
+    CHECK(same_bits(one.hits, many.hits));
+    CHECK(same_bits(one.emission, many.emission));
+    CHECK(one.rays == many.rays);
+  }
+}
+
+TEST_CASE("Each pixel's hits come in the same order however rows are split into batches") {
+  const Scene scene = difficult_room();
+  const RayScene rays(scene);
+  // Positions and throughputs of each pixel, in the order of the batch.
+  using PerPixel = std::vector<std::vector<glm::vec3>>;
+  const auto collect = [&](const std::vector<int>& first_rows) {
+    PerPixel pixels(static_cast<std::size_t>(film.width) * film.height);
+    for (std::size_t b = 0; b + 1 < first_rows.size(); ++b) {
+      const PrimaryHitBatch batch =
+          trace_primary_hits(rays, camera_into_room(), film, first_rows[b], first_rows[b + 1]);
+      for (std::size_t i = 0; i < batch.hits.size(); ++i) {
+        pixels[batch.hits.pixel[i]].push_back(batch.hits.position[i]);
+        pixels[batch.hits.pixel[i]].push_back(batch.hits.throughput[i]);
+      }
+      for (const SeenEmission& seen : batch.emission) pixels[seen.pixel].push_back(seen.radiance);
+    }
+    return pixels;
+  };
+  const PerPixel whole = collect({0, film.height});
+  CHECK(collect({0, 1, 20, film.height}) == whole);
+  CHECK(collect({0, 17, 17, film.height}) == whole);
+}
