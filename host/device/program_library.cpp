@@ -15,8 +15,9 @@ namespace {
 PoclCache* shared_pocl_cache() {
   static const auto cache = []() -> std::unique_ptr<PoclCache> {
     const auto work = pocl_work_folder();
+    if (!work) return nullptr;
     const auto folder = persistent_cache_folder();
-    if (!work || !folder) return nullptr;
+    if (!folder) return nullptr;
     return std::make_unique<PoclCache>(*work, *folder / "kernels");
   }();
   return cache.get();

@@ -1,0 +1,36 @@
+#include "layer.hpp"
+
+#include <cstring>
+
+const cl_icd_dispatch* next = nullptr;
+
+extern "C" {
+
+CL_API_ENTRY cl_int CL_API_CALL clGetLayerInfo(cl_layer_info name, size_t bytes, void* value,
+                                               size_t* bytes_needed) {
+  const cl_layer_api_version version = CL_LAYER_API_VERSION_100;
+  const char layer_name[] = "photile test layer";
+  const void* const answer = name == CL_LAYER_API_VERSION ? static_cast<const void*>(&version)
+                             : name == CL_LAYER_NAME      ? static_cast<const void*>(layer_name)
+                                                          : nullptr;
+  const size_t size = name == CL_LAYER_API_VERSION ? sizeof version : sizeof layer_name;
+  if (answer == nullptr || (value != nullptr && bytes < size)) return CL_INVALID_VALUE;
+  if (value != nullptr) std::memcpy(value, answer, size);
+  if (bytes_needed != nullptr) *bytes_needed = size;
+  return CL_SUCCESS;
+}
+
+CL_API_ENTRY cl_int CL_API_CALL clInitLayer(cl_uint entry_count, const cl_icd_dispatch* below,
+                                            cl_uint* own_entry_count,
+                                            const cl_icd_dispatch** own_entries) {
+  static cl_icd_dispatch entries;
+  const cl_uint count = sizeof entries / sizeof entries.clGetPlatformIDs;
+  if (entry_count < count || below == nullptr || own_entries == nullptr) return CL_INVALID_VALUE;
+  next = below;
+  entries = *below;
+  replace_entries(entries);
+  *own_entry_count = count;
+  *own_entries = &entries;
+  return CL_SUCCESS;
+}
+}
