@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "groups/triangle_distance.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -40,6 +41,26 @@ bool share_a_vertex(const glm::uvec3& a, const glm::uvec3& b) {
   return false;
 }
 
+/// Lower bound of the distance: how far b begins behind the end of a along `direction`, metres.
+double gap_along(const glm::dvec3& direction, const TriangleCorners& a, const TriangleCorners& b) {
+  double end_of_a = glm::dot(direction, a[0]), start_of_b = glm::dot(direction, b[0]);
+  for (int i = 1; i < 3; ++i) {
+    end_of_a = std::max(end_of_a, glm::dot(direction, a[i]));
+    start_of_b = std::min(start_of_b, glm::dot(direction, b[i]));
+  }
+  const double length = glm::length(direction);
+  return length > 0 ? (start_of_b - end_of_a) / length : 0.0;
+}
+
+/// Upper bound of the squared distance: that of the nearest two corners.
+double squared_corner_distance(const TriangleCorners& a, const TriangleCorners& b) {
+  double squared = std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& p : a) {
+    for (const glm::dvec3& q : b) squared = std::min(squared, glm::dot(p - q, p - q));
+  }
+  return squared;
+}
+
 /// Bound on the rounding of distances in this scene, metres: coordinates times some hundred units
 /// of double precision.
 double rounding_margin(const Scene& scene, double radius) {
@@ -72,10 +93,12 @@ TriangleBound ProximityTest::bound(std::uint32_t triangle) const {
   return bound;
 }
 
-bool ProximityTest::within_exactly(const TriangleBound& a, const TriangleBound& b) const {
+bool ProximityTest::within_by_corners(const TriangleBound& a, const TriangleBound& b) const {
   if (share_a_vertex(scene_.triangles[a.triangle], scene_.triangles[b.triangle])) return true;
   const TriangleCorners corners_a = corners_of(scene_, a.triangle);
   const TriangleCorners corners_b = corners_of(scene_, b.triangle);
+  if (gap_along(b.centre - a.centre, corners_a, corners_b) > outer_) return false;
+  if (squared_corner_distance(corners_a, corners_b) <= squared_inner_) return true;
   // The ball of the smaller triangle against the larger triangle itself: settles small triangles
   // beside a wall, whose own ball is as large as the room.
   const bool a_is_smaller = a.radius < b.radius;

@@ -32,11 +32,11 @@ class ProximityTest {
     const double farthest = outer_ + a.radius + b.radius;
     if (squared > farthest * farthest) return false;
     if (squared <= squared_inner_) return true;
-    return a.triangle < b.triangle ? within_exactly(a, b) : within_exactly(b, a);
+    return a.triangle < b.triangle ? within_by_corners(a, b) : within_by_corners(b, a);
   }
 
  private:
-  bool within_exactly(const TriangleBound& a, const TriangleBound& b) const;
+  bool within_by_corners(const TriangleBound& a, const TriangleBound& b) const;
 
   const Scene& scene_;
   double radius_;
