@@ -67,7 +67,7 @@ void squared_distances(const Subsample& photons, const glm::vec3& query, std::ve
 /// The m-th smallest value, m from 1 on. A few values are kept in a heap: most of the others are
 /// then refused by one comparison.
 float mth_smallest(std::vector<float>& values, std::size_t m) {
-  constexpr std::size_t largest_heap = 256;
+  constexpr std::size_t largest_heap = 4096;
   if (m > largest_heap) {
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(m - 1),
                      values.end());

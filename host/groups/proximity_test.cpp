@@ -28,12 +28,6 @@ glm::dvec3 smallest_ball_centre(const TriangleCorners& corners) {
                           (2.0 * glm::dot(normal, normal));
 }
 
-glm::dvec3 unit_normal(const TriangleCorners& corners) {
-  const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double length = glm::length(normal);
-  return length > 0 ? normal / length : glm::dvec3(0.0);
-}
-
 bool share_a_vertex(const glm::uvec3& a, const glm::uvec3& b) {
   for (int i = 0; i < 3; ++i) {
     if (a[i] == b.x || a[i] == b.y || a[i] == b.z) return true;
@@ -85,7 +79,7 @@ TriangleBound ProximityTest::bound(std::uint32_t triangle) const {
   const TriangleCorners corners = corners_of(scene_, triangle);
   TriangleBound bound{};
   bound.triangle = triangle;
-  bound.normal = unit_normal(corners);
+  bound.normal = sided_normal(scene_, sided(triangle, 0));
   bound.centre = smallest_ball_centre(corners);
   for (const glm::dvec3& corner : corners) {
     bound.radius = std::max(bound.radius, glm::distance(bound.centre, corner));
