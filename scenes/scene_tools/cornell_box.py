@@ -12,6 +12,7 @@ LUMEN_PER_WATT = 683.0
 
 SPHERE_RADIUS = 0.0825  # as high as the short block whose place it takes
 SPHERE_GAP = 0.0005     # between sphere and floor
+MIRROR_TURN = -25.0     # degrees
 
 
 def _lamp_spectrum(wavelength):
@@ -71,6 +72,17 @@ def _sphere():
     return sphere(SPHERE_RADIUS, 64, 32).moved(x, SPHERE_RADIUS + SPHERE_GAP, z)
 
 
+def _mirror_block():
+    """The tall block, turned about its middle so that its front shows a wall of the box: in the
+    place where the real one stands it would mirror the dark before the open side."""
+    corners, height = data.TALL_BLOCK
+    x, z = (sum(c[i] for c in corners) / 4 for i in (0, 1))
+    turn = math.radians(MIRROR_TURN)
+    turned = [(x + math.cos(turn) * (cx - x) - math.sin(turn) * (cz - z),
+               z + math.sin(turn) * (cx - x) + math.cos(turn) * (cz - z)) for cx, cz in corners]
+    return _block(turned, height)
+
+
 def _parts():
     """(name, material, shape) of everything that both versions have."""
     return [("floor", "white", _polygons(data.FLOOR)), ("ceiling", "white", _ceiling()),
@@ -121,7 +133,7 @@ def _write_gltf(path, specular):
         materials["glass"] = document.glass("glass", 1.5)
         materials["mirror"] = document.metal("mirror", (0.9, 0.9, 0.9), 0.0)
         parts += [("glass sphere", "glass", _sphere()),
-                  ("mirror block", "mirror", _block(*data.TALL_BLOCK))]
+                  ("mirror block", "mirror", _mirror_block())]
     else:
         parts += _blocks()
     for name, material, shape in parts:

@@ -15,7 +15,7 @@ def table(length, width, height, top=0.03, leg=0.06, inset=0.05):
     for sx in (-1, 1):
         for sz in (-1, 1):
             shape.add(box((leg, height - top + 0.005, leg),
-                          (sx * (length / 2 - inset), 0, sz * (width / 2 - inset)), bevel=0.004))
+                          (sx * (length / 2 - inset), 0, sz * (width / 2 - inset))))
     return shape
 
 
@@ -23,10 +23,10 @@ def chair():
     """A dining chair that faces +z."""
     shape = box((0.44, 0.035, 0.44), (0, 0.43, 0), bevel=0.01)
     for sx in (-1, 1):
-        shape.add(box((0.035, 0.435, 0.035), (sx * 0.19, 0, 0.19), bevel=0.004))
-        shape.add(box((0.036, 0.92, 0.036), (sx * 0.19, 0, -0.19), bevel=0.004))
+        shape.add(box((0.035, 0.435, 0.035), (sx * 0.19, 0, 0.19)))
+        shape.add(box((0.036, 0.92, 0.036), (sx * 0.19, 0, -0.19)))
     for height in (0.56, 0.68, 0.80):
-        shape.add(box((0.36, 0.07, 0.018), (0, height, -0.19), bevel=0.004))
+        shape.add(box((0.36, 0.07, 0.018), (0, height, -0.19)))
     return shape
 
 
@@ -34,7 +34,7 @@ def sofa(length=2.1, depth=0.9):
     """Frame and cushions of a sofa that faces +z: (frame, cushions, pillows)."""
     half = length / 2
     frame = box((length - 0.02, 0.30, depth - 0.02), (0, 0.06, 0), bevel=0.02)
-    frame.add(box((length - 0.03, 0.72, 0.18), (0, 0.07, -depth / 2 + 0.1), bevel=0.03))
+    frame.add(box((length - 0.03, 0.72, 0.18), (0, 0.07, -depth / 2 + 0.105), bevel=0.03))
     for sx in (-1, 1):
         frame.add(box((0.18, 0.50, depth), (sx * (half - 0.09), 0.065, 0), bevel=0.03))
         for sz in (-1, 1):
@@ -89,7 +89,7 @@ def vase():
     inside = [(0.046, 0.32), (0.036, 0.303), (0.030, 0.28), (0.037, 0.255), (0.064, 0.222),
               (0.092, 0.178), (0.102, 0.13), (0.094, 0.082), (0.070, 0.036), (0.048, 0.008),
               (0.0, 0.008)]
-    return lathe(outside + inside, 40)
+    return lathe(outside + inside, 36)
 
 
 def bowl():
