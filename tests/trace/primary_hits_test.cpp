@@ -110,7 +110,11 @@ TEST_CASE("The Morton code interleaves the bits of the cells of the three axes")
 TEST_CASE("Glossy scenes tell the direction to the eye and the lobe of each hit") {
   Scene scene = plate(glossy(glm::vec3(0.3f), {0.1f, 0.2f, 0.3f}, 0.4f), 4);
   const glm::vec3 tilted = glm::normalize(glm::vec3(0.1f, 0.0f, 1.0f));
-  scene.corner_normal.assign(scene.triangle_count(), {tilted, tilted, tilted});
+  // Shading normals lie on the front; the lobe's lies on the side of the eye.
+  const bool seen_from_front = GENERATE(true, false);
+  const glm::vec3 on_front = seen_from_front ? tilted : -tilted;
+  scene.corner_normal.assign(scene.triangle_count(), {on_front, on_front, on_front});
+  scene = rewound(scene, [&](std::size_t) { return !seen_from_front; });
   const PrimaryHits hits = photograph(scene, {.width = 4, .height = 4}).hits;
   REQUIRE(hits.lobe.size() == 64);
   for (std::size_t i = 0; i < hits.size(); ++i) {
