@@ -1,0 +1,105 @@
+// The same seed gives the same picture, bit for bit.
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <fstream>
+#include <random>
+#define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include <tbb/global_control.h>
+
+#include "photile/errors.hpp"
+#include "photile/renderer.hpp"
+#include "temporary_folder.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+
+using namespace photile;
+
+namespace {
+
+RenderParameters small_parameters() {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = 30'000;
+  parameters.film.width = 64;
+  parameters.film.height = 48;
+  parameters.film.samples_per_pixel = 2;
+  return parameters;
+}
+
+bool same_bits(const LightLayers& a, const LightLayers& b) {
+  if (a.layers.size() != b.layers.size()) return false;
+  for (std::size_t i = 0; i < a.layers.size(); ++i) {
+    const auto& first = a.layers[i];
+    const auto& second = b.layers[i];
+    if (first.radiance.size() != second.radiance.size()) return false;
+    if (std::memcmp(first.radiance.data(), second.radiance.data(),
+                    first.radiance.size() * sizeof(glm::vec3)) != 0) {
+      return false;
+    }
+    if (first.illuminance != second.illuminance) return false;
+  }
+  return true;
+}
+
+Camera room_camera() { return Camera::look_at({3.6, 0.4, 1.6}, {1, 2, 0.9}, {0, 0, 1}, 1.1); }
+
+}  // namespace
+
+TEST_CASE("one, two and three threads render the same bits") {
+  const Scene scene = test::furnished_room(4);
+  std::vector<LightLayers> pictures;
+  for (const std::size_t threads : {1u, 2u, 3u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    pictures.push_back(
+        render(scene, room_camera(), test::device(), small_parameters()).layers);
+  }
+  CHECK(same_bits(pictures[0], pictures[1]));
+  CHECK(same_bits(pictures[0], pictures[2]));
+}
+
+TEST_CASE("another seed renders another picture") {
+  const Scene scene = test::furnished_room(2);
+  RenderParameters parameters = small_parameters();
+  const auto first = render(scene, room_camera(), test::device(), parameters).layers;
+  parameters.photons.seed = 2;
+  CHECK_FALSE(same_bits(first, render(scene, room_camera(), test::device(), parameters).layers));
+}
+
+TEST_CASE("the same mesh with inconsistent winding renders the same bits") {
+  const test::TemporaryFolder folder;
+  const Scene room = test::furnished_room(4);
+  std::mt19937 random(9);
+  const auto write = [&](const std::string& name, bool flip) {
+    std::ofstream obj(folder.path() / (name + ".obj"));
+    obj.precision(9);
+    obj << "mtllib room.mtl\n";
+    for (const glm::vec3& v : room.vertices) obj << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
+    for (std::size_t t = 0; t < room.triangle_count(); ++t) {
+      const bool lamp = room.triangle_light[t] != none;
+      glm::uvec3 corners = room.triangles[t] + 1u;
+      // A lamp's winding says where it shines; only the others may be wrong.
+      const bool backwards = (room.front_side[t] == 1) != (!lamp && flip && random() % 2 == 0);
+      if (backwards) std::swap(corners.y, corners.z);
+      obj << "usemtl " << (lamp ? "lamp" : "wall") << "\nf " << corners.x << ' ' << corners.y
+          << ' ' << corners.z << '\n';
+    }
+  };
+  std::ofstream(folder.path() / "room.mtl")
+      << "newmtl wall\nKd 0.6 0.5 0.4\nnewmtl lamp\nKd 0 0 0\nKe 10 9 8\n";
+  write("consistent", false);
+  write("inconsistent", true);
+  const Scene consistent = load_scene(folder.path() / "consistent.obj");
+  const Scene inconsistent = load_scene(folder.path() / "inconsistent.obj");
+  REQUIRE(consistent.front_side != inconsistent.front_side);
+  const auto first = render(consistent, room_camera(), test::device(), small_parameters());
+  const auto second = render(inconsistent, room_camera(), test::device(), small_parameters());
+  CHECK(same_bits(first.layers, second.layers));
+}
+
+TEST_CASE("a cancelled rendering stops with Interrupted") {
+  struct Cancelled : Progress {
+    bool cancelled() const override { return true; }
+  } progress;
+  const Scene scene = test::furnished_room(2);
+  CHECK_THROWS_AS(render(scene, room_camera(), test::device(), small_parameters(), progress),
+                  Interrupted);
+}
