@@ -65,11 +65,11 @@ TEST_CASE("another seed renders another picture") {
 }
 
 TEST_CASE("the same mesh with inconsistent winding renders the same bits") {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const Scene room = test::furnished_room(4);
   std::mt19937 random(9);
   const auto write = [&](const std::string& name, bool flip) {
-    std::ofstream obj(folder.path() / (name + ".obj"));
+    std::ofstream obj(folder.path / (name + ".obj"));
     obj.precision(9);
     obj << "mtllib room.mtl\n";
     for (const glm::vec3& v : room.vertices) obj << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
@@ -83,12 +83,12 @@ TEST_CASE("the same mesh with inconsistent winding renders the same bits") {
           << ' ' << corners.z << '\n';
     }
   };
-  std::ofstream(folder.path() / "room.mtl")
+  std::ofstream(folder.path / "room.mtl")
       << "newmtl wall\nKd 0.6 0.5 0.4\nnewmtl lamp\nKd 0 0 0\nKe 10 9 8\n";
   write("consistent", false);
   write("inconsistent", true);
-  const Scene consistent = load_scene(folder.path() / "consistent.obj");
-  const Scene inconsistent = load_scene(folder.path() / "inconsistent.obj");
+  const Scene consistent = load_scene(folder.path / "consistent.obj");
+  const Scene inconsistent = load_scene(folder.path / "inconsistent.obj");
   REQUIRE(consistent.front_side != inconsistent.front_side);
   const auto first = render(consistent, room_camera(), test::device(), small_parameters());
   const auto second = render(inconsistent, room_camera(), test::device(), small_parameters());
