@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "maps/candidate_maps.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/photon_pages.hpp"
 #include "maps/prefix_sum.hpp"
@@ -44,14 +45,13 @@ std::vector<float> corner_coordinates(const Scene& scene) {
 
 /// The radius that photons must lie within of a triangle to enter its map: grown by what rounding
 /// may do to positions as large as the scene's, so that no neighbour is lost.
-float squared_reach(const Scene& scene, double radius) {
+float reach_of(const Scene& scene, double radius) {
   float largest = 0;
   for (const glm::vec3& v : scene.vertices) {
     largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   }
-  const double reach =
-      radius * (1.0 + 1e-5) + 8.0 * std::numeric_limits<float>::epsilon() * largest;
-  return static_cast<float>(reach * reach);
+  return static_cast<float>(radius * (1.0 + 1e-5) +
+                            8.0 * std::numeric_limits<float>::epsilon() * largest);
 }
 
 std::vector<std::uint32_t> count_photons(Build& build, std::size_t map_total,
@@ -59,7 +59,7 @@ std::vector<std::uint32_t> count_photons(Build& build, std::size_t map_total,
   build.context.fill(map_count, 0u);
   for (const PhotonPage& page : build.photon_pages) {
     build.run("grid/count_photons.cl", "count_photons", page.count, page.count, page.position,
-              page.own_map, page.first_group, page.group_offsets, page.group_members, build.corners,
+              page.own_map, page.list, page.list_offsets, page.list_members, build.corners,
               build.squared_reach, map_count);
   }
   std::vector<std::uint32_t> counts(map_total);
@@ -93,7 +93,7 @@ void fill_cells(Build& build, MapPage& page) {
   build.context.fill(cell_count, 0u);
   for (const PhotonPage& photons : build.photon_pages) {
     build.run("grid/fill_cells.cl", "count_cells", photons.count, photons.count, photons.position,
-              photons.own_map, photons.first_group, photons.group_offsets, photons.group_members,
+              photons.own_map, photons.list, photons.list_offsets, photons.list_members,
               build.corners, build.squared_reach, page.first_map, page.last_map, page.grids,
               cell_count);
   }
@@ -102,7 +102,7 @@ void fill_cells(Build& build, MapPage& page) {
   page.entry_photon = build.context.allocate<std::uint32_t>(page.entry_count, "photon references");
   for (const PhotonPage& photons : build.photon_pages) {
     build.run("grid/fill_cells.cl", "scatter", photons.count, photons.count, photons.position,
-              photons.own_map, photons.first_group, photons.group_offsets, photons.group_members,
+              photons.own_map, photons.list, photons.list_offsets, photons.list_members,
               build.corners, build.squared_reach, page.first_map, page.last_map, page.grids,
               page.cell_start, cell_count, photons.first_photon, page.entry_photon);
   }
@@ -148,6 +148,15 @@ void gather_entries(Build& build, MapPage& page) {
   }
 }
 
+void upload_photons(Build& build, const CandidateMaps& candidates, const Photons& photons,
+                    Progress& progress) {
+  const std::uint64_t max_bytes = build.context.info().max_allocation_bytes;
+  for (const PhotonRange range : plan_photon_pages(photons, candidates, max_bytes)) {
+    progress.throw_if_cancelled();
+    build.photon_pages.push_back(upload_photon_page(build.context, photons, candidates, range));
+  }
+}
+
 }  // namespace
 
 std::uint64_t MapPage::device_bytes() const {
@@ -160,13 +169,11 @@ void build_uniform_grid(UniformGrid& grid, const Scene& scene, const Photons& ph
   Context& context = grid.device->context();
   const std::uint64_t max_bytes = context.info().max_allocation_bytes;
   Build build{context, grid, {}, {}, 0, static_cast<float>(grid.parameters.radius)};
-  build.squared_reach = squared_reach(scene, grid.parameters.radius);
+  const float reach = reach_of(scene, grid.parameters.radius);
+  build.squared_reach = reach * reach;
   const std::vector<float> corners = corner_coordinates(scene);
   build.corners = context.upload(std::span<const float>(corners), "triangle corners");
-  for (const PhotonRange range : plan_photon_pages(photons, groups, max_bytes)) {
-    progress.throw_if_cancelled();
-    build.photon_pages.push_back(upload_photon_page(context, photons, groups, range));
-  }
+  upload_photons(build, find_candidate_maps(scene, photons, groups, reach), photons, progress);
 
   const std::size_t map_total = 2 * scene.triangle_count();
   auto map_count = context.allocate<std::uint32_t>(map_total, "photons per map");

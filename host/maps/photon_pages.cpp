@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace photile::maps {
 namespace {
@@ -24,29 +25,32 @@ std::span<const T> part(const std::vector<T>& values, PhotonRange range) {
 
 }  // namespace
 
-std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const NeighbourGroups& groups,
+std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes) {
   const std::uint64_t max_photons = std::max<std::uint64_t>(1, max_bytes / bytes_per_photon);
   const std::uint64_t max_members = std::min<std::uint64_t>(
       max_bytes / sizeof(std::uint32_t) - 1, std::numeric_limits<std::uint32_t>::max() - 1);
+  const auto first_member_of = [&](std::uint32_t map) {
+    return candidates.offsets[candidates.first_list_of[map]];
+  };
   const auto total = static_cast<std::uint32_t>(photons.size());
   std::vector<PhotonRange> pages;
   for (std::uint32_t first = 0; first < total;) {
     const std::uint32_t first_map = photons.sided_triangle[first];
-    // The groups of [first_map, end_map) fit in one buffer, and so do their offsets.
-    const auto begin = groups.offsets.begin() + first_map;
-    const auto end = std::upper_bound(begin, groups.offsets.end(), *begin + max_members);
-    const auto end_map = static_cast<std::uint32_t>(
-        first_map +
-        std::min<std::uint64_t>(static_cast<std::uint64_t>(end - begin) - 1, max_members));
+    const std::uint64_t most = std::min<std::uint64_t>(total, first + max_photons);
+    // The last sided triangle whose lists still fit.
+    std::uint32_t end_map = photons.sided_triangle[most - 1] + 1;
+    while (end_map > first_map &&
+           first_member_of(end_map) - first_member_of(first_map) > max_members) {
+      --end_map;
+    }
     if (end_map == first_map) {
       throw DeviceError(fmt::format(
-          "the neighbour group of triangle {} has {} members, more than the device's largest "
+          "the photons of triangle {} may enter {} maps, more than the device's largest "
           "buffer holds; use a smaller radius",
-          triangle_of(first_map), groups.of(first_map).size()));
+          triangle_of(first_map), first_member_of(first_map + 1) - first_member_of(first_map)));
     }
-    const std::uint64_t last =
-        std::min<std::uint64_t>(photons.first_of[end_map], first + max_photons);
+    const std::uint64_t last = std::min<std::uint64_t>(most, photons.first_of[end_map]);
     pages.push_back({first, static_cast<std::uint32_t>(last)});
     first = static_cast<std::uint32_t>(last);
   }
@@ -54,29 +58,34 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Neighbo
 }
 
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
-                              const NeighbourGroups& groups, PhotonRange range) {
+                              const CandidateMaps& candidates, PhotonRange range) {
   PhotonPage page;
   page.first_photon = range.first;
   page.count = range.last - range.first;
-  page.first_group = photons.sided_triangle[range.first];
-  const std::uint32_t last_group = photons.sided_triangle[range.last - 1];
-
   page.position = context.upload(floats(photons.position, range), "photon positions");
   page.own_map = context.upload(part(photons.sided_triangle, range), "photon triangles");
   page.flux = context.upload(floats(photons.flux, range), "photon flux");
   page.light = context.upload(part(photons.light, range), "photon lights");
   page.incoming = context.upload(floats(photons.incoming, range), "photon directions");
 
-  const std::uint64_t first_member = groups.offsets[page.first_group];
-  std::vector<std::uint32_t> offsets(last_group - page.first_group + 2);
-  for (std::size_t i = 0; i < offsets.size(); ++i) {
-    offsets[i] = static_cast<std::uint32_t>(groups.offsets[page.first_group + i] - first_member);
+  const std::uint64_t first_list = candidates.first_list_of[photons.sided_triangle[range.first]];
+  const std::uint64_t end_list =
+      candidates.first_list_of[photons.sided_triangle[range.last - 1] + 1];
+  const std::uint64_t first_member = candidates.offsets[first_list];
+  std::vector<std::uint32_t> list(page.count);
+  for (std::uint32_t i = 0; i < page.count; ++i) {
+    list[i] = static_cast<std::uint32_t>(candidates.list_of_photon[range.first + i] - first_list);
   }
-  page.group_offsets =
-      context.upload(std::span<const std::uint32_t>(offsets), "neighbour group offsets");
-  page.group_members = context.upload(
-      std::span<const std::uint32_t>(groups.members.data() + first_member, offsets.back()),
-      "neighbour group members");
+  std::vector<std::uint32_t> offsets(end_list - first_list + 1);
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    offsets[i] = static_cast<std::uint32_t>(candidates.offsets[first_list + i] - first_member);
+  }
+  page.list = context.upload(std::span<const std::uint32_t>(list), "candidate lists of photons");
+  page.list_offsets =
+      context.upload(std::span<const std::uint32_t>(offsets), "candidate list offsets");
+  page.list_members = context.upload(
+      std::span<const std::uint32_t>(candidates.members.data() + first_member, offsets.back()),
+      "candidate maps");
   return page;
 }
 

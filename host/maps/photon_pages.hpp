@@ -1,29 +1,28 @@
-// Photons and the groups of their triangles on the device, in pages for the build.
+// Photons and the maps they may enter on the device, in pages for the build.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "device/context.hpp"
-#include "photile/neighbour_groups.hpp"
+#include "maps/candidate_maps.hpp"
 #include "photile/photons.hpp"
-#include "photile/progress.hpp"
 
 namespace photile::maps {
 
-/// Photons [first_photon, first_photon + count) with the groups of the sided triangles they lie on.
+/// Photons [first_photon, first_photon + count) with their candidate maps.
 struct PhotonPage {
   std::uint32_t first_photon = 0;
   std::uint32_t count = 0;
-  std::uint32_t first_group = 0;  ///< sided triangle whose group stands first
 
   device::Buffer<float> position;  ///< 3 per photon
   device::Buffer<std::uint32_t> own_map;
-  device::Buffer<float> flux;                   ///< 3 per photon
-  device::Buffer<std::uint16_t> light;          ///< empty for a single light
-  device::Buffer<float> incoming;               ///< 3 per photon; empty unless glossy
-  device::Buffer<std::uint32_t> group_offsets;  ///< relative to the page's first member
-  device::Buffer<std::uint32_t> group_members;
+  device::Buffer<float> flux;                  ///< 3 per photon
+  device::Buffer<std::uint16_t> light;         ///< empty for a single light
+  device::Buffer<float> incoming;              ///< 3 per photon; empty unless glossy
+  device::Buffer<std::uint32_t> list;          ///< of each photon, relative to the page's first
+  device::Buffer<std::uint32_t> list_offsets;  ///< relative to the page's first member
+  device::Buffer<std::uint32_t> list_members;
 };
 
 /// The bounds of one page: photons [first, last).
@@ -32,11 +31,11 @@ struct PhotonRange {
 };
 
 /// Splits photons so that no buffer of a page is larger than `max_bytes`.
-/// Errors: DeviceError when a single group alone is larger.
-std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const NeighbourGroups& groups,
+/// Errors: DeviceError when the lists of a single sided triangle alone are larger.
+std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes);
 
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
-                              const NeighbourGroups& groups, PhotonRange range);
+                              const CandidateMaps& candidates, PhotonRange range);
 
 }  // namespace photile::maps

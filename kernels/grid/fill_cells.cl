@@ -9,17 +9,17 @@
 
 // One work-item per photon. Before: cell_count is zero. After: photons per cell.
 __kernel void count_cells(uint photon_count, __global const float* position,
-                          __global const uint* own_map, uint first_group,
-                          __global const uint* group_offsets, __global const uint* group_members,
+                          __global const uint* own_map, __global const uint* list,
+                          __global const uint* list_offsets, __global const uint* list_members,
                           __global const float* corners, float squared_reach, uint first_map,
                           uint last_map, __global const PhotileGrid* grids,
                           __global uint* cell_count) {
   for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
     const float3 photon = vload3(i, position);
     const uint own = own_map[i];
-    const uint end = group_offsets[own - first_group + 1];
-    for (uint m = group_offsets[own - first_group]; m < end; ++m) {
-      const uint map = group_members[m];
+    const uint end = list_offsets[list[i] + 1];
+    for (uint m = list_offsets[list[i]]; m < end; ++m) {
+      const uint map = list_members[m];
       if (map < first_map || map >= last_map) continue;
       if (!enters_map(photon, own, map, corners, squared_reach)) continue;
       atomic_inc(&cell_count[cell_index(photon, &grids[map - first_map])]);
@@ -32,8 +32,8 @@ __kernel void count_cells(uint photon_count, __global const float* position,
 // After: entry_photon holds the photons of each cell in the order in which work-items came
 // (sort_cells makes it stable); cell_count is zero again.
 __kernel void scatter(uint photon_count, __global const float* position,
-                      __global const uint* own_map, uint first_group,
-                      __global const uint* group_offsets, __global const uint* group_members,
+                      __global const uint* own_map, __global const uint* list,
+                      __global const uint* list_offsets, __global const uint* list_members,
                       __global const float* corners, float squared_reach, uint first_map,
                       uint last_map, __global const PhotileGrid* grids,
                       __global const uint* cell_start, __global uint* cell_count,
@@ -41,9 +41,9 @@ __kernel void scatter(uint photon_count, __global const float* position,
   for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
     const float3 photon = vload3(i, position);
     const uint own = own_map[i];
-    const uint end = group_offsets[own - first_group + 1];
-    for (uint m = group_offsets[own - first_group]; m < end; ++m) {
-      const uint map = group_members[m];
+    const uint end = list_offsets[list[i] + 1];
+    for (uint m = list_offsets[list[i]]; m < end; ++m) {
+      const uint map = list_members[m];
       if (map < first_map || map >= last_map) continue;
       if (!enters_map(photon, own, map, corners, squared_reach)) continue;
       const uint cell = cell_index(photon, &grids[map - first_map]);
