@@ -49,8 +49,7 @@ TEST_CASE("one, two and three threads render the same bits") {
   std::vector<LightLayers> pictures;
   for (const std::size_t threads : {1u, 2u, 3u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    pictures.push_back(
-        render(scene, room_camera(), test::device(), small_parameters()).layers);
+    pictures.push_back(render(scene, room_camera(), test::device(), small_parameters()).layers);
   }
   CHECK(same_bits(pictures[0], pictures[1]));
   CHECK(same_bits(pictures[0], pictures[2]));
@@ -79,8 +78,8 @@ TEST_CASE("the same mesh with inconsistent winding renders the same bits") {
       // A lamp's winding says where it shines; only the others may be wrong.
       const bool backwards = (room.front_side[t] == 1) != (!lamp && flip && random() % 2 == 0);
       if (backwards) std::swap(corners.y, corners.z);
-      obj << "usemtl " << (lamp ? "lamp" : "wall") << "\nf " << corners.x << ' ' << corners.y
-          << ' ' << corners.z << '\n';
+      obj << "usemtl " << (lamp ? "lamp" : "wall") << "\nf " << corners.x << ' ' << corners.y << ' '
+          << corners.z << '\n';
     }
   };
   std::ofstream(folder.path / "room.mtl")
