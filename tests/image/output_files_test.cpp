@@ -1,6 +1,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cstring>
 
@@ -74,7 +75,7 @@ TEST_CASE("a folder that is missing, is a file, or cannot be written is refused 
   for (const Writer write : {Writer{write_exr}, Writer{write_png}}) {
     refusal(write, folder / "missing/a.exr");
     refusal(write, folder / "file/a.exr");
-    refusal(write, folder.path());        // a folder itself
+    refusal(write, folder.path);          // a folder itself
     refusal(write, "/proc/photile.exr");  // not even root can
   }
   if (::geteuid() == 0) {
@@ -93,7 +94,7 @@ TEST_CASE("a write that runs out of space is an error, leaves no file and keeps 
       const FileSizeLimit limit(4096);
       refusal(write, folder / "new");
     }
-    CHECK(files_in(folder.path()) == 0);
+    CHECK(files_in(folder.path) == 0);
     write(folder / "kept", noise(8, 8));
     const std::string before = bytes_of(folder / "kept");
     {
@@ -102,7 +103,7 @@ TEST_CASE("a write that runs out of space is an error, leaves no file and keeps 
       CHECK(message.find(std::strerror(EFBIG)) != std::string::npos);
     }
     CHECK(bytes_of(folder / "kept") == before);
-    CHECK(files_in(folder.path()) == 1);
+    CHECK(files_in(folder.path) == 1);
     fs::remove(folder / "kept");
   }
 }
@@ -118,7 +119,7 @@ TEST_CASE("every limit of the space gives an error or the whole file, nothing be
       const FileSizeLimit limit(bytes);
       CHECK_THROWS_AS(write_exr(folder / "a.exr", picture), OutputError);
     }
-    CHECK(files_in(folder.path()) == 0);
+    CHECK(files_in(folder.path) == 0);
   }
   {
     const FileSizeLimit limit(whole.size());
@@ -134,7 +135,7 @@ TEST_CASE("a finished file replaces an earlier one, alone in its folder, and fol
   write_exr(folder / "link.exr", noise(4, 4));
   CHECK(fs::is_symlink(folder / "link.exr"));
   CHECK(read_image(folder / "a.exr").width == 4);
-  CHECK(files_in(folder.path()) == 2);
+  CHECK(files_in(folder.path) == 2);
 }
 
 TEST_CASE("a picture without pixels or without R, G, B cannot be written") {
@@ -144,5 +145,5 @@ TEST_CASE("a picture without pixels or without R, G, B cannot be written") {
   grey.width = grey.height = 1;
   grey.add("Y");
   CHECK_THROWS_AS(write_png(folder / "a.png", grey), OutputError);
-  CHECK(files_in(folder.path()) == 0);
+  CHECK(files_in(folder.path) == 0);
 }

@@ -1,12 +1,9 @@
-// What the tests of pictures share: a folder that vanishes, small layered pictures, bit comparison.
+// What the tests of pictures share: files, small layered pictures, bit comparison.
 #pragma once
-
-#include <unistd.h>
 
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -16,27 +13,13 @@
 
 #include "photile/errors.hpp"
 #include "photile/light_mix.hpp"
+#include "temporary_folder.hpp"
 
 namespace photile::test {
 
-/// A new folder, removed with all it holds at the end of the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "photile-image-XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+inline std::filesystem::path operator/(const TemporaryFolder& folder, const std::string& name) {
+  return folder.path / name;
+}
 
 inline std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
