@@ -10,12 +10,12 @@ namespace photile::app {
 std::string format_count(double count) {
   static constexpr std::array suffixes{"", "k", "M", "G", "T"};
   std::size_t suffix = 0;
-  // 999.95 would be printed as 1000.0.
-  while (std::abs(count) >= 999.95 && suffix + 1 < suffixes.size()) {
+  // 999.5 would be printed as 1e+03.
+  while (std::abs(count) >= 999.5 && suffix + 1 < suffixes.size()) {
     count /= 1000;
     ++suffix;
   }
-  if (suffix == 0) return fmt::format("{:.4g}", count);
+  if (suffix == 0) return fmt::format("{:.3g}", count);
   return fmt::format("{:.1f}{}", count, suffixes[suffix]);
 }
 

@@ -45,7 +45,7 @@ void check_channels(const PictureOutputs& outputs, const Scene& scene) {
 
 void tell_device(const DeviceInfo& device, Progress& progress) {
   progress.note(fmt::format("device: {} ({}, {}), {} compute units, {}", device.name,
-                            device.platform, device.version, device.compute_units,
+                            device.platform, device.driver_version, device.compute_units,
                             format_bytes(device.global_memory_bytes)));
 }
 

@@ -17,6 +17,11 @@ using nlohmann::json;
 constexpr double doubtfully_large = 500;   // metres
 constexpr double doubtfully_small = 0.05;  // metres
 
+/// "1 camera", "2 cameras"
+std::string counted(std::size_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 const char* kind_name(LightKind kind) {
   switch (kind) {
     case LightKind::area:
@@ -110,9 +115,10 @@ std::string doubtful_unit(const Extents& extents) {
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) {
   const glm::dvec3 size = extents_of(scene).size();
   std::vector<std::string> lines{
-      fmt::format("scene: {}: {} triangles, {} materials, {} textures, {} cameras",
-                  scene.source.string(), scene.triangle_count(), scene.materials.size(),
-                  scene.textures.size(), scene.cameras.size()),
+      fmt::format(
+          "scene: {}: {}, {}, {}, {}", scene.source.string(),
+          counted(scene.triangle_count(), "triangle"), counted(scene.materials.size(), "material"),
+          counted(scene.textures.size(), "texture"), counted(scene.cameras.size(), "camera")),
       fmt::format("extents: {:.4g} x {:.4g} x {:.4g} m", size.x, size.y, size.z)};
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const MixedLight& mixed = mix.lights[i];
@@ -123,16 +129,7 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
 }
 
 std::vector<std::string> scene_warnings(const Scene& scene) {
-  const ImportReport& report = scene.report;
-  std::vector<std::string> lines = report.warnings;
-  if (report.degenerate_triangles != 0) {
-    lines.push_back(
-        fmt::format("{} triangles without area were dropped", report.degenerate_triangles));
-  }
-  if (report.non_finite_triangles != 0) {
-    lines.push_back(fmt::format("{} triangles with a NaN or infinite corner were dropped",
-                                report.non_finite_triangles));
-  }
+  std::vector<std::string> lines = scene.report.warnings;
   if (const std::string doubt = doubtful_unit(extents_of(scene)); !doubt.empty()) {
     lines.push_back(doubt);
   }

@@ -25,7 +25,7 @@ std::string doubtful_unit(const Extents& extents);
 /// The counts and every light with its power in `mix`, a line each.
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
 
-/// The import's warnings, dropped triangles and a doubtful unit, a line each.
+/// The import's warnings and a doubtful unit, a line each.
 std::vector<std::string> scene_warnings(const Scene& scene);
 
 /// Everything that `photile info` tells.

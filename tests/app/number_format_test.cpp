@@ -10,6 +10,9 @@ TEST_CASE("counts take a suffix from a thousand on") {
   CHECK(format_count(0) == "0");
   CHECK(format_count(999) == "999");
   CHECK(format_count(1000) == "1.0k");
+  CHECK(format_count(999.4) == "999");
+  CHECK(format_count(999.6) == "1.0k");
+  CHECK(format_count(0.5) == "0.5");
   CHECK(format_count(999'960) == "1.0M");
   CHECK(format_count(1.94e6) == "1.9M");
   CHECK(format_count(2.5e9) == "2.5G");
