@@ -1,10 +1,10 @@
 // Outputs that cannot be written are refused before the long work, and never left half written.
 #include <catch2/catch.hpp>
 
+#include "box_scene.hpp"
 #include "child_process.hpp"
+#include "file_folder.hpp"
 #include "photile/image.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -16,14 +16,14 @@ constexpr int usage = 2;
 
 /// The only line of a render that was refused before it began: no device line came before.
 std::string refusal(const std::vector<std::string>& outputs, int exit_code) {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   std::vector<std::string> arguments{"render", write_box(folder)};
   arguments.insert(arguments.end(), outputs.begin(), outputs.end());
   return only_error(run_photile(arguments), exit_code);
 }
 
 /// An EXR of one light layer, so large that a small limit on file sizes cuts it.
-std::string write_layered_picture(const TemporaryFolder& folder) {
+std::string write_layered_picture(const FileFolder& folder) {
   Image picture;
   picture.width = picture.height = 64;
   for (const char* channel : {"R", "G", "B", "Combined_a.R", "Combined_a.G", "Combined_a.B"}) {
@@ -49,32 +49,32 @@ TEST_CASE("an output in a folder that does not exist is refused before the work"
 }
 
 TEST_CASE("an output that is a folder is refused before the work") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   std::filesystem::create_directory(folder / "out.exr");
   CHECK_THAT(refusal({"-o", folder / "out.exr"}, failure), Contains("out.exr"));
 }
 
 TEST_CASE("statistics to a device that is always full are refused before the work") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK_THAT(refusal({"-o", folder / "out.exr", "--stats", "/dev/full"}, failure),
              Contains("/dev/full"));
   CHECK(folder.file_count() == 0);
 }
 
 TEST_CASE("an output of an unknown format is a usage error") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK_THAT(refusal({"-o", folder / "out.jpg"}, usage), Contains("out.jpg") && Contains(".exr"));
   CHECK_THAT(refusal({"--png", folder / "out.exr"}, usage), Contains(".png"));
 }
 
 TEST_CASE("an output named twice is a usage error") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK_THAT(refusal({"-o", folder / "out.png", "--png", folder / "./out.png"}, usage),
              Contains("twice"));
 }
 
 TEST_CASE("an output that is the scene itself is a usage error and the scene is kept") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string scene = write_box(folder);
   const std::string before = folder.read("box.obj");
   const Outcome outcome =
@@ -84,7 +84,7 @@ TEST_CASE("an output that is the scene itself is a usage error and the scene is 
 }
 
 TEST_CASE("a disk that fills up while an EXR is written leaves the earlier file and no other") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string input = write_layered_picture(folder);
   folder.write("out.exr", "earlier");
   Run run;

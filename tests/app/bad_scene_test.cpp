@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "box_scene.hpp"
 #include "child_process.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
+#include "file_folder.hpp"
 
 namespace photile::test {
 namespace {
@@ -16,7 +16,7 @@ using Catch::Contains;
 constexpr int bad_input = 3;
 
 /// What both `info` and `render` say of a bad scene; they must agree. Nothing may be written.
-std::string refusal(const TemporaryFolder& folder, const std::string& scene) {
+std::string refusal(const FileFolder& folder, const std::string& scene) {
   const std::string line = only_error(run_photile({"info", scene}), bad_input);
   const Outcome render = run_photile({"render", scene, "-o", folder / "out.exr"});
   CHECK(last_error(render, bad_input) == line);
@@ -27,13 +27,13 @@ std::string refusal(const TemporaryFolder& folder, const std::string& scene) {
 }  // namespace
 
 TEST_CASE("a missing scene is an input error that names the file") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK_THAT(refusal(folder, folder / "none.obj"), Contains("none.obj"));
 }
 
 TEST_CASE("an unreadable scene is an input error") {
   if (geteuid() == 0) return;  // root reads everything
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string scene = write_box(folder);
   std::filesystem::permissions(scene, std::filesystem::perms::none);
   CHECK_THAT(refusal(folder, scene), Contains("box.obj"));
@@ -41,7 +41,7 @@ TEST_CASE("an unreadable scene is an input error") {
 
 TEST_CASE("an empty scene is an input error, for each format") {
   const std::string name = GENERATE("empty.obj", "empty.gltf", "empty.glb");
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK_THAT(refusal(folder, folder.write(name, "")), Contains(name));
 }
 
@@ -52,30 +52,30 @@ TEST_CASE("a malformed scene is an input error, for each format") {
       {"bad.glb", "glTF\x02 and then nothing of the kind"},
       {"bad.obj", "f 1 2 3\n"},
   }));
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK_THAT(refusal(folder, folder.write(name, text)), Contains(name));
 }
 
 TEST_CASE("a file of another kind is an input error that says what can be read") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK_THAT(refusal(folder, folder.write("scene.txt", "hello")),
              Contains("scene.txt") && Contains(".obj"));
 }
 
 TEST_CASE("a folder in place of a scene is an input error") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   std::filesystem::create_directory(folder / "folder.obj");
   CHECK_THAT(refusal(folder, folder / "folder.obj"), Contains("folder.obj"));
 }
 
 TEST_CASE("a scene without lights is an input error that says so") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   folder.write("box.mtl", "newmtl wall\nKd 0.7 0.6 0.5\nnewmtl red_lamp\nnewmtl blue_lamp\n");
   CHECK_THAT(refusal(folder, folder.write("box.obj", box_obj())), Contains("light"));
 }
 
 TEST_CASE("a scene without geometry is an input error that says so") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   folder.write("box.mtl", box_mtl());
   const std::string scene = folder.write("box.obj", "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
   CHECK_THAT(refusal(folder, scene), Contains("triangle"));
@@ -83,7 +83,7 @@ TEST_CASE("a scene without geometry is an input error that says so") {
 
 TEST_CASE("triangles with a corner that is no number are dropped, counted and reported") {
   const std::string corner = GENERATE("v nan -1 -1\n", "v inf -1 -1\n");
-  const TemporaryFolder folder;
+  const FileFolder folder;
   folder.write("box.mtl", box_mtl());
   // A vertex of its own, used by one more triangle.
   const std::string scene =
@@ -99,7 +99,7 @@ TEST_CASE("triangles with a corner that is no number are dropped, counted and re
 }
 
 TEST_CASE("triangles without area are dropped, counted and reported") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   folder.write("box.mtl", box_mtl());
   const std::string scene =
       folder.write("box.obj", box_obj() + "o thin\nusemtl wall\nf 1 2 2\nf 3 3 3\n");
@@ -112,7 +112,7 @@ TEST_CASE("triangles without area are dropped, counted and reported") {
 }
 
 TEST_CASE("a line feed in a file name does not make two lines of an error") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK_THAT(refusal(folder, folder / "two\nlines.obj"), Contains("two lines.obj"));
 }
 

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "box_scene.hpp"
 #include "child_process.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
+#include "file_folder.hpp"
 
 namespace photile::test {
 namespace {
@@ -15,7 +15,7 @@ using Catch::Contains;
 constexpr int no_device = 4;
 
 /// `run` where the OpenCL loader finds no platform.
-Run without_platforms(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+Run without_platforms(const FileFolder& folder, std::vector<std::string> arguments) {
   std::filesystem::create_directory(folder / "vendors");
   Run run;
   run.arguments = std::move(arguments);
@@ -47,7 +47,7 @@ TEST_CASE("the list of devices has a line for each and marks the selected one wi
 }
 
 TEST_CASE("without any OpenCL platform every command that needs one says so and exits with 4") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string scene = write_box(folder);
   for (const auto& arguments : std::vector<std::vector<std::string>>{
            {"devices"}, {"devices", "--json"}, {"render", scene, "-o", folder / "out.exr"}}) {
@@ -57,12 +57,12 @@ TEST_CASE("without any OpenCL platform every command that needs one says so and 
 }
 
 TEST_CASE("what needs no device works without any OpenCL platform") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   CHECK(run_photile(without_platforms(folder, {"info", write_box(folder)})).exit_code == 0);
 }
 
 TEST_CASE("an unknown device is refused with the list of those there are") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = run_photile(
       {"render", write_box(folder), "-o", folder / "out.exr", "--device", "no-such-device"});
   CHECK_THAT(only_error(outcome, no_device), Contains("no-such-device") && Contains("0:0"));

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/scene_report.hpp"
+#include "box_scene.hpp"
 #include "child_process.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
+#include "file_folder.hpp"
 
 namespace photile::test {
 namespace {
@@ -24,7 +24,7 @@ nlohmann::json info(const std::string& scene, std::vector<std::string> options =
 }  // namespace
 
 TEST_CASE("info counts the triangles, materials, lights and extents of a box") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const auto facts = info(write_box(folder));
   CHECK(facts["triangles"] == 16);  // 6 walls and 2 lamps, two triangles each
   CHECK(facts["materials"].size() == 3);
@@ -35,7 +35,7 @@ TEST_CASE("info counts the triangles, materials, lights and extents of a box") {
 }
 
 TEST_CASE("info gives a lamp's power as pi x area x luminance of its radiance") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const auto facts = info(write_box(folder));
   const auto& left = facts["lights"][0];
   CHECK(left["name"] == "left");
@@ -46,7 +46,7 @@ TEST_CASE("info gives a lamp's power as pi x area x luminance of its radiance") 
 }
 
 TEST_CASE("info applies the emissive scale and the lumens per watt that it is given") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string scene = write_box(folder);
   const double plain = info(scene)["lights"][0]["watts"];
   const auto scaled = info(scene, {"--emissive-scale", "10", "--lumen-per-watt", "179"});
@@ -55,7 +55,7 @@ TEST_CASE("info applies the emissive scale and the lumens per watt that it is gi
 }
 
 TEST_CASE("info as text names every light and material") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = run_photile({"info", write_box(folder)});
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("light: left: area") && Contains("light: right: area") &&

@@ -1,16 +1,16 @@
 // SIGINT and SIGTERM stop a render: exit code 130, earlier files kept, nothing half written.
 #include <catch2/catch.hpp>
 
+#include "box_scene.hpp"
 #include "child_process.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
+#include "file_folder.hpp"
 
 namespace photile::test {
 
 using Catch::Contains;
 
 TEST_CASE("a signal during a render gives 130 and keeps the earlier files") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   Run run;
   run.arguments = {"render",  write_box(folder),   "-o",        folder / "out.exr",
                    "--stats", folder / "out.json", "--photons", "2G"};

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "app/progress_bar.hpp"
+#include "box_scene.hpp"
 #include "child_process.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
+#include "file_folder.hpp"
 
 namespace photile::test {
 namespace {
@@ -14,7 +14,7 @@ using app::progress_bar;
 using app::StageProgress;
 using Catch::Contains;
 
-Run small_render(const TemporaryFolder& folder) {
+Run small_render(const FileFolder& folder) {
   Run run;
   run.arguments = {"render", write_box(folder), "-o",   folder / "out.png", "--photons",
                    "20k",    "--size",          "16x12"};
@@ -45,7 +45,7 @@ TEST_CASE("a bar copes with nothing done, too much done and an unknown total") {
 }
 
 TEST_CASE("a render without a terminal prints plain lines, the device first") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = run_photile(small_render(folder));
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
@@ -59,7 +59,7 @@ TEST_CASE("a render without a terminal prints plain lines, the device first") {
 }
 
 TEST_CASE("a render on a terminal draws a bar on one line and removes it") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   Run run = small_render(folder);
   run.terminal = true;
   const Outcome outcome = run_photile(run);
@@ -77,7 +77,7 @@ TEST_CASE("a render on a terminal draws a bar on one line and removes it") {
 }
 
 TEST_CASE("a quiet render prints nothing, on a terminal or not") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   Run run = small_render(folder);
   run.arguments.emplace_back("--quiet");
   run.terminal = GENERATE(false, true);

@@ -1,10 +1,10 @@
 // `photile relight` on pictures of the program's own.
 #include <catch2/catch.hpp>
 
+#include "box_scene.hpp"
 #include "child_process.hpp"
+#include "file_folder.hpp"
 #include "photile/image.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 using Catch::Contains;
 
 /// Renders the box to `name` with some more options.
-std::string render(const TemporaryFolder& folder, const std::string& name,
+std::string render(const FileFolder& folder, const std::string& name,
                    const std::vector<std::string>& options = {}) {
   std::vector<std::string> arguments{
       "render", write_box(folder), "-o", folder / name, "--photons", "50k", "--size", "24x16"};
@@ -46,7 +46,7 @@ void check_same_root(const std::string& a, const std::string& b, double relative
 TEST_CASE("relighting equals rendering with that power up to float rounding") {
   const std::string change = GENERATE("left=x2.5", "left=7", "right=off", "left=1500lm");
   INFO(change);
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string original = render(folder, "original.exr");
   const std::string rendered = render(folder, "rendered.exr", {"--light", change});
   const Outcome outcome =
@@ -57,7 +57,7 @@ TEST_CASE("relighting equals rendering with that power up to float rounding") {
 }
 
 TEST_CASE("a relit picture can be relit again and comes back to the original") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string original = render(folder, "original.exr");
   REQUIRE(
       run_photile({"relight", original, "--light", "left=x4", "-o", folder / "a.exr"}).exit_code ==
@@ -69,14 +69,14 @@ TEST_CASE("a relit picture can be relit again and comes back to the original") {
 }
 
 TEST_CASE("relight without a change and an output lists the lights with their powers") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = run_photile({"relight", render(folder, "a.exr", {"--light", "left=7"})});
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("light: left: 7 W") && Contains("light: right: "));
 }
 
 TEST_CASE("relight writes a PNG that changes with the exposure") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string original = render(folder, "a.exr");
   for (const auto& [name, stops] : {std::pair{"dark.png", "-2"}, std::pair{"light.png", "1"}}) {
     REQUIRE(
@@ -93,7 +93,7 @@ TEST_CASE("relight writes a PNG that changes with the exposure") {
 }
 
 TEST_CASE("relight refuses what it cannot do with one line and the right exit code") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string original = render(folder, "a.exr");
   const std::string out = folder / "out.png";
   SECTION("an unknown light") {

@@ -2,17 +2,17 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "box_scene.hpp"
 #include "child_process.hpp"
+#include "file_folder.hpp"
 #include "photile/image.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
 
 using Catch::Contains;
 
-void render(const TemporaryFolder& folder, const std::vector<std::string>& options) {
+void render(const FileFolder& folder, const std::vector<std::string>& options) {
   std::vector<std::string> arguments{"render", write_box(folder), "--photons", "100k"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const Outcome outcome = run_photile(arguments);
@@ -32,7 +32,7 @@ double mean(const Image& picture, const std::string& channel) {
 
 TEST_CASE("the same seed gives the same bits on one and on two threads") {
   const std::string maps = GENERATE("grouped", "naive");
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::vector<std::string> options{"--size", "32x24", "--seed", "7", "--maps", maps};
   const auto with = [&](const char* threads, const char* name) {
     auto all = options;
@@ -47,7 +47,7 @@ TEST_CASE("the same seed gives the same bits on one and on two threads") {
 }
 
 TEST_CASE("another seed gives another picture of the same brightness") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   render(folder, {"--size", "32x24", "--seed", "1", "-o", folder / "a.exr"});
   render(folder, {"--size", "32x24", "--seed", "2", "-o", folder / "b.exr"});
   const Image a = read_image(folder / "a.exr"), b = read_image(folder / "b.exr");
@@ -57,7 +57,7 @@ TEST_CASE("another seed gives another picture of the same brightness") {
 }
 
 TEST_CASE("the layers of an EXR sum to the picture") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   render(folder, {"--size", "32x24", "-o", folder / "out.exr"});
   const Image picture = read_image(folder / "out.exr");
   for (const std::string component : {"R", "G", "B"}) {
@@ -77,7 +77,7 @@ TEST_CASE("the layers of an EXR sum to the picture") {
 }
 
 TEST_CASE("an EXR tells how it was made") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   render(folder, {"--size", "16x12", "--seed", "9", "-k", "30", "--radius", "0.25", "--angle", "45",
                   "--lumen-per-watt", "179", "-o", folder / "out.exr"});
   const Image picture = read_image(folder / "out.exr");
@@ -100,7 +100,7 @@ TEST_CASE("an EXR tells how it was made") {
 }
 
 TEST_CASE("a render writes every output that it is asked for, in the size asked for") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   render(folder, {"--size", "20x10", "-o", folder / "a.exr", "-o", folder / "b.png", "--png",
                   folder / "c.png"});
   for (const char* name : {"a.exr", "b.png", "c.png"}) {
@@ -112,7 +112,7 @@ TEST_CASE("a render writes every output that it is asked for, in the size asked 
 }
 
 TEST_CASE("the statistics are JSON with every stage, the parameters and the lights") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   render(folder, {"--size", "16x12", "-o", folder / "a.png", "--stats", folder / "a.json"});
   const auto statistics = nlohmann::json::parse(folder.read("a.json"));
   CHECK(statistics["scene"] == "box.obj");
@@ -133,7 +133,7 @@ TEST_CASE("the statistics are JSON with every stage, the parameters and the ligh
 }
 
 TEST_CASE("naive maps are darker than grouped ones at borders, hence in the mean") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   render(folder, {"--size", "32x24", "-o", folder / "grouped.exr"});
   render(folder, {"--size", "32x24", "-o", folder / "naive.exr", "--maps", "naive"});
   CHECK(mean(read_image(folder / "naive.exr"), "G") <
@@ -141,7 +141,7 @@ TEST_CASE("naive maps are darker than grouped ones at borders, hence in the mean
 }
 
 TEST_CASE("--profile lists the time of kernels") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = run_photile({"render", write_box(folder), "--photons", "10k", "--size",
                                        "16x12", "-o", folder / "a.png", "--profile"});
   CHECK(outcome.exit_code == 0);

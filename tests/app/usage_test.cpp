@@ -1,10 +1,10 @@
 // What the command line refuses before anything starts: exit code 2 and one line.
 #include <catch2/catch.hpp>
 
+#include "box_scene.hpp"
 #include "child_process.hpp"
+#include "file_folder.hpp"
 #include "photile/defaults.hpp"
-#include "temporary_folder.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -14,8 +14,7 @@ using Catch::Contains;
 constexpr int usage = 2;
 
 /// `photile render` of a good scene with one more option.
-Outcome render_with(const TemporaryFolder& folder, const std::string& option,
-                    const std::string& value) {
+Outcome render_with(const FileFolder& folder, const std::string& option, const std::string& value) {
   return run_photile({"render", write_box(folder), "-o", folder / "out.exr", option + "=" + value});
 }
 
@@ -39,7 +38,7 @@ TEST_CASE("a scene is required") {
 }
 
 TEST_CASE("an output is required") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = run_photile({"render", write_box(folder)});
   CHECK_THAT(only_error(outcome, usage), Contains("-o"));
 }
@@ -58,27 +57,27 @@ TEST_CASE("values out of range are usage errors that name the option and the val
       {"--exposure", "nan"},    {"--lumen-per-watt", "0"},   {"--emissive-scale", "-1"},
   }));
   INFO(option << "=" << value);
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const std::string line = only_error(render_with(folder, option, value), usage);
   CHECK_THAT(line, Contains(option) && Contains(value));
   CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
 }
 
 TEST_CASE("a change of a light without a value is a usage error") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = render_with(folder, "--light", "left");
   CHECK_THAT(only_error(outcome, usage), Contains("left"));
 }
 
 TEST_CASE("an unknown light is a usage error that lists the lights") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = render_with(folder, "--light", "middle=x2");
   CHECK_THAT(last_error(outcome, usage),
              Contains("middle") && Contains("left") && Contains("right"));
 }
 
 TEST_CASE("an unknown camera is a usage error that lists the cameras") {
-  const TemporaryFolder folder;
+  const FileFolder folder;
   const Outcome outcome = render_with(folder, "--camera", "nobody");
   CHECK_THAT(last_error(outcome, usage), Contains("nobody"));
 }

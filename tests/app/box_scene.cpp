@@ -1,4 +1,4 @@
-#include "test_scenes.hpp"
+#include "box_scene.hpp"
 
 namespace photile::test {
 
@@ -21,7 +21,7 @@ std::string box_obj() {
          "o right\nusemtl blue_lamp\nf 13 14 15 16\n";
 }
 
-std::string write_box(const TemporaryFolder& folder) {
+std::string write_box(const FileFolder& folder) {
   folder.write("box.mtl", box_mtl());
   return folder.write("box.obj", box_obj());
 }

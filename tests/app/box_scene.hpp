@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "temporary_folder.hpp"
+#include "file_folder.hpp"
 
 namespace photile::test {
 
 /// A closed box of 2 x 2 x 2 m with diffuse walls and two lamps under its ceiling, "left" and
 /// "right", as OBJ with its MTL. Returns the path of the OBJ.
-std::string write_box(const TemporaryFolder& folder);
+std::string write_box(const FileFolder& folder);
 
 /// The text of the box's OBJ, to be spoilt by a test; it names box.mtl.
 std::string box_obj();
