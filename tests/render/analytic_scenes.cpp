@@ -81,8 +81,8 @@ TEST_CASE("a point light over a floor: mean illuminance and radiance over a squa
 
 TEST_CASE(
     "a furnace: inside a sphere that emits L and reflects rho the radiance is L / (1 - rho)") {
-  // Direct emission is seen as L; what the photon map adds is L rho / (1 - rho). Curvature bends
-  // the neighbours out of the disc by (r / 2)^2, under 0.2% for this radius.
+  // Direct emission is seen as L; what the photon map adds is L rho / (1 - rho). On a sphere the
+  // surface within the disc is larger than the disc by (r / 2)^2, under 0.2% here.
   for (const float albedo : {0.5f, 0.8f}) {
     const Scene scene = furnace(albedo, 1.0 - albedo, 14);
     const Camera camera = Camera::look_at({0, 0, 0}, {1, 0.3, 0.2}, {0, 0, 1}, 1.2);
