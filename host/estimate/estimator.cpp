@@ -6,33 +6,31 @@
 #include <cmath>
 
 #include "estimate/hit_buffers.hpp"
-#include "estimate/specialisation.hpp"
-#include "maps/uniform_grid.hpp"
+#include "estimate/query.hpp"
+#include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
 namespace photile {
 
-using device::Buffer;
 using estimate::HitBuffers;
 
 struct Estimator::Impl {
-  const maps::UniformGrid& grid;
+  const maps::MapStore& store;
   device::Context& context;
   std::uint32_t neighbours;
   float radius;
-  device::Defines defines;
+  std::unique_ptr<estimate::Query> query;
 
-  Impl(const PhotonMaps& maps, const EstimateParameters& parameters)
-      : grid(maps.grid()),
-        context(maps.device().context()),
+  Impl(const PhotonMaps& photon_maps, const EstimateParameters& parameters)
+      : store(photon_maps.store()),
+        context(photon_maps.device().context()),
         neighbours(static_cast<std::uint32_t>(parameters.neighbours)),
-        radius(static_cast<float>(parameters.radius == 0 ? maps.parameters().radius
+        radius(static_cast<float>(parameters.radius == 0 ? photon_maps.parameters().radius
                                                          : parameters.radius)),
-        defines(estimate::specialise(context.info(), grid.needs, parameters.neighbours).defines()) {
-  }
+        query(estimate::make_query(store, neighbours, radius)) {}
 
-  /// Hits of one launch so that no buffer, input or output, is larger than the device allows.
+  /// Hits of one batch so that no buffer, input or output, is larger than the device allows.
   std::size_t batch_size(std::uint64_t output_bytes_per_hit) const {
     constexpr std::uint64_t comfortable = 1u << 20;
     const std::uint64_t bytes = std::max<std::uint64_t>(3 * sizeof(float), output_bytes_per_hit);
@@ -41,40 +39,16 @@ struct Estimator::Impl {
     return std::clamp<std::uint64_t>(limit / bytes, 1, comfortable);
   }
 
-  /// Calls launch(page, first, count) for the hits of each map page. Hits of maps without photons
-  /// lie in no page; their outputs keep what they were filled with.
+  /// Calls launch(page_hits) for the hits of each map page.
   template <class Launch>
-  void for_each_page(std::span<const std::uint32_t> hit_maps, Launch launch) const {
-    for (const maps::MapPage& page : grid.pages) {
+  void for_each_page(const HitBuffers& hits, std::span<const std::uint32_t> hit_maps,
+                     Launch launch) const {
+    for (const maps::MapPage& page : store.pages) {
       const auto first = std::lower_bound(hit_maps.begin(), hit_maps.end(), page.first_map);
       const auto last = std::lower_bound(first, hit_maps.end(), page.last_map);
       if (first == last) continue;
-      launch(page, static_cast<std::uint32_t>(first - hit_maps.begin()),
-             static_cast<std::uint32_t>(last - first));
-    }
-  }
-
-  void launch_estimate(const HitBuffers& hits, const maps::MapPage& page, std::uint32_t first,
-                       std::uint32_t count, Buffer<float>& irradiance, Buffer<float>& radiance) {
-    const auto launch = [&](const auto&... optional) {
-      context.run(context.kernel("estimate/estimate.cl", "estimate", defines), count,
-                  maps::work_group_size, count, first, hits.position, hits.map, page.first_map,
-                  page.grids, page.cell_start, page.entry_stride, page.entry_position,
-                  page.entry_flux, page.entry_photon, optional..., neighbours, radius,
-                  grid.needs.light_count, irradiance);
-    };
-    const auto with_lobes = [&](const auto&... optional) {
-      if (grid.needs.glossy) {
-        launch(optional..., page.entry_incoming, hits.outgoing, hits.normal, hits.albedo,
-               hits.specular, hits.roughness, radiance);
-      } else {
-        launch(optional...);
-      }
-    };
-    if (grid.needs.light_count > 1) {
-      with_lobes(page.entry_light);
-    } else {
-      with_lobes();
+      launch(estimate::PageHits{hits, page, static_cast<std::uint32_t>(first - hit_maps.begin()),
+                                static_cast<std::uint32_t>(last - first)});
     }
   }
 };
@@ -95,8 +69,8 @@ Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 
 Estimates Estimator::estimate(const PrimaryHits& hits) {
-  const std::size_t lights = impl_->grid.needs.light_count;
-  const bool glossy = impl_->grid.needs.glossy;
+  const std::size_t lights = impl_->store.needs.light_count;
+  const bool glossy = impl_->store.needs.glossy;
   Estimates result;
   result.irradiance.resize(hits.size() * lights);
   if (glossy) result.radiance.resize(hits.size() * lights);
@@ -109,11 +83,10 @@ Estimates Estimator::estimate(const PrimaryHits& hits) {
         impl_->context.allocate<float>(glossy ? 3 * count * lights : 0, "radiance estimates");
     impl_->context.fill(irradiance, 0.0f);
     impl_->context.fill(radiance, 0.0f);
-    impl_->for_each_page(
-        std::span(hits.sided_triangle).subspan(first, count),
-        [&](const maps::MapPage& page, std::uint32_t page_first, std::uint32_t page_count) {
-          impl_->launch_estimate(buffers, page, page_first, page_count, irradiance, radiance);
-        });
+    impl_->for_each_page(buffers, std::span(hits.sided_triangle).subspan(first, count),
+                         [&](const estimate::PageHits& page_hits) {
+                           impl_->query->estimate(page_hits, irradiance, radiance);
+                         });
     impl_->context.read(irradiance,
                         std::span(&result.irradiance[first * lights].x, 3 * count * lights));
     if (glossy) {
@@ -139,15 +112,10 @@ NeighbourLists Estimator::nearest(const PrimaryHits& hits) {
     auto squared_radius = impl_->context.allocate<float>(count, "neighbour radii");
     impl_->context.fill(photons, none);
     impl_->context.fill(squared_radius, radius * radius);
-    impl_->for_each_page(
-        std::span(hits.sided_triangle).subspan(first, count),
-        [&](const maps::MapPage& page, std::uint32_t page_first, std::uint32_t page_count) {
-          impl_->context.run(
-              impl_->context.kernel("estimate/nearest.cl", "nearest", impl_->defines), page_count,
-              maps::work_group_size, page_count, page_first, buffers.position, buffers.map,
-              page.first_map, page.grids, page.cell_start, page.entry_stride, page.entry_position,
-              page.entry_photon, impl_->neighbours, radius, photons, squared_radius);
-        });
+    impl_->for_each_page(buffers, std::span(hits.sided_triangle).subspan(first, count),
+                         [&](const estimate::PageHits& page_hits) {
+                           impl_->query->nearest(page_hits, photons, squared_radius);
+                         });
     impl_->context.read(photons, std::span(result.photons).subspan(first * k, count * k));
     impl_->context.read(squared_radius, std::span(result.squared_radius).subspan(first, count));
     for (std::size_t hit = first; hit < first + count; ++hit) {

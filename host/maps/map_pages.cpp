@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "maps/uniform_grid.hpp"
+#include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::maps {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "maps/build_uniform_grid.hpp"
-#include "maps/uniform_grid.hpp"
+#include "maps/build_maps.hpp"
+#include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
@@ -26,6 +26,9 @@ void check(const Photons& photons, const NeighbourGroups& groups,
     throw UsageError(
         fmt::format("photons per cell {}: must be a positive number", parameters.photons_per_cell));
   }
+  if (parameters.structure == MapStructure::kdtree_global && std::isinf(groups.radius)) {
+    throw UsageError("a global kd-tree knows no triangles' maps: use it with grouped maps");
+  }
   if (photons.size() > limits::max_stored_photons) {
     throw UsageError(fmt::format("{} stored photons; at most {} can be indexed", photons.size(),
                                  limits::max_stored_photons));
@@ -34,18 +37,41 @@ void check(const Photons& photons, const NeighbourGroups& groups,
 
 }  // namespace
 
+std::string_view name_of(MapStructure structure) {
+  switch (structure) {
+    case MapStructure::uniform_grid:
+      return "uniform-grid";
+    case MapStructure::kdtree_2d:
+      return "kdtree-2d";
+    case MapStructure::kdtree_3d:
+      return "kdtree-3d";
+    case MapStructure::kdtree_global:
+      return "kdtree-global";
+    case MapStructure::brute_force:
+      return "brute-force";
+  }
+  return "unknown";
+}
+
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
                        Progress& progress)
-    : grid_(std::make_unique<maps::UniformGrid>()) {
+    : store_(std::make_unique<maps::MapStore>()) {
   check(photons, groups, parameters);
   const Stopwatch stopwatch;
   progress.begin("build photon maps", 0, "references");
-  grid_->device = &device;
-  grid_->needs = needs_of(scene);
-  grid_->parameters = parameters;
-  maps::build_uniform_grid(*grid_, scene, photons, groups, progress);
-  grid_->statistics.seconds = stopwatch.seconds();
+  store_->device = &device;
+  store_->needs = needs_of(scene);
+  store_->parameters = parameters;
+  store_->cos_angle = std::cos(glm::radians(groups.angle_degrees));
+  store_->statistics.photons = photons.size();
+  if (parameters.structure == MapStructure::kdtree_global) {
+    maps::build_global_map(*store_, scene, photons);
+  } else {
+    maps::build_maps_per_triangle(*store_, scene, photons, groups, progress);
+  }
+
+  store_->statistics.seconds = stopwatch.seconds();
   progress.end();
 }
 
@@ -53,8 +79,8 @@ PhotonMaps::~PhotonMaps() = default;
 PhotonMaps::PhotonMaps(PhotonMaps&&) noexcept = default;
 PhotonMaps& PhotonMaps::operator=(PhotonMaps&&) noexcept = default;
 
-const PhotonMapStatistics& PhotonMaps::statistics() const { return grid_->statistics; }
-const PhotonMapParameters& PhotonMaps::parameters() const { return grid_->parameters; }
-Device& PhotonMaps::device() const { return *grid_->device; }
+const PhotonMapStatistics& PhotonMaps::statistics() const { return store_->statistics; }
+const PhotonMapParameters& PhotonMaps::parameters() const { return store_->parameters; }
+Device& PhotonMaps::device() const { return *store_->device; }
 
 }  // namespace photile

@@ -57,8 +57,8 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
   return pages;
 }
 
-PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
-                              const CandidateMaps& candidates, PhotonRange range) {
+PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
+                                 PhotonRange range) {
   PhotonPage page;
   page.first_photon = range.first;
   page.count = range.last - range.first;
@@ -67,6 +67,12 @@ PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
   page.flux = context.upload(floats(photons.flux, range), "photon flux");
   page.light = context.upload(part(photons.light, range), "photon lights");
   page.incoming = context.upload(floats(photons.incoming, range), "photon directions");
+  return page;
+}
+
+PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
+                              const CandidateMaps& candidates, PhotonRange range) {
+  PhotonPage page = upload_photon_records(context, photons, range);
 
   const std::uint64_t first_list = candidates.first_list_of[photons.sided_triangle[range.first]];
   const std::uint64_t end_list =

@@ -35,6 +35,10 @@ struct PhotonRange {
 std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes);
 
+/// Records only, without candidate maps.
+PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
+                                 PhotonRange range);
+
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
                               const CandidateMaps& candidates, PhotonRange range);
 

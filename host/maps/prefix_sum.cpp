@@ -1,6 +1,6 @@
 #include "maps/prefix_sum.hpp"
 
-#include "maps/uniform_grid.hpp"
+#include "maps/map_store.hpp"
 
 namespace photile::maps {
 namespace {

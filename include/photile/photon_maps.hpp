@@ -1,10 +1,11 @@
 // Photon maps on the device: one 2D uniform grid per sided triangle (Graglia et al. 2012,
-// section 5).
+// section 5), or a structure to compare it with.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
-#include <string>
+#include <string_view>
 
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
@@ -15,16 +16,33 @@
 
 namespace photile {
 
+/// How the photons of a map are found. All structures return the same neighbours.
+enum class MapStructure {
+  uniform_grid,   ///< a 2D grid in the plane of each triangle: the method of the paper
+  kdtree_2d,      ///< a kd-tree in the plane of each triangle
+  kdtree_3d,      ///< a kd-tree in space for each triangle
+  kdtree_global,  ///< one kd-tree over all photons, filtered by normal: the classic photon map
+  brute_force     ///< every photon of the triangle's map
+};
+
+/// "uniform-grid", "kdtree-2d", "kdtree-3d", "kdtree-global", "brute-force".
+std::string_view name_of(MapStructure structure);
+inline constexpr std::array all_map_structures = {
+    MapStructure::uniform_grid, MapStructure::kdtree_2d, MapStructure::kdtree_3d,
+    MapStructure::kdtree_global, MapStructure::brute_force};
+
 struct PhotonMapParameters {
   double radius = 0;  ///< metres, > 0: no neighbour is farther; at most the groups' radius
-  float photons_per_cell = defaults::photons_per_cell;  ///< aimed at
+  float photons_per_cell = defaults::photons_per_cell;  ///< aimed at, in uniform grids
+  MapStructure structure = MapStructure::uniform_grid;
 };
 
 struct PhotonMapStatistics {
   std::uint64_t photons = 0;
   std::uint64_t references = 0;   ///< entries over all maps; references / photons = copies
   std::uint64_t maps = 0;         ///< sided triangles whose map holds a photon
-  std::uint64_t cells = 0;
+  std::uint64_t cells = 0;        ///< of grids
+  std::uint64_t nodes = 0;        ///< of kd-trees
   std::uint64_t largest_map = 0;  ///< entries
   std::uint64_t pages = 0;        ///< map pages on the device
   std::uint64_t device_bytes = 0;
@@ -32,7 +50,7 @@ struct PhotonMapStatistics {
 };
 
 namespace maps {
-struct UniformGrid;  // host/maps/uniform_grid.hpp
+struct MapStore;  // host/maps/map_store.hpp
 }
 
 /// Photon maps of every sided triangle. A photon is entered by reference in the maps of its group
@@ -40,8 +58,9 @@ struct UniformGrid;  // host/maps/uniform_grid.hpp
 /// same bits on every run, device thread count and CPU runtime.
 class PhotonMaps {
  public:
-  /// Builds on the device. Errors: UsageError for a radius beyond the groups'; DeviceError when the
-  /// device's memory does not suffice; Interrupted.
+  /// Builds on the device (kd-trees on the host). Errors: UsageError for a radius beyond the groups',
+  /// or a global tree with naive groups; DeviceError when the device's memory does not suffice;
+  /// Interrupted.
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
              Progress& progress = Progress::none());
@@ -53,10 +72,10 @@ class PhotonMaps {
   const PhotonMapParameters& parameters() const;
   Device& device() const;
 
-  const maps::UniformGrid& grid() const { return *grid_; }
+  const maps::MapStore& store() const { return *store_; }
 
  private:
-  std::unique_ptr<maps::UniformGrid> grid_;
+  std::unique_ptr<maps::MapStore> store_;
 };
 
 }  // namespace photile

@@ -7,64 +7,9 @@
 //   MULTIPLE_LIGHTS   photons carry a light; one estimate per light
 //   GLOSSY            surfaces have a specular lobe; radiance is estimated beside irradiance
 
+#include "estimate/accumulate.clh"
 #include "estimate/area.clh"
 #include "estimate/neighbourhood.clh"
-#ifdef GLOSSY
-#include "photile/device/bsdf.h"
-#endif
-
-// What the entries of a page hold, beside their positions.
-typedef struct {
-  __global const float* flux;  // planes r, g, b
-#ifdef MULTIPLE_LIGHTS
-  __global const ushort* light;
-#endif
-#ifdef GLOSSY
-  __global const float* incoming;  // planes x, y, z
-#endif
-} Entries;
-
-#ifdef GLOSSY
-typedef struct {
-  float3 outgoing, normal, albedo, specular;
-  float roughness;
-} Surface;
-
-// Reflected radiance per flux density of light from `incoming`: the BSDF of photile/device/bsdf.h.
-float3 reflect_flux(const Surface* surface, float3 incoming) {
-  const float3 sum = surface->outgoing + incoming;
-  const float3 half_vector = sum / sqrt(fmax(squared_length(sum), 1e-12f));
-  const float n_dot_i = dot3(surface->normal, incoming);
-  const float n_dot_o = dot3(surface->normal, surface->outgoing);
-  const float schlick = photile_schlick(dot3(incoming, half_vector));
-  const float lobe = photile_ggx_lobe(n_dot_i, n_dot_o, dot3(surface->normal, half_vector),
-                                      surface->roughness);
-  return (float3)(photile_opaque_bsdf(surface->albedo.x, surface->specular.x, schlick, lobe),
-                  photile_opaque_bsdf(surface->albedo.y, surface->specular.y, schlick, lobe),
-                  photile_opaque_bsdf(surface->albedo.z, surface->specular.z, schlick, lobe));
-}
-#endif
-
-// Adds entry i to the sums of its light.
-void add_entry(const Entries* entries, uint i, uint stride,
-#ifdef GLOSSY
-               const Surface* surface, __global float* radiance,
-#endif
-               __global float* irradiance) {
-  const float3 flux = (float3)(entries->flux[i], entries->flux[stride + i],
-                               entries->flux[2 * stride + i]);
-#ifdef MULTIPLE_LIGHTS
-  const uint light = entries->light[i];
-#else
-  const uint light = 0;
-#endif
-  vstore3(vload3(light, irradiance) + flux, light, irradiance);
-#ifdef GLOSSY
-  const float3 incoming = (float3)(entries->incoming[i], entries->incoming[stride + i],
-                                   entries->incoming[2 * stride + i]);
-  vstore3(vload3(light, radiance) + flux * reflect_flux(surface, incoming), light, radiance);
-#endif
-}
 
 // One work-item per hit of one map page.
 //   hit_count, first_hit   the hits [first_hit, first_hit + hit_count) of the batch lie in this page

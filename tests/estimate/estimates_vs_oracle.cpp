@@ -16,28 +16,32 @@ double tolerance(int k) { return (static_cast<double>(k) + 16.0) / (1 << 24); }
 
 void check_irradiance(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
                       double radius, int k) {
-  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
-                        {radius, 4});
-  Estimator estimator(maps, scene, {k, 0});
-  const Estimates estimates = estimator.estimate(hits);
+  const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const std::size_t lights = scene.lights.size();
-  REQUIRE(estimates.irradiance.size() == hits.size() * lights);
-  CHECK(estimates.radiance.empty());
-  double worst = 0;
+  std::vector<std::vector<glm::dvec3>> expected;
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-    const auto expected = oracle.irradiance(hits.position[hit], hits.sided_triangle[hit], k,
-                                            static_cast<float>(radius));
-    for (std::size_t light = 0; light < lights; ++light) {
-      for (int c = 0; c < 3; ++c) {
-        const double difference =
-            std::abs(estimates.irradiance[hit * lights + light][c] - expected[light][c]);
-        worst = std::max(worst, difference / std::max(expected[light][c], 1e-30));
+    expected.push_back(oracle.irradiance(hits.position[hit], hits.sided_triangle[hit], k,
+                                         static_cast<float>(radius)));
+  }
+  for (const MapStructure structure : all_map_structures) {
+    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+    const Estimates estimates = Estimator(maps, scene, {k, 0}).estimate(hits);
+    REQUIRE(estimates.irradiance.size() == hits.size() * lights);
+    CHECK(estimates.radiance.empty());
+    double worst = 0;
+    for (std::size_t hit = 0; hit < hits.size(); ++hit) {
+      for (std::size_t light = 0; light < lights; ++light) {
+        for (int c = 0; c < 3; ++c) {
+          const double truth = expected[hit][light][c];
+          const double difference = std::abs(estimates.irradiance[hit * lights + light][c] - truth);
+          worst = std::max(worst, difference / std::max(truth, 1e-30));
+        }
       }
     }
+    CAPTURE(name_of(structure), k, radius, lights);
+    CHECK(worst <= tolerance(k));
   }
-  CAPTURE(k, radius, lights);
-  CHECK(worst <= tolerance(k));
 }
 
 }  // namespace

@@ -14,13 +14,16 @@ void check_neighbours(const Scene& scene, const Photons& photons, const PrimaryH
                       double radius, std::initializer_list<int> neighbour_counts,
                       float photons_per_cell = 4) {
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
-  const PhotonMaps maps(test::device(), scene, photons, groups, {radius, photons_per_cell});
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
-  for (const int k : neighbour_counts) {
-    Estimator estimator(maps, scene, {k, 0});
-    CAPTURE(k, radius, photons_per_cell, photons.size());
-    CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons,
-                                  static_cast<float>(radius)) == 0);
+  for (const MapStructure structure : all_map_structures) {
+    const PhotonMaps maps(test::device(), scene, photons, groups,
+                          {radius, photons_per_cell, structure});
+    for (const int k : neighbour_counts) {
+      Estimator estimator(maps, scene, {k, 0});
+      CAPTURE(name_of(structure), k, radius, photons_per_cell, photons.size());
+      CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons,
+                                    static_cast<float>(radius)) == 0);
+    }
   }
 }
 
@@ -111,13 +114,16 @@ TEST_CASE("ties at the border of the neighbourhood go to the smallest photon ind
   PrimaryHits hits = test::uniform_hits(scene, 1, 34, false);
   hits.position[0] = centre;
   hits.sided_triangle[0] = 0;
-  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.2, 60}),
-                        {0.2, 4});
-  for (const int k : {1, 7, 39, 40}) {
-    Estimator estimator(maps, scene, {k, 0});
-    const NeighbourLists lists = estimator.nearest(hits);
-    for (int i = 0; i < k; ++i) {
-      CHECK(lists.photons[static_cast<std::size_t>(i)] == static_cast<std::uint32_t>(i));
+  for (const MapStructure structure : all_map_structures) {
+    const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.2, 60}),
+                          {0.2, 4, structure});
+    for (const int k : {1, 7, 39, 40}) {
+      Estimator estimator(maps, scene, {k, 0});
+      const NeighbourLists lists = estimator.nearest(hits);
+      CAPTURE(name_of(structure), k);
+      for (int i = 0; i < k; ++i) {
+        CHECK(lists.photons[static_cast<std::size_t>(i)] == static_cast<std::uint32_t>(i));
+      }
     }
   }
 }

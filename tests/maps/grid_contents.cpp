@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "maps/uniform_grid.hpp"
+#include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/photon_maps.hpp"
 #include "photon_sets.hpp"
@@ -57,7 +57,7 @@ bool in_cell(double coordinate, double minimum, std::uint32_t index, std::uint32
 
 Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
   Contents contents;
-  for (const maps::MapPage& page : photon_maps.grid().pages) {
+  for (const maps::MapPage& page : photon_maps.store().pages) {
     const auto grids = download(page.grids);
     const auto cell_start = download(page.cell_start);
     const auto entry_photon = download(page.entry_photon);
@@ -142,7 +142,7 @@ TEST_CASE("the shared grid struct has the same size on the device as on the host
   const PhotonMaps photon_maps(test::device(), scene, photons,
                                find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
   // A device that laid the struct out otherwise would not return the values it was sized with.
-  const auto grids = download(photon_maps.grid().pages.at(0).grids);
+  const auto grids = download(photon_maps.store().pages.at(0).grids);
   for (const PhotileGrid& grid : grids) {
     if (grid.columns == 0) continue;
     CHECK(grid.minimum_u == Approx(-0.1));
@@ -205,7 +205,7 @@ TEST_CASE("maps without any photon are built and empty") {
   const PhotonMaps photon_maps(test::device(), scene, photons,
                                find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
   CHECK(photon_maps.statistics().references == 0);
-  CHECK(photon_maps.grid().pages.empty());
+  CHECK(photon_maps.store().pages.empty());
 }
 
 TEST_CASE("two builds give the same bits") {
@@ -215,12 +215,12 @@ TEST_CASE("two builds give the same bits") {
   const NeighbourGroups groups = find_neighbour_groups(scene, {0.2, 60});
   const PhotonMaps first(test::device(), scene, photons, groups, {0.2, 4});
   const PhotonMaps second(test::device(), scene, photons, groups, {0.2, 4});
-  REQUIRE(first.grid().pages.size() == second.grid().pages.size());
-  for (std::size_t i = 0; i < first.grid().pages.size(); ++i) {
-    CHECK(download(first.grid().pages[i].entry_photon) ==
-          download(second.grid().pages[i].entry_photon));
-    CHECK(download(first.grid().pages[i].cell_start) ==
-          download(second.grid().pages[i].cell_start));
+  REQUIRE(first.store().pages.size() == second.store().pages.size());
+  for (std::size_t i = 0; i < first.store().pages.size(); ++i) {
+    CHECK(download(first.store().pages[i].entry_photon) ==
+          download(second.store().pages[i].entry_photon));
+    CHECK(download(first.store().pages[i].cell_start) ==
+          download(second.store().pages[i].cell_start));
   }
 }
 

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "maps/photon_pages.hpp"
-#include "maps/uniform_grid.hpp"
+#include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photon_sets.hpp"
 

@@ -1,4 +1,4 @@
-#include "maps/build_uniform_grid.hpp"
+#include "maps/build_maps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "maps/candidate_maps.hpp"
+#include "maps/gather_entries.hpp"
+#include "maps/kdtree_builder.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/photon_pages.hpp"
 #include "maps/prefix_sum.hpp"
@@ -20,11 +22,12 @@ using device::Defines;
 /// What every step of the build needs.
 struct Build {
   Context& context;
-  const UniformGrid& grid;
+  const MapStore& store;
   Buffer<float> corners;  ///< 9 floats per triangle
   std::vector<PhotonPage> photon_pages;
   float squared_reach = 0;
   float radius = 0;
+  float photons_per_cell = 0;
 
   template <class... Args>
   void run(const char* file, const char* kernel, std::size_t size, const Args&... args) {
@@ -80,8 +83,7 @@ void size_grids(Build& build, MapPage& page, const Buffer<std::uint32_t>& map_co
   auto first_cell = build.context.allocate<std::uint32_t>(maps + 1, "first cells of photon maps");
   build.context.fill(first_cell, 0u);
   build.run("grid/size_grids.cl", "size_grids", maps, maps, page.first_map, build.corners,
-            map_count, build.radius, build.grid.parameters.photons_per_cell, page.grids,
-            first_cell);
+            map_count, build.radius, build.photons_per_cell, page.grids, first_cell);
   exclusive_prefix_sum(build.context, first_cell);
   build.run("grid/size_grids.cl", "place_grids", maps, maps, first_cell, page.grids);
   page.cell_count = read_total(build.context, first_cell);
@@ -111,43 +113,6 @@ void fill_cells(Build& build, MapPage& page) {
   build.context.finish();  // cell_count is released here
 }
 
-void gather_entries(Build& build, MapPage& page) {
-  Context& context = build.context;
-  const SceneNeeds& needs = build.grid.needs;
-  page.entry_stride = page.entry_count + entry_padding;
-  page.entry_position = context.allocate<float>(3 * page.entry_stride, "photon map positions");
-  page.entry_flux = context.allocate<float>(3 * page.entry_stride, "photon map flux");
-  // Vector loads reach into the padding; what they find there is masked, but must be a number.
-  context.fill(page.entry_position, 0.0f);
-  context.fill(page.entry_flux, 0.0f);
-  Defines defines;
-  if (needs.light_count > 1) {
-    defines.set("MULTIPLE_LIGHTS");
-    page.entry_light = context.allocate<std::uint16_t>(page.entry_count, "photon map lights");
-  }
-  if (needs.glossy) {
-    defines.set("GLOSSY");
-    page.entry_incoming = context.allocate<float>(3 * page.entry_stride, "photon map directions");
-  }
-  const device::Kernel kernel = context.kernel("grid/gather_entries.cl", "gather_entries", defines);
-  for (const PhotonPage& photons : build.photon_pages) {
-    const auto launch = [&](const auto&... optional) {
-      context.run(kernel, page.entry_count, work_group_size, page.entry_count, page.entry_stride,
-                  page.entry_photon, photons.first_photon, photons.count, photons.position,
-                  photons.flux, page.entry_position, page.entry_flux, optional...);
-    };
-    if (needs.light_count > 1 && needs.glossy) {
-      launch(photons.light, page.entry_light, photons.incoming, page.entry_incoming);
-    } else if (needs.light_count > 1) {
-      launch(photons.light, page.entry_light);
-    } else if (needs.glossy) {
-      launch(photons.incoming, page.entry_incoming);
-    } else {
-      launch();
-    }
-  }
-}
-
 void upload_photons(Build& build, const CandidateMaps& candidates, const Photons& photons,
                     Progress& progress) {
   const std::uint64_t max_bytes = build.context.info().max_allocation_bytes;
@@ -157,20 +122,42 @@ void upload_photons(Build& build, const CandidateMaps& candidates, const Photons
   }
 }
 
+/// Brute force and trees take the photons of a map from a grid of one cell.
+float photons_per_cell(const PhotonMapParameters& parameters) {
+  constexpr float all = 1e12f;
+  return parameters.structure == MapStructure::uniform_grid ? parameters.photons_per_cell : all;
+}
+
+void add_page(MapStore& store, MapPage page) {
+  PhotonMapStatistics& statistics = store.statistics;
+  statistics.references += page.entry_count;
+  statistics.cells += page.cell_count;
+  statistics.nodes += page.tree_nodes.size();
+  statistics.device_bytes += page.device_bytes();
+  ++statistics.pages;
+  store.pages.push_back(std::move(page));
+}
+
 }  // namespace
 
 std::uint64_t MapPage::device_bytes() const {
   return grids.bytes() + cell_start.bytes() + entry_photon.bytes() + entry_position.bytes() +
-         entry_flux.bytes() + entry_light.bytes() + entry_incoming.bytes();
+         entry_flux.bytes() + entry_light.bytes() + entry_incoming.bytes() + entry_normal.bytes() +
+         tree_root.bytes() + tree_nodes.bytes();
 }
 
-void build_uniform_grid(UniformGrid& grid, const Scene& scene, const Photons& photons,
-                        const NeighbourGroups& groups, Progress& progress) {
-  Context& context = grid.device->context();
+void build_maps_per_triangle(MapStore& store, const Scene& scene, const Photons& photons,
+                             const NeighbourGroups& groups, Progress& progress) {
+  Context& context = store.device->context();
   const std::uint64_t max_bytes = context.info().max_allocation_bytes;
-  Build build{context, grid, {}, {}, 0, static_cast<float>(grid.parameters.radius)};
-  const float reach = reach_of(scene, grid.parameters.radius);
-  build.squared_reach = reach * reach;
+  const float reach = reach_of(scene, store.parameters.radius);
+  Build build{context,
+              store,
+              {},
+              {},
+              reach * reach,
+              static_cast<float>(store.parameters.radius),
+              photons_per_cell(store.parameters)};
   const std::vector<float> corners = corner_coordinates(scene);
   build.corners = context.upload(std::span<const float>(corners), "triangle corners");
   upload_photons(build, find_candidate_maps(scene, photons, groups, reach), photons, progress);
@@ -179,7 +166,7 @@ void build_uniform_grid(UniformGrid& grid, const Scene& scene, const Photons& ph
   auto map_count = context.allocate<std::uint32_t>(map_total, "photons per map");
   const std::vector<std::uint32_t> counts = count_photons(build, map_total, map_count);
 
-  PhotonMapStatistics& statistics = grid.statistics;
+  PhotonMapStatistics& statistics = store.statistics;
   for (const MapRange range : plan_map_pages(counts, max_bytes)) {
     progress.throw_if_cancelled();
     MapPage page;
@@ -188,19 +175,48 @@ void build_uniform_grid(UniformGrid& grid, const Scene& scene, const Photons& ph
     page.entry_count = static_cast<std::uint32_t>(range.entries);
     size_grids(build, page, map_count);
     fill_cells(build, page);
-    gather_entries(build, page);
+    if (is_tree(store.parameters.structure)) {
+      build_trees(context, store.parameters.structure, photons, counts, page);
+    }
+    gather_entries(context, store.needs, build.photon_pages, page);
     context.finish();
-    statistics.references += range.entries;
-    statistics.cells += page.cell_count;
-    statistics.device_bytes += page.device_bytes();
-    grid.pages.push_back(std::move(page));
+    add_page(store, std::move(page));
     progress.advance(range.entries);
   }
-  statistics.photons = photons.size();
-  statistics.pages = grid.pages.size();
   statistics.maps = static_cast<std::uint64_t>(
       std::count_if(counts.begin(), counts.end(), [](std::uint32_t count) { return count > 0; }));
   statistics.largest_map = counts.empty() ? 0 : *std::max_element(counts.begin(), counts.end());
+}
+
+void build_global_map(MapStore& store, const Scene& scene, const Photons& photons) {
+  const auto count = static_cast<std::uint32_t>(photons.size());
+  if (count == 0) return;
+  Context& context = store.device->context();
+  const std::vector<std::uint32_t> counts{count};
+  if (plan_map_pages(counts, context.info().max_allocation_bytes).size() != 1) return;
+  MapPage page;
+  page.first_map = 0;
+  page.last_map = static_cast<std::uint32_t>(2 * scene.triangle_count());
+  page.entry_count = count;
+  build_global_tree(context, photons, page);
+
+  const PhotonPage all = upload_photon_records(context, photons, {0, count});
+  gather_entries(context, store.needs, std::span(&all, 1), page);
+  std::vector<float> normals(3 * std::size_t{page.last_map});
+  for (std::uint32_t map = 0; map < page.last_map; ++map) {
+    const glm::vec3 normal(sided_normal(scene, map));
+    for (int c = 0; c < 3; ++c)
+      normals[3 * std::size_t{map} + static_cast<std::size_t>(c)] = normal[c];
+  }
+  store.map_normal = context.upload(std::span<const float>(normals), "triangle normals");
+  page.entry_normal = context.allocate<float>(3 * page.entry_stride, "photon normals");
+  context.run(context.kernel("kdtree/gather_normals.cl", "gather_normals", Defines{}), count,
+              work_group_size, count, page.entry_stride, page.entry_photon, all.own_map,
+              store.map_normal, page.entry_normal);
+  context.finish();
+  store.statistics.maps = 1;
+  store.statistics.largest_map = count;
+  add_page(store, std::move(page));
 }
 
 }  // namespace photile::maps

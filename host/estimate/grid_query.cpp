@@ -1,0 +1,54 @@
+#include "estimate/query.hpp"
+#include "estimate/specialisation.hpp"
+
+namespace photile::estimate {
+namespace {
+
+class GridQuery : public Query {
+ public:
+  GridQuery(const maps::MapStore& store, std::uint32_t neighbours, float radius)
+      : store_(store),
+        context_(store.device->context()),
+        neighbours_(neighbours),
+        radius_(radius),
+        defines_(specialise(context_.info(), store.needs, static_cast<int>(neighbours)).defines()) {
+  }
+
+  void estimate(const PageHits& hits, device::Buffer<float>& irradiance,
+                device::Buffer<float>& radiance) override {
+    const device::Kernel kernel = context_.kernel("estimate/estimate.cl", "estimate", defines_);
+    const maps::MapPage& page = hits.page;
+    with_scene_arguments(store_.needs, hits, radiance, [&](const auto&... scene) {
+      context_.run(kernel, hits.count, maps::work_group_size, hits.count, hits.first,
+                   hits.hits.position, hits.hits.map, page.first_map, page.grids, page.cell_start,
+                   page.entry_stride, page.entry_position, page.entry_flux, page.entry_photon,
+                   scene..., neighbours_, radius_, store_.needs.light_count, irradiance);
+    });
+  }
+
+  void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
+               device::Buffer<float>& squared_radius) override {
+    const maps::MapPage& page = hits.page;
+    context_.run(context_.kernel("estimate/nearest.cl", "nearest", defines_), hits.count,
+                 maps::work_group_size, hits.count, hits.first, hits.hits.position, hits.hits.map,
+                 page.first_map, page.grids, page.cell_start, page.entry_stride,
+                 page.entry_position, page.entry_photon, neighbours_, radius_, photons,
+                 squared_radius);
+  }
+
+ private:
+  const maps::MapStore& store_;
+  device::Context& context_;
+  std::uint32_t neighbours_;
+  float radius_;
+  device::Defines defines_;
+};
+
+}  // namespace
+
+std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
+                                       float radius) {
+  return std::make_unique<GridQuery>(store, neighbours, radius);
+}
+
+}  // namespace photile::estimate

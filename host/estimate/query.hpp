@@ -1,0 +1,63 @@
+// What answers queries on one page of photon maps: the kernels of a structure.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "device/context.hpp"
+#include "estimate/hit_buffers.hpp"
+#include "maps/map_store.hpp"
+
+namespace photile::estimate {
+
+/// Hits [first, first + count) of a batch, which all lie on maps of one page.
+struct PageHits {
+  const HitBuffers& hits;
+  const maps::MapPage& page;
+  std::uint32_t first = 0, count = 0;
+};
+
+/// The kernels of one structure for one k and radius. Outputs of hits that lie on no page, or on
+/// maps without photons, keep what they were filled with.
+class Query {
+ public:
+  virtual ~Query() = default;
+
+  /// Irradiance, and radiance in glossy scenes: 3 floats per hit and light. Before: zero.
+  virtual void estimate(const PageHits& hits, device::Buffer<float>& irradiance,
+                        device::Buffer<float>& radiance) = 0;
+
+  /// k photon indices per hit, in any order. Before: none.
+  virtual void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
+                       device::Buffer<float>& squared_radius) = 0;
+};
+
+std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
+                                  float radius);
+std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
+                                       float radius);
+std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
+                                       float radius);
+
+/// Calls launch(...) with the kernel arguments that the scene's needs add: the entries' lights,
+/// then directions, lobes and the radiance output. Kernels take them in this order.
+template <class Launch>
+void with_scene_arguments(const SceneNeeds& needs, const PageHits& page_hits,
+                          device::Buffer<float>& radiance, Launch launch) {
+  const auto& [hits, page, first, count] = page_hits;
+  const auto glossy = [&](const auto&... light) {
+    if (needs.glossy) {
+      launch(light..., page.entry_incoming, hits.outgoing, hits.normal, hits.albedo, hits.specular,
+             hits.roughness, radiance);
+    } else {
+      launch(light...);
+    }
+  };
+  if (needs.light_count > 1) {
+    glossy(page.entry_light);
+  } else {
+    glossy();
+  }
+}
+
+}  // namespace photile::estimate

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <limits>
+
+#include "estimate/query.hpp"
+
+namespace photile::estimate {
+namespace {
+
+/// Largest k whose list is kept in private memory.
+constexpr std::uint32_t private_list_limit = 256;
+/// Bytes of lists in global memory, for larger k: bounds the work-items in flight.
+constexpr std::uint64_t global_list_bytes = 64u << 20;
+
+class TreeQuery : public Query {
+ public:
+  TreeQuery(const maps::MapStore& store, std::uint32_t neighbours, float radius)
+      : store_(store),
+        context_(store.device->context()),
+        neighbours_(neighbours),
+        radius_(radius),
+        global_(store.parameters.structure == MapStructure::kdtree_global) {
+    if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
+    if (global_) defines_.set("NORMALS");
+    if (neighbours <= private_list_limit) {
+      defines_.set("LIST_CAPACITY", static_cast<long long>(neighbours));
+    } else {
+      defines_.set("LIST_IN_GLOBAL_MEMORY");
+      constexpr std::uint64_t group = maps::work_group_size;
+      const std::uint64_t bytes_per_item = std::uint64_t{neighbours} * 8;
+      work_items_ = std::max(group, global_list_bytes / bytes_per_item / group * group);
+      list_distance_ = context_.allocate<float>(work_items_ * neighbours, "candidate lists");
+      list_entry_ = context_.allocate<std::uint32_t>(work_items_ * neighbours, "candidate lists");
+    }
+  }
+
+  void estimate(const PageHits& hits, device::Buffer<float>& irradiance,
+                device::Buffer<float>& radiance) override {
+    device::Defines defines = defines_;
+    if (store_.needs.light_count > 1) defines.set("MULTIPLE_LIGHTS");
+    if (store_.needs.glossy) defines.set("GLOSSY");
+    const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
+    const maps::MapPage& page = hits.page;
+    with_tree_arguments(page, [&](const auto&... tree) {
+      with_scene_arguments(store_.needs, hits, radiance, [&](const auto&... scene) {
+        context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
+                     hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
+                     page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
+                     page.entry_position, page.entry_flux, page.entry_photon, tree..., scene...,
+                     neighbours_, radius_, store_.needs.light_count, irradiance);
+      });
+    });
+  }
+
+  void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
+               device::Buffer<float>& squared_radius) override {
+    const device::Kernel kernel = context_.kernel("kdtree/nearest.cl", "nearest", defines_);
+    const maps::MapPage& page = hits.page;
+    with_tree_arguments(page, [&](const auto&... tree) {
+      context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
+                   hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
+                   page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
+                   page.entry_position, page.entry_photon, tree..., neighbours_, radius_, photons,
+                   squared_radius);
+    });
+  }
+
+ private:
+  /// Calls launch(...) with the arguments that a global tree and lists in global memory add.
+  template <class Launch>
+  void with_tree_arguments(const maps::MapPage& page, Launch launch) {
+    const auto lists = [&](const auto&... normals) {
+      if (list_entry_.size() > 0) {
+        launch(normals..., list_distance_, list_entry_);
+      } else {
+        launch(normals...);
+      }
+    };
+    if (global_) {
+      // The slack of normals_agree, which groups are made with.
+      const float least_cosine = static_cast<float>(store_.cos_angle - 1e-6);
+      lists(page.entry_normal, store_.map_normal, least_cosine);
+    } else {
+      lists();
+    }
+  }
+
+  const maps::MapStore& store_;
+  device::Context& context_;
+  std::uint32_t neighbours_;
+  float radius_;
+  bool global_;
+  device::Defines defines_;
+  std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();
+  device::Buffer<float> list_distance_;
+  device::Buffer<std::uint32_t> list_entry_;
+};
+
+}  // namespace
+
+std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
+                                       float radius) {
+  return std::make_unique<TreeQuery>(store, neighbours, radius);
+}
+
+std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
+                                  float radius) {
+  switch (store.parameters.structure) {
+    case MapStructure::kdtree_2d:
+    case MapStructure::kdtree_3d:
+    case MapStructure::kdtree_global:
+      return make_tree_query(store, neighbours, radius);
+    case MapStructure::uniform_grid:
+    case MapStructure::brute_force:
+      break;
+  }
+  return make_grid_query(store, neighbours, radius);
+}
+
+}  // namespace photile::estimate

@@ -1,0 +1,93 @@
+// The radiance estimate over kd-trees, for comparison with the uniform grid: the same neighbours,
+// the same sums (estimate/accumulate.clh).
+//
+// Symbols the host defines: those of estimate/accumulate.clh and kdtree/traverse.clh, and
+//   LIST_CAPACITY   k, where the list is in private memory; else LIST_IN_GLOBAL_MEMORY
+
+#include "estimate/accumulate.clh"
+#include "estimate/area.clh"
+#include "kdtree/query.clh"
+
+// Work-items stride over the hits [first_hit, first_hit + hit_count) of one page.
+//   root            per map of the page: its root node, 0xFFFFFFFF without photons
+//   frames          per map of the page: the frame of its plane (TREE_2D)
+//   map_normal      3 floats per sided triangle (NORMALS)
+//   list_*          k per work-item (LIST_IN_GLOBAL_MEMORY)
+// Others as in estimate/estimate.cl.
+__kernel void estimate(uint hit_count, uint first_hit, __global const float* hit_position,
+                       __global const uint* hit_map, uint first_map, __global const uint* root,
+                       __global const PhotileGrid* frames, __global const PhotileTreeNode* nodes,
+                       uint entry_stride, __global const float* entry_position,
+                       __global const float* entry_flux, __global const uint* entry_photon,
+#ifdef NORMALS
+                       __global const float* entry_normal, __global const float* map_normal,
+                       float least_cosine,
+#endif
+#ifdef LIST_IN_GLOBAL_MEMORY
+                       __global float* list_distance, __global uint* list_entry,
+#endif
+#ifdef MULTIPLE_LIGHTS
+                       __global const ushort* entry_light,
+#endif
+#ifdef GLOSSY
+                       __global const float* entry_incoming, __global const float* hit_outgoing,
+                       __global const float* hit_normal, __global const float* hit_albedo,
+                       __global const float* hit_specular, __global const float* hit_roughness,
+                       __global float* radiance,
+#endif
+                       uint k, float radius, uint light_count, __global float* irradiance) {
+  for (uint h = get_global_id(0); h < hit_count; h += get_global_size(0)) {
+    const uint hit = first_hit + h;
+    __global float* hit_irradiance = irradiance + 3 * hit * light_count;
+#ifdef GLOSSY
+    __global float* hit_radiance = radiance + 3 * hit * light_count;
+    const Surface surface = {vload3(hit, hit_outgoing), vload3(hit, hit_normal),
+                             vload3(hit, hit_albedo), vload3(hit, hit_specular),
+                             hit_roughness[hit]};
+#endif
+    const uint map = hit_map[hit];
+#ifdef LIST_IN_GLOBAL_MEMORY
+    __global float* distances = list_distance + (size_t)get_global_id(0) * k;
+    __global uint* listed = list_entry + (size_t)get_global_id(0) * k;
+#else
+    float distances[LIST_CAPACITY];
+    uint listed[LIST_CAPACITY];
+#endif
+    NearestList list = empty_list(distances, listed, entry_photon, k, radius);
+    Tree tree;
+    tree.nodes = nodes;
+    tree.position = entry_position;
+    tree.stride = entry_stride;
+#ifdef NORMALS
+    tree.normal = entry_normal;
+    tree.hit_normal = vload3(map, map_normal);
+    tree.least_cosine = least_cosine;
+#endif
+    nearest_in_tree(&tree, root[map - first_map], vload3(hit, hit_position),
+                    frames + (map - first_map), &list);
+    if (list.size == 0) continue;
+
+    Entries entries;
+    entries.flux = entry_flux;
+#ifdef MULTIPLE_LIGHTS
+    entries.light = entry_light;
+#endif
+#ifdef GLOSSY
+    entries.incoming = entry_incoming;
+#endif
+    // A full list's farthest photon, at 0, only sets the radius (but for k = 1).
+    const uint first = list.size == k && k > 1 ? 1 : 0;
+    for (uint i = first; i < list.size; ++i) {
+      add_entry(&entries, list.entry[i], entry_stride,
+#ifdef GLOSSY
+                &surface, hit_radiance,
+#endif
+                hit_irradiance);
+    }
+    const float per_area = 1.0f / estimate_area(squared_radius_of(&list), radius);
+    for (uint i = 0; i < 3 * light_count; ++i) hit_irradiance[i] *= per_area;
+#ifdef GLOSSY
+    for (uint i = 0; i < 3 * light_count; ++i) hit_radiance[i] *= per_area;
+#endif
+  }
+}
