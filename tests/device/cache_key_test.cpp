@@ -15,7 +15,7 @@ DeviceInfo device() {
   info.platform = "platform";
   info.vendor = "vendor";
   info.version = "OpenCL 1.2";
-  info.driver_version = "1";
+  info.driver_version = "driver 1";
   info.platform_version = "OpenCL 1.2 platform";
   return info;
 }
