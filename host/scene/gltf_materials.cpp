@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/gltf_document.hpp"
@@ -200,7 +201,13 @@ std::vector<TextureCoordinates> add_gltf_materials(const tinygltf::Model& model,
     coordinates.push_back(
         converter.add(model.materials[i], name.empty() ? fmt::format("material {}", i) : name));
   }
-  coordinates.push_back(converter.add(tinygltf::Material(), "default"));
+  // Only where it is used: it has a specular lobe, which costs later stages something.
+  const bool default_used =
+      std::any_of(model.meshes.begin(), model.meshes.end(), [](const tinygltf::Mesh& mesh) {
+        return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                           [](const tinygltf::Primitive& p) { return p.material < 0; });
+      });
+  if (default_used) coordinates.push_back(converter.add(tinygltf::Material(), "default"));
   note_blender_units(model, context);
   return coordinates;
 }

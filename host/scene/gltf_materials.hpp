@@ -20,8 +20,9 @@ struct TextureCoordinates {
   glm::dvec2 operator()(const glm::dvec2& uv) const { return linear * uv + offset; }
 };
 
-/// Converts all materials, and appends glTF's default material at the end. What photile
-/// approximates is named in a warning. Returns the texture coordinates of each material.
+/// Converts all materials, in the order of the file, and appends glTF's default material where some
+/// primitive has none. What photile approximates is named in a warning. Returns the texture
+/// coordinates of each material.
 std::vector<TextureCoordinates> add_gltf_materials(const tinygltf::Model& model,
                                                    const AccessorReader& accessors,
                                                    ImportContext& context);

@@ -127,7 +127,7 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
 
 std::uint32_t MeshImporter::material_of(const tinygltf::Primitive& primitive,
                                         const std::string& use) const {
-  const std::size_t default_material = context_.scene.materials.size() - 1;
+  const std::size_t default_material = model_.materials.size();
   if (primitive.material < 0) return static_cast<std::uint32_t>(default_material);
   if (static_cast<std::size_t>(primitive.material) >= default_material) {
     throw context_.error(
