@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "photile/device/bsdf.h"
+
 namespace photile::scene_io {
+namespace {
+
+constexpr double min_alpha = PHOTILE_MIN_GGX_ALPHA;
+
+}  // namespace
 
 float ggx_alpha_from_roughness(double roughness) {
-  return static_cast<float>(
-      std::clamp(roughness * roughness, static_cast<double>(min_ggx_alpha), 1.0));
+  return static_cast<float>(std::clamp(roughness * roughness, min_alpha, 1.0));
 }
 
 float ggx_alpha_from_phong_exponent(double exponent) {
   const double alpha = std::sqrt(2.0 / (std::max(exponent, 0.0) + 2.0));
-  return static_cast<float>(std::clamp(alpha, static_cast<double>(min_ggx_alpha), 1.0));
+  return static_cast<float>(std::clamp(alpha, min_alpha, 1.0));
 }
 
 double f0_from_index_of_refraction(double index) {
@@ -29,7 +35,7 @@ void set_metallic_roughness(const MetallicRoughness& model, Material& material) 
                glm::dvec3(1.0)) *
       std::clamp(model.specular_factor, 0.0, 1.0);
   const glm::dvec3 specular = glm::clamp(glm::mix(dielectric, base, metallic), 0.0, 1.0);
-  const glm::dvec3 diffuse = glm::min(base * (1.0 - metallic), 1.0 - specular);
+  const glm::dvec3 diffuse = base * (1.0 - metallic);
   const bool no_diffuse = base == glm::dvec3(0.0) || metallic >= mirror_metallic;
   if (no_diffuse && roughness <= mirror_roughness && specular != glm::dvec3(0.0)) {
     material.interaction = Interaction::mirror;

@@ -5,10 +5,6 @@
 
 namespace photile::scene_io {
 
-/// The smoothest GGX lobe that photons are stored on. Below it a surface is a mirror to the eye,
-/// and a density estimate of its lobe is only noise.
-inline constexpr float min_ggx_alpha = 0.02f;
-
 /// At or below this glTF roughness a metal counts as a perfect mirror.
 inline constexpr double mirror_roughness = 0.05;
 /// At or above this metallic factor a surface counts as a metal.
@@ -19,10 +15,12 @@ inline constexpr float mirror_phong_exponent = 1000.0f;
 /// Lambertian albedo for a surface whose file colour cannot be had.
 inline constexpr float missing_albedo = 0.5f;
 
-/// GGX alpha of a perceptual roughness in [0,1] (glTF, MTL Pr): its square, clamped.
+/// GGX alpha of a perceptual roughness in [0,1] (glTF, MTL Pr): its square, at least
+/// PHOTILE_MIN_GGX_ALPHA.
 float ggx_alpha_from_roughness(double roughness);
 
-/// GGX alpha with the width of a Blinn-Phong lobe: sqrt(2 / (exponent + 2)), clamped. Source:
+/// GGX alpha with the width of a Blinn-Phong lobe: sqrt(2 / (exponent + 2)), clamped
+/// likewise. Source:
 /// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", section 5.2.
 float ggx_alpha_from_phong_exponent(double exponent);
 
@@ -39,8 +37,9 @@ struct MetallicRoughness {
   glm::dvec3 specular_color{1.0};    ///< KHR_materials_specular
 };
 
-/// Sets the diffuse and specular part of `material`. Diffuse + specular never exceeds 1: the
-/// diffuse part gives way, as the Fresnel term of glTF makes it do.
+/// Sets the diffuse and specular part of `material`; smooth metals become mirrors. White stays
+/// white under its specular lobe, since the reflection model (device/bsdf.h) mixes the two by
+/// Fresnel's law as glTF does.
 void set_metallic_roughness(const MetallicRoughness& model, Material& material);
 
 /// Scales diffuse and specular together where their sum exceeds 1 in a channel. True if it did.

@@ -28,7 +28,6 @@ std::uint32_t TextureStore::add(const std::string& name, std::span<const unsigne
 void use_missing_texture_colour(Material& material) {
   material.diffuse = glm::vec3(missing_albedo);
   material.diffuse_texture = none;
-  conserve_energy(material);
 }
 
 }  // namespace photile::scene_io

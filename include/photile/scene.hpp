@@ -62,7 +62,8 @@ struct Material {
   glm::vec3 diffuse{0.0f};   ///< Lambertian albedo in [0,1], multiplied by the texture
   std::uint32_t diffuse_texture = none;
   glm::vec3 specular{0.0f};  ///< reflectance at normal incidence, F0; black = no specular lobe
-  float roughness = 1.0f;    ///< GGX alpha in [min_ggx_alpha, 1]; only where `specular` is not black
+  /// GGX alpha in [PHOTILE_MIN_GGX_ALPHA, 1]; only where `specular` is not black.
+  float roughness = 1.0f;
   glm::vec3 transmission{1.0f};  ///< colour of what passes a glass surface
   float index_of_refraction = 1.5f;
   bool thin = false;  ///< glass without volume: refraction does not bend the ray

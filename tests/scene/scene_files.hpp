@@ -1,10 +1,7 @@
 // Small scene files that tests write to a folder of their own.
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -14,42 +11,24 @@
 
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
+#include "temporary_folder.hpp"
 
 namespace photile::tests {
 
-/// A new folder that goes away with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    static std::atomic<int> number = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("photile-scene-" + std::to_string(::getpid()) + "-" + std::to_string(number++));
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
+/// A temporary folder that scene files are written to.
+struct SceneFolderOnDisk : TemporaryFolder {
   std::filesystem::path write(const std::string& name, const std::string& content) const {
-    const std::filesystem::path file = path_ / name;
+    const std::filesystem::path file = path / name;
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << content;
     return file;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// Loads an OBJ text, with an MTL text as materials.mtl beside it.
 inline Scene load_obj(const std::string& obj, const std::string& mtl,
                       const SceneLoadOptions& options = {}) {
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   folder.write("materials.mtl", mtl);
   return load_scene(folder.write("scene.obj", "mtllib materials.mtl\n" + obj), options);
 }
@@ -102,7 +81,7 @@ inline std::string square_buffer() {
 }
 
 inline Scene load_gltf(const nlohmann::json& document, const SceneLoadOptions& options = {}) {
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   folder.write("square.bin", square_buffer());
   return load_scene(folder.write("scene.gltf", document.dump()), options);
 }

@@ -16,7 +16,7 @@ using nlohmann::json;
 /// Loading `content` under `name` must fail with one line that names the file and holds `words`.
 void check_refused(const std::string& name, const std::string& content,
                    const std::vector<std::string>& words) {
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   folder.write("square.bin", square_buffer());
   const std::filesystem::path file = folder.write(name, content);
   const std::string error = input_error_of([&] { load_scene(file); });
@@ -27,19 +27,19 @@ void check_refused(const std::string& name, const std::string& content,
 }
 
 TEST_CASE("missing, empty, unknown and special files are refused by name") {
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   const auto error_for = [](const std::filesystem::path& file) {
     return input_error_of([&] { load_scene(file); });
   };
-  CHECK(error_for(folder.path() / "absent.obj").find("No such file") != std::string::npos);
-  CHECK(error_for(folder.path() / "absent.gltf").find("absent.gltf") != std::string::npos);
+  CHECK(error_for(folder.path / "absent.obj").find("No such file") != std::string::npos);
+  CHECK(error_for(folder.path / "absent.gltf").find("absent.gltf") != std::string::npos);
   check_refused("empty.obj", "", {"empty"});
   check_refused("empty.gltf", "", {"empty"});
   check_refused("scene.fbx", "x", {".fbx", ".gltf"});
-  std::filesystem::create_directory(folder.path() / "folder.obj");
-  CHECK(error_for(folder.path() / "folder.obj").find("not a regular file") != std::string::npos);
-  REQUIRE(::mkfifo((folder.path() / "pipe.obj").c_str(), 0600) == 0);
-  CHECK(error_for(folder.path() / "pipe.obj").find("not a regular file") != std::string::npos);
+  std::filesystem::create_directory(folder.path / "folder.obj");
+  CHECK(error_for(folder.path / "folder.obj").find("not a regular file") != std::string::npos);
+  REQUIRE(::mkfifo((folder.path / "pipe.obj").c_str(), 0600) == 0);
+  CHECK(error_for(folder.path / "pipe.obj").find("not a regular file") != std::string::npos);
 }
 
 TEST_CASE("files that are no text and no JSON are refused") {
@@ -119,7 +119,7 @@ TEST_CASE("glTF indices, accessors and views that leave their bounds are refused
 }
 
 TEST_CASE("a glTF vertex that is not finite drops its triangles") {
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   std::string buffer = square_buffer();
   const float infinity = std::numeric_limits<float>::infinity();
   std::memcpy(&buffer[3 * 12], &infinity, sizeof infinity);  // the last corner
@@ -130,13 +130,13 @@ TEST_CASE("a glTF vertex that is not finite drops its triangles") {
 }
 
 TEST_CASE("buffers and libraries outside the scene's folder are not read") {
-  const TemporaryFolder folder;
-  const std::string secret = (folder.path() / "outside.bin").string();
+  const SceneFolderOnDisk folder;
+  const std::string secret = (folder.path / "outside.bin").string();
   folder.write("outside.bin", square_buffer());
   folder.write("outside.mtl", lamp_and_wall);
-  std::filesystem::create_directory(folder.path() / "inner");
-  std::filesystem::create_symlink("../outside.bin", folder.path() / "inner/link.bin");
-  REQUIRE(::mkfifo((folder.path() / "inner/pipe.bin").c_str(), 0600) == 0);
+  std::filesystem::create_directory(folder.path / "inner");
+  std::filesystem::create_symlink("../outside.bin", folder.path / "inner/link.bin");
+  REQUIRE(::mkfifo((folder.path / "inner/pipe.bin").c_str(), 0600) == 0);
   const auto load_with_uri = [&](const std::string& uri, bool allow_outside) {
     json document = square_document();
     document["buffers"][0]["uri"] = uri;
@@ -167,7 +167,7 @@ TEST_CASE("buffers and libraries outside the scene's folder are not read") {
 }
 
 TEST_CASE("names with dots inside are files like any other") {
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   folder.write("sub/A..B.bin", square_buffer());
   json document = square_document();
   document["buffers"][0]["uri"] = "sub/A..B.bin";

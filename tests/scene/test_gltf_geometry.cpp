@@ -43,7 +43,7 @@ TEST_CASE("a mirrored node keeps the front of its triangles where the mirror put
 TEST_CASE("shading normals follow the inverse transpose of a node's transform") {
   nlohmann::json document = square_document();
   // Normals (0, 0.6, 0.8) by way of the buffer; scale (1, 2, 1) makes them (0, 0.3, 0.8).
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   std::string buffer = square_buffer().substr(0, 92);
   for (int i = 0; i < 4; ++i) buffer += bytes_of<float>({0.0f, 0.6f, 0.8f});
   folder.write("square.bin", buffer);
@@ -102,7 +102,7 @@ TEST_CASE("a sparse accessor replaces the elements that it names") {
   document["accessors"][0]["sparse"] = {{"count", 1},
                                         {"indices", {{"bufferView", 4}, {"componentType", 5123}}},
                                         {"values", {{"bufferView", 5}}}};
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   folder.write("square.bin", square_buffer());
   folder.write("sparse.bin", bytes_of<std::uint16_t>({2, 0}) + bytes_of<float>({3, 3, 0}));
   const Scene scene = load_scene(folder.write("scene.gltf", document.dump()));
@@ -110,7 +110,7 @@ TEST_CASE("a sparse accessor replaces the elements that it names") {
   CHECK(total_area(scene) == Approx(3.0));
   // An index beyond the accessor is refused.
   folder.write("sparse.bin", bytes_of<std::uint16_t>({4, 0}) + bytes_of<float>({3, 3, 0}));
-  CHECK(input_error_of([&] { load_scene(folder.path() / "scene.gltf"); }).find("sparse index 4") !=
+  CHECK(input_error_of([&] { load_scene(folder.path / "scene.gltf"); }).find("sparse index 4") !=
         std::string::npos);
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("quantised positions and texture coordinates are read") {
                               {"count", 4},
                               {"type", "VEC3"}};
   document["bufferViews"][0]["byteStride"] = 8;
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   std::string buffer = square_buffer();
   buffer.replace(
       0, 32,
@@ -142,7 +142,7 @@ TEST_CASE("a binary glTF file gives the same scene as its text form") {
   const auto word = [](std::size_t value) {
     return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(value)});
   };
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   const Scene binary = load_scene(
       folder.write("scene.glb", "glTF" + word(2) + word(12 + 8 + json.size() + 8 + data.size()) +
                                     word(json.size()) + "JSON" + json + word(data.size()) +

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -87,8 +89,8 @@ TEST_CASE("an OBJ polygon of more corners than a byte counts keeps its area") {
   constexpr int corners = 300;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / corners;
-    obj += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
-    face += " " + std::to_string(i + 1);
+    obj += fmt::format("v {} {} 0\n", std::cos(angle), std::sin(angle));
+    face += fmt::format(" {}", i + 1);
   }
   const Scene scene = load_obj(obj + "usemtl lamp\n" + face + "\n", lamp_and_wall);
   CHECK(scene.triangle_count() == corners - 2);
@@ -112,7 +114,7 @@ TEST_CASE("what an OBJ holds beyond surfaces is named in a warning") {
 }
 
 TEST_CASE("a missing material library and a missing material are named and become mid grey") {
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   folder.write("lamp.mtl", lamp_and_wall);
   const Scene scene =
       load_scene(folder.write("scene.obj", "mtllib absent.mtl\nmtllib lamp.mtl\n" + unit_square +

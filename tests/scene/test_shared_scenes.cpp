@@ -39,9 +39,10 @@ void check_invariants(const Scene& scene) {
     bad += light != none && light >= scene.lights.size();
   }
   for (const Material& material : scene.materials) {
-    const glm::vec3 sum = material.diffuse + (material.glossy() ? material.specular : glm::vec3(0));
-    bad += !glm::all(glm::greaterThanEqual(material.diffuse, glm::vec3(0.0f)));
-    bad += !glm::all(glm::lessThanEqual(sum, glm::vec3(1.0f + 1e-6f)));
+    for (const glm::vec3& part : {material.diffuse, material.specular}) {
+      bad += !glm::all(glm::greaterThanEqual(part, glm::vec3(0.0f)));
+      bad += !glm::all(glm::lessThanEqual(part, glm::vec3(1.0f)));
+    }
   }
   for (const Light& light : scene.lights) bad += !(light.power > 0.0);
   CHECK(bad == 0);

@@ -71,8 +71,8 @@ TEST_CASE("texels are decoded from sRGB before they are mixed") {
 }
 
 TEST_CASE("pictures of 1 to 4 channels decode to the colours written, alpha left alone") {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "t.png";
+  const SceneFolderOnDisk folder;
+  const std::filesystem::path file = folder.path / "t.png";
   for (int channels = 1; channels <= 4; ++channels) {
     std::vector<std::uint8_t> pixel{200, 100, 50, 0};
     pixel.resize(static_cast<std::size_t>(channels));
@@ -86,8 +86,8 @@ TEST_CASE("pictures of 1 to 4 channels decode to the colours written, alpha left
 }
 
 TEST_CASE("linear pictures are clamped and come back within half an 8-bit step") {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "t.exr";
+  const SceneFolderOnDisk folder;
+  const std::filesystem::path file = folder.path / "t.exr";
   write_picture<float>(file, 2, 1, 3, {0.5f, 0.1f, 0.9f, std::nanf(""), -1.0f, 7.0f},
                        OIIO::TypeDesc::FLOAT);
   const Texture texture = scene_io::decode_texture("t.exr", read_bytes(file));
@@ -99,8 +99,8 @@ TEST_CASE("linear pictures are clamped and come back within half an 8-bit step")
 }
 
 TEST_CASE("a PNG header that promises too many pixels is refused before decoding") {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "t.png";
+  const SceneFolderOnDisk folder;
+  const std::filesystem::path file = folder.path / "t.png";
   write_picture<std::uint8_t>(file, 1, 1, 3, {1, 2, 3}, OIIO::TypeDesc::UINT8);
   std::vector<unsigned char> bytes = read_bytes(file);
   // Width 20,000 in the IHDR chunk, and the checksum that makes it a valid header.
@@ -118,8 +118,8 @@ TEST_CASE("a PNG header that promises too many pixels is refused before decoding
 }
 
 TEST_CASE("truncated and unknown pictures are refused by name") {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "t.png";
+  const SceneFolderOnDisk folder;
+  const std::filesystem::path file = folder.path / "t.png";
   write_picture<std::uint8_t>(file, 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 7),
                               OIIO::TypeDesc::UINT8);
   std::vector<unsigned char> bytes = read_bytes(file);
@@ -131,9 +131,9 @@ TEST_CASE("truncated and unknown pictures are refused by name") {
 
 /// A textured square; its picture is red in the left half and green in the right one.
 Scene textured(const std::function<void(json&)>& change, bool with_picture = true) {
-  const TemporaryFolder folder;
+  const SceneFolderOnDisk folder;
   if (with_picture) {
-    write_picture<std::uint8_t>(folder.path() / "my picture.png", 2, 1, 3, {255, 0, 0, 0, 255, 0},
+    write_picture<std::uint8_t>(folder.path / "my picture.png", 2, 1, 3, {255, 0, 0, 0, 255, 0},
                                 OIIO::TypeDesc::UINT8);
   }
   json document = square_document();
