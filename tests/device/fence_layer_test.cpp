@@ -6,7 +6,8 @@
 namespace {
 
 ChildResult probe(const char* mode, bool fence) {
-  // The address sanitizer would turn the signal into an exit code of its own; PoCL leaks.
+  // The address sanitizer would turn the signal into an exit code of its own. Leaks are not the
+  // subject here.
   ChildEnvironment environment = {{"ASAN_OPTIONS", "handle_segv=0:detect_leaks=0"}};
   if (fence) environment["OPENCL_LAYERS"] = PHOTILE_FENCE_LAYER;
   return run_child({PHOTILE_DEVICE_PROBE, mode}, environment);
