@@ -20,6 +20,11 @@ constexpr std::array quotas{std::pair{"balanced", PhotonQuota::balanced},
                             std::pair{"equal", PhotonQuota::equal}};
 constexpr std::array map_modes{std::pair{"naive", MapMode::naive},
                                std::pair{"grouped", MapMode::grouped}};
+constexpr std::array structures{std::pair{"uniform-grid", MapStructure::uniform_grid},
+                                std::pair{"kdtree-2d", MapStructure::kdtree_2d},
+                                std::pair{"kdtree-3d", MapStructure::kdtree_3d},
+                                std::pair{"kdtree-global", MapStructure::kdtree_global},
+                                std::pair{"brute-force", MapStructure::brute_force}};
 
 template <class Table>
 std::vector<std::string> words_of(const Table& table) {
@@ -112,6 +117,12 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
       ->check(CLI::IsMember(words_of(map_modes)))
       ->capture_default_str()
       ->group("Estimate");
+  options.structure = word_for(structures, parameters.structure);
+  command.add_option("--structure", options.structure, "how photons are found; same neighbours")
+      ->type_name("")
+      ->check(CLI::IsMember(words_of(structures)))
+      ->capture_default_str()
+      ->group("Estimate");
   command.add_option("--photons-per-cell", parameters.photons_per_cell, "fineness of the grids")
       ->type_name("X")
       ->transform(positive_number())
@@ -176,6 +187,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 void apply_words(RenderOptions& options) {
   options.parameters.photons.quota = value_for(quotas, options.quota);
   options.parameters.maps = value_for(map_modes, options.maps);
+  options.parameters.structure = value_for(structures, options.structure);
   options.parameters.film.seed = options.parameters.photons.seed;
   options.device.use_program_cache = !options.no_cache;
 }

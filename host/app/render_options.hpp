@@ -23,8 +23,9 @@ struct RenderOptions {
   std::string scene;
   PictureOptions pictures;
   RenderParameters parameters;
-  std::string quota;  ///< "balanced", "power" or "equal"
-  std::string maps;   ///< "naive" or "grouped"
+  std::string quota;      ///< "balanced", "power" or "equal"
+  std::string maps;       ///< "naive" or "grouped"
+  std::string structure;  ///< "uniform-grid", ...
   std::string camera;
   std::string size;  ///< "" = by the camera
   std::vector<std::string> lights;
@@ -40,7 +41,7 @@ struct RenderOptions {
 /// Adds all options to the subcommand.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-/// Sets what `options` holds as words: the quota, the maps and the cache.
+/// Sets what `options` holds as words: the quota, the maps, the structure and the cache.
 /// Errors: none, CLI11 has checked the words.
 void apply_words(RenderOptions& options);
 

@@ -121,9 +121,9 @@ RenderResult render(const Scene& scene, const Camera& camera, Device& device,
   result.radius = parameters.radius > 0 ? parameters.radius
                                         : automatic_radius(traced.photons, parameters.neighbours);
   const NeighbourGroups groups = group(scene, parameters, result.radius, statistics, progress);
-  const PhotonMaps maps =
-      build_maps(device, scene, traced.photons, groups,
-                 {result.radius, parameters.photons_per_cell}, statistics, progress);
+  const PhotonMaps maps = build_maps(
+      device, scene, traced.photons, groups,
+      {result.radius, parameters.photons_per_cell, parameters.structure}, statistics, progress);
   traced.photons = Photons{};  // the maps hold copies
 
   Estimator estimator(maps, scene, {parameters.neighbours, 0});

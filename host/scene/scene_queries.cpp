@@ -35,7 +35,11 @@ BoundingSphere bounding_sphere(const Scene& scene) {
 
 SceneNeeds needs_of(const Scene& scene) {
   SceneNeeds needs;
-  for (const Material& material : scene.materials) {
+  std::vector<bool> used(scene.materials.size(), false);
+  for (const std::uint32_t material : scene.triangle_material) used[material] = true;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    if (!used[i]) continue;  // glTF files carry materials that no triangle has
+    const Material& material = scene.materials[i];
     needs.glossy |= material.glossy();
     needs.textures |= material.diffuse_texture != none;
     needs.specular_paths |= material.interaction != Interaction::opaque;

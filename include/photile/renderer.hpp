@@ -28,6 +28,7 @@ struct RenderParameters {
   double angle_degrees = defaults::group_angle_degrees;
   int neighbours = defaults::neighbours;
   float photons_per_cell = defaults::photons_per_cell;
+  MapStructure structure = MapStructure::uniform_grid;
   PrimaryHitParameters film;
 };
 
