@@ -32,9 +32,13 @@ constexpr double cosine_slack = 1e-6;
 // are written: equal sides agree, opposite sides agree.
 constexpr std::uint32_t equal_sides = 1, opposite_sides = 2;
 
-std::uint32_t agreeing_sides(double cosine_between, double cos_angle) {
-  return (cosine_between >= cos_angle - cosine_slack ? equal_sides : 0) |
-         (-cosine_between >= cos_angle - cosine_slack ? opposite_sides : 0);
+std::uint32_t agreeing_sides(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
+  // In single precision, as kernels/kdtree/traverse.clh filters: facets of a cylinder may meet the
+  // angle within rounding, and every structure must decide alike.
+  const glm::vec3 u(a), v(b);
+  const float cosine = (u.x * v.x + u.y * v.y) + u.z * v.z;
+  const float least = static_cast<float>(cos_angle - cosine_slack);
+  return (cosine >= least ? equal_sides : 0) | (-cosine >= least ? opposite_sides : 0);
 }
 
 /// Members that one neighbour adds to the group of either side.
@@ -72,7 +76,7 @@ class Search {
         groups::triangle_box(scene_, triangle), radius_, [&](std::size_t first, std::size_t last) {
           for (std::size_t i = first; i < last; ++i) {
             const TriangleBound& other = bounds_[i];
-            std::uint32_t sides = agreeing_sides(glm::dot(own.normal, other.normal), cos_angle_);
+            std::uint32_t sides = agreeing_sides(own.normal, other.normal, cos_angle_);
             if (other.triangle == triangle) sides |= equal_sides;
             if (sides != 0 && proximity_.within(own, other)) {
               neighbours.push_back(4 * other.triangle + sides);
@@ -155,7 +159,7 @@ void write_groups(const Chunk& chunk, std::uint32_t* members) {
 }  // namespace
 
 bool normals_agree(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
-  return (agreeing_sides(glm::dot(a, b), cos_angle) & equal_sides) != 0;
+  return (agreeing_sides(a, b, cos_angle) & equal_sides) != 0;
 }
 
 NeighbourGroups find_neighbour_groups(const Scene& scene,
