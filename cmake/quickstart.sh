@@ -8,5 +8,5 @@ cmake/setup.sh
 cmake/build.sh release
 mkdir -p out
 build/release/photile render scenes/living-room/living-room.gltf \
-  --photons 4M --neighbours 300 -o out/living-room.exr --png out/living-room.png "$@"
+  --photons 2M --neighbours 200 -o out/living-room.exr --png out/living-room.png "$@"
 echo "out/living-room.exr and out/living-room.png are ready"
