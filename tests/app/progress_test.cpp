@@ -92,7 +92,7 @@ TEST_CASE("an error is coloured on a terminal, but not where NO_COLOR is set") {
   run.arguments = {"info", "/nonexistent-folder/scene.obj"};
   run.terminal = true;
   CHECK_THAT(run_photile(run).errors, Contains("\033[1;31merror:"));
-  run.environment["NO_COLOR"] = "1";
+  run.environment.emplace("NO_COLOR", "1");
   CHECK_THAT(run_photile(run).errors, !Contains("\033"));
 }
 
