@@ -33,6 +33,8 @@ libbenchmark-dev       | benches
 oclgrind               | tests: checks every memory access of the kernels
 openimageio-tools      | tests: reads the pictures as other tools do
 python3                | scripts of the docs and the tests
+python3-numpy          | the script that compares pictures with references
+python3-openimageio    | the same: reads and writes pictures
 END
 )
 

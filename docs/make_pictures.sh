@@ -1,5 +1,5 @@
 #!/bin/bash
-# Renders the pictures of README.md to docs/pictures with build/release/photile.
+# Renders the pictures of README.md to docs/pictures with build/release/photile. Needs 8 GB of memory.
 # Usage: docs/make_pictures.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -7,9 +7,9 @@ photile=build/release/photile
 pictures=docs/pictures
 mkdir -p "$pictures"
 
-# Noise is plain on even walls: four times the photons of the quick start calm them.
-"$photile" render scenes/living-room/living-room.gltf --size 768x576 --samples 9 \
-  --photons 16M --neighbours 800 -o "$pictures/living-room.png"
+# Noise is plain on even walls: five times the photons of the quick start calm them.
+"$photile" render scenes/living-room/living-room.gltf --size 640x480 --samples 9 \
+  --photons 10M --neighbours 600 -o "$pictures/living-room.png"
 
 # Few photons for so many neighbours make the dark edges wide, many neighbours make the rest calm.
 for maps in naive grouped; do
