@@ -1,5 +1,6 @@
 #!/bin/bash
-# Renders the pictures of README.md to docs/pictures with build/release/photile. Needs 8 GB of memory.
+# Renders the pictures of README.md to docs/pictures with build/release/photile.
+# Needs 8 GiB of memory.
 # Usage: docs/make_pictures.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
