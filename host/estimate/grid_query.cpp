@@ -11,15 +11,17 @@ class GridQuery : public Query {
         context_(store.device->context()),
         neighbours_(neighbours),
         radius_(radius),
-        defines_(specialise(context_.info(), store.needs, static_cast<int>(neighbours)).defines()) {
-  }
+        choice_(specialise(context_.info(), store.needs, static_cast<int>(neighbours))) {}
 
   void estimate(const PageHits& hits, device::Buffer<float>& irradiance,
                 device::Buffer<float>& radiance) override {
-    const device::Kernel kernel = context_.kernel("estimate/estimate.cl", "estimate", defines_);
+    const device::Kernel kernel =
+        context_.kernel("estimate/estimate.cl", "estimate", choice_.defines());
     const maps::MapPage& page = hits.page;
+    const auto hits_per_item = static_cast<std::uint32_t>(choice_.hits_per_item);
+    const std::uint32_t work_items = (hits.count + hits_per_item - 1) / hits_per_item;
     with_scene_arguments(store_.needs, hits, radiance, [&](const auto&... scene) {
-      context_.run(kernel, hits.count, maps::work_group_size, hits.count, hits.first,
+      context_.run(kernel, work_items, maps::work_group_size, hits.count, hits.first,
                    hits.hits.position, hits.hits.map, page.first_map, page.grids, page.cell_start,
                    page.entry_stride, page.entry_position, page.entry_flux, page.entry_photon,
                    scene..., neighbours_, radius_, store_.needs.light_count, irradiance);
@@ -29,7 +31,7 @@ class GridQuery : public Query {
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
     const maps::MapPage& page = hits.page;
-    context_.run(context_.kernel("estimate/nearest.cl", "nearest", defines_), hits.count,
+    context_.run(context_.kernel("estimate/nearest.cl", "nearest", choice_.defines()), hits.count,
                  maps::work_group_size, hits.count, hits.first, hits.hits.position, hits.hits.map,
                  page.first_map, page.grids, page.cell_start, page.entry_stride,
                  page.entry_position, page.entry_photon, neighbours_, radius_, photons,
@@ -41,7 +43,7 @@ class GridQuery : public Query {
   device::Context& context_;
   std::uint32_t neighbours_;
   float radius_;
-  device::Defines defines_;
+  Specialisation choice_;
 };
 
 }  // namespace

@@ -8,8 +8,9 @@ namespace photile::estimate {
 
 /// Compile-time choices of kernels/estimate.
 struct Specialisation {
-  int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16
-  int capacity = 256;    ///< distances kept in private memory
+  int vector_width = 1;   ///< floats per vector: 1, 4, 8 or 16
+  int capacity = 160;     ///< distances kept in private memory
+  int hits_per_item = 1;  ///< neighbouring hits that a work-item estimates in turn
   bool multiple_lights = false;
   bool glossy = false;
 

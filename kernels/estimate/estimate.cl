@@ -1,17 +1,25 @@
 // The radiance estimate (Jensen 2001, equation 7.6; Graglia et al. 2012, section 5): per hit and
 // light, the flux of the nearest photons over the area they fell on.
 //
-// Symbols the host defines, by what the scene needs:
-//   VECTOR_WIDTH      see shared/wide.clh
-//   CAPACITY          see estimate/candidates.clh
-//   MULTIPLE_LIGHTS   photons carry a light; one estimate per light
-//   GLOSSY            surfaces have a specular lobe; radiance is estimated beside irradiance
+// Symbols the host defines:
+//   VECTOR_WIDTH     see shared/wide.clh
+//   CAPACITY         see estimate/candidates.clh
+//   HITS_PER_ITEM    hits in a row that a work-item estimates, each expecting the radius of the last
+//   MULTIPLE_LIGHTS, GLOSSY   see estimate/accumulate.clh
 
 #include "estimate/accumulate.clh"
 #include "estimate/area.clh"
 #include "estimate/neighbourhood.clh"
 
-// One work-item per hit of one map page.
+#ifndef HITS_PER_ITEM
+#define HITS_PER_ITEM 1  // (1 on GPUs, 8 - 64 on CPUs)
+#endif
+
+#if !defined(MULTIPLE_LIGHTS) && !defined(GLOSSY)
+#define FLUX_ONLY  // nothing but flux is summed: a vector of photons at a time
+#endif
+
+// One work-item per HITS_PER_ITEM hits of one map page.
 //   hit_count, first_hit   the hits [first_hit, first_hit + hit_count) of the batch lie in this page
 //   hit_position           3 floats per hit of the batch; hit_map: its sided triangle
 //   first_map              the page's first sided triangle
@@ -34,8 +42,11 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                        __global float* radiance,
 #endif
                        uint k, float radius, uint light_count, __global float* irradiance) {
-  for (uint h = get_global_id(0); h < hit_count; h += get_global_size(0)) {
-    const uint hit = first_hit + h;
+  const uint begin = get_global_id(0) * HITS_PER_ITEM;
+  const uint end_hit = first_hit + min(begin + HITS_PER_ITEM, hit_count);
+  float expected = 0.0f;  // radius of the last hit's neighbourhood, if on the same map
+  uint expected_map = 0xFFFFFFFFu;
+  for (uint hit = first_hit + begin; hit < end_hit; ++hit) {
     __global float* hit_irradiance = irradiance + 3 * hit * light_count;
     for (uint i = 0; i < 3 * light_count; ++i) hit_irradiance[i] = 0.0f;
 #ifdef GLOSSY
@@ -46,17 +57,19 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                              hit_roughness[hit]};
 #endif
 
-    __global const PhotileGrid* grid = &grids[hit_map[hit] - first_map];
+    const uint map = hit_map[hit];
+    __global const PhotileGrid* grid = &grids[map - first_map];
     if (grid->columns == 0) continue;
+    if (map != expected_map) expected = 0.0f;
 
     Candidates candidates;
     candidates.hit = vload3(hit, hit_position);
     candidates.cell_start = cell_start;
     candidates.position = entry_position;
     candidates.stride = entry_stride;
-    float stored[CAPACITY + 2 * VECTOR_WIDTH];
+    DECLARE_STORED(stored);
     const Neighbourhood near =
-        find_neighbourhood(&candidates, stored, k, max(k - 1u, 1u), radius, grid);
+        find_neighbourhood(&candidates, stored, k, max(k - 1u, 1u), radius, expected, grid);
 
     Entries entries;
     entries.flux = entry_flux;
@@ -68,17 +81,27 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
 #endif
 
     uint found = 0;
-#if !defined(MULTIPLE_LIGHTS) && !defined(GLOSSY)
+#ifdef FLUX_ONLY
     wide_float red = 0.0f, green = 0.0f, blue = 0.0f;
     wide_int lanes_found = 0;
 #endif
+    wide_float beyond = INFINITY;  // the nearest that is no neighbour
+    uint first_of_row = 0;         // in the stored distances
     uint cell = candidates.block.first_cell;
     for (uint row = 0; row < candidates.block.height; ++row, cell += candidates.block.columns) {
+      const uint start = cell_start[cell];
       const uint end = cell_start[cell + candidates.block.width];
-      for (uint entry = cell_start[cell]; entry < end; entry += VECTOR_WIDTH) {
-        const wide_int is_near = (squared_distances(&candidates, entry) < near.below) &
-                                 (WIDE_LANES < (wide_int)((int)(end - entry)));
-#if !defined(MULTIPLE_LIGHTS) && !defined(GLOSSY)
+      // From a multiple of the vector width, so that an entry's lane, and with it the order of the
+      // sum, does not depend on the block.
+      for (uint entry = start - start % VECTOR_WIDTH; entry < end; entry += VECTOR_WIDTH) {
+        const wide_float d = fits(&candidates)
+                                 ? wide_load(stored + ((int)first_of_row + (int)(entry - start)))
+                                 : squared_distances(&candidates, entry);
+        const wide_int in_row = (WIDE_LANES < (wide_int)((int)(end - entry))) &
+                                (WIDE_LANES >= (wide_int)((int)(start - entry)));
+        const wide_int is_near = (d < near.below) & in_row;
+        beyond = select(beyond, d, (d >= near.below) & (d < beyond) & in_row);
+#ifdef FLUX_ONLY
         const wide_float zero = 0.0f;
         red += select(zero, wide_load(entry_flux + entry), is_near);
         green += select(zero, wide_load(entry_flux + entry_stride + entry), is_near);
@@ -98,8 +121,9 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
         }
 #endif
       }
+      first_of_row += end - start;
     }
-#if !defined(MULTIPLE_LIGHTS) && !defined(GLOSSY)
+#ifdef FLUX_ONLY
     found = (uint)count_lanes(lanes_found);
     vstore3((float3)(sum_lanes(red), sum_lanes(green), sum_lanes(blue)), 0, hit_irradiance);
 #endif
@@ -121,7 +145,13 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
       }
     }
 
-    const float per_area = 1.0f / estimate_area(near.squared_radius, radius);
+    float squared_radius = near.squared_radius;
+    if (squared_radius == 0.0f) {
+      squared_radius = k > 1 ? smallest_lane(beyond) : largest_within(&candidates, near.below);
+    }
+    expected = sqrt(squared_radius);
+    expected_map = map;
+    const float per_area = 1.0f / estimate_area(squared_radius, radius);
     for (uint i = 0; i < 3 * light_count; ++i) hit_irradiance[i] *= per_area;
 #ifdef GLOSSY
     for (uint i = 0; i < 3 * light_count; ++i) hit_radiance[i] *= per_area;

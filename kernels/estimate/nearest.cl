@@ -26,9 +26,11 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
     candidates.cell_start = cell_start;
     candidates.position = entry_position;
     candidates.stride = entry_stride;
-    float stored[CAPACITY + 2 * VECTOR_WIDTH];
-    const Neighbourhood near = find_neighbourhood(&candidates, stored, k, k, radius, grid);
-    squared_radius[hit] = near.squared_radius;
+    DECLARE_STORED(stored);
+    const Neighbourhood near = find_neighbourhood(&candidates, stored, k, k, radius, 0.0f, grid);
+    // The k-th is the farthest of the neighbours.
+    squared_radius[hit] = near.squared_radius > 0.0f ? near.squared_radius
+                                                     : largest_within(&candidates, near.below);
 
     uint found = 0;
     uint last_tied = 0;
