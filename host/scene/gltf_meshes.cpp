@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "photile/limits.hpp"
+#include "scene/material_needs.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -47,7 +48,7 @@ class MeshImporter {
         accessors_(accessors),
         coordinates_(coordinates),
         context_(context),
-        needs_(needs_of(context.scene)),
+        needs_(needs_of_materials(context.scene.materials)),
         builder_(context.scene, needs_.textures, needs_.glossy || needs_.specular_paths) {}
 
   void add(const NodeVisit& visit, std::uint64_t visit_number);

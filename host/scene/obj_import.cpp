@@ -8,6 +8,7 @@
 #include <map>
 
 #include "photile/limits.hpp"
+#include "scene/material_needs.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/mtl_materials.hpp"
 #include "scene/obj_reader.hpp"
@@ -125,7 +126,7 @@ void import_obj(ImportContext& context) {
   }
   context.scene.unit = PowerUnit::watt;
   const std::vector<std::uint32_t> material_index = add_materials(file, context);
-  const SceneNeeds needs = needs_of(context.scene);
+  const SceneNeeds needs = needs_of_materials(context.scene.materials);
   MeshBuilder builder(context.scene, needs.textures, needs.glossy || needs.specular_paths);
   for (const ObjFace& face : file.faces) {
     const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;

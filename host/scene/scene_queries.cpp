@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "photile/scene.hpp"
+#include "scene/material_needs.hpp"
 
 namespace photile {
 namespace {
@@ -10,6 +11,12 @@ namespace {
 glm::dvec3 doubled_area_vector(const Scene& scene, std::uint32_t triangle) {
   const std::array<glm::vec3, 3> p = scene.corners(triangle);
   return glm::cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0]));
+}
+
+void add_needs(const Material& material, SceneNeeds& needs) {
+  needs.glossy |= material.glossy();
+  needs.textures |= material.diffuse_texture != none;
+  needs.specular_paths |= material.interaction != Interaction::opaque;
 }
 
 }  // namespace
@@ -38,13 +45,15 @@ SceneNeeds needs_of(const Scene& scene) {
   std::vector<bool> used(scene.materials.size(), false);
   for (const std::uint32_t material : scene.triangle_material) used[material] = true;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    if (!used[i]) continue;  // glTF files carry materials that no triangle has
-    const Material& material = scene.materials[i];
-    needs.glossy |= material.glossy();
-    needs.textures |= material.diffuse_texture != none;
-    needs.specular_paths |= material.interaction != Interaction::opaque;
+    if (used[i]) add_needs(scene.materials[i], needs);  // glTF files carry unused materials
   }
   needs.light_count = static_cast<std::uint32_t>(scene.lights.size());
+  return needs;
+}
+
+SceneNeeds scene_io::needs_of_materials(std::span<const Material> materials) {
+  SceneNeeds needs;
+  for (const Material& material : materials) add_needs(material, needs);
   return needs;
 }
 
