@@ -24,10 +24,7 @@ __kernel void size_grids(uint map_total, uint first_map, __global const float* c
   for (uint i = get_global_id(0); i < map_total; i += get_global_size(0)) {
     const uint map = first_map + i;
     const uint count = map_count[map];
-    PhotileGrid grid;
-    grid.first_cell = 0;
-    grid.columns = 0;
-    grid.rows = 0;
+    PhotileGrid grid = {0};
     cell_total[i] = 0;
     if (count == 0) {
       grids[i] = grid;

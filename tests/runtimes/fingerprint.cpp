@@ -1,0 +1,156 @@
+// Prints hashes of everything that the build, knn and density kernels compute on fixed photons and
+// hits, one per line. Two runtimes agree in every bit if they print the same.
+//
+//   photile_fingerprint PHOTONS HITS [--every-kernel]
+//
+// With --every-kernel the kd-trees, brute force and glossy surfaces are run, too, so that a checker
+// sees each kernel and each of its specialisations once. The device is the best there is, or the
+// one that PHOTILE_DEVICE names. Exit code 3 where a result is not a finite number.
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+#include "maps/map_store.hpp"
+#include "photile/estimator.hpp"
+#include "photon_sets.hpp"
+
+using namespace photile;
+
+namespace {
+
+constexpr double radius = 0.25;  // metres
+
+struct Case {
+  std::string name;
+  Scene scene;
+  MapStructure structure = MapStructure::uniform_grid;
+  int neighbours = 50;
+};
+
+struct Sizes {
+  std::size_t photons, hits;
+};
+
+bool all_finite = true;
+
+template <class T>
+void print_hash(const Case& test, const char* what, std::span<const T> values) {
+  fmt::print("{} {} {:016x} of {}\n", test.name, what,
+             XXH3_64bits(values.data(), values.size_bytes()), values.size());
+}
+
+void print_hash(const Case& test, const char* what, const std::vector<glm::vec3>& values) {
+  for (const glm::vec3& value : values) {
+    all_finite &= std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
+  }
+  print_hash(test, what, std::span(values));
+}
+
+template <class T>
+void print_hash(const Case& test, const char* what, device::Context& context,
+                const device::Buffer<T>& buffer) {
+  std::vector<T> values(buffer.size());
+  context.read(buffer, std::span(values));
+  print_hash(test, what, std::span<const T>(values));
+}
+
+/// A torus of small triangles, a plate of large ones, and a crowd of photons in one point of it:
+/// more than insertion sort takes in one cell.
+Scene torus_and_plate(std::size_t lights, bool glossy) {
+  Scene scene = test::empty_scene(lights);
+  if (glossy) {
+    scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
+    scene.materials[0].roughness = 0.3f;
+  }
+  test::add_plate(scene, {-1.5f, -1.5f, -0.5f}, {3, 0, 0}, {0, 3, 0.1f}, 2);
+  test::add_torus(scene, 1.0f, 0.4f, 12, 8);
+  return scene;
+}
+
+Photons photons_of(const Scene& scene, std::size_t count) {
+  const std::size_t crowd = count / 4;
+  Photons photons = test::uniform_photons(scene, count - crowd, 71);
+  std::mt19937_64 random(72);
+  const auto [a, b, c] = scene.corners(0);
+  for (std::size_t i = 0; i < crowd; ++i) {
+    test::add_photon(photons, scene, 0.5f * a + 0.3f * b + 0.2f * c, 0, random);
+  }
+  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+}
+
+PrimaryHits hits_of(const Scene& scene, std::size_t count) {
+  PrimaryHits hits = test::uniform_hits(scene, count, 73);
+  if (!needs_of(scene).glossy) return hits;
+  std::mt19937_64 random(74);
+  std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
+  for (const std::uint32_t map : hits.sided_triangle) {
+    const glm::vec3 normal(sided_normal(scene, map));
+    const glm::vec3 offset(uniform(random), uniform(random), uniform(random));
+    hits.outgoing.push_back(glm::normalize(normal + offset));
+    hits.lobe.push_back({scene.materials[0].specular, scene.materials[0].roughness, normal});
+  }
+  return hits;
+}
+
+void print_fingerprint(Device& device, const Case& test, const Sizes& sizes) {
+  const Photons photons = photons_of(test.scene, sizes.photons);
+  const PrimaryHits hits = hits_of(test.scene, sizes.hits);
+  const PhotonMaps maps(device, test.scene, photons,
+                        find_neighbour_groups(test.scene, {radius, 60}),
+                        {radius, 4, test.structure});
+  for (const maps::MapPage& page : maps.store().pages) {
+    device::Context& context = device.context();
+    print_hash(test, "cell_start", context, page.cell_start);
+    print_hash(test, "entry_photon", context, page.entry_photon);
+    print_hash(test, "entry_position", context, page.entry_position);
+    print_hash(test, "entry_flux", context, page.entry_flux);
+  }
+  Estimator estimator(maps, test.scene, {test.neighbours, 0});
+  const NeighbourLists lists = estimator.nearest(hits);
+  print_hash(test, "neighbours", std::span(lists.photons));
+  print_hash(test, "squared_radius", std::span(lists.squared_radius));
+  const Estimates estimates = estimator.estimate(hits);
+  print_hash(test, "irradiance", estimates.irradiance);
+  if (needs_of(test.scene).glossy) print_hash(test, "radiance", estimates.radiance);
+}
+
+std::vector<Case> cases(bool every_kernel) {
+  std::vector<Case> list{{"one-light", torus_and_plate(1, false)},
+                         {"three-lights", torus_and_plate(3, false)}};
+  if (!every_kernel) return list;
+  list.push_back({"glossy", torus_and_plate(1, true)});
+  list.push_back({"glossy-three-lights", torus_and_plate(3, true)});
+  for (const MapStructure structure : all_map_structures) {
+    if (structure == MapStructure::uniform_grid) continue;
+    list.push_back({std::string(name_of(structure)), torus_and_plate(1, false), structure});
+  }
+  // Lists too long for private memory.
+  list.push_back({"kdtree-3d-k-300", torus_and_plate(1, false), MapStructure::kdtree_3d, 300});
+  return list;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count < 3) {
+    fmt::print(stderr, "usage: photile_fingerprint PHOTONS HITS [--every-kernel]\n");
+    return static_cast<int>(ExitCode::usage);
+  }
+  const Sizes sizes{std::strtoul(arguments[1], nullptr, 10),
+                    std::strtoul(arguments[2], nullptr, 10)};
+  const bool every_kernel = count > 3 && std::string_view(arguments[3]) == "--every-kernel";
+  try {
+    Device device;
+    fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().platform);
+    for (const Case& test : cases(every_kernel)) print_fingerprint(device, test, sizes);
+  } catch (const Error& error) {
+    fmt::print(stderr, "photile_fingerprint: error: {}\n", error.what());
+    return static_cast<int>(error.exit_code());
+  }
+  if (all_finite) return 0;
+  fmt::print(stderr, "photile_fingerprint: error: an estimate is not a finite number\n");
+  return static_cast<int>(ExitCode::input);
+}

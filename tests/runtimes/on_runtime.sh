@@ -1,0 +1,53 @@
+#!/bin/bash
+# Runs a test program on one OpenCL runtime alone, with a folder of compiled kernels of its own.
+#
+#   on_runtime.sh CACHE RUNTIME[,VARIABLE=VALUE]... COMMAND [ARGUMENT]...
+#
+# RUNTIME is pocl, oclgrind, or other: each folder of .icd files in PHOTILE_TEST_RUNTIMES (separated
+# by colons), by default the one that cmake/setup-intel-runtime.sh makes. The variables are set for
+# the command. CACHE is the folder below which compiled kernels are kept between runs.
+# Exit code 77 says that the runtime is not installed: ctest counts the test as skipped.
+set -euo pipefail
+readonly skipped=77
+cache=$1
+IFS=, read -ra setting <<<"$2"
+shift 2
+runtime=${setting[0]}
+variables=("${setting[@]:1}")
+
+# run VENDORS LIBRARIES COMMAND...: VENDORS as the OpenCL loader takes it, LIBRARIES a folder that
+# the runtime's libraries need to find each other, or nothing.
+run() {
+  local vendors=$1 libraries=$2
+  shift 2
+  local name
+  name=$(printf '%s' "$runtime$vendors${variables[*]-}" | cksum | cut -d' ' -f1)
+  mkdir -p "$cache/$name"
+  env XDG_CACHE_HOME="$cache/$name" OCL_ICD_VENDORS="$vendors" \
+    ${libraries:+LD_LIBRARY_PATH="$libraries"} "${variables[@]}" "$@"
+}
+
+case $runtime in
+  pocl)
+    [ -e "${PHOTILE_POCL_ICD:-/etc/OpenCL/vendors/pocl.icd}" ] || exit $skipped
+    run "${PHOTILE_POCL_ICD:-/etc/OpenCL/vendors/pocl.icd}" '' "$@"
+    ;;
+  oclgrind)
+    [ -e "${PHOTILE_OCLGRIND_ICD:-}" ] || exit $skipped
+    run "$PHOTILE_OCLGRIND_ICD" '' "$@"
+    ;;
+  other)
+    found=0
+    IFS=: read -ra folders <<<"${PHOTILE_TEST_RUNTIMES:-$PHOTILE_INTEL_RUNTIME}"
+    for folder in "${folders[@]}"; do
+      [ -d "$folder" ] || continue
+      found=1
+      run "$folder" "$(dirname "$(cat "$folder"/*.icd | head -n 1)")" "$@"
+    done
+    [ $found = 1 ] || exit $skipped
+    ;;
+  *)
+    echo "on_runtime.sh: error: unknown runtime '$runtime'" >&2
+    exit 2
+    ;;
+esac

@@ -1,0 +1,23 @@
+#!/bin/bash
+# Compares what photile_fingerprint prints on a runtime with what it prints on PoCL as it comes.
+#
+#   same_bits.sh FINGERPRINT CACHE RUNTIME[,VARIABLE=VALUE]... [ARGUMENT OF FINGERPRINT]...
+#
+# Exit code 77: one of the two is not installed.
+set -euo pipefail
+fingerprint=$1
+cache=$2
+setting=$3
+shift 3
+folder=$(dirname "$0")
+expected=$("$folder/on_runtime.sh" "$cache" pocl "$fingerprint" "$@")
+lines=$(wc -l <<<"$expected")
+# Several other runtimes print one fingerprint after another.
+"$folder/on_runtime.sh" "$cache" "$setting" "$fingerprint" "$@" | {
+  count=0
+  while mapfile -t -n "$lines" block && [ ${#block[@]} -gt 0 ]; do
+    diff <(printf '%s\n' "$expected") <(printf '%s\n' "${block[@]}")
+    count=$((count + 1))
+  done
+  echo "$lines hashes agree, $count times"
+}
