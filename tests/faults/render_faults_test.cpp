@@ -22,8 +22,8 @@ struct Failure {
 /// A small render under the failing layer; `at` 0 only counts the calls.
 Run render_with(const FileFolder& folder, const Failure& failure, long at, bool on) {
   Run run;
-  run.arguments = {"render", folder / "box.obj", "--photons", "2000",
-                   "--size", "16x12",            "-o",        folder / "out.exr"};
+  run.arguments = {"render", folder / "box.obj", "--photons", "2000", "--size", "16x12",
+                   "-o",     folder / "out.exr"};
   run.environment = {{"OPENCL_LAYERS", PHOTILE_FAILING_LAYER},
                      {"PHOTILE_FAIL_CALL", failure.call},
                      {"PHOTILE_FAIL_AT", std::to_string(at)},

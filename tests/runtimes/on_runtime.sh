@@ -29,8 +29,8 @@ run() {
 
 case $runtime in
   pocl)
-    [ -e "${PHOTILE_POCL_ICD:-/etc/OpenCL/vendors/pocl.icd}" ] || exit $skipped
-    run "${PHOTILE_POCL_ICD:-/etc/OpenCL/vendors/pocl.icd}" '' "$@"
+    [ -e /etc/OpenCL/vendors/pocl.icd ] || exit $skipped
+    run /etc/OpenCL/vendors/pocl.icd '' "$@"
     ;;
   oclgrind)
     [ -e "${PHOTILE_OCLGRIND_ICD:-}" ] || exit $skipped

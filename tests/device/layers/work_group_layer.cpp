@@ -1,7 +1,8 @@
 // Launches every kernel in work-groups of another size.
 //
 //   OPENCL_LAYERS=<build>/tests/device/layers/libphotile_work_group_layer.so
-//   PHOTILE_WORK_GROUP_SIZE=7   work-items of a group; larger than the kernel can take = its largest
+//   PHOTILE_WORK_GROUP_SIZE=7   work-items of a group; larger than the kernel can take = its
+//   largest
 //
 // Kernels loop over their items by the global size, so that no result may depend on the size of the
 // groups. The number of work-items is rounded down to whole groups, at least one: buffers that hold

@@ -1,10 +1,13 @@
-// Fills buffers by writing to them from the host.
+// Lets Oclgrind 21.10 check for uninitialised values.
 //
-//   OPENCL_LAYERS=<build>/tests/device/layers/libphotile_fill_by_write_layer.so
+//   OPENCL_LAYERS=<build>/tests/device/layers/libphotile_oclgrind_layer.so OCLGRIND_UNINITIALIZED=1
 //
-// Oclgrind 21.10's check for uninitialised values takes each element that clEnqueueFillBuffer sets
-// for a buffer of its own: it then reports what was filled, and crashes. It follows a write of a
-// whole buffer well.
+// Two faults of its shadow memory make it crash or report what is initialised:
+// - It takes each element that clEnqueueFillBuffer sets for a buffer of its own. It follows a write
+//   of a whole buffer well, so that fills become writes here.
+// - A new buffer at a released one's address keeps the shadow of the old, whose size may be
+// another.
+//   So no buffer is released.
 #include <cstring>
 #include <vector>
 
@@ -24,6 +27,11 @@ CL_API_ENTRY cl_int CL_API_CALL fill(cl_command_queue queue, cl_mem buffer, cons
                                     wait_count, wait_list, event);
 }
 
+CL_API_ENTRY cl_int CL_API_CALL keep(cl_mem) { return CL_SUCCESS; }
+
 }  // namespace
 
-void replace_entries(cl_icd_dispatch& entries) { entries.clEnqueueFillBuffer = fill; }
+void replace_entries(cl_icd_dispatch& entries) {
+  entries.clEnqueueFillBuffer = fill;
+  entries.clReleaseMemObject = keep;
+}
