@@ -102,7 +102,8 @@ TEST_CASE("a picture without light layers is an input error") {
   CHECK_THROWS_AS(read_light_mix(picture), InputError);
 }
 
-TEST_CASE("a light that the records lack takes part with power 1; a record without layer is left") {
+TEST_CASE(
+    "a light that the records lack takes part with power 1, and a record without layer is left") {
   Image picture = mix_layers(random_layers(3, 3, names), mix_of(10.0, 20.0, 30.0));
   picture.attributes["photile.lights"] =
       R"([{"name":"sconce","power":30,"unit":"lm"},{"name":"gone","power":1,"unit":"lm"}])";

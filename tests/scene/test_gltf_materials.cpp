@@ -79,7 +79,7 @@ TEST_CASE("a white glTF dielectric stays white under its specular lobe") {
   check_rgb(m.specular, {0.04, 0.04, 0.04});
 }
 
-TEST_CASE("transmission from one half on is glass, thin without a volume; less is opaque") {
+TEST_CASE("transmission from one half on is glass, thin without a volume, and less is opaque") {
   const auto transmission = [](double factor) {
     return json{{"extensions",
                  {{"KHR_materials_transmission", {{"transmissionFactor", factor}}},

@@ -73,7 +73,8 @@ TEST_CASE(
   CHECK(fresnel_dielectric(0.0f, 1 / 1.5f) == Approx(1));
 }
 
-TEST_CASE("Glass bends a ray by Snell's law; what enters at an angle leaves a slab at that angle") {
+TEST_CASE(
+    "Glass bends a ray by Snell's law, and what enters at an angle leaves a slab at that angle") {
   const Scene scene = plate(glass(1.5f), 2);
   for (const double angle : {0.0, 0.3, 0.8, 1.3}) {
     const double inside = std::asin(std::sin(angle) / 1.5);
