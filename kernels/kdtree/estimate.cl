@@ -36,6 +36,17 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                        __global float* radiance,
 #endif
                        uint k, float radius, uint light_count, __global float* irradiance) {
+  Entries entries;
+  entries.stride = entry_stride;
+  entries.position = entry_position;
+  entries.flux = entry_flux;
+  entries.photon = entry_photon;
+#ifdef MULTIPLE_LIGHTS
+  entries.light = entry_light;
+#endif
+#ifdef GLOSSY
+  entries.incoming = entry_incoming;
+#endif
   for (uint h = get_global_id(0); h < hit_count; h += get_global_size(0)) {
     const uint hit = first_hit + h;
     __global float* hit_irradiance = irradiance + 3 * hit * light_count;
@@ -67,27 +78,19 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                     frames + (map - first_map), &list);
     if (list.size == 0) continue;
 
-    Entries entries;
-    entries.flux = entry_flux;
-#ifdef MULTIPLE_LIGHTS
-    entries.light = entry_light;
-#endif
-#ifdef GLOSSY
-    entries.incoming = entry_incoming;
-#endif
     // A full list's farthest photon, at 0, only sets the radius (but for k = 1).
     const uint first = list.size == k && k > 1 ? 1 : 0;
     for (uint i = first; i < list.size; ++i) {
-      add_entry(&entries, list.entry[i], entry_stride,
+      add_entry(&entries, list.entry[i],
 #ifdef GLOSSY
                 &surface, hit_radiance,
 #endif
                 hit_irradiance);
     }
-    const float per_area = 1.0f / estimate_area(squared_radius_of(&list), radius);
-    for (uint i = 0; i < 3 * light_count; ++i) hit_irradiance[i] *= per_area;
+    scale_sums(1.0f / estimate_area(squared_radius_of(&list), radius), light_count,
 #ifdef GLOSSY
-    for (uint i = 0; i < 3 * light_count; ++i) hit_radiance[i] *= per_area;
+               hit_radiance,
 #endif
+               hit_irradiance);
   }
 }

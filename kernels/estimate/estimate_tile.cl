@@ -1,0 +1,176 @@
+// The radiance estimate for tiles of hits: VECTOR_WIDTH neighbouring hits share one block of
+// candidates (estimate/tile.clh). For maps that many hits lie on; hits that share a map with few
+// others, glossy surfaces and crowded blocks are estimated one by one, as in estimate.cl.
+//
+// Symbols the host defines: those of estimate/estimate.cl, TILE_CAPACITY, TILE_LIGHTS
+
+#include "estimate/tile.clh"
+
+// Fewer hits than this on a map are estimated one by one.
+#define LEAST_TILE (VECTOR_WIDTH / 4 + 1)
+
+// Estimates hits [first, first + count) of one map; count <= VECTOR_WIDTH. Returns false, without
+// having written anything, where the hits do not suit a tile. Lanes whose k-th photon ties with the
+// next are left in `undone`.
+bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
+                   __global const uint* cell_start, __global const float* hit_position, uint first,
+                   uint count, uint k, float radius, uint light_count, float* expected,
+                   int* undone, __global float* irradiance) {
+  Tile tile;
+  float coordinates[3][VECTOR_WIDTH];
+  float2 low = INFINITY, high = -INFINITY;
+  for (uint lane = 0; lane < VECTOR_WIDTH; ++lane) {
+    const float3 hit = vload3(first + min(lane, count - 1), hit_position);
+    coordinates[0][lane] = hit.x;
+    coordinates[1][lane] = hit.y;
+    coordinates[2][lane] = hit.z;
+    const float2 uv = project(hit, grid);
+    low = fmin(low, uv);
+    high = fmax(high, uv);
+  }
+  tile.x = wide_load(coordinates[0]);
+  tile.y = wide_load(coordinates[1]);
+  tile.z = wide_load(coordinates[2]);
+  tile.active = WIDE_LANES < (wide_int)((int)count);
+
+  float stored[TILE_CAPACITY * VECTOR_WIDTH];
+  const float squared_radius = radius * radius;
+  float reach = *expected > 0.0f
+                    ? fmin(radius, *expected * 1.15f)
+                    : block_for(k, radius, 0.0f, 0.5f * (low + high), grid, cell_start).reach;
+  Block block;
+  wide_int inside;
+  float bound;
+  for (;;) {
+    block = block_around(reach, low, high, grid, cell_start);
+    if (block.entries > TILE_CAPACITY) return false;
+    bound = fmin(reach * reach, squared_radius);
+    inside = store_tile(&tile, entries, &block, cell_start, bound, stored);
+    if (reach >= radius || !any_lane(inside < (wide_int)((int)k))) break;
+    reach = fmin(radius, 1.2f * reach);
+  }
+
+  // Lanes with fewer than k photons within the radius take all of them.
+  const wide_int full = inside >= (wide_int)((int)k);
+  const wide_int wanted = select(inside, (wide_int)((int)k - 1), full);
+  const WideBracket bracket = {0.0f, bound, 0, inside};
+  wide_float below = tile_bounds(stored, block.entries, wanted, full & tile.active,
+                                 *expected * *expected, bracket);
+  below = select((wide_float)(next_float(squared_radius)), below, full);
+
+#ifdef MULTIPLE_LIGHTS
+  wide_float sums[TILE_LIGHTS][3];
+  for (uint light = 0; light < light_count; ++light) {
+    sums[light][0] = sums[light][1] = sums[light][2] = 0.0f;
+  }
+#else
+  wide_float sums[1][3];
+  sums[0][0] = sums[0][1] = sums[0][2] = 0.0f;
+#endif
+  wide_float beyond = INFINITY;
+  wide_int found = 0;
+  const wide_float zero = 0.0f;
+  const float* next = stored;
+  uint cell = block.first_cell;
+  for (uint row = 0; row < block.height; ++row, cell += block.columns) {
+    const uint end = cell_start[cell + block.width];
+    for (uint entry = cell_start[cell]; entry < end; ++entry, next += VECTOR_WIDTH) {
+      const wide_float d = wide_load(next);
+      const wide_int is_near = d < below;
+      beyond = select(fmin(beyond, d), beyond, is_near);
+      found += TRUE_LANES(is_near);
+#ifdef MULTIPLE_LIGHTS
+      const uint light = entries->light[entry];
+#else
+      const uint light = 0;
+#endif
+      const wide_float red = entries->flux[entry];
+      const wide_float green = entries->flux[entries->stride + entry];
+      const wide_float blue = entries->flux[2 * entries->stride + entry];
+      sums[light][0] += select(zero, red, is_near);
+      sums[light][1] += select(zero, green, is_near);
+      sums[light][2] += select(zero, blue, is_near);
+    }
+  }
+
+  float disc[VECTOR_WIDTH];
+  wide_store(select((wide_float)(squared_radius), beyond, full), disc);
+  wide_store((found < wanted) & tile.active, undone);
+  for (uint light = 0; light < light_count; ++light) {
+    float lanes[3][VECTOR_WIDTH];
+    for (uint c = 0; c < 3; ++c) wide_store(sums[light][c], lanes[c]);
+    for (uint lane = 0; lane < count; ++lane) {
+      const float per_area = 1.0f / estimate_area(disc[lane], radius);
+      vstore3((float3)(lanes[0][lane], lanes[1][lane], lanes[2][lane]) * per_area,
+              (first + lane) * light_count + light, irradiance);
+    }
+  }
+  *expected = sqrt(disc[count - 1]);
+  return true;
+}
+
+// One work-item per VECTOR_WIDTH hits; arguments as in estimate/estimate.cl.
+__kernel void estimate(uint hit_count, uint first_hit, __global const float* hit_position,
+                       __global const uint* hit_map, uint first_map,
+                       __global const PhotileGrid* grids, __global const uint* cell_start,
+                       uint entry_stride, __global const float* entry_position,
+                       __global const float* entry_flux, __global const uint* entry_photon,
+#ifdef MULTIPLE_LIGHTS
+                       __global const ushort* entry_light,
+#endif
+#ifdef GLOSSY
+                       __global const float* entry_incoming, __global const float* hit_outgoing,
+                       __global const float* hit_normal, __global const float* hit_albedo,
+                       __global const float* hit_specular, __global const float* hit_roughness,
+                       __global float* radiance,
+#endif
+                       uint k, float radius, uint light_count, __global float* irradiance) {
+  Entries entries;
+  entries.stride = entry_stride;
+  entries.position = entry_position;
+  entries.flux = entry_flux;
+  entries.photon = entry_photon;
+#ifdef MULTIPLE_LIGHTS
+  entries.light = entry_light;
+#endif
+#ifdef GLOSSY
+  entries.incoming = entry_incoming;
+#endif
+  const uint begin = get_global_id(0) * VECTOR_WIDTH;
+  const uint end = first_hit + min(begin + VECTOR_WIDTH, hit_count);
+  for (uint first = first_hit + begin; first < end;) {
+    const uint map = hit_map[first];
+    uint count = 1;
+    while (first + count < end && hit_map[first + count] == map) ++count;
+    __global const PhotileGrid* grid = &grids[map - first_map];
+    if (grid->columns == 0) {
+      first += count;
+      continue;
+    }
+    float expected = 0.0f;
+    int undone[VECTOR_WIDTH];
+    bool one_by_one = true;
+#ifndef GLOSSY
+    if (count >= LEAST_TILE && k > 1 && light_count <= TILE_LIGHTS) {
+      one_by_one = !estimate_tile(&entries, grid, cell_start, hit_position, first, count, k, radius,
+                                  light_count, &expected, undone, irradiance);
+    }
+#endif
+    for (uint i = 0; i < count; ++i) {
+      if (!one_by_one && !undone[i]) continue;
+      const uint hit = first + i;
+#ifdef GLOSSY
+      const Surface surface = {vload3(hit, hit_outgoing), vload3(hit, hit_normal),
+                               vload3(hit, hit_albedo), vload3(hit, hit_specular),
+                               hit_roughness[hit]};
+#endif
+      expected = estimate_hit(&entries, grid, cell_start, vload3(hit, hit_position), k, radius,
+                              expected, light_count,
+#ifdef GLOSSY
+                              &surface, radiance + 3 * hit * light_count,
+#endif
+                              irradiance + 3 * hit * light_count);
+    }
+    first += count;
+  }
+}
