@@ -7,8 +7,12 @@
 namespace photile {
 namespace {
 
-/// Primary hits estimated at a time: enough to fill a device, little enough to stay in memory.
-constexpr std::int64_t hits_per_batch = 1 << 20;
+/// Primary hits estimated at a time: enough to fill a device, little enough to stay in memory, and
+/// fewer where each takes longer, so that progress is seen and a wish to stop is heard.
+std::int64_t hits_per_batch(int neighbours) {
+  return (std::int64_t{1} << 20) * defaults::neighbours /
+         std::max(defaults::neighbours, neighbours);
+}
 
 PhotonTracerResult trace(const RayScene& rays, const RenderParameters& parameters,
                          RunStatistics& statistics, Progress& progress) {
@@ -64,15 +68,16 @@ PhotonMaps build_maps(Device& device, const Scene& scene, const Photons& photons
 }
 
 LightLayers estimate_picture(const RayScene& rays, const Camera& camera, Estimator& estimator,
-                             const PrimaryHitParameters& film, RunStatistics& statistics,
+                             const RenderParameters& parameters, RunStatistics& statistics,
                              Progress& progress) {
+  const PrimaryHitParameters& film = parameters.film;
   StageStatistics hit_stage{"primary hits", 0, 0, 0, {}};
   StageStatistics estimate_stage{"radiance estimate", 0, 0, 0, {}};
   StageStatistics film_stage{"film", 0, 0, 0, {}};
   LightLayers layers(film.width, film.height, rays.scene().lights);
   const std::int64_t samples_per_row = std::int64_t{film.width} * film.samples_per_pixel;
-  const int rows =
-      static_cast<int>(std::clamp<std::int64_t>(hits_per_batch / samples_per_row, 1, film.height));
+  const int rows = static_cast<int>(std::clamp<std::int64_t>(
+      hits_per_batch(parameters.neighbours) / samples_per_row, 1, film.height));
   std::uint64_t ray_count = 0, hit_count = 0;
   progress.begin("estimate radiance", static_cast<std::uint64_t>(film.height), "rows");
   for (int first = 0; first < film.height; first += rows) {
@@ -127,7 +132,7 @@ RenderResult render(const Scene& scene, const Camera& camera, Device& device,
   traced.photons = Photons{};  // the maps hold copies
 
   Estimator estimator(maps, scene, {parameters.neighbours, 0});
-  result.layers = estimate_picture(rays, camera, estimator, parameters.film, statistics, progress);
+  result.layers = estimate_picture(rays, camera, estimator, parameters, statistics, progress);
   return result;
 }
 
