@@ -140,7 +140,7 @@ TEST_CASE("naive maps are darker than grouped ones at borders, hence in the mean
         mean(read_image(folder / "grouped.exr"), "G"));
 }
 
-TEST_CASE("--profile lists the time of kernels") {
+TEST_CASE("a profiled render lists the time of each kernel") {
   const FileFolder folder;
   const Outcome outcome = run_photile({"render", write_box(folder), "--photons", "10k", "--size",
                                        "16x12", "-o", folder / "a.png", "--profile"});
