@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,11 @@ void apply(LightMix& mix, const std::vector<LightChange>& changes);
 /// `Illuminance_<light>.Y` in lux, with attribute `photile.lights` (JSON) and units. The root is
 /// the float sum of the layers in order. Errors: UsageError when the mix lacks a layer's light.
 Image mix_layers(const LightLayers& layers, const LightMix& mix);
+
+/// The root of mix_layers alone, bit for bit, for live relighting: `picture` (width x height,
+/// linear RGB) is overwritten with the sum of layers x powers. Work is shared by TBB. Errors:
+/// UsageError when the mix lacks a layer's light, or `picture` has another size.
+void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<glm::vec3> picture);
 
 /// Changes powers from a picture alone. Reads layers named `Combined_<light>`, Blender's
 /// `ViewLayer.Combined_<light>`, Arnold's `RGBA_<light>`; powers from `photile.lights` where the

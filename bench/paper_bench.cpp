@@ -1,0 +1,81 @@
+// Table 1 of Graglia et al. 2012: 100,000 triangles, 4,000,000 photons, 500 x 500 hits, the classic
+// photon map against one per triangle. The paper leaves out build and groups, and does not state k.
+#include "photile/estimator.hpp"
+#include "support/bench_record.hpp"
+#include "support/kernel_seconds.hpp"
+#include "support/workload.hpp"
+
+namespace {
+
+using namespace photile;
+using namespace photile::bench;
+
+struct Size {
+  std::uint32_t hall_cells = 100;  ///< 10 cells^2 triangles
+  std::uint64_t photons = 4'000'000;
+  int picture_side = 500;
+};
+
+bool run(BenchOptions& options) {
+  Size size;
+  if (options.quick) {
+    size = {8, 20'000, 32};
+    options.repeats = {1, 1};
+  }
+  BenchRecord record("paper", options);
+  Device device({.selector = options.device, .profile = true});
+  record.set_device(device.info());
+
+  const Workload workload = interior_workload("waved hall", waved_hall(size.hall_cells),
+                                              size.picture_side, size.picture_side);
+  const Photons photons = workload.photons(size.photons);
+  const double radius = automatic_radius(photons, defaults::neighbours);
+  record.set("k", defaults::neighbours);
+  record.set("radius", radius);
+  record.set("triangles", workload.scene->triangle_count());
+  record.set("photons", photons.size());
+  record.set("hits", workload.hits.size());
+
+  NeighbourGroups groups;
+  const Timing group_time =
+      measure(options.repeats, [&] { groups = find_neighbour_groups(*workload.scene, {radius}); });
+  for (const MapStructure structure : {MapStructure::kdtree_global, MapStructure::uniform_grid}) {
+    PhotonMapStatistics statistics;
+    const auto build = [&] {
+      return PhotonMaps(device, *workload.scene, photons, groups,
+                        {.radius = radius, .structure = structure});
+    };
+    const Timing build_time = measure(options.repeats, [&] { statistics = build().statistics(); });
+    const PhotonMaps maps = build();
+    Estimator estimator(maps, *workload.scene, {defaults::neighbours, radius});
+    // The search alone writes the neighbours that it found, which the estimate need not.
+    const Timing search = measure_returned(options.repeats, [&] {
+      return kernel_seconds_of(device, [&] { estimator.nearest(workload.hits); });
+    });
+    const Timing kernels = measure_returned(options.repeats, [&] {
+      return kernel_seconds_of(device, [&] { estimator.estimate(workload.hits); });
+    });
+    const Timing whole = measure(options.repeats, [&] { estimator.estimate(workload.hits); });
+    nlohmann::json row{{"structure", name_of(structure)},
+                       {"references", statistics.references},
+                       {"device bytes", statistics.device_bytes},
+                       {"maps", to_json(build_time)},
+                       {"search kernels", to_json(search)},
+                       {"estimate kernels", to_json(kernels)},
+                       {"estimate", to_json(whole)}};
+    // Any photon may be a neighbour in the one global tree; it has no use for groups.
+    if (structure == MapStructure::uniform_grid) row["groups"] = to_json(group_time);
+    record.add(std::move(row));
+  }
+  record.write();
+  return true;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  BenchOptions options;
+  CLI::App command("The frame of the paper's table 1", "paper");
+  add_options(command, options);
+  return run_bench(command, argument_count, arguments, [&] { return run(options); });
+}

@@ -1,0 +1,112 @@
+#include "support/bench_record.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include "photile/errors.hpp"
+
+namespace photile::bench {
+namespace {
+
+/// "model name" of /proc/cpuinfo; "unknown" on systems without it.
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+double load_average() {
+  double load = 0;
+  return getloadavg(&load, 1) == 1 ? load : 0;
+}
+
+}  // namespace
+
+void add_options(CLI::App& command, BenchOptions& options) {
+  command.add_flag("--quick", options.quick, "tiny sizes, one repeat: a smoke test");
+  command.add_option("--repeats", options.repeats.most, "timed repeats of each case")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      .add_option("--seconds-per-case", options.repeats.seconds_per_case,
+                  "a case that took longer ends after three repeats")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--device", options.device, "OpenCL device, as for photile --device");
+  command.add_option("-o,--output", options.output, "JSON file");
+}
+
+nlohmann::json to_json(const Timing& timing) {
+  return {{"median", timing.median()},
+          {"min", timing.smallest()},
+          {"max", timing.largest()},
+          {"samples", timing.seconds}};
+}
+
+BenchRecord::BenchRecord(const std::string& bench, const BenchOptions& options)
+    : output_(options.output) {
+  json_["bench"] = bench;
+  json_["machine"] = {{"processor", processor()},
+                      {"hardware threads", std::thread::hardware_concurrency()},
+                      {"load average at start", load_average()}};
+  json_["versions"] = {{"photile", PHOTILE_VERSION}, {"compiler", __VERSION__}};
+  json_["settings"] = {{"quick", options.quick},
+                       {"repeats", options.repeats.most},
+                       {"seconds per case", options.repeats.seconds_per_case}};
+  json_["results"] = nlohmann::json::array();
+}
+
+void BenchRecord::set_device(const DeviceInfo& info) {
+  json_["device"] = {{"name", info.name},
+                     {"platform", info.platform},
+                     {"driver", info.driver_version},
+                     {"compute units", info.compute_units}};
+}
+
+void BenchRecord::set_version(const std::string& library, const std::string& version) {
+  json_["versions"][library] = version;
+}
+
+void BenchRecord::add(nlohmann::json row) {
+  nlohmann::json line = row;
+  for (auto& [key, value] : line.items()) {
+    if (value.is_object() && value.contains("median")) value = value["median"];
+  }
+  std::cout << line.dump() << std::endl;
+  json_["results"].push_back(std::move(row));
+}
+
+void BenchRecord::write() const {
+  if (output_.empty()) return;
+  std::filesystem::path temporary = output_;
+  temporary += ".tmp";
+  {
+    std::ofstream file(temporary);
+    file << json_.dump(1) << '\n';
+    file.close();
+    if (!file) throw OutputError(temporary.string() + ": cannot be written");
+  }
+  std::filesystem::rename(temporary, output_);
+}
+
+int run_bench(CLI::App& command, int argument_count, char** arguments,
+              const std::function<bool()>& run) {
+  try {
+    command.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return command.exit(error);
+  }
+  try {
+    return run() ? EXIT_SUCCESS : EXIT_FAILURE;
+  } catch (const std::exception& error) {
+    std::cerr << command.get_name() << ": error: " << error.what() << '\n';
+    return EXIT_FAILURE;
+  }
+}
+
+}  // namespace photile::bench

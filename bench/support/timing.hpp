@@ -1,0 +1,35 @@
+// Repeated measurements of one case.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+namespace photile::bench {
+
+/// Seconds of each repeat, in the order they ran.
+struct Timing {
+  std::vector<double> seconds;
+
+  double smallest() const { return *std::min_element(seconds.begin(), seconds.end()); }
+  double largest() const { return *std::max_element(seconds.begin(), seconds.end()); }
+  /// The middle repeat; the mean of the two middle ones where their number is even.
+  double median() const;
+};
+
+/// How often a case runs.
+struct Repeats {
+  int most = 5;
+  /// A case that has run for this long, warm-up included, ends after its third repeat: rivals that
+  /// need ten seconds a pass are not worth a minute each.
+  double seconds_per_case = 10;
+};
+
+/// Times `run` after one untimed call, which compiles kernels and touches memory for the first
+/// time.
+Timing measure(const Repeats& repeats, const std::function<void()>& run);
+
+/// As above, of something that times itself: `run` returns its seconds.
+Timing measure_returned(const Repeats& repeats, const std::function<double()>& run);
+
+}  // namespace photile::bench

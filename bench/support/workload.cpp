@@ -1,0 +1,119 @@
+#include "support/workload.hpp"
+
+#include <cstdlib>
+#include <random>
+
+#include "photile/photon_tracer.hpp"
+#include "photile/ray_scene.hpp"
+#include "support/mesh_builder.hpp"
+#include "support/morton_order.hpp"
+
+namespace photile::bench {
+namespace {
+
+/// Side of the plane's triangle that looks up.
+std::uint32_t upper_side(const Scene& scene, std::uint32_t triangle) {
+  return sided_normal(scene, sided(triangle, 0)).z > 0 ? sided(triangle, 0) : sided(triangle, 1);
+}
+
+/// The plane's first triangle holds the points below the diagonal.
+std::uint32_t plane_triangle(const glm::vec3& point) { return point.y <= point.x ? 0 : 1; }
+
+std::shared_ptr<const Scene> plane_scene() {
+  Scene scene = empty_scene("plane", {0.5f, 0.5f, 1.0f});
+  add_triangle(scene, {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}});
+  add_triangle(scene, {{{0, 0, 0}, {1, 1, 0}, {0, 1, 0}}});
+  return std::make_shared<const Scene>(std::move(scene));
+}
+
+std::vector<glm::vec3> uniform_points(std::size_t count, std::uint32_t seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  std::vector<glm::vec3> points(count);
+  for (glm::vec3& point : points) {
+    point.x = uniform(generator);
+    point.y = uniform(generator);
+  }
+  return points;
+}
+
+Photons plane_photons(const Scene& scene, std::uint64_t count) {
+  std::mt19937 generator(2);
+  std::uniform_real_distribution<float> uniform(0.5f, 1.5f);
+  Photons photons;
+  photons.position = uniform_points(count, 1);
+  for (const glm::vec3& position : photons.position) {
+    photons.sided_triangle.push_back(upper_side(scene, plane_triangle(position)));
+    const float flux = uniform(generator) / static_cast<float>(count);
+    photons.flux.emplace_back(flux, 0.8f * flux, 0.6f * flux);
+  }
+  photons.emitted_per_light = {count};
+  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+}
+
+PrimaryHits plane_hits(const Scene& scene, std::size_t count) {
+  const std::vector<glm::vec3> points = uniform_points(count, 3);
+  const std::vector<std::uint32_t> order = morton_order(points);
+  PrimaryHits hits;
+  const std::uint32_t first = upper_side(scene, 0) < upper_side(scene, 1) ? 0 : 1;
+  for (const std::uint32_t triangle : {first, 1 - first}) {
+    for (const std::uint32_t i : order) {
+      if (plane_triangle(points[i]) != triangle) continue;
+      hits.position.push_back(points[i]);
+      hits.sided_triangle.push_back(upper_side(scene, triangle));
+      hits.pixel.push_back(i);
+    }
+  }
+  hits.throughput.assign(count, glm::vec3(1.0f));
+  hits.diffuse_albedo.assign(count, glm::vec3(0.5f));
+  return hits;
+}
+
+/// The number of paths that a probe says leave `count` photons.
+Photons traced_photons(const RayScene& rays, std::uint64_t count) {
+  PhotonTracerParameters parameters;
+  parameters.emitted_photons = 50'000;
+  const double per_path = static_cast<double>(trace_photons(rays, parameters).photons.size()) /
+                          static_cast<double>(parameters.emitted_photons);
+  parameters.emitted_photons =
+      static_cast<std::uint64_t>(static_cast<double>(count) / per_path) + 1;
+  return trace_photons(rays, parameters).photons;
+}
+
+}  // namespace
+
+Workload plane_workload(std::size_t queries) {
+  const std::shared_ptr<const Scene> scene = plane_scene();
+  return {"plane", scene, plane_hits(*scene, queries),
+          [scene](std::uint64_t count) { return plane_photons(*scene, count); }};
+}
+
+Workload interior_workload(const std::string& name, Scene scene, int width, int height) {
+  const auto shared = std::make_shared<const Scene>(std::move(scene));
+  const auto rays = std::make_shared<const RayScene>(*shared);
+  PrimaryHitParameters film;
+  film.width = width;
+  film.height = height;
+  film.samples_per_pixel = 1;
+  return {name, shared, trace_primary_hits(*rays, shared->cameras.front(), film, 0, height).hits,
+          [shared, rays](std::uint64_t count) { return traced_photons(*rays, count); }};
+}
+
+Scene living_room() {
+  Scene scene = load_scene(PHOTILE_SOURCE_DIR "/scenes/living-room/living-room.gltf");
+  for (Material& material : scene.materials) {
+    if (material.interaction == Interaction::opaque) material.specular = glm::vec3(0.0f);
+  }
+  return scene;
+}
+
+std::optional<Scene> classroom() {
+  const char* folder = std::getenv("PHOTILE_SHARED_SCENES");
+  const std::filesystem::path file =
+      std::filesystem::path(folder ? folder : PHOTILE_SOURCE_DIR "/../shared/scenes") /
+      "classroom/classroom-diffuse.gltf";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return load_scene(file);
+}
+
+}  // namespace photile::bench

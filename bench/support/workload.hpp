@@ -1,0 +1,44 @@
+// What the benches search: scenes with photons and the points where density is wanted.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "photile/photons.hpp"
+#include "photile/primary_hits.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::bench {
+
+struct Workload {
+  std::string name;
+  std::shared_ptr<const Scene> scene;
+  PrimaryHits hits;
+  /// Stored photons, as many as asked for: exactly on the plane, about so many where they are
+  /// traced.
+  std::function<Photons(std::uint64_t)> photons;
+};
+
+/// A square metre of two triangles with one light. Photons are uniform, each of its own flux;
+/// `queries` uniform hits in the order of PrimaryHits.
+Workload plane_workload(std::size_t queries);
+
+/// Traced photons and the primary hits of the scene's first camera, one sample a pixel.
+Workload interior_workload(const std::string& name, Scene scene, int width, int height);
+
+/// scenes/living-room with every opaque surface diffuse: the rivals do not evaluate lobes.
+Scene living_room();
+
+/// The classroom of the shared scenes (PHOTILE_SHARED_SCENES, else ../shared/scenes beside the
+/// repository), diffuse; nothing where that folder is missing.
+std::optional<Scene> classroom();
+
+/// A hall of 4 m x 4 m x 3 m with gently waved walls, 10 `cells`^2 triangles, white, lit by a point
+/// light in its middle, seen from a corner. `cells`: a multiple of 4.
+Scene waved_hall(std::uint32_t cells);
+
+}  // namespace photile::bench
