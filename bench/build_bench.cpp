@@ -17,25 +17,29 @@ void run_case(const Workload& workload, std::uint64_t photon_count, const BenchO
   NeighbourGroups groups;
   const Timing group_time =
       measure(options.repeats, [&] { groups = find_neighbour_groups(*workload.scene, {radius}); });
-  PhotonMapStatistics statistics;
-  const Timing map_time = measure(options.repeats, [&] {
-    const PhotonMaps maps(device, *workload.scene, photons, groups, {.radius = radius});
-    statistics = maps.statistics();
-  });
+  nlohmann::json row{{"workload", workload.name},
+                     {"photons", photons.size()},
+                     {"radius", radius},
+                     {"groups", to_json(group_time)}};
+  for (const MapStructure structure : all_map_structures) {
+    if (structure == MapStructure::brute_force) continue;
+    PhotonMapStatistics statistics;
+    const Timing timing = measure(options.repeats, [&] {
+      const PhotonMaps maps(device, *workload.scene, photons, groups,
+                            {.radius = radius, .structure = structure});
+      statistics = maps.statistics();
+    });
+    row[std::string(name_of(structure))] = to_json(timing);
+    if (structure != MapStructure::uniform_grid) continue;
+    row["references"] = statistics.references;
+    row["device bytes"] = statistics.device_bytes;
+  }
   const NormalFilter filter(*workload.scene, defaults::group_angle_degrees);
   const SearchInput input{photons, filter, workload.scene->lights.size()};
-  const Timing index_time =
-      measure(options.repeats, [&] { make_nanoflann_search(input, Candidates::sorted_list); });
-  const Timing embree_time = measure(options.repeats, [&] { make_embree_search(input); });
-  record.add({{"workload", workload.name},
-              {"photons", photons.size()},
-              {"radius", radius},
-              {"references", statistics.references},
-              {"device bytes", statistics.device_bytes},
-              {"groups", to_json(group_time)},
-              {"maps", to_json(map_time)},
-              {"nanoflann", to_json(index_time)},
-              {"embree", to_json(embree_time)}});
+  row["nanoflann"] = to_json(
+      measure(options.repeats, [&] { make_nanoflann_search(input, Candidates::sorted_list); }));
+  row["embree"] = to_json(measure(options.repeats, [&] { make_embree_search(input); }));
+  record.add(std::move(row));
 }
 
 bool run(BenchOptions& options) {

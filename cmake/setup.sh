@@ -30,6 +30,7 @@ catch2                 | tests
 libfcl-dev             | tests: an independent triangle distance
 libnanoflann-dev       | tests and benches: an independent nearest-neighbour search
 libbenchmark-dev       | benches
+python3-matplotlib     | benches: plots
 oclgrind               | tests: checks every memory access of the kernels
 openimageio-tools      | tests: reads the pictures as other tools do
 python3                | scripts of the docs and the tests

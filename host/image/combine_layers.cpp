@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 
 #include "image/light_change.hpp"
 #include "photile/errors.hpp"
@@ -23,19 +25,29 @@ static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
 struct ScaledLayer {
   const float* values;
   std::array<float, stride> scale;
+  std::array<std::uint32_t, stride> mask;  ///< no bits where the scale is 0, all elsewhere
 };
 
-/// Off means black, whatever the layer holds: infinity times zero is not.
-float scaled(float value, float scale) { return scale == 0.0f ? 0.0f : value * scale; }
+/// Off means black, whatever the layer holds: infinity times zero is not. A mask of bits rather
+/// than a condition, which compilers do not turn into vectors where it may raise a floating-point
+/// exception.
+float scaled(float value, float scale, std::uint32_t mask) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value * scale) & mask);
+}
 
 /// sums[i] += values[i] x scale[i mod 3]
 void add_scaled(const ScaledLayer& layer, std::size_t first, std::size_t count, float* sums) {
+  const std::array<float, stride> scale = layer.scale;
+  const std::array<std::uint32_t, stride> mask = layer.mask;
   const float* values = layer.values + first;
   std::size_t i = 0;
   for (; i + stride <= count; i += stride) {
-    for (std::size_t j = 0; j < stride; ++j) sums[i + j] += scaled(values[i + j], layer.scale[j]);
+    std::array<float, stride> products;  // apart from the sums, which might overlap the values
+    for (std::size_t j = 0; j < stride; ++j) products[j] = scaled(values[i + j], scale[j], mask[j]);
+    for (std::size_t j = 0; j < stride; ++j) sums[i + j] += products[j];
   }
-  for (std::size_t j = 0; i + j < count; ++j) sums[i + j] += scaled(values[i + j], layer.scale[j]);
+  for (std::size_t j = 0; i + j < count; ++j)
+    sums[i + j] += scaled(values[i + j], scale[j], mask[j]);
 }
 
 std::vector<ScaledLayer> scaled_layers(const LightLayers& layers, const LightMix& mix) {
@@ -43,8 +55,11 @@ std::vector<ScaledLayer> scaled_layers(const LightLayers& layers, const LightMix
   for (const LightLayers::Layer& layer : layers.layers) {
     const MixedLight& light = mix.lights[image::index_of(mix, layer.light)];
     const glm::vec3 scale(light.power * glm::dvec3(light.tint));
-    ScaledLayer entry{layer.radiance.empty() ? nullptr : &layer.radiance[0].x, {}};
-    for (std::size_t i = 0; i < stride; ++i) entry.scale[i] = scale[static_cast<int>(i % 3)];
+    ScaledLayer entry{layer.radiance.empty() ? nullptr : &layer.radiance[0].x, {}, {}};
+    for (std::size_t i = 0; i < stride; ++i) {
+      entry.scale[i] = scale[static_cast<int>(i % 3)];
+      entry.mask[i] = entry.scale[i] == 0.0f ? 0u : ~0u;
+    }
     result.push_back(entry);
   }
   return result;

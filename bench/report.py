@@ -1,0 +1,90 @@
+#!/usr/bin/python3
+"""Writes docs/benchmarks.md and its plots from docs/benchmarks/*.json. Runs nothing.
+
+    bench/report.py [--results FOLDER] [--page FILE]
+
+Needs the Debian package python3-matplotlib.
+"""
+
+import argparse
+import json
+import pathlib
+
+import report_plots
+import report_tables
+import report_targets
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BENCHES = ("knn", "paper", "build", "frame", "relight")
+BUSY_LOAD = 0.5  # load average at which other programs count as running
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/benchmarks",
+                        help="folder of the JSON files; plots go there too")
+    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/benchmarks.md")
+    return parser.parse_args()
+
+
+def machine_section(results):
+    knn = results["knn"]
+    machine, device, versions = knn["machine"], knn["device"], knn["versions"]
+    lines = [
+        f"**Machine**: {machine['processor']}, {machine['hardware threads']} hardware threads.",
+        f"**OpenCL device**: {device['name']}, {device['platform']} {device['driver']}, "
+        f"{device['compute units']} compute units.",
+        "**Versions**: " + ", ".join(f"{name} {version}" for name, version in versions.items())
+        + ".",
+    ]
+    # The benches run one after another: the load before the first is that of other programs.
+    load = machine["load average at start"]
+    if load > BUSY_LOAD:
+        lines.append(f"**Other programs were running** (load average {load:.1f} before the first "
+                     "bench): times are too long and spreads wide; ratios suffer less.")
+    if any(result["settings"]["quick"] for result in results.values()):
+        lines.append("**From a smoke test (`--quick`): these numbers mean nothing.**")
+    return "  \n".join(lines)
+
+
+def page(results, plots, notes):
+    sections = [
+        "# Benchmarks",
+        "How fast the estimate is, beside other ways to find the same photons. `bench/run_all.sh` "
+        "runs everything and writes this page; "
+        "times are medians, with the least and the largest in brackets.",
+        machine_section(results),
+        "On a machine with a GPU, the same page with its numbers:\n\n"
+        "    PHOTILE_DEVICE=gpu bench/run_all.sh",
+        "## Targets", report_targets.write_table(results),
+        "## Search and estimate against the number of photons",
+        report_tables.knn_text(),
+        "\n\n".join(f"![Time against photons: {name}](benchmarks/{file})"
+                    for name, file in plots),
+        report_tables.knn(results["knn"]),
+        "## The paper's frame", report_tables.paper(results["paper"]),
+        "## Build", report_tables.build(results["build"]),
+        "## A frame of a walkthrough", report_tables.frame(results["frame"]),
+        "## Relighting", report_tables.relight(results["relight"]),
+        notes,
+        "## See also",
+        "[Neighbour groups](neighbour-groups.md); the data behind this page in "
+        "[benchmarks/](benchmarks/).",
+    ]
+    return "\n\n".join(section.strip() for section in sections) + "\n"
+
+
+def main():
+    options = arguments()
+    results = {}
+    for bench in BENCHES:
+        with open(options.results / f"{bench}.json", encoding="utf-8") as file:
+            results[bench] = json.load(file)
+    plots = report_plots.draw(results["knn"], options.results)
+    notes = (ROOT / "bench/report_notes.md").read_text(encoding="utf-8")
+    options.page.write_text(page(results, plots, notes), encoding="utf-8")
+    print(f"wrote {options.page}")
+
+
+if __name__ == "__main__":
+    main()

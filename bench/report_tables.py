@@ -1,0 +1,132 @@
+"""Tables of docs/benchmarks.md."""
+
+REFERENCE = "nanoflann"
+
+
+def table(header, rows):
+    """Markdown; the first column is text, the others are numbers."""
+    lines = ["| " + " | ".join(header) + " |", "|---|" + "--:|" * (len(header) - 1)]
+    lines += ["| " + " | ".join(row) + " |" for row in rows]
+    return "\n".join(lines)
+
+
+def times(timing, scale=1e3, digits=3):
+    """Median (least-largest), in milliseconds unless `scale` says otherwise."""
+    low, middle, high = (f"{scale * timing[key]:.{digits}g}" if scale * timing[key] < 1000
+                         else f"{scale * timing[key]:,.0f}" for key in ("min", "median", "max"))
+    return f"{middle} ({low}-{high})"
+
+
+def knn_text():
+    return """
+Microseconds a query; all hardware threads, the same queries. Hits come in the order of the
+renderer: by sided triangle, then along a Morton curve. Everyone finds the k nearest photons within R
+(`automatic_radius`, twice the median distance to the k-th) on surfaces whose normals agree, and sums
+the flux of k - 1 over the disc, per light.
+
+- Times on the device are those of `Estimator::estimate`: transfers in and out are in them.
+- `nanoflann` is a 3D tree over all photons with leaves of 10 and its own result set,
+  `nanoflann-heap` the same with a heap, `nanoflann-morton` with queries in Morton order over the
+  whole scene. `embree` is rtcPointQuery with a heap. They are compiled with `-march=native`.
+- *plane*: two triangles, uniform photons, 524,288 queries. Interiors: traced photons, the primary
+  hits of the camera at 512 x 512, every surface diffuse.
+- Every run compares results with nanoflann's and fails where one differs: irradiance on the plane
+  (within 0.01%), elsewhere the distance to the k-th photon.
+
+The ratio is nanoflann's time over that of the row: more is better, below 1 is slower."""
+
+
+def knn(result):
+    parts = []
+    rows = result["results"]
+    for workload in dict.fromkeys(row["workload"] for row in rows):
+        for photons in dict.fromkeys(r["photons"] for r in rows if r["workload"] == workload):
+            chosen = [r for r in rows if r["workload"] == workload and r["photons"] == photons]
+            parts.append(f"**{workload}, {photons:,} photons**\n\n" + knn_table(chosen))
+    return "\n\n".join(parts)
+
+
+def knn_table(rows):
+    ks = sorted({row["k"] for row in rows})
+    by_key = {(row["structure"], row["k"]): row for row in rows}
+    lines = []
+    for structure in dict.fromkeys(row["structure"] for row in rows):
+        cells = [structure]
+        for k in ks:
+            row = by_key.get((structure, k), {})
+            if "seconds" not in row:
+                cells += ["failed" if "failure" in row else "", ""]
+                continue
+            ratio = by_key[REFERENCE, k]["seconds"]["median"] / row["seconds"]["median"]
+            cells += [times(row["seconds"], 1e6 / row["queries"]), f"{ratio:.2g}"]
+        lines.append(cells)
+    header = ["structure"]
+    for k in ks:
+        header += [f"k = {k}", "ratio"]
+    return table(header, lines)
+
+
+def paper(result):
+    settings = result["settings"]
+    rows = [["the paper, classic, on its GPU", "150", "140", "290", "", "not stated", "not stated"],
+            ["the paper, one map per triangle, on its GPU", "14", "140", "154", "", "not stated",
+             "not stated"]]
+    for row in result["results"]:
+        search, total = row["search kernels"]["median"], row["estimate kernels"]["median"]
+        rows.append([row["structure"], times(row["search kernels"]),
+                     f"{1e3 * (total - search):.3g}", times(row["estimate kernels"]),
+                     times(row["estimate"]), times(row["maps"]),
+                     times(row["groups"]) if "groups" in row else "none"])
+    text = (f"Table 1 of Graglia et al. 2012, in milliseconds, on a generated hall: "
+            f"{settings['triangles']:,} triangles, {settings['photons']:,} photons, "
+            f"{settings['hits']:,} hits. The paper does not state k; here k = {settings['k']}, "
+            f"R = {1000 * settings['radius']:.0f} mm. photile searches and sums in one kernel, so "
+            "*integration* is the difference to a kernel that only searches and writes out what it "
+            "found; it can be negative. *With transfers* is what a caller waits for.")
+    header = ["", "kNN", "integration", "total", "with transfers", "build", "groups"]
+    return text + "\n\n" + table(header, rows)
+
+
+BUILD_COLUMNS = ("uniform-grid", "kdtree-2d", "kdtree-3d", "kdtree-global", "nanoflann", "embree")
+
+
+def build(result):
+    rows = [[f"{row['workload']}, {row['photons']:,}",
+             f"{row['references'] / row['photons']:.1f}", f"{row['device bytes'] / 1e6:.0f}",
+             times(row["groups"])] + [times(row[name]) for name in BUILD_COLUMNS]
+            for row in result["results"]]
+    text = (f"Milliseconds, R for k = {result['settings']['k']}. References are entries of the "
+            "uniform grids a photon, duplicates in neighbouring maps included; groups come before "
+            "all maps but the global tree's. nanoflann builds on one thread; the kd-trees of photile "
+            "are built on the host.")
+    return text + "\n\n" + table(["workload, photons", "references", "MB", "groups",
+                                  *BUILD_COLUMNS], rows)
+
+
+def frame(result):
+    rows = []
+    for row in result["results"]:
+        total = row["total"]["median"]
+        cells = [f"{row['width']} x {row['height']}"]
+        for stage in ("primary hits", "estimate", "film"):
+            cells += [times(row[stage]), f"{100 * row[stage]['median'] / total:.0f}%"]
+        rows.append([*cells, times(row["total"]), f"{1 / total:.1f}"])
+    settings = result["settings"]
+    text = (f"The living room, diffuse, {settings['lights']} lights, {settings['photons']:,} photons, "
+            f"k = {settings['k']}, one sample a pixel; photon maps stay. Milliseconds and shares.")
+    return text + "\n\n" + table(["size", "primary hits", "", "estimate", "", "film", "", "total",
+                                  "frames a second"], rows)
+
+
+def relight(result):
+    rows = result["results"]
+    copy = rows[0]["bytes per second"]
+    lines = [[row["operation"], times(row["seconds"]), f"{row['bytes'] / 1e6:.0f}",
+              f"{row['bytes per second'] / 1e9:.1f}", f"{100 * row['bytes per second'] / copy:.0f}%"]
+             for row in rows]
+    settings = result["settings"]
+    text = (f"{settings['width']} x {settings['height']}, {settings['lights']} lights. "
+            "`combine_layers` reads each layer once and writes the picture: the live path. "
+            "`mix_layers`, which makes the EXR's picture, also writes each layer and its illuminance "
+            "at the light's power into new memory, on one thread.")
+    return text + "\n\n" + table(["operation", "ms", "MB moved", "GB/s", "of copy"], lines)

@@ -1,0 +1,83 @@
+"""What was aimed at, and what the results say."""
+
+from report_tables import REFERENCE, table
+
+PHOTONS = 1_000_000
+COUNT_TOLERANCE = 0.05  # traced photons are about as many as asked for
+
+
+def near(photons):
+    return abs(photons - PHOTONS) <= COUNT_TOLERANCE * PHOTONS
+
+
+def knn_seconds(results, workload, structure, k):
+    """Median at a million photons, or None."""
+    for row in results["knn"]["results"]:
+        if ((row["workload"], row["structure"], row["k"]) == (workload, structure, k)
+                and near(row["photons"]) and "seconds" in row):
+            return row["seconds"]["median"]
+    return None
+
+
+def speedups(results):
+    """(what, ratio or None, least) for each pair."""
+    cases = [("plane", 50, REFERENCE, 20), ("plane", 200, REFERENCE, 40),
+             ("living-room", 50, REFERENCE, 10), ("classroom", 50, REFERENCE, 10),
+             ("plane", 50, "kdtree-2d", 4), ("plane", 50, "kdtree-3d", 10),
+             ("plane", 50, "kdtree-global", 10), ("living-room", 50, "kdtree-2d", 4),
+             ("living-room", 50, "kdtree-3d", 10), ("living-room", 50, "kdtree-global", 10)]
+    for workload, k, rival, least in cases:
+        ours = knn_seconds(results, workload, "uniform-grid", k)
+        theirs = knn_seconds(results, workload, rival, k)
+        ratio = theirs / ours if ours and theirs else None
+        yield f"{workload}, 1M photons, k = {k}: times faster than {rival}", ratio, least
+
+
+def at_least(name, value, least, form):
+    if value is None:
+        return [name, form(least), "not measured", ""]
+    verdict = "reached" if value >= least else f"missed by a factor of {least / value:.2g}"
+    return [name, f"at least {form(least)}", form(value), verdict]
+
+
+def at_most(name, value, most, form):
+    if value is None:
+        return [name, form(most), "not measured", ""]
+    verdict = "reached" if value <= most else f"missed by a factor of {value / most:.2g}"
+    return [name, f"at most {form(most)}", form(value), verdict]
+
+
+def build_ratios(results):
+    for row in results["build"]["results"]:
+        if near(row["photons"]):
+            ours = row["groups"]["median"] + row["uniform-grid"]["median"]
+            yield (f"{row['workload']}, 1M photons: groups and maps over nanoflann's index build",
+                   ours / row["nanoflann"]["median"])
+
+
+def paper_milliseconds(results):
+    for row in results["paper"]["results"]:
+        if row["structure"] == "uniform-grid":
+            return 1e3 * row["estimate kernels"]["median"]
+    return None
+
+
+def relight_share(results):
+    rate = {row["operation"]: row["bytes per second"] for row in results["relight"]["results"]}
+    return 100 * rate["combine_layers"] / rate["copy"]
+
+
+def table_rows(results):
+    def times(x):
+        return f"{x:.3g} x"
+    rows = [at_least(name, ratio, least, times) for name, ratio, least in speedups(results)]
+    rows += [at_most(name, ratio, 0.25, times) for name, ratio in build_ratios(results)]
+    rows.append(at_most("the paper's frame, kNN and integration", paper_milliseconds(results), 50,
+                        lambda x: f"{x:.3g} ms"))
+    rows.append(at_least("relighting, of copy bandwidth", relight_share(results), 60,
+                         lambda x: f"{x:.0f}%"))
+    return rows
+
+
+def write_table(results):
+    return table(["", "aim", "result", ""], table_rows(results))
