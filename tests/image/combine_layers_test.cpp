@@ -1,3 +1,4 @@
+#include <array>
 #include <limits>
 
 #include "picture_support.hpp"
@@ -16,7 +17,7 @@ void check_equal_to_root(const LightLayers& layers, const LightMix& mix) {
   for (int c = 0; c < 3; ++c) {
     std::vector<float> plane;
     for (const glm::vec3& pixel : picture) plane.push_back(pixel[c]);
-    CHECK(same_bits(plane, *expected.find(std::string(1, "RGB"[c]))));
+    CHECK(same_bits(plane, *expected.find(std::array{"R", "G", "B"}[static_cast<std::size_t>(c)])));
   }
 }
 
