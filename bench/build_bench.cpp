@@ -42,8 +42,7 @@ void run_case(const Workload& workload, std::uint64_t photon_count, const BenchO
   record.add(std::move(row));
 }
 
-bool run(BenchOptions& options) {
-  std::vector<std::uint64_t> counts{100'000, 1'000'000, 4'000'000};
+bool run(BenchOptions& options, std::vector<std::uint64_t> counts) {
   if (options.quick) {
     counts = {20'000};
     options.repeats = {1, 1};
@@ -67,7 +66,9 @@ bool run(BenchOptions& options) {
 
 int main(int argument_count, char** arguments) {
   BenchOptions options;
+  std::vector<std::uint64_t> counts{100'000, 1'000'000, 4'000'000};
   CLI::App command("Time to build photon maps", "build");
   add_options(command, options);
-  return run_bench(command, argument_count, arguments, [&] { return run(options); });
+  command.add_option("--photons", counts, "photon counts");
+  return run_bench(command, argument_count, arguments, [&] { return run(options, counts); });
 }
