@@ -27,6 +27,22 @@ def arguments():
     return parser.parse_args()
 
 
+def doubts(results):
+    """Why the numbers are not to be relied on; empty where they are."""
+    reasons = []
+    # The benches run one after another: the load before the first is that of other programs.
+    load = results["knn"]["machine"]["load average at start"]
+    if load > BUSY_LOAD:
+        reasons.append(f"other programs were running (load average {load:.1f} before the first "
+                       "bench), and more or fewer of them from one row to the next, so ratios are "
+                       "as doubtful as times")
+    single = [name for name, result in results.items() if result["settings"]["repeats"] < 3]
+    if single:
+        reasons.append(f"fewer than three repeats ({', '.join(single)}), so the brackets do not "
+                       "show the spread")
+    return reasons
+
+
 def machine_section(results):
     knn = results["knn"]
     machine, device, versions = knn["machine"], knn["device"], knn["versions"]
@@ -37,11 +53,7 @@ def machine_section(results):
         "**Versions**: " + ", ".join(f"{name} {version}" for name, version in versions.items())
         + ".",
     ]
-    # The benches run one after another: the load before the first is that of other programs.
-    load = machine["load average at start"]
-    if load > BUSY_LOAD:
-        lines.append(f"**Other programs were running** (load average {load:.1f} before the first "
-                     "bench): times are too long and spreads wide; ratios suffer less.")
+    lines += [f"**Provisional**: {reason}." for reason in doubts(results)]
     if any(result["settings"]["quick"] for result in results.values()):
         lines.append("**From a smoke test (`--quick`): these numbers mean nothing.**")
     return "  \n".join(lines)
@@ -56,7 +68,7 @@ def page(results, plots, notes):
         machine_section(results),
         "On a machine with a GPU, the same page with its numbers:\n\n"
         "    PHOTILE_DEVICE=gpu bench/run_all.sh",
-        "## Targets", report_targets.write_table(results),
+        "## Targets", report_targets.write_table(results, bool(doubts(results))),
         "## Search and estimate against the number of photons",
         report_tables.knn_text(),
         "\n\n".join(f"![Time against photons: {name}](benchmarks/{file})"

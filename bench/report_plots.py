@@ -45,7 +45,9 @@ def draw_workload(rows, workload, file):
         axis.grid(True, which="major", alpha=0.3)
     axes[0][0].set_ylabel("microseconds a query")
     handles, labels = axes[0][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right center", frameon=False)
+    # In the last panel's margin: this matplotlib cannot place a figure's legend outside.
+    axes[0][-1].legend(handles, labels, loc="center left", bbox_to_anchor=(1.02, 0.5),
+                       frameon=False)
     figure.suptitle(workload)
     figure.savefig(file, dpi=100, metadata={"Software": None})
     pyplot.close(figure)

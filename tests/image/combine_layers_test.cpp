@@ -59,6 +59,6 @@ TEST_CASE("combining refuses a picture of another size and a mix without the lig
   std::vector<glm::vec3> picture(5);
   CHECK_THROWS_AS(combine_layers(layers, mix, picture), UsageError);
   picture.resize(6);
-  mix.lights[0].name = "b";
+  mix.lights = {mixed("b", 1.0)};
   CHECK_THROWS_AS(combine_layers(layers, mix, picture), UsageError);
 }
