@@ -7,6 +7,7 @@
 
 #include "estimate/hit_buffers.hpp"
 #include "estimate/query.hpp"
+#include "estimate/tuning.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -28,7 +29,9 @@ struct Estimator::Impl {
         neighbours(static_cast<std::uint32_t>(parameters.neighbours)),
         radius(static_cast<float>(parameters.radius == 0 ? photon_maps.parameters().radius
                                                          : parameters.radius)),
-        query(estimate::make_query(store, neighbours, radius)) {}
+        query(estimate::make_query(
+            store, neighbours, radius,
+            parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())))) {}
 
   /// Hits of one batch so that no buffer, input or output, is larger than the device allows.
   std::size_t batch_size(std::uint64_t output_bytes_per_hit) const {
@@ -61,6 +64,10 @@ Estimator::Estimator(const PhotonMaps& maps, const Scene&, const EstimateParamet
   if (!(parameters.radius >= 0) || parameters.radius > maps.parameters().radius) {
     throw UsageError(fmt::format("estimate radius {} m: must be between 0 and the maps' {} m",
                                  parameters.radius, maps.parameters().radius));
+  }
+  if (parameters.tuning) {
+    const std::string problem = estimate::tuning_problem(*parameters.tuning);
+    if (!problem.empty()) throw UsageError("tuning of the estimate: " + problem);
   }
   impl_ = std::make_unique<Impl>(maps, parameters);
 }

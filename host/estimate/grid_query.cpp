@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
 
@@ -6,25 +8,28 @@ namespace {
 
 class GridQuery : public Query {
  public:
-  GridQuery(const maps::MapStore& store, std::uint32_t neighbours, float radius)
+  GridQuery(const maps::MapStore& store, std::uint32_t neighbours, float radius,
+            const EstimateTuning& tuning)
       : store_(store),
         context_(store.device->context()),
         neighbours_(neighbours),
         radius_(radius),
-        choice_(specialise(context_.info(), store.needs, static_cast<int>(neighbours))) {}
+        choice_(specialise(tuning, store.needs, static_cast<int>(neighbours))) {
+    choice_.work_group_size =
+        std::min<std::size_t>(choice_.work_group_size, context_.info().max_work_group_size);
+  }
 
   void estimate(const PageHits& hits, device::Buffer<float>& irradiance,
                 device::Buffer<float>& radiance) override {
     const device::Kernel kernel =
-        context_.kernel("estimate/estimate.cl", "estimate", choice_.defines());
+        context_.kernel(choice_.kernel_file(), "estimate", choice_.defines());
     const maps::MapPage& page = hits.page;
-    const auto hits_per_item = static_cast<std::uint32_t>(choice_.hits_per_item);
-    const std::uint32_t work_items = (hits.count + hits_per_item - 1) / hits_per_item;
     with_scene_arguments(store_.needs, hits, radiance, [&](const auto&... scene) {
-      context_.run(kernel, work_items, maps::work_group_size, hits.count, hits.first,
-                   hits.hits.position, hits.hits.map, page.first_map, page.grids, page.cell_start,
-                   page.entry_stride, page.entry_position, page.entry_flux, page.entry_photon,
-                   scene..., neighbours_, radius_, store_.needs.light_count, irradiance);
+      context_.run(kernel, choice_.work_items(hits.count), choice_.work_group_size, hits.count,
+                   hits.first, hits.hits.position, hits.hits.map, page.first_map, page.grids,
+                   page.cell_start, page.entry_stride, page.entry_position, page.entry_flux,
+                   page.entry_photon, scene..., neighbours_, radius_, store_.needs.light_count,
+                   irradiance);
     });
   }
 
@@ -49,8 +54,8 @@ class GridQuery : public Query {
 }  // namespace
 
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       float radius) {
-  return std::make_unique<GridQuery>(store, neighbours, radius);
+                                       float radius, const EstimateTuning& tuning) {
+  return std::make_unique<GridQuery>(store, neighbours, radius, tuning);
 }
 
 }  // namespace photile::estimate

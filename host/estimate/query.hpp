@@ -7,6 +7,7 @@
 #include "device/context.hpp"
 #include "estimate/hit_buffers.hpp"
 #include "maps/map_store.hpp"
+#include "photile/estimate_tuning.hpp"
 
 namespace photile::estimate {
 
@@ -32,10 +33,11 @@ class Query {
                        device::Buffer<float>& squared_radius) = 0;
 };
 
+/// `tuning` counts for uniform grids only.
 std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                  float radius);
+                                  float radius, const EstimateTuning& tuning);
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       float radius);
+                                       float radius, const EstimateTuning& tuning);
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        float radius);
 

@@ -3,28 +3,99 @@
 #include <algorithm>
 
 namespace photile::estimate {
+namespace {
+
+/// Lights whose sums a tile keeps; scenes with more are estimated hit by hit.
+constexpr int tile_lights = 16;
+
+int rounded_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
+
+/// Distances kept for a hit: a block holds about 4 / pi x 1.2 x k candidates and the overhang of
+/// its cells. Counts of what is kept share 32 bits in threes, hence the upper limit.
+int capacity_for(int neighbours) {
+  constexpr int least = 128, most = 1008;
+  return std::clamp(rounded_up(std::min(neighbours, most) * 3, 16), least, most);
+}
+
+/// Candidates kept for a tile, whose block is larger by the extent of its hits.
+int tile_capacity_for(int neighbours) {
+  constexpr int least = 256, most = 1024;
+  return std::clamp(rounded_up(std::min(neighbours, most) * 5, 16), least, most);
+}
+
+}  // namespace
 
 device::Defines Specialisation::defines() const {
   device::Defines defines;
   defines.set("VECTOR_WIDTH", static_cast<long long>(vector_width));
   defines.set("CAPACITY", static_cast<long long>(capacity));
   defines.set("HITS_PER_ITEM", static_cast<long long>(hits_per_item));
+  if (strategy == EstimateStrategy::heap) {
+    defines.set("LIST_CAPACITY", static_cast<long long>(list_capacity));
+  }
+  if (strategy == EstimateStrategy::tile) {
+    defines.set("TILE_CAPACITY", static_cast<long long>(tile_capacity));
+    defines.set("TILE_LIGHTS", static_cast<long long>(tile_lights));
+  }
   if (multiple_lights) defines.set("MULTIPLE_LIGHTS");
   if (glossy) defines.set("GLOSSY");
   return defines;
 }
 
-Specialisation specialise(const DeviceInfo& device, const SceneNeeds& needs, int neighbours) {
-  // A block holds about 4 / pi x 1.2 x k candidates and the overhang of its cells. Counts of what
-  // is kept share 32 bits in threes, hence the upper limit.
-  constexpr int least = 128, most = 1008, vector = 16;
+std::string Specialisation::kernel_file() const {
+  switch (strategy) {
+    case EstimateStrategy::heap:
+      return "estimate/estimate_heap.cl";
+    case EstimateStrategy::tile:
+      return "estimate/estimate_tile.cl";
+    case EstimateStrategy::select:
+      break;
+  }
+  return "estimate/estimate.cl";
+}
+
+std::uint32_t Specialisation::work_items(std::uint32_t hits) const {
+  const int hits_of_item = strategy == EstimateStrategy::select ? hits_per_item
+                           : strategy == EstimateStrategy::tile ? vector_width
+                                                                : 1;
+  const auto divisor = static_cast<std::uint32_t>(hits_of_item);
+  return hits / divisor + (hits % divisor != 0);
+}
+
+std::size_t Specialisation::private_bytes() const {
+  const auto width = static_cast<std::size_t>(vector_width);
+  const std::size_t distances = (static_cast<std::size_t>(capacity) + 3 * width) * sizeof(float);
+  switch (strategy) {
+    case EstimateStrategy::heap:
+      return static_cast<std::size_t>(list_capacity) * (sizeof(float) + sizeof(std::uint32_t));
+    case EstimateStrategy::tile: {
+      const std::size_t lights = multiple_lights ? tile_lights : 1;
+      const std::size_t vectors = static_cast<std::size_t>(tile_capacity) + 3 * lights;
+      return vectors * width * sizeof(float) + distances;
+    }
+    case EstimateStrategy::select:
+      break;
+  }
+  return distances;
+}
+
+Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours) {
   Specialisation choice;
-  choice.vector_width = device.type == DeviceType::cpu ? 16 : 1;
-  const int wanted = std::min(neighbours, most) * 3;
-  choice.capacity = std::clamp((wanted + vector - 1) / vector * vector, least, most);
-  choice.hits_per_item = device.type == DeviceType::cpu ? 16 : 1;
+  const bool too_many_for_heap =
+      tuning.strategy == EstimateStrategy::heap && neighbours > max_heap_neighbours;
+  choice.strategy = too_many_for_heap ? EstimateStrategy::select : tuning.strategy;
+  choice.vector_width = tuning.vector_width;
+  choice.capacity = capacity_for(neighbours);
+  choice.list_capacity = neighbours;
+  choice.tile_capacity = tile_capacity_for(neighbours);
+  choice.hits_per_item = choice.strategy == EstimateStrategy::select ? tuning.hits_per_item : 1;
   choice.multiple_lights = needs.light_count > 1;
   choice.glossy = needs.glossy;
+  choice.work_group_size = static_cast<std::size_t>(tuning.work_group_size);
+  while (choice.work_group_size > 1 &&
+         choice.work_group_size * choice.private_bytes() > max_private_bytes_per_group) {
+    choice.work_group_size /= 2;
+  }
   return choice;
 }
 

@@ -1,25 +1,44 @@
-// Which variant of the estimate kernels a scene and a device need.
+// Which variant of the estimate kernels a scene and a tuning need.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
 #include "device/context.hpp"
+#include "photile/estimate_tuning.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::estimate {
 
-/// Compile-time choices of kernels/estimate.
+/// Private memory that the work-items of a group may use together. PoCL keeps a whole group's
+/// private arrays on the stack of the thread that runs it, 8 MiB with the usual limit and less on
+/// other libcs; a group beyond it ends the process. It is also what stays in a CPU's second-level
+/// cache.
+inline constexpr std::size_t max_private_bytes_per_group = 512u << 10;
+
+/// Compile-time choices of kernels/estimate, and how to launch them.
 struct Specialisation {
+  EstimateStrategy strategy = EstimateStrategy::select;
   int vector_width = 1;   ///< floats per vector: 1, 4, 8 or 16
-  int capacity = 160;     ///< distances kept in private memory
-  int hits_per_item = 1;  ///< neighbouring hits that a work-item estimates in turn
+  int capacity = 160;     ///< distances kept in private memory by `select`, and where a tile fails
+  int list_capacity = 1;  ///< k, `heap` only
+  int tile_capacity = 512;  ///< candidates of a tile, `tile` only
+  int hits_per_item = 1;    ///< neighbouring hits that a work-item estimates in turn
+  std::size_t work_group_size = 64;
   bool multiple_lights = false;
   bool glossy = false;
 
   device::Defines defines() const;
+  std::string kernel_file() const;
+  std::uint32_t work_items(std::uint32_t hits) const;
+  /// Of the arrays that one work-item keeps in private memory.
+  std::size_t private_bytes() const;
 };
 
-/// Vector width 16 on every CPU, whatever its own width, so that results agree in every bit between
-/// CPUs; scalar elsewhere, where work-items are the lanes. The capacity holds the block of cells
-/// that k photons usually need.
-Specialisation specialise(const DeviceInfo& device, const SceneNeeds& needs, int neighbours);
+/// The capacities hold the candidates that k photons usually need. Where k does not suit the
+/// strategy, it becomes `select`; work-groups are halved until their private memory is within
+/// max_private_bytes_per_group.
+Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours);
 
 }  // namespace photile::estimate

@@ -103,7 +103,7 @@ std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_
 }
 
 std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                  float radius) {
+                                  float radius, const EstimateTuning& tuning) {
   switch (store.parameters.structure) {
     case MapStructure::kdtree_2d:
     case MapStructure::kdtree_3d:
@@ -113,7 +113,7 @@ std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t nei
     case MapStructure::brute_force:
       break;
   }
-  return make_grid_query(store, neighbours, radius);
+  return make_grid_query(store, neighbours, radius, tuning);
 }
 
 }  // namespace photile::estimate

@@ -130,8 +130,7 @@ RenderResult render(const Scene& scene, const Camera& camera, Device& device,
       device, scene, traced.photons, groups,
       {result.radius, parameters.photons_per_cell, parameters.structure}, statistics, progress);
   traced.photons = Photons{};  // the maps hold copies
-
-  Estimator estimator(maps, scene, {parameters.neighbours, 0});
+  Estimator estimator(maps, scene, {parameters.neighbours, 0, parameters.tuning});
   result.layers = estimate_picture(rays, camera, estimator, parameters, statistics, progress);
   return result;
 }

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "photile/defaults.hpp"
+#include "photile/estimate_tuning.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/primary_hits.hpp"
 
@@ -15,6 +17,8 @@ struct EstimateParameters {
   int neighbours = defaults::neighbours;  ///< k
   /// Metres; 0 = the maps' radius. No neighbour is farther.
   double radius = 0;
+  /// How uniform grids are queried; none = shipped_tuning of the device.
+  std::optional<EstimateTuning> tuning;
 };
 
 /// Estimates of a batch of hits, each light at power 1. Row-major [hit][light].
@@ -28,8 +32,8 @@ struct Estimates {
 /// Neighbours of a batch of hits: photon indices, ascending, `none` beyond the last.
 struct NeighbourLists {
   int k = 0;
-  std::vector<std::uint32_t> photons;         ///< hits x k
-  std::vector<float> squared_radius;          ///< square of the estimate's radius, per hit
+  std::vector<std::uint32_t> photons;  ///< hits x k
+  std::vector<float> squared_radius;   ///< square of the estimate's radius, per hit
 };
 
 /// Runs the estimate kernels over photon maps. With k photons or more within the radius the
@@ -37,7 +41,7 @@ struct NeighbourLists {
 /// (unbiased under constant density); with fewer, all of them over the disc of the full radius.
 class Estimator {
  public:
-  /// Errors: UsageError when k or the radius is out of range.
+  /// Errors: UsageError when k, the radius or the tuning is out of range.
   Estimator(const PhotonMaps& maps, const Scene& scene, const EstimateParameters& parameters);
   ~Estimator();
   Estimator(Estimator&&) noexcept;

@@ -1,8 +1,11 @@
 // The whole method in one call: trace, group, build, estimate.
 #pragma once
 
+#include <optional>
+
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
+#include "photile/estimate_tuning.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -29,6 +32,9 @@ struct RenderParameters {
   int neighbours = defaults::neighbours;
   float photons_per_cell = defaults::photons_per_cell;
   MapStructure structure = MapStructure::uniform_grid;
+  /// How uniform grids are queried; none = shipped_tuning of the device. Its photons_per_cell does
+  /// not count, the one above does.
+  std::optional<EstimateTuning> tuning;
   PrimaryHitParameters film;
 };
 

@@ -1,8 +1,7 @@
 // Irradiance and reflected radiance of every hit against brute force in double precision.
 #include <catch2/catch.hpp>
-#include <glm/gtc/constants.hpp>
 
-#include "neighbour_comparison.hpp"
+#include "estimates_comparison.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
@@ -10,37 +9,19 @@ using namespace photile;
 
 namespace {
 
-/// Largest relative difference over hits and lights. Sums of k positive floats are right to k units
-/// of 2^-24, the area to a few.
-double tolerance(int k) { return (static_cast<double>(k) + 16.0) / (1 << 24); }
-
 void check_irradiance(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
                       double radius, int k) {
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const std::size_t lights = scene.lights.size();
-  std::vector<std::vector<glm::dvec3>> expected;
-  for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-    expected.push_back(oracle.irradiance(hits.position[hit], hits.sided_triangle[hit], k,
-                                         static_cast<float>(radius)));
-  }
+  const auto expected = test::expected_irradiance(oracle, hits, k, radius);
   for (const MapStructure structure : all_map_structures) {
     const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
     const Estimates estimates = Estimator(maps, scene, {k, 0}).estimate(hits);
     REQUIRE(estimates.irradiance.size() == hits.size() * lights);
     CHECK(estimates.radiance.empty());
-    double worst = 0;
-    for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-      for (std::size_t light = 0; light < lights; ++light) {
-        for (int c = 0; c < 3; ++c) {
-          const double truth = expected[hit][light][c];
-          const double difference = std::abs(estimates.irradiance[hit * lights + light][c] - truth);
-          worst = std::max(worst, difference / std::max(truth, 1e-30));
-        }
-      }
-    }
     CAPTURE(name_of(structure), k, radius, lights);
-    CHECK(worst <= tolerance(k));
+    CHECK(test::worst_difference(estimates.irradiance, expected) <= test::estimate_tolerance(k));
   }
 }
 
@@ -92,14 +73,7 @@ TEST_CASE("glossy radiance equals the BSDF summed over the oracle's neighbours i
   const Photons photons = test::uniform_photons(scene, 5000, 59);
   REQUIRE(photons.incoming.size() == photons.size());
   PrimaryHits hits = test::uniform_hits(scene, 100, 60);
-  std::mt19937_64 random(61);
-  std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    const glm::vec3 normal = glm::vec3(sided_normal(scene, hits.sided_triangle[i]));
-    hits.outgoing.push_back(
-        glm::normalize(normal + glm::vec3(uniform(random), uniform(random), uniform(random))));
-    hits.lobe.push_back({scene.materials[0].specular, scene.materials[0].roughness, normal});
-  }
+  test::add_lobes(hits, scene, 61);
   const double radius = 0.2;
   const int k = 50;
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
@@ -107,48 +81,6 @@ TEST_CASE("glossy radiance equals the BSDF summed over the oracle's neighbours i
   const Estimates estimates = Estimator(maps, scene, {k, 0}).estimate(hits);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
 
-  // The model of glTF 2.0, appendix B, written down afresh in double precision.
-  const auto bsdf = [](glm::dvec3 i, glm::dvec3 o, glm::dvec3 n, double albedo, double f0,
-                       double alpha) {
-    const glm::dvec3 h = glm::normalize(i + o);
-    const double fresnel = f0 + (1 - f0) * std::pow(1 - glm::dot(i, h), 5.0);
-    const double ni = glm::dot(n, i), no = glm::dot(n, o), nh = glm::dot(n, h);
-    double lobe = 0;
-    if (ni > 0 && no > 0) {
-      const double a2 = alpha * alpha;
-      const double d = a2 / (glm::pi<double>() * std::pow(nh * nh * (a2 - 1) + 1, 2.0));
-      const double visibility =
-          0.5 / (no * std::sqrt(ni * ni * (1 - a2) + a2) + ni * std::sqrt(no * no * (1 - a2) + a2));
-      lobe = d * visibility;
-    }
-    return (1 - fresnel) * albedo / glm::pi<double>() + fresnel * lobe;
-  };
-
-  double worst = 0;
-  for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-    const auto near =
-        oracle.nearest(hits.position[hit], hits.sided_triangle[hit], k, static_cast<float>(radius));
-    const std::size_t used = near.photons.size() == k ? k - 1u : near.photons.size();
-    std::vector<glm::dvec3> expected(2, glm::dvec3(0.0));
-    for (std::size_t n = 0; n < used; ++n) {
-      const std::uint32_t photon = near.photons[n];
-      for (int c = 0; c < 3; ++c) {
-        expected[photons.light[photon]][c] +=
-            double{photons.flux[photon][c]} *
-            bsdf(photons.incoming[photon], hits.outgoing[hit], hits.lobe[hit].normal,
-                 hits.diffuse_albedo[hit][c], hits.lobe[hit].specular[c],
-                 hits.lobe[hit].roughness) /
-            (glm::pi<double>() * near.squared_radius);
-      }
-    }
-    for (std::size_t light = 0; light < 2; ++light) {
-      for (int c = 0; c < 3; ++c) {
-        const double difference =
-            std::abs(estimates.radiance[hit * 2 + light][c] - expected[light][c]);
-        worst = std::max(worst, difference / std::max(expected[light][c], 1e-30));
-      }
-    }
-  }
-  // The lobe's peak amplifies the rounding of the half vector by 1 / alpha^2.
-  CHECK(worst <= tolerance(k) * 12.0);
+  const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius);
+  CHECK(test::worst_difference(estimates.radiance, expected) <= test::glossy_tolerance(k));
 }

@@ -1,0 +1,58 @@
+#include "estimate/tuning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "photile/errors.hpp"
+
+namespace photile {
+
+std::string_view name_of(EstimateStrategy strategy) {
+  switch (strategy) {
+    case EstimateStrategy::select:
+      return "select";
+    case EstimateStrategy::heap:
+      return "heap";
+    case EstimateStrategy::tile:
+      return "tile";
+  }
+  return "unknown";
+}
+
+EstimateTuning shipped_tuning(const DeviceInfo& device) {
+  EstimateTuning tuning;
+  if (device.type == DeviceType::cpu) {
+    tuning.vector_width = 16;
+    tuning.hits_per_item = 16;
+  }
+  return tuning;
+}
+
+namespace estimate {
+
+std::string tuning_problem(const EstimateTuning& tuning) {
+  const auto& widths = vector_widths;
+  if (std::find(widths.begin(), widths.end(), tuning.vector_width) == widths.end()) {
+    return fmt::format("vector width {}: must be 1, 4, 8 or 16", tuning.vector_width);
+  }
+  if (tuning.strategy == EstimateStrategy::tile && tuning.vector_width == 1) {
+    return "vector width 1: a tile needs 4, 8 or 16";
+  }
+  if (tuning.hits_per_item < 1 || tuning.hits_per_item > max_hits_per_item) {
+    return fmt::format("{} hits per work-item: must be between 1 and {}", tuning.hits_per_item,
+                       max_hits_per_item);
+  }
+  if (tuning.work_group_size < 1 || tuning.work_group_size > max_work_group_size) {
+    return fmt::format("work-groups of {}: must be between 1 and {}", tuning.work_group_size,
+                       max_work_group_size);
+  }
+  if (!(tuning.photons_per_cell > 0) || !(tuning.photons_per_cell <= max_photons_per_cell)) {
+    return fmt::format("{} photons per cell: must be positive and at most {}",
+                       tuning.photons_per_cell, max_photons_per_cell);
+  }
+  return {};
+}
+
+}  // namespace estimate
+}  // namespace photile

@@ -1,0 +1,19 @@
+// The tunings that there are.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "photile/estimate_tuning.hpp"
+
+namespace photile::estimate {
+
+inline constexpr std::array vector_widths = {1, 4, 8, 16};
+inline constexpr int max_hits_per_item = 64;
+inline constexpr int max_work_group_size = 256;
+inline constexpr float max_photons_per_cell = 64;
+
+/// "" for a tuning that kernels exist for, else what is wrong with it.
+std::string tuning_problem(const EstimateTuning& tuning);
+
+}  // namespace photile::estimate

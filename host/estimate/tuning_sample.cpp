@@ -1,0 +1,103 @@
+#include "estimate/tuning_sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <random>
+#include <utility>
+
+namespace photile::estimate {
+namespace {
+
+/// Uniform in [0, 1). Not std::uniform_real_distribution, which differs between libraries.
+float uniform(std::mt19937_64& random) { return static_cast<float>(random() >> 40) * 0x1p-24f; }
+
+/// The unit square as two triangles, with a material and lights as needed.
+Scene unit_square(const SceneNeeds& needs) {
+  Scene scene;
+  Material material;
+  material.diffuse = glm::vec3(0.5f);
+  if (needs.glossy) {
+    material.specular = glm::vec3(0.04f);
+    material.roughness = 0.3f;
+  }
+  scene.materials = {material};
+  scene.lights.resize(needs.light_count);
+  scene.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
+  scene.triangles = {{0, 2, 1}, {0, 3, 2}};
+  scene.front_side = {0, 0};
+  scene.triangle_material = {0, 0};
+  scene.triangle_light = {none, none};
+  return scene;
+}
+
+/// The sided triangle of unit_square that a point lies on, seen from above.
+std::uint32_t front_at(const glm::vec3& point) { return sided(point.x > point.y ? 1 : 0, 0); }
+
+Photons random_photons(const SceneNeeds& needs, std::size_t count, std::mt19937_64& random) {
+  Photons photons;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = uniform(random), y = uniform(random);
+    photons.position.emplace_back(x, y, 0.0f);
+    photons.flux.emplace_back(1.0f / static_cast<float>(count));
+    photons.sided_triangle.push_back(front_at(photons.position.back()));
+    if (needs.light_count > 1) {
+      photons.light.push_back(static_cast<std::uint16_t>(random() % needs.light_count));
+    }
+    if (needs.glossy) {
+      const float tilt_x = uniform(random) - 0.5f, tilt_y = uniform(random) - 0.5f;
+      photons.incoming.push_back(glm::normalize(glm::vec3(tilt_x, tilt_y, 1.0f)));
+    }
+  }
+  return sort_by_sided_triangle(std::move(photons), 4);
+}
+
+/// Every second bit of a Morton code.
+std::uint32_t every_second_bit(std::uint32_t code) {
+  std::uint32_t bits = 0;
+  for (int bit = 0; bit < 16; ++bit) bits |= (code >> (2 * bit) & 1u) << bit;
+  return bits;
+}
+
+PrimaryHits grid_of_hits(const Scene& scene, bool glossy, int per_side, std::mt19937_64& random) {
+  PrimaryHits hits;
+  const auto side = static_cast<std::uint32_t>(per_side);
+  std::uint32_t padded = 1;
+  while (padded < side) padded *= 2;
+  for (std::uint32_t code = 0; code < padded * padded; ++code) {
+    const std::uint32_t column = every_second_bit(code), row = every_second_bit(code >> 1);
+    if (column >= side || row >= side) continue;
+    const float x = (static_cast<float>(column) + uniform(random)) / static_cast<float>(side);
+    const float y = (static_cast<float>(row) + uniform(random)) / static_cast<float>(side);
+    hits.position.emplace_back(x, y, 0.0f);
+  }
+  std::stable_partition(hits.position.begin(), hits.position.end(),
+                        [](const glm::vec3& point) { return front_at(point) == sided(0, 0); });
+  const Material& material = scene.materials.front();
+  for (const glm::vec3& position : hits.position) {
+    hits.sided_triangle.push_back(front_at(position));
+    hits.pixel.push_back(0);
+    hits.throughput.emplace_back(1.0f);
+    hits.diffuse_albedo.push_back(material.diffuse);
+    if (!glossy) continue;
+    hits.outgoing.emplace_back(0.6f, 0.0f, 0.8f);
+    hits.lobe.push_back({material.specular, material.roughness, {0, 0, 1}});
+  }
+  return hits;
+}
+
+}  // namespace
+
+TuningSample make_tuning_sample(const SceneNeeds& needs, int neighbours,
+                                const TuningSampleSize& size) {
+  std::mt19937_64 random(1);
+  TuningSample sample;
+  sample.scene = unit_square(needs);
+  sample.photons = random_photons(needs, size.photons, random);
+  sample.hits = grid_of_hits(sample.scene, needs.glossy, size.hits_per_side, random);
+  sample.radius =
+      2 * std::sqrt(neighbours / (glm::pi<double>() * static_cast<double>(size.photons)));
+  return sample;
+}
+
+}  // namespace photile::estimate

@@ -1,0 +1,75 @@
+// How the estimate runs on a device: which kernel, how wide, how fine the grids. Speed only; but
+// float sums depend on their order, so the last bits of a picture depend on the tuning.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "photile/defaults.hpp"
+#include "photile/device.hpp"
+#include "photile/progress.hpp"
+#include "photile/scene.hpp"
+
+namespace photile {
+
+/// How the k nearest photons are selected. All find the same neighbours.
+enum class EstimateStrategy {
+  select,  ///< distances of a block of cells in one pass, the k-th by counting; no list
+  heap,    ///< a bounded max-heap per hit; for k up to max_heap_neighbours, else `select`
+  tile     ///< a vector of neighbouring hits shares one block of candidates
+};
+
+inline constexpr std::array all_estimate_strategies = {
+    EstimateStrategy::select, EstimateStrategy::heap, EstimateStrategy::tile};
+
+/// Largest k whose heap is kept in private memory.
+inline constexpr int max_heap_neighbours = 256;
+
+/// "select", "heap", "tile".
+std::string_view name_of(EstimateStrategy strategy);
+
+struct EstimateTuning {
+  EstimateStrategy strategy = EstimateStrategy::select;
+  int vector_width = 1;   ///< floats per vector: 1, 4, 8 or 16
+  int hits_per_item = 1;  ///< neighbouring hits that a work-item estimates in turn; `select` only
+  int work_group_size = 64;  ///< work-items; fewer where their private memory would be too much
+  /// The grids that go with it, for PhotonMapParameters; the estimate itself does not use it.
+  float photons_per_cell = defaults::photons_per_cell;
+
+  friend bool operator==(const EstimateTuning&, const EstimateTuning&) = default;
+};
+
+/// What is used unless the user asks for another: vector width 16 on every CPU, whatever its own
+/// width, so that pictures agree in every bit between CPUs; scalar elsewhere, where work-items are
+/// the lanes.
+EstimateTuning shipped_tuning(const DeviceInfo& device);
+
+/// One measurement of the tuner.
+struct TuningTrial {
+  EstimateTuning tuning;
+  double microseconds_per_hit = 0;  ///< median of 5; infinite where the device refused to run it
+};
+
+struct TuningResult {
+  EstimateTuning best;
+  std::vector<TuningTrial> trials;  ///< in the order in which they were made
+};
+
+/// Finds the fastest tuning for scenes of these needs, on a plane of random photons: from the
+/// shipped one on, one parameter at a time, as long as that gains. Takes seconds to minutes, most
+/// of them for compiling kernels. Errors: UsageError when k is out of range; Interrupted.
+TuningResult tune_estimate(Device& device, const SceneNeeds& needs, int neighbours,
+                           Progress& progress = Progress::none());
+
+/// Keeps a tuning for later runs in the user's cache folder, for this device, its driver, these
+/// kernels, and scenes that need the same kernel variant (one light or several, glossy or not).
+/// Errors: OutputError when there is no such folder or the file cannot be written.
+void store_tuning(const DeviceInfo& device, const SceneNeeds& needs, const EstimateTuning& tuning);
+
+/// The tuning stored for such scenes. None where there is no file, or its content is damaged or
+/// belongs to other kernels.
+std::optional<EstimateTuning> stored_tuning(const DeviceInfo& device, const SceneNeeds& needs);
+
+}  // namespace photile

@@ -1,0 +1,126 @@
+// Every tuning gives the oracle's estimates.
+#include <catch2/catch.hpp>
+
+#include "estimate/specialisation.hpp"
+#include "estimate/tuning.hpp"
+#include "estimates_comparison.hpp"
+#include "photile/errors.hpp"
+#include "photon_sets.hpp"
+#include "test_device.hpp"
+
+using namespace photile;
+
+namespace {
+
+/// Every strategy and vector width, with each of the numbers of hits where they matter.
+std::vector<EstimateTuning> tunings(const std::vector<int>& numbers_of_hits) {
+  std::vector<EstimateTuning> all;
+  for (const int width : estimate::vector_widths) {
+    for (const int hits : numbers_of_hits) {
+      all.push_back({EstimateStrategy::select, width, hits, 16});
+    }
+    if (width > 1) all.push_back({EstimateStrategy::tile, width, 1, 16});
+  }
+  all.push_back({EstimateStrategy::heap, 1, 1, 64});
+  return all;
+}
+
+/// One scene with its photons and hits, estimated by every tuning.
+struct Case {
+  Scene scene;
+  Photons photons;
+  PrimaryHits hits;
+  double radius = 0.2;
+  int k = 50;
+
+  void check(const std::vector<EstimateTuning>& tunings) const {
+    const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
+    const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
+    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4});
+    const auto irradiance = test::expected_irradiance(oracle, hits, k, radius);
+    test::ExpectedEstimates radiance;
+    if (needs_of(scene).glossy) {
+      radiance = test::expected_radiance(oracle, photons, hits, scene.lights.size(), k, radius);
+    }
+    for (const EstimateTuning& tuning : tunings) {
+      CAPTURE(name_of(tuning.strategy), tuning.vector_width, tuning.hits_per_item, k);
+      const Estimates estimates = Estimator(maps, scene, {k, 0, tuning}).estimate(hits);
+      CHECK(test::worst_difference(estimates.irradiance, irradiance) <=
+            test::estimate_tolerance(k));
+      CHECK(test::worst_difference(estimates.radiance, radiance) <= test::glossy_tolerance(k));
+    }
+  }
+};
+
+/// A plate, or a torus whose maps hold few hits each, with hits that are neighbours in memory.
+Case one_light() {
+  Case data{.scene = test::empty_scene()};
+  test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
+  data.photons = test::uniform_photons(data.scene, 6000, 71);
+  data.hits = test::uniform_hits(data.scene, 700, 72);
+  return data;
+}
+
+Case several_lights() {
+  Case data{.scene = test::empty_scene(3)};
+  test::add_torus(data.scene, 1.0f, 0.4f, 12, 6);
+  data.photons = test::uniform_photons(data.scene, 8000, 73);
+  data.hits = test::uniform_hits(data.scene, 400, 74);
+  data.radius = 0.3;
+  return data;
+}
+
+Case glossy() {
+  Case data{.scene = test::empty_scene(2)};
+  data.scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
+  data.scene.materials[0].roughness = 0.3f;
+  test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  data.photons = test::uniform_photons(data.scene, 5000, 75);
+  data.hits = test::uniform_hits(data.scene, 200, 76);
+  test::add_lobes(data.hits, data.scene, 77);
+  return data;
+}
+
+}  // namespace
+
+TEST_CASE("every strategy and vector width gives the oracle's irradiance for one light") {
+  one_light().check(tunings({8}));
+}
+
+TEST_CASE("every strategy and vector width gives the oracle's irradiance for several lights") {
+  several_lights().check(tunings({8}));
+}
+
+TEST_CASE("every strategy and vector width gives the oracle's irradiance and glossy radiance") {
+  glossy().check(tunings({8}));
+}
+
+TEST_CASE("every number of hits per work-item gives the oracle's estimates", "[slow]") {
+  for (const Case& data : {one_light(), several_lights(), glossy()}) {
+    data.check(tunings({1, 8, 16, 64}));
+  }
+}
+
+TEST_CASE("k beyond a heap in private memory and beyond a tile gives the oracle's irradiance") {
+  Case data = one_light();
+  for (const int k : {1, 256, 257, 900}) {
+    data.k = k;
+    data.radius = 0.5;
+    data.check({{EstimateStrategy::heap, 1, 1, 64}, {EstimateStrategy::tile, 8, 1, 64}});
+  }
+}
+
+TEST_CASE("a tuning that no kernel exists for is refused") {
+  const Case data = one_light();
+  const PhotonMaps maps(test::device(), data.scene, data.photons,
+                        find_neighbour_groups(data.scene, {0.2, 60}), {0.2, 4});
+  for (const EstimateTuning& tuning :
+       std::vector<EstimateTuning>{{EstimateStrategy::select, 3, 1, 64},
+                                   {EstimateStrategy::select, 16, 0, 64},
+                                   {EstimateStrategy::select, 16, 65, 64},
+                                   {EstimateStrategy::select, 16, 1, 0},
+                                   {EstimateStrategy::select, 16, 1, 257},
+                                   {EstimateStrategy::tile, 1, 1, 64}}) {
+    CHECK_THROWS_AS(Estimator(maps, data.scene, {50, 0, tuning}), UsageError);
+  }
+}
