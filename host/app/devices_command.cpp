@@ -7,8 +7,14 @@
 
 #include "app/commands.hpp"
 #include "app/number_format.hpp"
+#include "app/signals.hpp"
+#include "app/terminal_progress.hpp"
+#include "app/tuning_report.hpp"
+#include "app/validators.hpp"
+#include "photile/defaults.hpp"
 #include "photile/device.hpp"
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::app {
 namespace {
@@ -18,6 +24,8 @@ using nlohmann::json;
 struct DevicesOptions {
   std::string selector;
   bool json = false;
+  bool tune = false;
+  int neighbours = defaults::neighbours;
 };
 
 const char* type_name(DeviceType type) {
@@ -60,7 +68,15 @@ std::string device_line(const DeviceInfo& device, bool selected) {
                      format_bytes(device.max_allocation_bytes));
 }
 
+void run_tuning(const DevicesOptions& options) {
+  handle_signals();
+  TerminalProgress progress(false);
+  Device device({.selector = options.selector});
+  tune_device(device, options.neighbours, progress);
+}
+
 void run_devices(const DevicesOptions& options) {
+  if (options.tune) return run_tuning(options);
   // Opening the device asks the very code that `render` asks; without any device it says so.
   const std::string selected = Device({.selector = options.selector}).info().id;
   json list = json::array();
@@ -84,11 +100,21 @@ void run_devices(const DevicesOptions& options) {
 void add_devices_command(CLI::App& photile) {
   auto options = std::make_shared<DevicesOptions>();
   CLI::App* command = photile.add_subcommand("devices", "List the OpenCL devices");
-  command->add_flag("--json", options->json, "as JSON");
+  CLI::Option* json = command->add_flag("--json", options->json, "as JSON");
   command
       ->add_option("--device", options->selector,
-                   "mark the one that this selector chooses, as in photile render")
+                   "mark or tune the one that this selector chooses, as in photile render")
       ->type_name("SELECTOR");
+  CLI::Option* tune =
+      command
+          ->add_flag("--tune", options->tune,
+                     "find and store the fastest kernels of the device, for photile render --tuned")
+          ->excludes(json);
+  command->add_option("-k,--neighbours", options->neighbours, "photons of an estimate to tune for")
+      ->type_name("N")
+      ->transform(count_between(1, limits::max_neighbours))
+      ->capture_default_str()
+      ->needs(tune);
   command->callback([options] { run_devices(*options); });
 }
 

@@ -14,6 +14,7 @@
 #include "app/summary.hpp"
 #include "app/terminal_progress.hpp"
 #include "app/threads.hpp"
+#include "app/tuning_report.hpp"
 #include "device/context.hpp"
 #include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
@@ -59,6 +60,23 @@ void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress) {
     progress.note(
         fmt::format("warning: {} more; photile info shows all", warnings.size() - shown_warnings));
   }
+}
+
+/// What `photile devices --tune` found for this device and such scenes.
+void use_stored_tuning(RenderOptions& options, const DeviceInfo& device, const Scene& scene,
+                       Progress& progress) {
+  RenderParameters& parameters = options.parameters;
+  parameters.tuning = stored_tuning(device, needs_of(scene));
+  if (!parameters.tuning) {
+    progress.note(fmt::format(
+        "warning: no tuning is stored for {} and such scenes; photile devices --tune makes one",
+        device.name));
+    return;
+  }
+  if (!options.own_photons_per_cell) {
+    parameters.photons_per_cell = parameters.tuning->photons_per_cell;
+  }
+  progress.note("tuning: " + tuning_words(*parameters.tuning));
 }
 
 /// Runs `work` as a stage of its own and returns what it cost.
@@ -107,6 +125,8 @@ void run_render(RenderOptions& options) {
   check_channels(outputs, scene);
   const Camera& camera = choose_camera(scene, options.camera);
   set_film_size(options.parameters.film, options.size, camera);
+
+  if (options.tuned) use_stored_tuning(options, device.info(), scene, progress);
 
   const RenderResult result = render(scene, camera, device, options.parameters, progress);
   stages.insert(stages.end(), result.statistics.begin(), result.statistics.end());

@@ -127,6 +127,11 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
       ->type_name("X")
       ->transform(positive_number())
       ->capture_default_str()
+      ->each([&options](const std::string&) { options.own_photons_per_cell = true; })
+      ->group("Estimate");
+  command
+      .add_flag("--tuned", options.tuned,
+                "as photile devices --tune found best; other last bits than without")
       ->group("Estimate");
 }
 

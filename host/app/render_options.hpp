@@ -23,9 +23,11 @@ struct RenderOptions {
   std::string scene;
   PictureOptions pictures;
   RenderParameters parameters;
-  std::string quota;      ///< "balanced", "power" or "equal"
-  std::string maps;       ///< "naive" or "grouped"
-  std::string structure;  ///< "uniform-grid", ...
+  std::string quota;                  ///< "balanced", "power" or "equal"
+  std::string maps;                   ///< "naive" or "grouped"
+  std::string structure;              ///< "uniform-grid", ...
+  bool tuned = false;                 ///< use the tuning that `photile devices --tune` stored
+  bool own_photons_per_cell = false;  ///< given by the user: a tuning does not replace it
   std::string camera;
   std::string size;  ///< "" = by the camera
   std::vector<std::string> lights;

@@ -18,7 +18,7 @@ struct EstimateParameters {
   /// Metres; 0 = the maps' radius. No neighbour is farther.
   double radius = 0;
   /// How uniform grids are queried; none = shipped_tuning of the device.
-  std::optional<EstimateTuning> tuning;
+  std::optional<EstimateTuning> tuning = std::nullopt;
 };
 
 /// Estimates of a batch of hits, each light at power 1. Row-major [hit][light].

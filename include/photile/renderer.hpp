@@ -34,7 +34,7 @@ struct RenderParameters {
   MapStructure structure = MapStructure::uniform_grid;
   /// How uniform grids are queried; none = shipped_tuning of the device. Its photons_per_cell does
   /// not count, the one above does.
-  std::optional<EstimateTuning> tuning;
+  std::optional<EstimateTuning> tuning = std::nullopt;
   PrimaryHitParameters film;
 };
 
