@@ -28,8 +28,8 @@ std::vector<EstimateTuning> tunings(const std::vector<int>& numbers_of_hits) {
 /// One scene with its photons and hits, estimated by every tuning.
 struct Case {
   Scene scene;
-  Photons photons;
-  PrimaryHits hits;
+  Photons photons = {};
+  PrimaryHits hits = {};
   double radius = 0.2;
   int k = 50;
 
