@@ -98,7 +98,7 @@ TEST_CASE("--tuned uses the stored tuning and its cell size, unless another is g
   const std::filesystem::path cache = folder.path / "photile";
   std::filesystem::create_directory(cache);
   const auto file = estimate::tuning_file(cache, Device().info());
-  estimate::write_tuning(file, {.light_count = 1}, {EstimateStrategy::tile, 4, 1, 16, 2.0f});
+  estimate::write_tuning(file, {.light_count = 2}, {EstimateStrategy::tile, 4, 1, 16, 2.0f});
   Run run;
   run.environment["XDG_CACHE_HOME"] = folder.path;
   run.arguments = {"render",
