@@ -28,6 +28,7 @@ struct Case {
   Scene scene;
   MapStructure structure = MapStructure::uniform_grid;
   int neighbours = 50;
+  std::optional<EstimateTuning> tuning = std::nullopt;
 };
 
 struct Sizes {
@@ -108,7 +109,7 @@ void print_fingerprint(Device& device, const Case& test, const Sizes& sizes) {
     print_hash(test, "entry_position", context, page.entry_position);
     print_hash(test, "entry_flux", context, page.entry_flux);
   }
-  Estimator estimator(maps, test.scene, {test.neighbours, 0});
+  Estimator estimator(maps, test.scene, {test.neighbours, 0, test.tuning});
   const NeighbourLists lists = estimator.nearest(hits);
   print_hash(test, "neighbours", std::span(lists.photons));
   print_hash(test, "squared_radius", std::span(lists.squared_radius));
@@ -126,6 +127,13 @@ std::vector<Case> cases(bool every_kernel) {
   for (const MapStructure structure : all_map_structures) {
     if (structure == MapStructure::uniform_grid) continue;
     list.push_back({std::string(name_of(structure)), torus_and_plate(1, false), structure});
+  }
+  for (const EstimateStrategy strategy : {EstimateStrategy::heap, EstimateStrategy::tile}) {
+    for (const std::size_t lights : {1u, 3u}) {
+      list.push_back({fmt::format("{}-{}-lights", name_of(strategy), lights),
+                      torus_and_plate(lights, false), MapStructure::uniform_grid, 50,
+                      EstimateTuning{strategy, 16, 1, 16}});
+    }
   }
   // Lists too long for private memory.
   list.push_back({"kdtree-3d-k-300", torus_and_plate(1, false), MapStructure::kdtree_3d, 300});
