@@ -1,6 +1,6 @@
 #!/bin/bash
 # Installs Intel's OpenCL runtime for CPUs into build/intel-runtime, where the tests find it. Optional:
-# a second runtime to compare PoCL with. Needs python3-venv and access to PyPI.
+# a second runtime to compare PoCL with. Needs python3-venv and pip's package index.
 # Usage: cmake/setup-intel-runtime.sh
 set -euo pipefail
 folder=$(cd "$(dirname "$0")/.." && pwd)/build/intel-runtime
