@@ -93,7 +93,7 @@ TEST_CASE("without a stored tuning --tuned says so and renders what is rendered 
   CHECK(folder.read("out.png") == plain);
 }
 
-TEST_CASE("--tuned uses the stored tuning and its cell size, unless another is given") {
+TEST_CASE("the option --tuned uses the stored tuning and its cell size, unless another is given") {
   const FileFolder folder;
   const std::filesystem::path cache = folder.path / "photile";
   std::filesystem::create_directory(cache);
