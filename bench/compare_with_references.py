@@ -64,7 +64,7 @@ def machine(record):
     lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
     fields = {line.split(":")[0].strip(): line.partition(":")[2].strip() for line in lines}
     vectors = " with AVX-512" if "avx512f" in fields.get("flags", "").split() else ""
-    device = record["device"]
+    device = record["devices"][0]
     platform = device["platform"].replace("Portable Computing Language", "PoCL")
     return (f"{os.cpu_count()} cores, {fields.get('model name', 'unknown processor')}{vectors}, "
             f"{platform} {device['driver_version']}")

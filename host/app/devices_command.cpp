@@ -4,6 +4,8 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "app/commands.hpp"
 #include "app/number_format.hpp"
@@ -78,10 +80,14 @@ void run_tuning(const DevicesOptions& options) {
 void run_devices(const DevicesOptions& options) {
   if (options.tune) return run_tuning(options);
   // Opening the device asks the very code that `render` asks; without any device it says so.
-  const std::string selected = Device({.selector = options.selector}).info().id;
+  std::set<std::string> selected;
+  for (const Device& device : open_devices({.selector = options.selector})) {
+    const DeviceInfo& info = device.info();
+    selected.insert(info.parent.empty() ? info.id : info.parent);
+  }
   json list = json::array();
   for (const DeviceInfo& device : list_devices()) {
-    const bool is_selected = device.id == selected;
+    const bool is_selected = selected.contains(device.id);
     if (options.json) {
       list.push_back(device_json(device, is_selected));
     } else {
@@ -103,7 +109,7 @@ void add_devices_command(CLI::App& photile) {
   CLI::Option* json = command->add_flag("--json", options->json, "as JSON");
   command
       ->add_option("--device", options->selector,
-                   "mark or tune the one that this selector chooses, as in photile render")
+                   "mark those, or tune the one, that this selector chooses, as in photile render")
       ->type_name("SELECTOR");
   CLI::Option* tune =
       command

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/number_format.hpp"
@@ -45,7 +47,7 @@ void check_channels(const PictureOutputs& outputs, const Scene& scene) {
 }
 
 void tell_device(const DeviceInfo& device, Progress& progress) {
-  progress.note(fmt::format("device: {} ({}, {}), {} compute units, {}", device.name,
+  progress.note(fmt::format("device: {} {} ({}, {}), {} compute units, {}", device.id, device.name,
                             device.platform, device.driver_version, device.compute_units,
                             format_bytes(device.global_memory_bytes)));
 }
@@ -62,9 +64,19 @@ void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress) {
   }
 }
 
-/// What `photile devices --tune` found for this device and such scenes.
-void use_stored_tuning(RenderOptions& options, const DeviceInfo& device, const Scene& scene,
+/// What `photile devices --tune` found for these devices and such scenes. A tuning is of one kind
+/// of device. Errors: UsageError when there are several kinds.
+void use_stored_tuning(RenderOptions& options, std::span<const Device> devices, const Scene& scene,
                        Progress& progress) {
+  const DeviceInfo& device = devices.front().info();
+  for (const Device& other : devices) {
+    if (other.info().name != device.name || other.info().platform != device.platform) {
+      throw UsageError(
+          fmt::format("--tuned: {} and {} have tunings of their own; choose one device "
+                      "or leave out --tuned",
+                      device.name, other.info().name));
+    }
+  }
   RenderParameters& parameters = options.parameters;
   parameters.tuning = stored_tuning(device, needs_of(scene));
   if (!parameters.tuning) {
@@ -93,10 +105,9 @@ StageStatistics timed_stage(const char* name, Progress& progress, const Work& wo
   return cost;
 }
 
-void tell_summary(const RunRecord& record, Device& device, bool profile, Progress& progress) {
-  for (const auto& line : summary_table(record)) progress.note(line);
-  progress.note(fmt::format("kernels: {} compiled, {} from the cache, {}", device.programs_built(),
-                            device.programs_from_cache(),
+void tell_kernels(Device& device, bool profile, Progress& progress) {
+  progress.note(fmt::format("kernels of {}: {} compiled, {} from the cache, {}", device.info().id,
+                            device.programs_built(), device.programs_from_cache(),
                             format_seconds(device.compile_seconds())));
   if (!profile) return;
   for (const auto& line : kernel_table(device.context().kernel_times())) progress.note(line);
@@ -112,8 +123,11 @@ void run_render(RenderOptions& options) {
 
   const ThreadLimit threads(options.threads);
   TerminalProgress progress(options.quiet);
-  Device device(options.device);
-  tell_device(device.info(), progress);
+  std::vector<Device> devices = open_devices(options.device);
+  std::vector<DeviceInfo> device_infos;
+  for (const Device& device : devices) {
+    tell_device(device_infos.emplace_back(device.info()), progress);
+  }
 
   Scene scene;
   RunStatistics stages;
@@ -126,16 +140,17 @@ void run_render(RenderOptions& options) {
   const Camera& camera = choose_camera(scene, options.camera);
   set_film_size(options.parameters.film, options.size, camera);
 
-  if (options.tuned) use_stored_tuning(options, device.info(), scene, progress);
+  if (options.tuned) use_stored_tuning(options, devices, scene, progress);
 
-  const RenderResult result = render(scene, camera, device, options.parameters, progress);
+  const RenderResult result = render(scene, camera, devices, options.parameters, progress);
   stages.insert(stages.end(), result.statistics.begin(), result.statistics.end());
 
   RunRecord record{.scene = scene.source.filename().string(),
                    .camera = camera.name,
                    .maps = options.maps,
                    .parameters = options.parameters,
-                   .device = device.info(),
+                   .devices = device_infos,
+                   .device_shares = result.device_shares,
                    .mix = mix,
                    .radius = result.radius,
                    .stored_photons = result.stored_photons,
@@ -152,7 +167,8 @@ void run_render(RenderOptions& options) {
         options.statistics,
         run_json(record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }
-  tell_summary(record, device, options.device.profile, progress);
+  for (const auto& line : summary_table(record)) progress.note(line);
+  for (Device& device : devices) tell_kernels(device, options.device.profile, progress);
 }
 
 }  // namespace

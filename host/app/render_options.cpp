@@ -158,6 +158,8 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--device", options.device.selector,
                   "OpenCL device: platform:device, index, cpu, gpu or a part of its name; "
+                  "all, or several separated by commas; with /N split into N sub-devices, with =N "
+                  "only N of its compute units; "
                   "default: the environment's PHOTILE_DEVICE, else the best")
       ->type_name("SELECTOR")
       ->group("Run");

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "app/number_format.hpp"
 #include "app/version.hpp"
@@ -30,6 +31,28 @@ json stage_json(const StageStatistics& stage) {
              {"figures", json::object()}};
   for (const auto& [name, value] : stage.figures) entry["figures"][name] = value;
   return entry;
+}
+
+json devices_json(const RunRecord& record) {
+  json list = json::array();
+  for (std::size_t i = 0; i < record.devices.size(); ++i) {
+    const DeviceInfo& device = record.devices[i];
+    list.push_back({{"id", device.id},
+                    {"name", device.name},
+                    {"platform", device.platform},
+                    {"driver_version", device.driver_version},
+                    {"share", record.device_shares[i]}});
+  }
+  return list;
+}
+
+std::string devices_text(std::span<const DeviceInfo> devices) {
+  std::string text;
+  for (const DeviceInfo& device : devices) {
+    text += fmt::format("{}{} ({}, driver {})", text.empty() ? "" : "; ", device.name,
+                        device.platform, device.driver_version);
+  }
+  return text;
 }
 
 json parameters_json(const RunRecord& record) {
@@ -62,8 +85,7 @@ void set_run_attributes(Image& picture, const RunRecord& record) {
   attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
   attributes["photile.maps"] = record.maps;
   attributes["photile.samples_per_pixel"] = std::to_string(parameters.film.samples_per_pixel);
-  attributes["photile.device"] = fmt::format("{} ({}, driver {})", record.device.name,
-                                             record.device.platform, record.device.driver_version);
+  attributes["photile.device"] = devices_text(record.devices);
   attributes["photile.times"] = times_text(record.stages);
 }
 
@@ -71,11 +93,7 @@ json run_json(const RunRecord& record) {
   json result{{"photile", version_number()},
               {"scene", record.scene},
               {"camera", record.camera},
-              {"device",
-               {{"id", record.device.id},
-                {"name", record.device.name},
-                {"platform", record.device.platform},
-                {"driver_version", record.device.driver_version}}},
+              {"devices", devices_json(record)},
               {"parameters", parameters_json(record)},
               {"lumen_per_watt", record.mix.lumen_per_watt},
               {"lights", json::array()},

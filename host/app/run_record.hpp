@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "photile/device.hpp"
 #include "photile/image.hpp"
@@ -19,7 +20,8 @@ struct RunRecord {
   std::string camera;
   std::string maps;  ///< "naive" or "grouped"
   RenderParameters parameters;
-  DeviceInfo device;
+  std::vector<DeviceInfo> devices;
+  std::vector<double> device_shares;  ///< of the hits, per device
   LightMix mix;
   double radius = 0;  ///< the one used, metres
   std::uint64_t stored_photons = 0;

@@ -1,24 +1,52 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "device/context_impl.hpp"
 #include "device/device_selection.hpp"
 #include "device/status_names.hpp"
+#include "device/sub_devices.hpp"
 
 namespace photile::device {
 namespace {
 
-ListedDevice open(const std::string& selector) {
-  const auto list = enumerate_devices();
+/// The devices that the selector means, sub-devices made.
+std::vector<ListedDevice> find_all(const std::string& selector) {
+  DeviceList list = enumerate_devices();
   std::vector<DeviceInfo> infos;
   for (const auto& listed : list.usable) infos.push_back(listed.info);
-  return list.usable[select_device(infos, selector, list.left_out)];
+  std::vector<ListedDevice> chosen;
+  for (const DeviceChoice& choice : select_devices(infos, selector, list.left_out)) {
+    ListedDevice& listed = list.usable[choice.index];
+    if (choice.compute_units.empty()) {
+      chosen.push_back(std::move(listed));
+    } else {
+      for (auto& part : make_sub_devices(listed, choice.compute_units)) {
+        chosen.push_back(std::move(part));
+      }
+    }
+  }
+  return chosen;
+}
+
+ListedDevice find_one(const std::string& selector) {
+  std::vector<ListedDevice> found = find_all(selector);
+  if (found.size() != 1) {
+    std::vector<std::string> ids;
+    for (const auto& listed : found) ids.push_back(listed.info.id);
+    throw DeviceError(
+        fmt::format("{} devices are chosen ({}) where one is needed; name one by "
+                    "--device or {}",
+                    found.size(), fmt::join(ids, ", "), device_variable));
+  }
+  return std::move(found.front());
 }
 
 }  // namespace
 
-Context::Impl::Impl(const DeviceOptions& options) : profile(options.profile) {
-  const auto listed = open(options.selector);
-  info = listed.info;
+Context::Impl::Impl(ListedDevice listed, const DeviceOptions& options)
+    : info(std::move(listed.info)),
+      sub_device(std::move(listed.sub_device)),
+      profile(options.profile) {
   const cl_context_properties properties[] = {
       CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(listed.platform), 0};
   cl_int status = CL_SUCCESS;
@@ -42,7 +70,18 @@ void Context::Impl::check(cl_int status, std::string_view call, const std::strin
                            memory->live.load()));
 }
 
-Context::Context(const DeviceOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Context::Context(const DeviceOptions& options) : Context(find_one(options.selector), options) {}
+
+Context::Context(ListedDevice&& listed, const DeviceOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(listed), options)) {}
+
+std::vector<std::unique_ptr<Context>> Context::open_all(const DeviceOptions& options) {
+  std::vector<std::unique_ptr<Context>> contexts;
+  for (ListedDevice& listed : find_all(options.selector)) {
+    contexts.emplace_back(new Context(std::move(listed), options));
+  }
+  return contexts;
+}
 
 Context::~Context() {
   // Kernels that still run use the programs and PoCL's files. An error has been reported by then,

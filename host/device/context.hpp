@@ -20,6 +20,7 @@
 namespace photile::device {
 
 class Context;
+struct ListedDevice;  // device_list.hpp
 
 /// Bytes in the live buffers of a context. Shared with them: a buffer may outlive its context.
 struct MemoryCounter {
@@ -102,7 +103,10 @@ struct KernelTime {
 /// Every member throws DeviceError naming the call and the status.
 class Context {
  public:
+  /// Of the one device that the selector means.
   explicit Context(const DeviceOptions& options);
+  /// Of each device that the selector means.
+  static std::vector<std::unique_ptr<Context>> open_all(const DeviceOptions& options);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -165,6 +169,8 @@ class Context {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+
+  Context(ListedDevice&& listed, const DeviceOptions& options);
 
   RawBuffer allocate_elements(std::size_t count, std::size_t element_bytes, std::string_view what);
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,

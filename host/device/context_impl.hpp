@@ -21,13 +21,14 @@ struct Kernel::Impl {
 };
 
 struct Context::Impl {
-  explicit Impl(const DeviceOptions& options);
+  Impl(ListedDevice listed, const DeviceOptions& options);
 
   /// Throws DeviceError unless `status` is CL_SUCCESS; `what` says what was asked for. Where memory
   /// ran out the message adds the device's limits and a remedy.
   void check(cl_int status, std::string_view call, const std::string& what) const;
 
   DeviceInfo info;
+  SubDeviceHandle sub_device;  ///< outlives all that is made on it
   ContextHandle context;
   QueueHandle queue;
   std::unique_ptr<ProgramLibrary> programs;

@@ -13,6 +13,7 @@ struct ListedDevice {
   DeviceInfo info;
   cl_platform_id platform = nullptr;
   cl_device_id device = nullptr;
+  SubDeviceHandle sub_device{};  ///< owns `device` where that is a sub-device
 };
 
 struct DeviceList {

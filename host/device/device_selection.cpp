@@ -8,7 +8,9 @@
 #include <charconv>
 #include <cstdlib>
 #include <functional>
+#include <numeric>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "photile/errors.hpp"
@@ -60,15 +62,107 @@ std::optional<std::size_t> find(std::span<const DeviceInfo> devices, const std::
   });
 }
 
+/// Where a selector came from, for messages: "device selector 'cpu'", "PHOTILE_DEVICE 'cpu'".
+struct Source {
+  std::string text;
+
+  [[noreturn]] void refuse(const std::string& problem) const {
+    throw DeviceError(fmt::format("{} {}", text, problem));
+  }
+};
+
+/// A positive number of at most 9 digits.
+std::optional<std::uint32_t> parse_positive(std::string_view text) {
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc() && end == text.data() + text.size() && number > 0;
+  return is_number && text.size() <= 9 ? std::optional(number) : std::nullopt;
+}
+
+/// What follows a device's name: sub-devices.
+struct Partition {
+  std::uint32_t equal_parts = 0;             ///< "/N"
+  std::vector<std::uint32_t> compute_units;  ///< "=A+B"
+};
+
+/// Cuts the partition off the end of `name`. Device names may hold a '/' or '=' of their own: only
+/// numbers after it make it a partition.
+Partition take_partition(std::string& name) {
+  const std::size_t at = name.find_last_of("/=");
+  if (at == std::string::npos) return {};
+  Partition partition;
+  std::string_view numbers = std::string_view(name).substr(at + 1);
+  if (name[at] == '/') {
+    const auto parts = parse_positive(numbers);
+    if (!parts) return {};
+    partition.equal_parts = *parts;
+  } else {
+    for (;;) {
+      const std::size_t plus = numbers.find('+');
+      const auto count = parse_positive(numbers.substr(0, plus));
+      if (!count) return {};
+      partition.compute_units.push_back(*count);
+      if (plus == std::string_view::npos) break;
+      numbers.remove_prefix(plus + 1);
+    }
+  }
+  name.erase(at);
+  return partition;
+}
+
+/// Compute units of each sub-device. Parts that cannot be equal differ by one unit.
+std::vector<std::uint32_t> compute_units_of(const Partition& partition, const DeviceInfo& device,
+                                            const Source& source) {
+  const std::uint64_t wanted =
+      std::accumulate(partition.compute_units.begin(), partition.compute_units.end(),
+                      std::uint64_t{partition.equal_parts});
+  if (wanted > device.compute_units) {
+    source.refuse(fmt::format("asks for {} compute units, and {} {} has {}; ask for fewer", wanted,
+                              device.id, device.name, device.compute_units));
+  }
+  std::vector<std::uint32_t> units = partition.compute_units;
+  for (std::uint32_t part = 0; part < partition.equal_parts; ++part) {
+    units.push_back((device.compute_units + part) / partition.equal_parts);
+  }
+  return units;
+}
+
+/// Every device but Oclgrind's simulator, a checker: by far the slowest, it would be the last to
+/// finish its share.
+std::vector<DeviceChoice> all_of(std::span<const DeviceInfo> devices) {
+  std::vector<DeviceChoice> choices;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (devices[i].platform != "Oclgrind") choices.push_back({i});
+  }
+  if (choices.empty()) choices.push_back({0});
+  return choices;
+}
+
+DeviceChoice choose(std::span<const DeviceInfo> devices, std::string name, const Source& source) {
+  const Partition partition = take_partition(name);
+  const auto found = find(devices, name);
+  if (!found) {
+    std::vector<std::string> names;
+    for (const auto& device : devices) {
+      names.push_back(fmt::format("{} {}", device.id, device.name));
+    }
+    source.refuse(fmt::format(
+        "matches no OpenCL device; there are: {}; give platform:device, an index, cpu, gpu or a "
+        "part of a name",
+        fmt::join(names, ", ")));
+  }
+  return {*found, compute_units_of(partition, devices[*found], source)};
+}
+
 }  // namespace
 
-std::size_t select_device(std::span<const DeviceInfo> devices, std::string selector,
-                          std::span<const std::string> left_out) {
-  std::string source = "device selector";
+std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string selector,
+                                         std::span<const std::string> left_out) {
+  std::string origin = "device selector";
   if (const char* const variable = std::getenv(device_variable);
       selector.empty() && variable != nullptr && *variable != '\0') {
     selector = variable;
-    source = device_variable;
+    origin = device_variable;
   }
   if (devices.empty()) {
     throw DeviceError(fmt::format(
@@ -76,14 +170,25 @@ std::size_t select_device(std::span<const DeviceInfo> devices, std::string selec
         left_out.empty() ? ": no OpenCL runtime is installed"
                          : fmt::format(" ({})", fmt::join(left_out, "; "))));
   }
-  if (const auto found = find(devices, lower(selector))) return *found;
-  std::vector<std::string> names;
-  for (const auto& device : devices) names.push_back(fmt::format("{} {}", device.id, device.name));
-  throw DeviceError(
-      fmt::format("{} '{}' matches no OpenCL device; there are: {}; give platform:device, an "
-                  "index, cpu, gpu or "
-                  "a part of a name",
-                  source, selector, fmt::join(names, ", ")));
+  const Source source{fmt::format("{} '{}'", origin, selector)};
+  selector = lower(selector);
+  if (selector == "all") return all_of(devices);
+  std::vector<DeviceChoice> choices;
+  for (std::size_t begin = 0; begin <= selector.size();) {
+    const std::size_t end = std::min(selector.find(',', begin), selector.size());
+    if (begin == end && !selector.empty()) {
+      source.refuse("has a comma without a device on both sides; name one or leave it out");
+    }
+    choices.push_back(choose(devices, selector.substr(begin, end - begin), source));
+    const std::size_t index = choices.back().index;
+    if (std::any_of(choices.begin(), choices.end() - 1,
+                    [&](const DeviceChoice& choice) { return choice.index == index; })) {
+      source.refuse(fmt::format("names {} {} twice; name each device once", devices[index].id,
+                                devices[index].name));
+    }
+    begin = end + 1;
+  }
+  return choices;
 }
 
 }  // namespace photile::device

@@ -41,6 +41,8 @@ class Handle {
   T object_ = nullptr;
 };
 
+/// Only sub-devices are counted: a device that a platform lists is never released.
+using SubDeviceHandle = Handle<cl_device_id, clReleaseDevice>;
 using ContextHandle = Handle<cl_context, clReleaseContext>;
 using QueueHandle = Handle<cl_command_queue, clReleaseCommandQueue>;
 using ProgramHandle = Handle<cl_program, clReleaseProgram>;

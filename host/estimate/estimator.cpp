@@ -75,15 +75,28 @@ Estimator::Estimator(const PhotonMaps& maps, const Scene&, const EstimateParamet
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 
+Estimates Estimator::zeros(std::size_t hits) const {
+  const std::size_t count = hits * impl_->store.needs.light_count;
+  Estimates result;
+  result.irradiance.resize(count);
+  if (impl_->store.needs.glossy) result.radiance.resize(count);
+  return result;
+}
+
 Estimates Estimator::estimate(const PrimaryHits& hits) {
+  Estimates result = zeros(hits.size());
+  estimate(hits, 0, hits.size(), result);
+  return result;
+}
+
+void Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count,
+                         Estimates& result) {
   const std::size_t lights = impl_->store.needs.light_count;
   const bool glossy = impl_->store.needs.glossy;
-  Estimates result;
-  result.irradiance.resize(hits.size() * lights);
-  if (glossy) result.radiance.resize(hits.size() * lights);
   const std::size_t batch = impl_->batch_size(3 * sizeof(float) * lights);
-  for (std::size_t first = 0; first < hits.size(); first += batch) {
-    const std::size_t count = std::min(batch, hits.size() - first);
+  const std::size_t end = begin + hit_count;
+  for (std::size_t first = begin; first < end; first += batch) {
+    const std::size_t count = std::min(batch, end - first);
     const HitBuffers buffers = estimate::upload_hits(impl_->context, hits, first, count, glossy);
     auto irradiance = impl_->context.allocate<float>(3 * count * lights, "irradiance estimates");
     auto radiance =
@@ -101,7 +114,21 @@ Estimates Estimator::estimate(const PrimaryHits& hits) {
                           std::span(&result.radiance[first * lights].x, 3 * count * lights));
     }
   }
-  return result;
+}
+
+std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) const {
+  if (hit >= hits.size()) return hits.size();
+  // Work-items take hits from the first one of a page on, at most a vector of them together.
+  constexpr std::size_t together =
+      *std::max_element(estimate::vector_widths.begin(), estimate::vector_widths.end());
+  std::size_t page_begin = 0;
+  for (const maps::MapPage& page : impl_->store.pages) {
+    if (page.first_map > hits.sided_triangle[hit]) break;
+    page_begin = static_cast<std::size_t>(
+        std::lower_bound(hits.sided_triangle.begin(), hits.sided_triangle.end(), page.first_map) -
+        hits.sided_triangle.begin());
+  }
+  return page_begin + (hit - page_begin) / together * together;
 }
 
 NeighbourLists Estimator::nearest(const PrimaryHits& hits) {

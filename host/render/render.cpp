@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "photile/errors.hpp"
 #include "photile/renderer.hpp"
+#include "render/device_estimators.hpp"
 #include "render/film.hpp"
 
 namespace photile {
@@ -48,26 +50,36 @@ NeighbourGroups group(const Scene& scene, const RenderParameters& parameters, do
   return groups;
 }
 
-PhotonMaps build_maps(Device& device, const Scene& scene, const Photons& photons,
-                      const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-                      RunStatistics& statistics, Progress& progress) {
-  PhotonMaps maps(device, scene, photons, groups, parameters, progress);
-  const PhotonMapStatistics& built = maps.statistics();
+std::vector<PhotonMaps> build_maps(std::span<Device> devices, const Scene& scene,
+                                   const Photons& photons, const NeighbourGroups& groups,
+                                   const PhotonMapParameters& parameters, RunStatistics& statistics,
+                                   Progress& progress) {
+  const Stopwatch stopwatch;
+  std::vector<PhotonMaps> maps =
+      build_maps_on_each(devices, scene, photons, groups, parameters, progress);
+  const PhotonMapStatistics& built = maps.front().statistics();
+  std::uint64_t device_bytes = 0;
+  for (const PhotonMaps& one : maps) device_bytes += one.statistics().device_bytes;
+  double compile_seconds = 0;  // devices compile at the same time
+  for (const Device& device : devices) {
+    compile_seconds = std::max(compile_seconds, device.compile_seconds());
+  }
   statistics.push_back({"build photon maps",
-                        built.seconds,
+                        stopwatch.seconds(),
                         0,
-                        built.device_bytes,
+                        device_bytes,
                         {{"maps", static_cast<double>(built.maps)},
                          {"references", static_cast<double>(built.references)},
                          {"references per photon",
                           static_cast<double>(built.references) /
                               static_cast<double>(std::max<std::uint64_t>(1, built.photons))},
                          {"largest map", static_cast<double>(built.largest_map)},
-                         {"kernel compilation seconds", device.compile_seconds()}}});
+                         {"kernel compilation seconds", compile_seconds}}});
   return maps;
 }
 
-LightLayers estimate_picture(const RayScene& rays, const Camera& camera, Estimator& estimator,
+LightLayers estimate_picture(const RayScene& rays, const Camera& camera,
+                             std::span<const Device> devices, DeviceEstimators& estimators,
                              const RenderParameters& parameters, RunStatistics& statistics,
                              Progress& progress) {
   const PrimaryHitParameters& film = parameters.film;
@@ -87,7 +99,7 @@ LightLayers estimate_picture(const RayScene& rays, const Camera& camera, Estimat
     const PrimaryHitBatch batch = trace_primary_hits(rays, camera, film, first, last);
     hit_stage.seconds += hit_watch.seconds();
     const Stopwatch estimate_watch;
-    const Estimates estimates = estimator.estimate(batch.hits);
+    const Estimates estimates = estimators.estimate(batch.hits);
     estimate_stage.seconds += estimate_watch.seconds();
     const Stopwatch film_watch;
     add_to_film(layers, batch, estimates, 1.0f / static_cast<float>(film.samples_per_pixel));
@@ -103,6 +115,11 @@ LightLayers estimate_picture(const RayScene& rays, const Camera& camera, Estimat
       {"hits", static_cast<double>(hit_count)},
       {"microseconds per hit",
        1e6 * estimate_stage.seconds / static_cast<double>(std::max<std::uint64_t>(1, hit_count))}};
+  const std::vector<double> shares = estimators.shares();
+  for (std::size_t i = 0; i < devices.size() && devices.size() > 1; ++i) {
+    const DeviceInfo& device = devices[i].info();
+    estimate_stage.figures.emplace_back("share of " + device.id + " " + device.name, shares[i]);
+  }
   film_stage.host_bytes = static_cast<std::uint64_t>(film.width) *
                           static_cast<std::uint64_t>(film.height) * layers.layers.size() *
                           (sizeof(glm::vec3) + sizeof(float));
@@ -112,8 +129,9 @@ LightLayers estimate_picture(const RayScene& rays, const Camera& camera, Estimat
 
 }  // namespace
 
-RenderResult render(const Scene& scene, const Camera& camera, Device& device,
+RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress) {
+  if (devices.empty()) throw UsageError("rendering needs a device; give at least one");
   RenderResult result;
   RunStatistics& statistics = result.statistics;
 
@@ -126,13 +144,20 @@ RenderResult render(const Scene& scene, const Camera& camera, Device& device,
   result.radius = parameters.radius > 0 ? parameters.radius
                                         : automatic_radius(traced.photons, parameters.neighbours);
   const NeighbourGroups groups = group(scene, parameters, result.radius, statistics, progress);
-  const PhotonMaps maps = build_maps(
-      device, scene, traced.photons, groups,
+  const std::vector<PhotonMaps> maps = build_maps(
+      devices, scene, traced.photons, groups,
       {result.radius, parameters.photons_per_cell, parameters.structure}, statistics, progress);
   traced.photons = Photons{};  // the maps hold copies
-  Estimator estimator(maps, scene, {parameters.neighbours, 0, parameters.tuning});
-  result.layers = estimate_picture(rays, camera, estimator, parameters, statistics, progress);
+  DeviceEstimators estimators(devices, maps, scene, {parameters.neighbours, 0, parameters.tuning});
+  result.layers =
+      estimate_picture(rays, camera, devices, estimators, parameters, statistics, progress);
+  result.device_shares = estimators.shares();
   return result;
+}
+
+RenderResult render(const Scene& scene, const Camera& camera, Device& device,
+                    const RenderParameters& parameters, Progress& progress) {
+  return render(scene, camera, std::span(&device, 1), parameters, progress);
 }
 
 }  // namespace photile

@@ -11,11 +11,12 @@ namespace photile {
 enum class DeviceType { cpu, gpu, accelerator, other };
 
 struct DeviceInfo {
-  std::string id;  ///< "platform:device", e.g. "0:0"
+  std::string id;      ///< "platform:device", e.g. "0:0"; of a sub-device "0:0.0", "0:0.1", ...
+  std::string parent;  ///< id of the device that this is a sub-device of; "" = a whole device
   std::string name;
   std::string platform;
   std::string vendor;
-  std::string version;         ///< OpenCL version string of the device
+  std::string version;  ///< OpenCL version string of the device
   std::string driver_version;
   std::string platform_version;
   DeviceType type = DeviceType::other;
@@ -34,7 +35,10 @@ std::vector<DeviceInfo> list_devices();
 
 struct DeviceOptions {
   /// "" = the best (a GPU before PoCL before other CPUs); else "platform:device", an index into
-  /// list_devices(), "cpu", "gpu", or a part of the device's or platform's name.
+  /// list_devices(), "cpu", "gpu", or a part of the device's or platform's name. A suffix takes
+  /// sub-devices in place of the whole: "cpu/2" splits it into two of equal size, "cpu=3" is one of
+  /// 3 compute units, "cpu=2+1" are two. Several, separated by commas, or "all" (every device but
+  /// Oclgrind's simulator) are for open_devices.
   std::string selector;
   bool use_program_cache = true;
   bool profile = false;  ///< keep event times of every kernel
@@ -47,22 +51,29 @@ class Context;  // host/device/context.hpp
 /// An open device: context, queue and program cache. Movable.
 class Device {
  public:
-  /// Errors: DeviceError when there is no device, or none matches the selector (the message lists
-  /// those there are).
+  /// Errors: DeviceError when there is no device, none matches the selector (the message lists
+  /// those there are), or the selector means several.
   explicit Device(const DeviceOptions& options = {});
   ~Device();
   Device(Device&&) noexcept;
   Device& operator=(Device&&) noexcept;
 
   const DeviceInfo& info() const;
-  double compile_seconds() const;    ///< spent building programs so far
+  double compile_seconds() const;  ///< spent building programs so far
   std::uint64_t programs_built() const;
   std::uint64_t programs_from_cache() const;
 
   device::Context& context() { return *context_; }
 
  private:
+  friend std::vector<Device> open_devices(const DeviceOptions& options);
+  explicit Device(std::unique_ptr<device::Context> context);
+
   std::unique_ptr<device::Context> context_;
 };
+
+/// Opens every device that the selector means, in its order; never none. Errors: DeviceError as for
+/// Device, when a device is named twice, or cannot be split as asked for.
+std::vector<Device> open_devices(const DeviceOptions& options = {});
 
 }  // namespace photile

@@ -49,6 +49,17 @@ class Estimator {
   /// Radiance estimates. Hits must be grouped by sided triangle (PrimaryHits are).
   Estimates estimate(const PrimaryHits& hits);
 
+  /// Room for the estimates of so many hits: zeros.
+  Estimates zeros(std::size_t hits) const;
+
+  /// The same for hits [first, first + count) alone, into their rows of `result`, which has rows
+  /// for all of `hits`. Estimators of several devices may fill other rows of it at the same time.
+  void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, Estimates& result);
+
+  /// The last place at or before `hit` where a batch may be cut without changing a bit of what is
+  /// estimated: neighbouring hits that a kernel takes together stay together.
+  std::size_t cut_before(const PrimaryHits& hits, std::size_t hit) const;
+
   /// The neighbours themselves, for tests and inspection.
   NeighbourLists nearest(const PrimaryHits& hits);
 

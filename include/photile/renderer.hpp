@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
@@ -43,9 +45,15 @@ struct RenderResult {
   RunStatistics statistics;
   double radius = 0;  ///< the one used, metres
   std::uint64_t stored_photons = 0;
+  std::vector<double> device_shares;  ///< each device's part of the hits, in [0, 1]
 };
 
-/// Renders the picture of `camera`, one layer per light.
+/// Renders the picture of `camera`, one layer per light, on one device or several at once. Each
+/// device holds all maps, and estimates as many hits as its throughput so far allows. On devices of
+/// one kind the picture is that of one of them, bit for bit.
+/// Errors: those of the stages; the first device that fails ends the work of all.
+RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> devices,
+                    const RenderParameters& parameters, Progress& progress = Progress::none());
 RenderResult render(const Scene& scene, const Camera& camera, Device& device,
                     const RenderParameters& parameters, Progress& progress = Progress::none());
 

@@ -123,6 +123,35 @@ TEST_CASE("the option --tuned uses the stored tuning and its cell size, unless a
   CHECK(photons_per_cell() == 3);
 }
 
+TEST_CASE("two halves of a device render the file of the whole, and the record names both") {
+  const FileFolder folder;
+  Run run;
+  run.arguments = {"render", write_box(folder), "-o",   folder / "whole.png", "--photons",
+                   "5k",     "--size",          "64x48"};
+  REQUIRE(run_photile(run).exit_code == 0);
+  run.arguments[3] = folder / "halves.png";
+  run.arguments.insert(run.arguments.end(), {"--stats", folder / "stats.json"});
+  run.environment["PHOTILE_DEVICE"] = "0:0/2";
+  const Outcome outcome = run_photile(run);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(folder.read("halves.png") == folder.read("whole.png"));
+  CHECK_THAT(outcome.errors, Contains("device: 0:0.0 ") && Contains("device: 0:0.1 ") &&
+                                 Contains("share of 0:0.0") && Contains("share of 0:0.1"));
+  const auto devices = nlohmann::json::parse(folder.read("stats.json"))["devices"];
+  REQUIRE(devices.size() == 2);
+  CHECK(devices[0]["id"] == "0:0.0");
+  CHECK(devices[1]["id"] == "0:0.1");
+  CHECK(devices[0]["share"].get<double>() + devices[1]["share"].get<double>() == Approx(1));
+}
+
+TEST_CASE("the list of devices marks the whole of which parts are chosen; tuning takes one") {
+  const Outcome outcome = run_photile({"devices", "--device", "0:0/2"});
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("* 0:0 "));
+  CHECK_THAT(only_error(run_photile({"devices", "--device", "0:0/2", "--tune"}), no_device),
+             Contains("0:0.0, 0:0.1"));
+}
+
 TEST_CASE("PHOTILE_DEVICE chooses the device where --device does not") {
   Run run;
   run.arguments = {"devices"};

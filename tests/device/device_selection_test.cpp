@@ -9,7 +9,9 @@ namespace {
 
 using photile::DeviceInfo;
 using photile::DeviceType;
-using photile::device::select_device;
+using photile::device::DeviceChoice;
+using photile::device::select_devices;
+using Choices = std::vector<DeviceChoice>;
 
 DeviceInfo make(const char* id, const char* name, const char* platform, DeviceType type,
                 bool is_pocl = false) {
@@ -19,6 +21,7 @@ DeviceInfo make(const char* id, const char* name, const char* platform, DeviceTy
   info.platform = platform;
   info.type = type;
   info.is_pocl = is_pocl;
+  info.compute_units = 8;
   return info;
 }
 
@@ -28,6 +31,7 @@ const std::vector<DeviceInfo> machine = {
     make("3:0", "pthread-skylake", "Portable Computing Language", DeviceType::cpu, true),
     make("4:0", "GeForce 1", "NVIDIA CUDA", DeviceType::gpu),
     make("4:1", "GeForce 2", "NVIDIA CUDA", DeviceType::gpu),
+    make("5:0", "R9 200 / HD 7900", "AMD", DeviceType::accelerator),
 };
 
 /// Sets PHOTILE_DEVICE for one test.
@@ -35,6 +39,15 @@ struct Variable {
   explicit Variable(const char* value) { setenv("PHOTILE_DEVICE", value, 1); }
   ~Variable() { unsetenv("PHOTILE_DEVICE"); }
 };
+
+/// The one device that a selector means.
+std::size_t select_device(std::span<const DeviceInfo> devices, const std::string& selector,
+                          std::span<const std::string> left_out = {}) {
+  const Choices choices = select_devices(devices, selector, left_out);
+  REQUIRE(choices.size() == 1);
+  CHECK(choices[0].compute_units.empty());
+  return choices[0].index;
+}
 
 }  // namespace
 
@@ -62,23 +75,71 @@ TEST_CASE("the environment's selector holds where none is given") {
   CHECK(select_device(machine, "4:0") == 3);
 }
 
-TEST_CASE("a selector without a match lists the devices and its source") {
-  for (const char* selector : {"radeon", "5", "1:7", "99999999999999999999999"}) {
+TEST_CASE("all means every device but the simulator, which is taken where it is alone") {
+  CHECK(select_devices(machine, "all") == Choices{{1}, {2}, {3}, {4}, {5}});
+  CHECK(select_devices(machine, "ALL") == select_devices(machine, "all"));
+  CHECK(select_devices(std::span(machine).first(1), "all") == Choices{{0}});
+}
+
+TEST_CASE("a list means each of its devices, in its order") {
+  CHECK(select_devices(machine, "gpu,4:1,portable") == Choices{{3}, {4}, {2}});
+  const Variable variable("xeon,gpu");
+  CHECK(select_devices(machine, "") == Choices{{1}, {3}});
+}
+
+TEST_CASE("a suffix splits a device into equal parts or takes counts of compute units") {
+  CHECK(select_devices(machine, "cpu/2") == Choices{{2, {4, 4}}});
+  CHECK(select_devices(machine, "cpu/3") == Choices{{2, {2, 3, 3}}});
+  CHECK(select_devices(machine, "cpu=7") == Choices{{2, {7}}});
+  CHECK(select_devices(machine, "gpu,2:0=1+4") == Choices{{3}, {1, {1, 4}}});
+  CHECK(select_devices(machine, "/2") == Choices{{3, {4, 4}}});
+}
+
+TEST_CASE("a name may hold a stroke of its own") {
+  CHECK(select_device(machine, "200 / hd 7900") == 5);
+  CHECK(select_devices(machine, "200 / hd 7900/4") == Choices{{5, {2, 2, 2, 2}}});
+}
+
+TEST_CASE("more parts than compute units, and partitions without a number, are refused") {
+  for (const char* selector : {"cpu/9", "cpu=9", "cpu=4+5", "cpu=999999999+999999999"}) {
     INFO(selector);
-    CHECK_THROWS_WITH(select_device(machine, selector),
+    CHECK_THROWS_WITH(select_devices(machine, selector), Catch::Contains(selector) &&
+                                                             Catch::Contains("3:0") &&
+                                                             Catch::Contains(" 8;"));
+  }
+  for (const char* selector : {"cpu/0", "cpu=", "cpu=1+", "cpu=-1", "cpu/9999999999", "cpu/x"}) {
+    INFO(selector);
+    CHECK_THROWS_WITH(select_devices(machine, selector), Catch::Contains("matches no"));
+  }
+}
+
+TEST_CASE("a device named twice, and a comma without a device, are refused") {
+  CHECK_THROWS_WITH(select_devices(machine, "2:0,gpu,xeon"),
+                    Catch::Contains("2:0 Xeon twice") && Catch::Contains("once"));
+  CHECK_THROWS_WITH(select_devices(machine, "cpu=1,cpu=1"), Catch::Contains("twice"));
+  for (const char* selector : {"gpu,", ",gpu", "cpu,,gpu", ","}) {
+    INFO(selector);
+    CHECK_THROWS_WITH(select_devices(machine, selector), Catch::Contains("comma"));
+  }
+}
+
+TEST_CASE("a selector without a match lists the devices and its source") {
+  for (const char* selector : {"radeon", "6", "1:7", "99999999999999999999999"}) {
+    INFO(selector);
+    CHECK_THROWS_WITH(select_devices(machine, selector),
                       Catch::Contains(selector) && Catch::Contains("3:0 pthread-skylake") &&
                           Catch::Contains("4:1 GeForce 2"));
   }
   const Variable variable("radeon");
-  CHECK_THROWS_WITH(select_device(machine, ""), Catch::Contains("PHOTILE_DEVICE 'radeon'"));
+  CHECK_THROWS_WITH(select_devices(machine, ""), Catch::Contains("PHOTILE_DEVICE 'radeon'"));
 }
 
 TEST_CASE("without devices the message says what to install and what was left out") {
-  CHECK_THROWS_WITH(select_device({}, "gpu"), Catch::Contains("no OpenCL runtime is installed") &&
-                                                  Catch::Contains("pocl-opencl-icd"));
+  CHECK_THROWS_WITH(select_devices({}, "gpu"), Catch::Contains("no OpenCL runtime is installed") &&
+                                                   Catch::Contains("pocl-opencl-icd"));
   const std::vector<std::string> left_out = {"rusticl: has no devices"};
-  CHECK_THROWS_WITH(select_device({}, "", left_out), Catch::Contains("rusticl: has no devices"));
-  CHECK_THROWS_AS(select_device({}, ""), photile::DeviceError);
+  CHECK_THROWS_WITH(select_devices({}, "", left_out), Catch::Contains("rusticl: has no devices"));
+  CHECK_THROWS_AS(select_devices({}, ""), photile::DeviceError);
 }
 
 TEST_CASE("every listed device can be opened by its id") {

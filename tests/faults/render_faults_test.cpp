@@ -20,11 +20,13 @@ struct Failure {
 };
 
 /// A small render under the failing layer; `at` 0 only counts the calls.
-Run render_with(const FileFolder& folder, const Failure& failure, long at, bool on) {
+Run render_with(const FileFolder& folder, const Failure& failure, long at, bool on,
+                const char* device = "") {
   Run run;
   run.arguments = {"render", folder / "box.obj", "--photons", "2000", "--size", "16x12",
                    "-o",     folder / "out.exr"};
-  run.environment = {{"OPENCL_LAYERS", PHOTILE_FAILING_LAYER},
+  run.environment = {{"PHOTILE_DEVICE", device},
+                     {"OPENCL_LAYERS", PHOTILE_FAILING_LAYER},
                      {"PHOTILE_FAIL_CALL", failure.call},
                      {"PHOTILE_FAIL_AT", std::to_string(at)},
                      {"PHOTILE_FAIL_STATUS", std::to_string(failure.status)},
@@ -33,10 +35,10 @@ Run render_with(const FileFolder& folder, const Failure& failure, long at, bool 
   return run;
 }
 
-long count_calls(const Failure& failure) {
+long count_calls(const Failure& failure, const char* device = "") {
   const FileFolder folder;
   write_box(folder);
-  const Outcome outcome = run_photile(render_with(folder, failure, 0, false));
+  const Outcome outcome = run_photile(render_with(folder, failure, 0, false, device));
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == success);
   long count = 0;
@@ -46,10 +48,10 @@ long count_calls(const Failure& failure) {
 }
 
 /// The one message of a render whose `at`-th call fails.
-void check_failure(const Failure& failure, long at, bool on) {
+void check_failure(const Failure& failure, long at, bool on, const char* device = "") {
   const FileFolder folder;
   write_box(folder);
-  const Outcome outcome = run_photile(render_with(folder, failure, at, on));
+  const Outcome outcome = run_photile(render_with(folder, failure, at, on, device));
   CAPTURE(failure.call, at, on);
   CHECK_THAT(last_error(outcome, device_error), Catch::Contains(failure.name));
   for (const auto& entry : std::filesystem::directory_iterator(folder / ".")) {
@@ -79,6 +81,16 @@ TEST_CASE("a render whose 1st, 2nd, 4th, 8th ... OpenCL call of a kind fails say
 TEST_CASE("a device that is lost in the middle of a render is reported once") {
   const Failure failure = any_failure();
   check_failure(failure, (count_calls(failure) + 1) / 2, true);
+}
+
+TEST_CASE("a call that fails on one of two devices ends the render on both, and is told once") {
+  const Failure failure = any_failure();
+  const char* const halves = "/2";
+  const long calls = count_calls(failure, halves);
+  for (const bool on : {false, true}) {
+    check_failure(failure, (calls + 1) / 2, on, halves);
+    check_failure(failure, calls, on, halves);
+  }
 }
 
 TEST_CASE("a render in which any OpenCL call of a kind fails says so once", "[slow]") {

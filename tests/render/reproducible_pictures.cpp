@@ -1,6 +1,5 @@
 // The same seed gives the same picture, bit for bit.
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <fstream>
 #include <random>
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
@@ -8,11 +7,14 @@
 
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
+#include "pictures.hpp"
 #include "temporary_folder.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
 using namespace photile;
+using test::room_camera;
+using test::same_bits;
 
 namespace {
 
@@ -24,23 +26,6 @@ RenderParameters small_parameters() {
   parameters.film.samples_per_pixel = 2;
   return parameters;
 }
-
-bool same_bits(const LightLayers& a, const LightLayers& b) {
-  if (a.layers.size() != b.layers.size()) return false;
-  for (std::size_t i = 0; i < a.layers.size(); ++i) {
-    const auto& first = a.layers[i];
-    const auto& second = b.layers[i];
-    if (first.radiance.size() != second.radiance.size()) return false;
-    if (std::memcmp(first.radiance.data(), second.radiance.data(),
-                    first.radiance.size() * sizeof(glm::vec3)) != 0) {
-      return false;
-    }
-    if (first.illuminance != second.illuminance) return false;
-  }
-  return true;
-}
-
-Camera room_camera() { return Camera::look_at({3.6, 0.4, 1.6}, {1, 2, 0.9}, {0, 0, 1}, 1.1); }
 
 }  // namespace
 

@@ -4,8 +4,9 @@
 //   photile_fingerprint PHOTONS HITS [--every-kernel]
 //
 // With --every-kernel the kd-trees, brute force and glossy surfaces are run, too, so that a checker
-// sees each kernel and each of its specialisations once. The device is the best there is, or the
-// one that PHOTILE_DEVICE names. Exit code 3 where a result is not a finite number.
+// sees each kernel and each of its specialisations once. The device is the best there is, or those
+// that PHOTILE_DEVICE names: several share the hits. Exit code 3 where a result is not a finite
+// number.
 #include <fmt/format.h>
 #include <xxhash.h>
 
@@ -16,6 +17,7 @@
 #include "maps/map_store.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
+#include "render/device_estimators.hpp"
 
 using namespace photile;
 
@@ -96,14 +98,15 @@ PrimaryHits hits_of(const Scene& scene, std::size_t count) {
   return hits;
 }
 
-void print_fingerprint(Device& device, const Case& test, const Sizes& sizes) {
+void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes& sizes) {
   const Photons photons = photons_of(test.scene, sizes.photons);
   const PrimaryHits hits = hits_of(test.scene, sizes.hits);
-  const PhotonMaps maps(device, test.scene, photons,
-                        find_neighbour_groups(test.scene, {radius, 60}),
-                        {radius, 4, test.structure});
+  const std::vector<PhotonMaps> all_maps = build_maps_on_each(
+      devices, test.scene, photons, find_neighbour_groups(test.scene, {radius, 60}),
+      {radius, 4, test.structure}, Progress::none());
+  const PhotonMaps& maps = all_maps.back();
   for (const maps::MapPage& page : maps.store().pages) {
-    device::Context& context = device.context();
+    device::Context& context = maps.device().context();
     print_hash(test, "cell_start", context, page.cell_start);
     print_hash(test, "entry_photon", context, page.entry_photon);
     print_hash(test, "entry_position", context, page.entry_position);
@@ -113,7 +116,8 @@ void print_fingerprint(Device& device, const Case& test, const Sizes& sizes) {
   const NeighbourLists lists = estimator.nearest(hits);
   print_hash(test, "neighbours", std::span(lists.photons));
   print_hash(test, "squared_radius", std::span(lists.squared_radius));
-  const Estimates estimates = estimator.estimate(hits);
+  DeviceEstimators estimators(devices, all_maps, test.scene, {test.neighbours, 0, test.tuning});
+  const Estimates estimates = estimators.estimate(hits);
   print_hash(test, "irradiance", estimates.irradiance);
   if (needs_of(test.scene).glossy) print_hash(test, "radiance", estimates.radiance);
 }
@@ -151,9 +155,11 @@ int main(int count, char** arguments) {
                     std::strtoul(arguments[2], nullptr, 10)};
   const bool every_kernel = count > 3 && std::string_view(arguments[3]) == "--every-kernel";
   try {
-    Device device;
-    fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().platform);
-    for (const Case& test : cases(every_kernel)) print_fingerprint(device, test, sizes);
+    std::vector<Device> devices = open_devices();
+    for (const Device& device : devices) {
+      fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().platform);
+    }
+    for (const Case& test : cases(every_kernel)) print_fingerprint(devices, test, sizes);
   } catch (const Error& error) {
     fmt::print(stderr, "photile_fingerprint: error: {}\n", error.what());
     return static_cast<int>(error.exit_code());

@@ -4,8 +4,8 @@
 #   on_runtime.sh CACHE RUNTIME[,VARIABLE=VALUE]... COMMAND [ARGUMENT]...
 #
 # RUNTIME is pocl, oclgrind, or other: each folder of .icd files in PHOTILE_TEST_RUNTIMES (separated
-# by colons), by default the one that cmake/setup-intel-runtime.sh makes. The variables are set for
-# the command. CACHE is the folder below which compiled kernels are kept between runs.
+# by colons), by default the one that cmake/setup-intel-runtime.sh makes. pocl+other is PoCL together
+# with each of those, as two platforms. The variables are set for the command. CACHE is the folder below which compiled kernels are kept between runs.
 # Exit code 77 says that the runtime is not installed: ctest counts the test as skipped.
 set -euo pipefail
 readonly skipped=77
@@ -43,6 +43,20 @@ case $runtime in
       [ -d "$folder" ] || continue
       found=1
       run "$folder" "$(dirname "$(cat "$folder"/*.icd | head -n 1)")" "$@"
+    done
+    [ $found = 1 ] || exit $skipped
+    ;;
+  pocl+other)
+    [ -e /etc/OpenCL/vendors/pocl.icd ] || exit $skipped
+    found=0
+    IFS=: read -ra folders <<<"${PHOTILE_TEST_RUNTIMES:-$PHOTILE_INTEL_RUNTIME}"
+    for folder in "${folders[@]}"; do
+      [ -d "$folder" ] || continue
+      found=1
+      both=$cache/pocl+other
+      mkdir -p "$both"
+      cp /etc/OpenCL/vendors/pocl.icd "$folder"/*.icd "$both"
+      run "$both" "$(dirname "$(cat "$folder"/*.icd | head -n 1)")" "$@"
     done
     [ $found = 1 ] || exit $skipped
     ;;

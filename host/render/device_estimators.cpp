@@ -1,0 +1,61 @@
+#include "render/device_estimators.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "photile/statistics.hpp"
+#include "render/for_each_device.hpp"
+
+namespace photile {
+
+std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
+                                           const Photons& photons, const NeighbourGroups& groups,
+                                           const PhotonMapParameters& parameters,
+                                           Progress& progress) {
+  std::vector<std::optional<PhotonMaps>> built(devices.size());
+  for_each_device(devices, progress, [&](std::size_t i, Progress& shared) {
+    built[i].emplace(devices[i], scene, photons, groups, parameters, shared);
+  });
+  std::vector<PhotonMaps> maps;
+  for (auto& one : built) maps.push_back(std::move(*one));
+  return maps;
+}
+
+DeviceEstimators::DeviceEstimators(std::span<Device> devices, std::span<const PhotonMaps> maps,
+                                   const Scene& scene, const EstimateParameters& parameters)
+    : devices_(devices), balance_(devices.size()) {
+  for (const PhotonMaps& one : maps) estimators_.emplace_back(one, scene, parameters);
+}
+
+Estimates DeviceEstimators::estimate(const PrimaryHits& hits) {
+  Estimates result = estimators_.front().zeros(hits.size());
+  for (std::size_t first = 0; first < hits.size();) {
+    const std::size_t end = first + balance_.round(hits.size() - first);
+    const std::size_t cut = end == hits.size() ? end : estimators_.front().cut_before(hits, end);
+    const std::size_t last = cut > first ? cut : end;
+    estimate_round(hits, first, last - first, result);
+    first = last;
+  }
+  return result;
+}
+
+void DeviceEstimators::estimate_round(const PrimaryHits& hits, std::size_t first, std::size_t count,
+                                      Estimates& result) {
+  std::vector<std::size_t> cuts = balance_.cuts(count);
+  for (std::size_t& cut : std::span(cuts).subspan(1, cuts.size() - 2)) {
+    cut = std::max(estimators_.front().cut_before(hits, first + cut), first) - first;
+  }
+  std::vector<double> seconds(devices_.size());
+  for_each_device(devices_, Progress::none(), [&](std::size_t i, Progress&) {
+    const Stopwatch stopwatch;
+    estimators_[i].estimate(hits, first + cuts[i], cuts[i + 1] - cuts[i], result);
+    seconds[i] = stopwatch.seconds();
+  });
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    balance_.record(i, cuts[i + 1] - cuts[i], seconds[i]);
+  }
+  balance_.end_round();
+}
+
+}  // namespace photile

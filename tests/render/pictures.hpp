@@ -1,0 +1,31 @@
+// What the tests of pictures share.
+#pragma once
+
+#include <cstring>
+
+#include "photile/camera.hpp"
+#include "photile/light_layers.hpp"
+
+namespace photile::test {
+
+/// Looks into furnished_room.
+inline Camera room_camera() {
+  return Camera::look_at({3.6, 0.4, 1.6}, {1, 2, 0.9}, {0, 0, 1}, 1.1);
+}
+
+inline bool same_bits(const LightLayers& a, const LightLayers& b) {
+  if (a.layers.size() != b.layers.size()) return false;
+  for (std::size_t i = 0; i < a.layers.size(); ++i) {
+    const auto& first = a.layers[i];
+    const auto& second = b.layers[i];
+    if (first.radiance.size() != second.radiance.size()) return false;
+    if (std::memcmp(first.radiance.data(), second.radiance.data(),
+                    first.radiance.size() * sizeof(glm::vec3)) != 0) {
+      return false;
+    }
+    if (first.illuminance != second.illuminance) return false;
+  }
+  return true;
+}
+
+}  // namespace photile::test
