@@ -28,10 +28,8 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
     candidates.stride = entry_stride;
     DECLARE_STORED(stored);
     const Neighbourhood near = find_neighbourhood(&candidates, stored, k, k, radius, 0.0f, grid);
-    // The k-th is the farthest of the neighbours.
-    squared_radius[hit] = near.squared_radius > 0.0f ? near.squared_radius
-                                                     : largest_within(&candidates, near.below);
 
+    float farthest = 0.0f;
     uint found = 0;
     uint last_tied = 0;
     for (int pass = 0; pass < 2; ++pass) {
@@ -42,11 +40,15 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
           const float d = squared_distance(&candidates, entry);
           const bool is_near = pass == 0 ? d < near.below
                                          : d == near.below && entry_photon[entry] <= last_tied;
-          if (is_near) list[found++] = entry_photon[entry];
+          if (!is_near) continue;
+          list[found++] = entry_photon[entry];
+          farthest = fmax(farthest, d);
         }
       }
       if (found >= near.count) break;
       last_tied = last_tied_photon(&candidates, near.below, near.count - found, entry_photon);
     }
+    // The k-th is the farthest of the neighbours.
+    squared_radius[hit] = near.squared_radius > 0.0f ? near.squared_radius : farthest;
   }
 }

@@ -1,5 +1,6 @@
 // The k nearest photons of every hit against brute force in double precision.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "neighbour_comparison.hpp"
 #include "photile/errors.hpp"
@@ -116,6 +117,31 @@ TEST_CASE("crowded photons: all in one point, all on a line, one crowd and many 
   for (Photons* photons : {&point, &line, &crowd}) {
     const Photons sorted = sort_by_sided_triangle(std::move(*photons), 2 * scene.triangle_count());
     check_neighbours(scene, sorted, hits, 0.4, {1, 16, 50, 2999, 3000, 3001});
+  }
+}
+
+TEST_CASE("the radius is that of the k-th photon, however close behind it the next one lies") {
+  const Scene scene = plate(1);
+  // Squares that are neighbouring floats, seen from the origin.
+  float near = 0.1f, far = std::nextafter(near, 1.0f);
+  while (far * far != std::nextafter(near * near, 1.0f)) {
+    near = far;
+    far = std::nextafter(near, 1.0f);
+  }
+  std::mt19937_64 random(45);
+  Photons photons;
+  test::add_photon(photons, scene, {near, 0, 0}, 0, random);
+  test::add_photon(photons, scene, {far, 0, 0}, 0, random);
+  photons = sort_by_sided_triangle(std::move(photons), 4);
+  PrimaryHits hits = test::uniform_hits(scene, 1, 46, false);
+  hits.position[0] = {0, 0, 0};
+  hits.sided_triangle[0] = 0;
+  for (const MapStructure structure : all_map_structures) {
+    const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.2, 60}),
+                          {0.2, 4, structure});
+    CAPTURE(name_of(structure));
+    CHECK(Estimator(maps, scene, {1, 0}).nearest(hits).squared_radius[0] == near * near);
+    CHECK(Estimator(maps, scene, {2, 0}).nearest(hits).squared_radius[0] == far * far);
   }
 }
 
