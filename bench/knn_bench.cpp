@@ -1,17 +1,20 @@
 // The estimate from k nearest photons against their number (figure 6 of Graglia et al. 2012): every
 // structure of photile on the OpenCL device, nanoflann and Embree on the host, all hardware
 // threads. Each result is checked against nanoflann's.
+//
+// Slow cases answer fewer queries, so that a case keeps to --seconds-per-case.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iostream>
 #include <numeric>
-#include <set>
 
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
+#include "photile/statistics.hpp"
 #include "support/agreement.hpp"
 #include "support/bench_record.hpp"
+#include "support/hit_sample.hpp"
 #include "support/host_search.hpp"
 #include "support/morton_order.hpp"
 #include "support/workload.hpp"
@@ -23,23 +26,52 @@ using namespace photile::bench;
 
 struct Settings {
   BenchOptions common;
-  std::vector<std::uint64_t> plane_photons{1'000, 10'000, 100'000, 1'000'000, 4'000'000};
-  std::vector<std::uint64_t> interior_photons{100'000, 1'000'000, 4'000'000};
-  std::vector<int> neighbours{16, 50, 100, 200};
-  std::vector<std::string> workloads{"plane", "living-room", "classroom"};
+  // Empty: those of the plan.
+  std::vector<std::string> workloads;
+  std::vector<std::uint64_t> photons;
+  std::vector<int> neighbours;
   std::size_t plane_queries = 524'288;
   int width = 512, height = 512;
 
   void make_quick() {
-    plane_photons = {2'000};
-    interior_photons = {20'000};
-    neighbours = {16};
     workloads = {"plane", "living-room"};
+    photons = {2'000};
+    neighbours = {defaults::neighbours};
     plane_queries = 4'096;
     width = height = 32;
     common.repeats = {1, 1};
   }
 };
+
+/// What is measured of a workload.
+struct Plan {
+  std::string workload;
+  std::vector<std::uint64_t> photons;
+  std::vector<int> neighbours;
+
+  Plan restricted(const Settings& settings) const {
+    return {workload, settings.photons.empty() ? photons : settings.photons,
+            settings.neighbours.empty() ? neighbours : settings.neighbours};
+  }
+};
+
+const std::vector<Plan>& plans() {
+  static const std::vector<std::uint64_t> powers{1'000, 10'000, 100'000, 1'000'000, 10'000'000};
+  static const std::vector<int> neighbours{16, 50, 100, 200};
+  static const std::vector<Plan> all{{"plane", powers, neighbours},
+                                     {"living-room", powers, neighbours},
+                                     {"classroom", {1'000'000}, {50, 200}}};
+  return all;
+}
+
+/// Left out are brute force where it would take minutes, and the trees over millions of photons at
+/// every k but one: their builds would take most of the run.
+bool worth_running(MapStructure structure, std::size_t photons, int k) {
+  constexpr std::size_t most_for_brute_force = 15'000, most_for_every_k = 3'000'000;
+  if (structure == MapStructure::brute_force) return photons <= most_for_brute_force;
+  if (structure == MapStructure::uniform_grid) return true;
+  return photons <= most_for_every_k || k == defaults::neighbours;
+}
 
 /// Photons and k of one column of the figure, with the answers that all must give.
 struct Case {
@@ -49,14 +81,33 @@ struct Case {
   int k;
   double radius;
   NeighbourGroups groups;
-  HitSample sample;
+  /// nanoflann's, per hit of the workload; where it was not asked, the radius is 0.
   DensityAnswers reference;
+  HitSample checked;  ///< some of the hits that it was asked
 };
+
+/// As many hits as `run` affords: a warm-up and three repeats within the budget.
+HitSample affordable_hits(const PrimaryHits& hits, const Repeats& repeats,
+                          const std::function<void(const PrimaryHits&)>& run) {
+  constexpr std::size_t most_stride = 64;
+  constexpr double passes = 4;
+  const HitSample pilot = block_sample(hits, most_stride);
+  run(pilot.hits);  // compiles kernels
+  const Stopwatch stopwatch;
+  run(pilot.hits);
+  const double hits_per_second = static_cast<double>(pilot.index.size()) / stopwatch.seconds();
+  const double affordable = hits_per_second * repeats.seconds_per_case / passes;
+  std::size_t stride = 1;
+  while (stride < most_stride && static_cast<double>(hits.size() / stride) > affordable) {
+    stride *= 2;
+  }
+  return block_sample(hits, stride);
+}
 
 class KnnBench {
  public:
   explicit KnnBench(const Settings& settings)
-      : settings_(settings),
+      : repeats_(settings.common.repeats),
         record_("knn", settings.common),
         device_({.selector = settings.common.device}) {
     record_.set_device(device_.info());
@@ -64,32 +115,27 @@ class KnnBench {
     record_.set_version("embree", embree_version());
   }
 
-  void run(const Workload& workload, const std::vector<std::uint64_t>& photon_counts) {
-    for (const std::uint64_t count : photon_counts) {
+  void run(const Workload& workload, const Plan& plan) {
+    for (const std::uint64_t count : plan.photons) {
       const Photons photons = workload.photons(count);
       const NormalFilter filter(*workload.scene, defaults::group_angle_degrees);
       const SearchInput input{photons, filter, workload.scene->lights.size()};
-      const std::unique_ptr<HostSearch> list =
-          make_nanoflann_search(input, Candidates::sorted_list);
-      const std::unique_ptr<HostSearch> heap = make_nanoflann_search(input, Candidates::heap);
-      const std::unique_ptr<HostSearch> embree = make_embree_search(input);
-      for (const int k : settings_.neighbours) {
+      const auto index = make_nanoflann_index(photons);
+      const auto list = make_nanoflann_search(input, index, Candidates::sorted_list);
+      const auto heap = make_nanoflann_search(input, index, Candidates::heap);
+      const auto embree = make_embree_search(input);
+      for (const int k : plan.neighbours) {
         const double radius = automatic_radius(photons, k);
-        Case c{workload,
-               photons,
-               filter,
-               k,
-               radius,
-               find_neighbour_groups(*workload.scene, {radius}),
-               sample_of(workload.hits, 4096),
-               {}};
-        std::vector<std::uint32_t> given(workload.hits.size());
-        std::iota(given.begin(), given.end(), 0u);
-        run_host(c, "nanoflann", *list, given);
-        run_host(c, "nanoflann-heap", *heap, given);
-        run_host(c, "nanoflann-morton", *list, morton_order(workload.hits.position));
-        run_host(c, "embree", *embree, given);
-        for (const MapStructure structure : all_map_structures) run_device(c, structure);
+        Case c{workload, photons, filter, k, radius,
+               find_neighbour_groups(*workload.scene, {radius}), {}, {}};
+        run_host(c, "nanoflann", *list, given_order);
+        run_host(c, "nanoflann-heap", *heap, given_order);
+        // Rivals differ little in how much their order matters: once is enough.
+        if (k == defaults::neighbours) run_host(c, "nanoflann-morton", *list, morton_order);
+        run_host(c, "embree", *embree, given_order);
+        for (const MapStructure structure : all_map_structures) {
+          if (worth_running(structure, photons.size(), k)) run_device(c, structure);
+        }
       }
     }
   }
@@ -101,48 +147,69 @@ class KnnBench {
   }
 
  private:
-  nlohmann::json row_of(const Case& c, const std::string& structure) const {
+  using Order = std::vector<std::uint32_t> (*)(std::span<const glm::vec3>);
+
+  static std::vector<std::uint32_t> given_order(std::span<const glm::vec3> positions) {
+    std::vector<std::uint32_t> order(positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    return order;
+  }
+
+  nlohmann::json row_of(const Case& c, const std::string& structure, const HitSample& asked) const {
     return {{"workload", c.workload.name}, {"structure", structure},
             {"photons", c.photons.size()}, {"k", c.k},
-            {"radius", c.radius},          {"queries", c.workload.hits.size()}};
+            {"radius", c.radius},          {"queries", asked.index.size()}};
   }
 
   /// The first answers of a case become the reference.
-  void run_host(Case& c, const std::string& name, const HostSearch& search,
-                const std::vector<std::uint32_t>& order) {
-    DensityAnswers answers;
+  void run_host(Case& c, const std::string& name, const HostSearch& search, Order order_of) {
     const SearchParameters parameters{static_cast<std::size_t>(c.k), static_cast<float>(c.radius)};
-    const Timing timing = measure(settings_.common.repeats, [&] {
-      search.estimate(c.workload.hits, order, parameters, answers);
-    });
-    if (c.reference.squared_radius.empty()) c.reference = answers;
-    nlohmann::json row = row_of(c, name);
+    DensityAnswers answers;
+    std::vector<std::uint32_t> order;
+    const auto estimate = [&](const PrimaryHits& hits) {
+      if (order.size() != hits.size()) order = order_of(hits.position);
+      search.estimate(hits, order, parameters, answers);
+    };
+    const HitSample asked = affordable_hits(c.workload.hits, repeats_, estimate);
+    order.clear();
+    const Timing timing = measure(repeats_, [&] { estimate(asked.hits); });
+    if (c.checked.index.empty()) set_reference(c, asked, answers);
+    nlohmann::json row = row_of(c, name, asked);
     row["seconds"] = to_json(timing);
-    row["radii that differ"] =
-        count_radius_differences(answers.squared_radius, c.reference.squared_radius, 1e-5);
-    add(c, std::move(row), answers.irradiance);
+    row["radii that differ"] = radii_that_differ(c, asked, answers.squared_radius);
+    add(c, std::move(row), asked, answers.irradiance);
+  }
+
+  static void set_reference(Case& c, const HitSample& asked, const DensityAnswers& answers) {
+    const std::size_t lights = answers.irradiance.size() / asked.index.size();
+    c.reference.irradiance.resize(lights * c.workload.hits.size());
+    c.reference.squared_radius.resize(c.workload.hits.size());
+    for (std::size_t i = 0; i < asked.index.size(); ++i) {
+      const std::uint32_t hit = asked.index[i];
+      c.reference.squared_radius[hit] = answers.squared_radius[i];
+      std::copy_n(&answers.irradiance[i * lights], lights, &c.reference.irradiance[hit * lights]);
+    }
+    constexpr std::size_t most_checked = 4096;
+    c.checked = thinned(asked, most_checked);
   }
 
   void run_device(const Case& c, MapStructure structure) {
-    constexpr std::size_t most_for_brute_force = 10'000;
-    if (structure == MapStructure::brute_force && c.photons.size() > most_for_brute_force) return;
-    nlohmann::json row = row_of(c, std::string(name_of(structure)));
+    const std::string name(name_of(structure));
     try {
       const PhotonMaps maps(device_, *c.workload.scene, c.photons, c.groups,
                             {.radius = c.radius, .structure = structure});
       Estimator estimator(maps, *c.workload.scene, {c.k, c.radius});
       Estimates estimates;
-      row["seconds"] = to_json(measure(settings_.common.repeats,
-                                       [&] { estimates = estimator.estimate(c.workload.hits); }));
+      const auto estimate = [&](const PrimaryHits& hits) { estimates = estimator.estimate(hits); };
+      const HitSample asked = affordable_hits(c.workload.hits, repeats_, estimate);
+      nlohmann::json row = row_of(c, name, asked);
+      row["seconds"] = to_json(measure(repeats_, [&] { estimate(asked.hits); }));
       row["references"] = maps.statistics().references;
-      const NeighbourLists nearest = estimator.nearest(c.sample.hits);
-      std::vector<float> expected;
-      for (const std::uint32_t i : c.sample.index) {
-        expected.push_back(c.reference.squared_radius[i]);
-      }
-      row["radii that differ"] = count_radius_differences(nearest.squared_radius, expected, 1e-5);
-      add(c, std::move(row), estimates.irradiance);
+      row["radii that differ"] =
+          radii_that_differ(c, c.checked, estimator.nearest(c.checked.hits).squared_radius);
+      add(c, std::move(row), asked, estimates.irradiance);
     } catch (const DeviceError& error) {
+      nlohmann::json row = row_of(c, name, {});
       row["failure"] = error.what();  // out of memory: a result too
       record_.add(std::move(row));
     }
@@ -150,10 +217,11 @@ class KnnBench {
 
   /// Off the plane, neighbours that lie at the radius itself may be one more or fewer by rounding,
   /// which changes the sum but not the disc: there only the radii are held to agree.
-  void add(const Case& c, nlohmann::json row, const std::vector<glm::vec3>& irradiance) {
+  void add(const Case& c, nlohmann::json row, const HitSample& asked,
+           const std::vector<glm::vec3>& irradiance) {
     std::uint64_t differences = row["radii that differ"];
     if (c.workload.name == "plane") {
-      const std::uint64_t different = irradiances_that_differ(c, irradiance);
+      const std::uint64_t different = irradiances_that_differ(c, asked, irradiance);
       row["irradiances that differ"] = different;
       differences += different;
     }
@@ -166,41 +234,72 @@ class KnnBench {
     record_.add(std::move(row));
   }
 
-  /// Ties left out, unless there are too many to be ties.
-  static std::uint64_t irradiances_that_differ(const Case& c,
-                                               const std::vector<glm::vec3>& irradiance) {
-    const std::vector<std::size_t> hits =
-        irradiance_differences(irradiance, c.reference.irradiance, 1e-4);
-    constexpr std::size_t most_ties = 100;
-    if (hits.size() > most_ties) return hits.size();
-    const PrimaryHits& all = c.workload.hits;
-    return static_cast<std::uint64_t>(std::count_if(hits.begin(), hits.end(), [&](std::size_t hit) {
-      return !has_tied_rim(c.photons, c.filter, all.position[hit], all.sided_triangle[hit],
-                           c.reference.squared_radius[hit]);
-    }));
+  /// Places in the sample of the hits that nanoflann was asked too.
+  static std::vector<std::size_t> comparable(const Case& c, const HitSample& asked) {
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < asked.index.size(); ++i) {
+      if (c.reference.squared_radius[asked.index[i]] > 0) places.push_back(i);
+    }
+    return places;
   }
 
-  const Settings& settings_;
+  static std::uint64_t radii_that_differ(const Case& c, const HitSample& asked,
+                                         const std::vector<float>& squared_radius) {
+    std::vector<float> found, expected;
+    for (const std::size_t i : comparable(c, asked)) {
+      found.push_back(squared_radius[i]);
+      expected.push_back(c.reference.squared_radius[asked.index[i]]);
+    }
+    return count_radius_differences(found, expected, 1e-5);
+  }
+
+  /// Of a scene with one light. Ties left out, unless there are too many to be ties.
+  static std::uint64_t irradiances_that_differ(const Case& c, const HitSample& asked,
+                                               const std::vector<glm::vec3>& irradiance) {
+    const std::vector<std::size_t> places = comparable(c, asked);
+    std::vector<glm::vec3> found, expected;
+    for (const std::size_t i : places) {
+      found.push_back(irradiance[i]);
+      expected.push_back(c.reference.irradiance[asked.index[i]]);
+    }
+    const std::vector<std::size_t> different = irradiance_differences(found, expected, 1e-4);
+    constexpr std::size_t most_ties = 100;
+    if (different.size() > most_ties) return different.size();
+    const PrimaryHits& all = c.workload.hits;
+    return static_cast<std::uint64_t>(
+        std::count_if(different.begin(), different.end(), [&](std::size_t i) {
+          const std::uint32_t hit = asked.index[places[i]];
+          return !has_tied_rim(c.photons, c.filter, all.position[hit], all.sided_triangle[hit],
+                               c.reference.squared_radius[hit]);
+        }));
+  }
+
+  Repeats repeats_;
   BenchRecord record_;
   Device device_;
   std::uint64_t disagreements_ = 0;
 };
 
+/// None where the scene's folder is missing.
+std::optional<Workload> workload_of(const std::string& name, const Settings& settings) {
+  if (name == "plane") return plane_workload(settings.plane_queries);
+  if (name == "living-room") {
+    return interior_workload(name, living_room(), settings.width, settings.height);
+  }
+  std::optional<Scene> scene = classroom();
+  if (!scene) return std::nullopt;
+  return interior_workload(name, std::move(*scene), settings.width, settings.height);
+}
+
 bool run(Settings& settings) {
   if (settings.common.quick) settings.make_quick();
   KnnBench bench(settings);
-  const std::set<std::string> wanted(settings.workloads.begin(), settings.workloads.end());
-  if (wanted.contains("plane")) {
-    bench.run(plane_workload(settings.plane_queries), settings.plane_photons);
-  }
-  if (wanted.contains("living-room")) {
-    bench.run(interior_workload("living-room", living_room(), settings.width, settings.height),
-              settings.interior_photons);
-  }
-  std::optional<Scene> shared = wanted.contains("classroom") ? classroom() : std::nullopt;
-  if (shared) {
-    bench.run(interior_workload("classroom", std::move(*shared), settings.width, settings.height),
-              settings.interior_photons);
+  const auto& wanted = settings.workloads;
+  for (const Plan& plan : plans()) {
+    const bool chosen = std::find(wanted.begin(), wanted.end(), plan.workload) != wanted.end();
+    if (!wanted.empty() && !chosen) continue;
+    const std::optional<Workload> workload = workload_of(plan.workload, settings);
+    if (workload) bench.run(*workload, plan.restricted(settings));
   }
   return bench.finish();
 }
@@ -211,8 +310,7 @@ int main(int argument_count, char** arguments) {
   Settings settings;
   CLI::App command("Time of the density estimate against the number of photons", "knn");
   add_options(command, settings.common);
-  command.add_option("--plane-photons", settings.plane_photons, "counts on the plane");
-  command.add_option("--interior-photons", settings.interior_photons, "counts in interiors");
+  command.add_option("--photons", settings.photons, "photon counts");
   command.add_option("--neighbours,-k", settings.neighbours, "values of k");
   command.add_option("--workloads", settings.workloads, "plane, living-room, classroom");
   return run_bench(command, argument_count, arguments, [&] { return run(settings); });

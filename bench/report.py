@@ -43,11 +43,22 @@ def doubts(results):
     return reasons
 
 
+def caption(results):
+    """The machine and the date, for plots."""
+    knn = results["knn"]
+    machine, device = knn["machine"], knn["device"]
+    parts = [f"{machine['processor']}, {machine['hardware threads']} hardware threads",
+             f"OpenCL: {device['platform']} {device['driver']}", knn["date"]]
+    if doubts(results):
+        parts.append("provisional")
+    return "; ".join(parts)
+
+
 def machine_section(results):
     knn = results["knn"]
     machine, device, versions = knn["machine"], knn["device"], knn["versions"]
     lines = [
-        f"**Machine**: {machine['processor']}, {machine['hardware threads']} hardware threads.",
+        f"**Machine**: {machine['processor']}, {machine['hardware threads']} hardware threads; {knn['date']}.",
         f"**OpenCL device**: {device['name']}, {device['platform']} {device['driver']}, "
         f"{device['compute units']} compute units.",
         "**Versions**: " + ", ".join(f"{name} {version}" for name, version in versions.items())
@@ -92,7 +103,7 @@ def main():
     for bench in BENCHES:
         with open(options.results / f"{bench}.json", encoding="utf-8") as file:
             results[bench] = json.load(file)
-    plots = report_plots.draw(results["knn"], options.results)
+    plots = report_plots.draw_knn(results["knn"], caption(results), options.results)
     notes = (ROOT / "bench/report_notes.md").read_text(encoding="utf-8")
     options.page.write_text(page(results, plots, notes), encoding="utf-8")
     print(f"wrote {options.page}")

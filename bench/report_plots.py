@@ -1,9 +1,11 @@
-"""Plots of docs/benchmarks.md."""
+"""Plots of docs/benchmarks.md, as SVG that is the same for the same results."""
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot  # noqa: E402
+
+matplotlib.rcParams["svg.hashsalt"] = "photile"
 
 # Okabe and Ito's colours, which colour-blind readers can tell apart. The library's structures are
 # solid, rivals dashed.
@@ -18,48 +20,93 @@ STYLES = {
     "nanoflann-morton": ("#888888", "--", "^"),
     "embree": ("#CC79A7", "--", "v"),
 }
+SUMMARY_K = 50
 
 
-def curve(rows):
-    """Photons, microseconds a query, and their spread."""
-    rows = sorted(rows, key=lambda row: row["photons"])
-    micro = [[1e6 * row["seconds"][key] / row["queries"] for row in rows]
-             for key in ("median", "min", "max")]
-    return [row["photons"] for row in rows], *micro
-
-
-def draw_workload(rows, workload, file):
-    ks = sorted({row["k"] for row in rows})
-    figure, axes = pyplot.subplots(1, len(ks), figsize=(3.4 * len(ks) + 2, 4), sharey=True,
-                                   squeeze=False, layout="constrained")
-    for axis, k in zip(axes[0], ks):
-        for structure, (colour, line, marker) in STYLES.items():
-            chosen = [row for row in rows if row["structure"] == structure and row["k"] == k]
-            if not chosen:
-                continue
-            photons, median, low, high = curve(chosen)
-            axis.plot(photons, median, line, marker=marker, color=colour, label=structure,
-                      markersize=4)
-            axis.fill_between(photons, low, high, color=colour, alpha=0.15, linewidth=0)
-        axis.set(xscale="log", yscale="log", title=f"k = {k}", xlabel="photons")
-        axis.grid(True, which="major", alpha=0.3)
-    axes[0][0].set_ylabel("microseconds a query")
-    handles, labels = axes[0][0].get_legend_handles_labels()
-    # In the last panel's margin: this matplotlib cannot place a figure's legend outside.
-    axes[0][-1].legend(handles, labels, loc="center left", bbox_to_anchor=(1.02, 0.5),
-                       frameon=False)
-    figure.suptitle(workload)
-    figure.savefig(file, dpi=100, metadata={"Software": None})
+def save(figure, file):
+    figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
     pyplot.close(figure)
 
 
-def draw(knn, folder):
-    """One picture a workload; returns (workload, file name) each."""
+def panels(count, caption):
+    """A figure of panels side by side that share their y axis, and its axes."""
+    figure, axes = pyplot.subplots(1, count, figsize=(3.4 * count + 2, 4), sharey=True,
+                                   squeeze=False, layout="constrained")
+    figure.supxlabel(caption, fontsize="x-small", color="#666666")
+    return figure, axes[0]
+
+
+def log_log(axis, title, x_label):
+    axis.set(xscale="log", yscale="log", title=title, xlabel=x_label)
+    axis.grid(True, which="major", alpha=0.3)
+
+
+def legend_beside(axes):
+    """In the last panel's margin: this matplotlib cannot place a figure's legend outside."""
+    entries = {}
+    for axis in axes:
+        for handle, label in zip(*axis.get_legend_handles_labels()):
+            entries.setdefault(label, handle)
+    axes[-1].legend(entries.values(), entries.keys(), loc="center left",
+                    bbox_to_anchor=(1.02, 0.5), frameon=False)
+
+
+def draw_times(axis, rows):
+    """Microseconds a query against photons, a line a structure, with the spread of the repeats."""
+    for structure, (colour, line, marker) in STYLES.items():
+        chosen = sorted((row for row in rows if row["structure"] == structure),
+                        key=lambda row: row["photons"])
+        if not chosen:
+            continue
+        photons = [row["photons"] for row in chosen]
+        median, low, high = ([1e6 * row["seconds"][key] / row["queries"] for row in chosen]
+                             for key in ("median", "min", "max"))
+        axis.plot(photons, median, line, marker=marker, color=colour, label=structure,
+                  markersize=4)
+        axis.fill_between(photons, low, high, color=colour, alpha=0.15, linewidth=0)
+
+
+def several_counts(rows, workload):
+    return len({row["photons"] for row in rows if row["workload"] == workload}) > 1
+
+
+def draw_workload(rows, workload, caption, file):
+    """A panel a value of k."""
+    rows = [row for row in rows if row["workload"] == workload]
+    ks = sorted({row["k"] for row in rows})
+    figure, axes = panels(len(ks), caption)
+    for axis, k in zip(axes, ks):
+        draw_times(axis, [row for row in rows if row["k"] == k])
+        log_log(axis, f"k = {k}", "photons")
+    axes[0].set_ylabel("microseconds a query")
+    legend_beside(axes)
+    figure.suptitle(workload)
+    save(figure, file)
+
+
+def draw_summary(rows, workloads, caption, file):
+    """Figure 6 of the paper: a panel a workload."""
+    figure, axes = panels(len(workloads), caption)
+    for axis, workload in zip(axes, workloads):
+        draw_times(axis, [row for row in rows
+                          if row["workload"] == workload and row["k"] == SUMMARY_K])
+        log_log(axis, f"{workload}, k = {SUMMARY_K}", "photons")
+    axes[0].set_ylabel("microseconds a query")
+    legend_beside(axes)
+    save(figure, file)
+
+
+def draw_knn(knn, caption, folder):
+    """Figure 6 for the README, and a picture a workload; returns (workload, file name) of these."""
     rows = [row for row in knn["results"] if "seconds" in row]
+    workloads = [name for name in dict.fromkeys(row["workload"] for row in rows)
+                 if several_counts(rows, name)]
+    if not workloads:  # a smoke test
+        workloads = list(dict.fromkeys(row["workload"] for row in rows))
+    draw_summary(rows, workloads, caption, folder / "knn.svg")
     drawn = []
-    for workload in dict.fromkeys(row["workload"] for row in rows):
-        name = f"knn-{workload}.png"
-        draw_workload([row for row in rows if row["workload"] == workload], workload,
-                      folder / name)
+    for workload in workloads:
+        name = f"knn-{workload}.svg"
+        draw_workload(rows, workload, caption, folder / name)
         drawn.append((workload, name))
     return drawn

@@ -1,22 +1,16 @@
 """What was aimed at, and what the results say."""
 
-from report_tables import REFERENCE, table
+from report_tables import REFERENCE, near_target, seconds_per_query, table
 
-PHOTONS = 1_000_000
 HOST_SEARCHES = ("nanoflann", "nanoflann-heap", "nanoflann-morton", "embree")
-COUNT_TOLERANCE = 0.05  # traced photons are about as many as asked for
-
-
-def near(photons):
-    return abs(photons - PHOTONS) <= COUNT_TOLERANCE * PHOTONS
 
 
 def knn_seconds(results, workload, structure, k):
-    """Median at a million photons, or None."""
+    """A query's median at a million photons, or None."""
     for row in results["knn"]["results"]:
         if ((row["workload"], row["structure"], row["k"]) == (workload, structure, k)
-                and near(row["photons"]) and "seconds" in row):
-            return row["seconds"]["median"]
+                and near_target(row["photons"]) and "seconds" in row):
+            return seconds_per_query(row)
     return None
 
 
@@ -50,7 +44,7 @@ def at_most(name, value, most, form):
 
 def build_ratios(results):
     for row in results["build"]["results"]:
-        if near(row["photons"]):
+        if near_target(row["photons"]):
             ours = row["groups"]["median"] + row["uniform-grid"]["median"]
             yield (f"{row['workload']}, 1M photons: groups and maps over nanoflann's index build",
                    ours / row["nanoflann"]["median"])

@@ -48,18 +48,4 @@ std::uint64_t count_radius_differences(std::span<const float> squared_radius,
   return count;
 }
 
-HitSample sample_of(const PrimaryHits& hits, std::size_t wanted) {
-  HitSample sample;
-  const std::size_t step = std::max<std::size_t>(1, hits.size() / wanted);
-  for (std::size_t i = 0; i < hits.size(); i += step) {
-    sample.index.push_back(static_cast<std::uint32_t>(i));
-    sample.hits.position.push_back(hits.position[i]);
-    sample.hits.sided_triangle.push_back(hits.sided_triangle[i]);
-    sample.hits.pixel.push_back(hits.pixel[i]);
-    sample.hits.throughput.push_back(hits.throughput[i]);
-    sample.hits.diffuse_albedo.push_back(hits.diffuse_albedo[i]);
-  }
-  return sample;
-}
-
 }  // namespace photile::bench

@@ -25,11 +25,4 @@ bool has_tied_rim(const Photons& photons, const NormalFilter& filter, const glm:
 std::uint64_t count_radius_differences(std::span<const float> squared_radius,
                                        std::span<const float> reference, double relative);
 
-/// Every n-th hit, so that about `wanted` are left, in their order.
-struct HitSample {
-  PrimaryHits hits;
-  std::vector<std::uint32_t> index;  ///< of each in the whole
-};
-HitSample sample_of(const PrimaryHits& hits, std::size_t wanted);
-
 }  // namespace photile::bench

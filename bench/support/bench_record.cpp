@@ -1,6 +1,9 @@
 #include "support/bench_record.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <thread>
@@ -20,6 +23,14 @@ std::string processor() {
   return "unknown";
 }
 
+/// Today in UTC, as 2012-12-31.
+std::string date() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+}
+
 double load_average() {
   double load = 0;
   return getloadavg(&load, 1) == 1 ? load : 0;
@@ -34,7 +45,7 @@ void add_options(CLI::App& command, BenchOptions& options) {
       ->capture_default_str();
   command
       .add_option("--seconds-per-case", options.repeats.seconds_per_case,
-                  "a case that took longer ends after three repeats")
+                  "a case that took longer ends after three repeats; knn asks fewer queries then")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command.add_option("--device", options.device, "OpenCL device, as for photile --device");
@@ -51,6 +62,7 @@ nlohmann::json to_json(const Timing& timing) {
 BenchRecord::BenchRecord(const std::string& bench, const BenchOptions& options)
     : output_(options.output) {
   json_["bench"] = bench;
+  json_["date"] = date();
   json_["machine"] = {{"processor", processor()},
                       {"hardware threads", std::thread::hardware_concurrency()},
                       {"load average at start", load_average()}};

@@ -24,8 +24,8 @@ void add_options(CLI::App& command, BenchOptions& options);
 /// Times as {"median", "min", "max", "samples"}, in seconds.
 nlohmann::json to_json(const Timing& timing);
 
-/// The results of a bench with the machine, the device and the versions that they belong to. No
-/// date: the file changes only when the numbers do.
+/// The results of a bench with the date, the machine, the device and the versions that they belong
+/// to.
 class BenchRecord {
  public:
   /// Takes the load of the machine now, before the bench adds to it.

@@ -61,8 +61,13 @@ enum class Candidates {
   heap          ///< BoundedHeap: better for large k
 };
 
-/// nanoflann's 3D kd-tree with leaves of 10.
-std::unique_ptr<HostSearch> make_nanoflann_search(const SearchInput& input, Candidates candidates);
+class NanoflannIndex;
+/// nanoflann's 3D kd-tree with leaves of 10, built on one thread.
+std::shared_ptr<const NanoflannIndex> make_nanoflann_index(const Photons& photons);
+/// A search over an index of the same photons; several may share one.
+std::unique_ptr<HostSearch> make_nanoflann_search(const SearchInput& input,
+                                                  std::shared_ptr<const NanoflannIndex> index,
+                                                  Candidates candidates);
 /// Embree's rtcPointQuery over a bounding volume hierarchy of points.
 std::unique_ptr<HostSearch> make_embree_search(const SearchInput& input);
 

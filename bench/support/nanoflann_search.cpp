@@ -26,6 +26,23 @@ struct PointCloud {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointCloud>,
                                                  PointCloud, 3, std::uint32_t>;
 
+}  // namespace
+
+class NanoflannIndex {
+ public:
+  explicit NanoflannIndex(const Photons& photons)
+      : cloud_{photons.position}, tree_(3, cloud_, {10}) {
+    tree_.buildIndex();
+  }
+  const Tree& tree() const { return tree_; }
+
+ private:
+  PointCloud cloud_;
+  Tree tree_;
+};
+
+namespace {
+
 /// nanoflann's own result set, bounded by the radius, behind the normal filter.
 class FilteredList {
  public:
@@ -105,10 +122,8 @@ class FilteredHeap {
 template <class ResultSet>
 class NanoflannSearch final : public HostSearch {
  public:
-  explicit NanoflannSearch(const SearchInput& input)
-      : input_(input), cloud_{input.photons.position}, tree_(3, cloud_, {10}) {
-    tree_.buildIndex();
-  }
+  NanoflannSearch(const SearchInput& input, std::shared_ptr<const NanoflannIndex> index)
+      : input_(input), index_(std::move(index)) {}
 
   void estimate(const PrimaryHits& hits, std::span<const std::uint32_t> order,
                 const SearchParameters& parameters, DensityAnswers& answers) const override {
@@ -120,7 +135,7 @@ class NanoflannSearch final : public HostSearch {
           for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const std::uint32_t hit = order[i];
             results.begin(hits.sided_triangle[hit]);
-            tree_.findNeighbors(results, &hits.position[hit].x, nanoflann::SearchParams());
+            index_->tree().findNeighbors(results, &hits.position[hit].x, nanoflann::SearchParams());
             results.end(hit, answers);
           }
         });
@@ -128,15 +143,22 @@ class NanoflannSearch final : public HostSearch {
 
  private:
   SearchInput input_;
-  PointCloud cloud_;
-  Tree tree_;
+  std::shared_ptr<const NanoflannIndex> index_;
 };
 
 }  // namespace
 
-std::unique_ptr<HostSearch> make_nanoflann_search(const SearchInput& input, Candidates candidates) {
-  if (candidates == Candidates::heap) return std::make_unique<NanoflannSearch<FilteredHeap>>(input);
-  return std::make_unique<NanoflannSearch<FilteredList>>(input);
+std::shared_ptr<const NanoflannIndex> make_nanoflann_index(const Photons& photons) {
+  return std::make_shared<const NanoflannIndex>(photons);
+}
+
+std::unique_ptr<HostSearch> make_nanoflann_search(const SearchInput& input,
+                                                  std::shared_ptr<const NanoflannIndex> index,
+                                                  Candidates candidates) {
+  if (candidates == Candidates::heap) {
+    return std::make_unique<NanoflannSearch<FilteredHeap>>(input, std::move(index));
+  }
+  return std::make_unique<NanoflannSearch<FilteredList>>(input, std::move(index));
 }
 
 std::string nanoflann_version() {

@@ -20,9 +20,8 @@ struct Timing {
 /// How often a case runs.
 struct Repeats {
   int most = 5;
-  /// A case that has run for this long, warm-up included, ends after its third repeat: rivals that
-  /// need ten seconds a pass are not worth a minute each.
-  double seconds_per_case = 10;
+  /// A case that has run for this long, warm-up included, ends after its third repeat.
+  double seconds_per_case = 1.5;
 };
 
 /// Times `run` after one untimed call, which compiles kernels and touches memory for the first
