@@ -163,6 +163,12 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
                   "default: the environment's PHOTILE_DEVICE, else the best")
       ->type_name("SELECTOR")
       ->group("Run");
+  command
+      .add_option("--memory", options.device.memory_bytes,
+                  "that the device's buffers may take; default: all it has")
+      ->type_name("SIZE")
+      ->transform(byte_size())
+      ->group("Run");
   command.add_option("--threads", options.threads, "of the host; 0 = all cores")
       ->type_name("N")
       ->transform(count_between(0, limits::max_threads))

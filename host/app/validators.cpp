@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "photile/limits.hpp"
 
@@ -24,6 +26,14 @@ std::optional<Number> parse_number(std::string_view text) {
 std::optional<double> parse_finite(std::string_view text) {
   const auto value = parse_number<double>(text);
   return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+/// A number that is whole but for rounding (1.1M is) and fits 64 bits.
+std::optional<std::uint64_t> whole(double number) {
+  const double value = std::round(number * 1e3) / 1e3;
+  constexpr double beyond = 18446744073709551616.0;  // 2^64
+  if (value < 0 || value >= beyond || value != std::floor(value)) return std::nullopt;
+  return static_cast<std::uint64_t>(value);
 }
 
 /// 1000 for "k" and so on; 0 if `suffix` is no suffix.
@@ -55,10 +65,24 @@ std::optional<std::uint64_t> parse_count(std::string_view text) {
   }
   const auto number = parse_finite(text);
   if (!number) return std::nullopt;
-  const double value = std::round(*number * factor * 1e3) / 1e3;  // 1.1M is whole, rounding aside
-  constexpr double beyond = 18446744073709551616.0;               // 2^64
-  if (value < 0 || value >= beyond || value != std::floor(value)) return std::nullopt;
-  return static_cast<std::uint64_t>(value);
+  return whole(*number * factor);
+}
+
+std::optional<std::uint64_t> parse_bytes(std::string_view text) {
+  static constexpr std::array units{std::pair{"KiB", 0x1p10}, std::pair{"MiB", 0x1p20},
+                                    std::pair{"GiB", 0x1p30}, std::pair{"TiB", 0x1p40},
+                                    std::pair{"kB", 1e3},     std::pair{"MB", 1e6},
+                                    std::pair{"GB", 1e9},     std::pair{"TB", 1e12}};
+  double factor = 1;
+  for (const auto& [unit, bytes] : units) {
+    if (!text.ends_with(unit)) continue;
+    factor = bytes;
+    text.remove_suffix(std::string_view(unit).size());
+    break;
+  }
+  const auto number = parse_finite(text);
+  if (!number) return std::nullopt;
+  return whole(*number * factor);
 }
 
 std::optional<PixelSize> parse_size(std::string_view text) {
@@ -80,6 +104,16 @@ CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest) {
       return fmt::format("'{}' is not {}", text, range);
     }
     text = std::to_string(*count);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator byte_size() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto bytes = parse_bytes(text);
+    if (!bytes || *bytes == 0) return fmt::format("'{}' is no size such as 512MiB or 2GiB", text);
+    text = std::to_string(*bytes);
     return {};
   };
   return {check, ""};

@@ -13,6 +13,10 @@ namespace photile::app {
 /// A whole number: "500000", "5e5", "500k", "0.5M", "1G". Nothing if it is none, or beyond 64 bits.
 std::optional<std::uint64_t> parse_count(std::string_view text);
 
+/// A number of bytes: "512MiB", "2GiB", "1.5GiB", "100MB", "4096". Nothing if it is none, is no
+/// whole number of bytes, or is beyond 64 bits.
+std::optional<std::uint64_t> parse_bytes(std::string_view text);
+
 struct PixelSize {
   int width = 0, height = 0;
 };
@@ -22,6 +26,9 @@ std::optional<PixelSize> parse_size(std::string_view text);
 
 /// A count as `parse_count` reads it, in [lowest, highest].
 CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest);
+
+/// A number of bytes as `parse_bytes` reads it, above zero.
+CLI::Validator byte_size();
 
 /// A finite number in [lowest, highest].
 CLI::Validator number_between(double lowest, double highest);

@@ -56,18 +56,22 @@ RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_byte
   };
   const auto& info = impl_->info;
   if (count > std::numeric_limits<std::size_t>::max() / element_bytes ||
-      count * element_bytes > info.max_allocation_bytes) {
+      count * element_bytes > info.max_allocation_bytes) {  // no retry makes it fit
     impl_->check(CL_INVALID_BUFFER_SIZE, "clCreateBuffer", asked());
   }
   const std::size_t bytes = count * element_bytes;
-  // Runtimes that allocate on first use accept more than there is and fail, or are killed, later.
-  if (bytes > info.global_memory_bytes -
-                  std::min<std::uint64_t>(info.global_memory_bytes, impl_->memory->live)) {
-    impl_->check(CL_MEM_OBJECT_ALLOCATION_FAILURE, "clCreateBuffer", asked());
-  }
-  cl_int status = CL_SUCCESS;
-  const cl_mem memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_WRITE,
-                                       std::max(bytes, smallest), nullptr, &status);
+  cl_mem memory = nullptr;
+  const cl_int status = impl_->persevere([&] {
+    // Runtimes that allocate on first use accept more than there is and fail, or are killed, later.
+    const std::uint64_t live = impl_->memory->live;
+    if (bytes > impl_->memory_limit - std::min(impl_->memory_limit, live)) {
+      return CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    }
+    cl_int created = CL_SUCCESS;
+    memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_WRITE, std::max(bytes, smallest),
+                            nullptr, &created);
+    return created;
+  });
   if (status != CL_SUCCESS) impl_->check(status, "clCreateBuffer", asked());
   return RawBuffer(memory, bytes, impl_->memory);
 }
@@ -77,27 +81,33 @@ void Context::write_bytes(const RawBuffer& buffer, const void* data, std::size_t
   check_range(buffer, bytes, offset, "write");
   if (bytes == 0) return;
   // Blocking, so that the caller's memory may go away.
-  impl_->check(clEnqueueWriteBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes,
-                                    data, 0, nullptr, nullptr),
-               "clEnqueueWriteBuffer", fmt::format("{} bytes", bytes));
+  const cl_int status = impl_->persevere([&] {
+    return clEnqueueWriteBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes, data,
+                                0, nullptr, nullptr);
+  });
+  impl_->check(status, "clEnqueueWriteBuffer", fmt::format("{} bytes", bytes));
 }
 
 void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
                          std::size_t offset) {
   check_range(buffer, bytes, offset, "read");
   if (bytes == 0) return;
-  impl_->check(clEnqueueReadBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes,
-                                   data, 0, nullptr, nullptr),
-               "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
+  const cl_int status = impl_->persevere([&] {
+    return clEnqueueReadBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes, data,
+                               0, nullptr, nullptr);
+  });
+  impl_->check(status, "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
 }
 
 void Context::fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
                          std::size_t bytes) {
   check_range(buffer, bytes, 0, "fill");
   if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
-    impl_->check(clEnqueueFillBuffer(impl_->queue.get(), memory_of(buffer), pattern, pattern_bytes,
-                                     0, bytes, 0, nullptr, nullptr),
-                 "clEnqueueFillBuffer", fmt::format("{} bytes", bytes));
+    const cl_int status = impl_->persevere([&] {
+      return clEnqueueFillBuffer(impl_->queue.get(), memory_of(buffer), pattern, pattern_bytes, 0,
+                                 bytes, 0, nullptr, nullptr);
+    });
+    impl_->check(status, "clEnqueueFillBuffer", fmt::format("{} bytes", bytes));
     return;
   }
   // OpenCL fills with powers of two only: other elements are written block by block.

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "device/context_impl.hpp"
 #include "device/device_selection.hpp"
-#include "device/status_names.hpp"
 #include "device/sub_devices.hpp"
 
 namespace photile::device {
@@ -46,6 +47,9 @@ ListedDevice find_one(const std::string& selector) {
 Context::Impl::Impl(ListedDevice listed, const DeviceOptions& options)
     : info(std::move(listed.info)),
       sub_device(std::move(listed.sub_device)),
+      memory_limit(options.memory_bytes == 0
+                       ? info.global_memory_bytes
+                       : std::min(info.global_memory_bytes, options.memory_bytes)),
       profile(options.profile) {
   const cl_context_properties properties[] = {
       CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(listed.platform), 0};
@@ -63,12 +67,32 @@ Context::Impl::Impl(ListedDevice listed, const DeviceOptions& options)
 void Context::Impl::check(cl_int status, std::string_view call, const std::string& what) const {
   if (status == CL_SUCCESS) return;
   if (!is_out_of_memory(status)) throw_status(status, call, what);
-  throw_status(status, call,
-               fmt::format("{}; '{}' allows {} bytes a buffer and has {} bytes of memory, {} bytes "
-                           "are in use; use fewer photons or a smaller radius",
-                           what, info.name, info.max_allocation_bytes, info.global_memory_bytes,
-                           memory->live.load()));
+  const bool budget = memory_limit < info.global_memory_bytes;
+  throw DeviceMemoryError(
+      fmt::format("{} failed: {}; {}; '{}' allows {} bytes a buffer and {} {} bytes of memory, {} "
+                  "bytes are in use; use {}",
+                  call, status_name(status), what, info.name, info.max_allocation_bytes,
+                  budget ? "may use" : "has", memory_limit, memory->live.load(),
+                  budget ? "a larger --memory, fewer photons or a smaller radius"
+                         : "fewer photons or a smaller radius"),
+      status);
 }
+
+bool Context::Impl::reclaim() {
+  if (reclaiming) return false;
+  reclaiming = true;
+  const auto released = [](Reclaimer* reclaimer) { return reclaimer->reclaim(); };
+  const bool any = std::any_of(reclaimers->rbegin(), reclaimers->rend(), released);
+  reclaiming = false;
+  return any;
+}
+
+ReclaimerEntry::ReclaimerEntry(Context& context, Reclaimer& reclaimer)
+    : list_(context.impl_->reclaimers), reclaimer_(&reclaimer) {
+  list_->push_back(reclaimer_);
+}
+
+ReclaimerEntry::~ReclaimerEntry() { std::erase(*list_, reclaimer_); }
 
 Context::Context(const DeviceOptions& options) : Context(find_one(options.selector), options) {}
 
@@ -90,6 +114,10 @@ Context::~Context() {
 }
 
 const DeviceInfo& Context::info() const { return impl_->info; }
+std::uint64_t Context::memory_limit() const { return impl_->memory_limit; }
+std::uint64_t Context::largest_buffer() const {
+  return std::min(impl_->info.max_allocation_bytes, impl_->memory_limit);
+}
 
 void Context::finish() { impl_->check(clFinish(impl_->queue.get()), "clFinish", impl_->info.name); }
 

@@ -28,6 +28,33 @@ struct MemoryCounter {
   std::uint64_t peak = 0;
 };
 
+/// Holds buffers whose content can be brought back. Asked for memory where an allocation or a
+/// launch fails for want of it.
+class Reclaimer {
+ public:
+  /// Releases some memory. False where nothing is left to release.
+  virtual bool reclaim() = 0;
+
+ protected:
+  ~Reclaimer() = default;
+};
+
+/// The reclaimers of a context, the one to ask first at the end.
+using ReclaimerList = std::vector<Reclaimer*>;
+
+/// Keeps a reclaimer in its context's list. May outlive the context.
+class ReclaimerEntry {
+ public:
+  ReclaimerEntry(Context& context, Reclaimer& reclaimer);
+  ~ReclaimerEntry();
+  ReclaimerEntry(const ReclaimerEntry&) = delete;
+  ReclaimerEntry& operator=(const ReclaimerEntry&) = delete;
+
+ private:
+  std::shared_ptr<ReclaimerList> list_;
+  Reclaimer* reclaimer_;
+};
+
 /// A device buffer. Move-only; released on destruction.
 class RawBuffer {
  public:
@@ -100,7 +127,8 @@ struct KernelTime {
 };
 
 /// One device's context and in-order queue. Not thread-safe: one thread drives it.
-/// Every member throws DeviceError naming the call and the status.
+/// Every member throws DeviceError naming the call and the status; DeviceMemoryError where memory
+/// ran out although the queue was waited for and the reclaimers have released all they can.
 class Context {
  public:
   /// Of the one device that the selector means.
@@ -112,9 +140,14 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   const DeviceInfo& info() const;
+  /// Bytes that live buffers may take together: the device's memory, or less where the user says
+  /// so.
+  std::uint64_t memory_limit() const;
+  /// Bytes of the largest buffer that can be allocated when no other is live.
+  std::uint64_t largest_buffer() const;
 
-  /// Allocates `size` elements. Errors: DeviceError that names `what`, the bytes and the device's
-  /// limit when it does not fit.
+  /// Allocates `size` elements. Errors: DeviceMemoryError that names `what`, the bytes and the
+  /// limits when it does not fit.
   template <class T>
   Buffer<T> allocate(std::size_t size, std::string_view what) {
     return Buffer<T>(allocate_elements(size, sizeof(T), what), size);
@@ -134,6 +167,19 @@ class Context {
   template <class T>
   void read(const Buffer<T>& buffer, std::span<T> out, std::size_t first = 0) {
     read_bytes(buffer.raw(), out.data(), out.size_bytes(), first * sizeof(T));
+  }
+  /// The content of a buffer, to be restored later.
+  template <class T>
+  std::vector<std::byte> save(const Buffer<T>& buffer) {
+    std::vector<std::byte> content(buffer.bytes());
+    read_bytes(buffer.raw(), content.data(), content.size(), 0);
+    return content;
+  }
+  /// Allocates `buffer` anew, with content that was saved.
+  template <class T>
+  void restore(Buffer<T>& buffer, std::span<const std::byte> content, std::string_view what) {
+    buffer = allocate<T>(content.size() / sizeof(T), what);
+    write_bytes(buffer.raw(), content.data(), content.size(), 0);
   }
   /// Sets every element.
   template <class T>
@@ -167,6 +213,7 @@ class Context {
   std::vector<KernelTime> kernel_times() const;
 
  private:
+  friend class ReclaimerEntry;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 

@@ -15,6 +15,7 @@ const DeviceInfo& Device::info() const { return context_->info(); }
 double Device::compile_seconds() const { return context_->compile_seconds(); }
 std::uint64_t Device::programs_built() const { return context_->programs_built(); }
 std::uint64_t Device::programs_from_cache() const { return context_->programs_from_cache(); }
+std::uint64_t Device::peak_allocated_bytes() const { return context_->peak_allocated_bytes(); }
 
 std::vector<Device> open_devices(const DeviceOptions& options) {
   std::vector<Device> devices;

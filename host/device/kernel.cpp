@@ -4,6 +4,13 @@
 #include "device/context_impl.hpp"
 
 namespace photile::device {
+namespace {
+
+/// Kernels step over their items by the number of work-items, in 32 bits: the index of an item and
+/// one step must not wrap.
+constexpr std::size_t max_work_items = std::size_t{1} << 31;
+
+}  // namespace
 
 Kernel Context::kernel(const std::string& file, const std::string& name, const Defines& defines) {
   const auto options = defines.options();
@@ -11,10 +18,13 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
   if (const auto found = impl_->kernels.find(key); found != impl_->kernels.end()) {
     return found->second;
   }
-  cl_int status = CL_SUCCESS;
   auto made = std::make_shared<Kernel::Impl>();
-  made->kernel =
-      KernelHandle(clCreateKernel(impl_->programs->get(file, options), name.c_str(), &status));
+  const cl_program program = impl_->programs->get(file, options);
+  const cl_int status = impl_->persevere([&] {
+    cl_int created = CL_SUCCESS;
+    made->kernel = KernelHandle(clCreateKernel(program, name.c_str(), &created));
+    return created;
+  });
   impl_->check(status, "clCreateKernel", fmt::format("kernel '{}' of '{}'", name, file));
   made->name = name;
   cl_uint count = 0;
@@ -33,7 +43,8 @@ void Context::set_buffer_argument(const Kernel& kernel, unsigned index, const Ra
 void Context::set_value_argument(const Kernel& kernel, unsigned index, const void* value,
                                  std::size_t bytes) {
   const auto& impl = kernel.impl();
-  const auto status = clSetKernelArg(impl.kernel.get(), index, bytes, value);
+  const cl_int status =
+      impl_->persevere([&] { return clSetKernelArg(impl.kernel.get(), index, bytes, value); });
   if (status != CL_SUCCESS) {
     impl_->check(status, "clSetKernelArg",
                  fmt::format("argument {} of kernel '{}', {} bytes", index, impl.name, bytes));
@@ -50,10 +61,17 @@ void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t
   }
   if (global_size == 0) return;
   if (local_size != 0) global_size = (global_size + local_size - 1) / local_size * local_size;
+  if (global_size > max_work_items) {
+    throw DeviceError(fmt::format("kernel '{}' is to run on {} work-items; at most {} can be",
+                                  impl.name, global_size, max_work_items),
+                      CL_INVALID_GLOBAL_WORK_SIZE);
+  }
   cl_event event = nullptr;
-  const auto status = clEnqueueNDRangeKernel(impl_->queue.get(), impl.kernel.get(), 1, nullptr,
-                                             &global_size, local_size == 0 ? nullptr : &local_size,
-                                             0, nullptr, impl_->profile ? &event : nullptr);
+  const cl_int status = impl_->persevere([&] {
+    return clEnqueueNDRangeKernel(impl_->queue.get(), impl.kernel.get(), 1, nullptr, &global_size,
+                                  local_size == 0 ? nullptr : &local_size, 0, nullptr,
+                                  impl_->profile ? &event : nullptr);
+  });
   if (status != CL_SUCCESS) {
     impl_->check(status, "clEnqueueNDRangeKernel",
                  fmt::format("kernel '{}', {} work-items in groups of {}", impl.name, global_size,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimate/hit_batches.hpp"
 #include "estimate/hit_buffers.hpp"
 #include "estimate/query.hpp"
 #include "estimate/tuning.hpp"
@@ -14,6 +15,8 @@
 
 namespace photile {
 
+using estimate::HitBatches;
+using estimate::HitBatchNeeds;
 using estimate::HitBuffers;
 
 struct Estimator::Impl {
@@ -21,6 +24,7 @@ struct Estimator::Impl {
   device::Context& context;
   std::uint32_t neighbours;
   float radius;
+  HitBatches batches;
   std::unique_ptr<estimate::Query> query;
 
   Impl(const PhotonMaps& photon_maps, const EstimateParameters& parameters)
@@ -29,29 +33,53 @@ struct Estimator::Impl {
         neighbours(static_cast<std::uint32_t>(parameters.neighbours)),
         radius(static_cast<float>(parameters.radius == 0 ? photon_maps.parameters().radius
                                                          : parameters.radius)),
+        batches(context),
         query(estimate::make_query(
             store, neighbours, radius,
             parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())))) {}
 
-  /// Hits of one batch so that no buffer, input or output, is larger than the device allows.
-  std::size_t batch_size(std::uint64_t output_bytes_per_hit) const {
-    constexpr std::uint64_t comfortable = 1u << 20;
-    const std::uint64_t bytes = std::max<std::uint64_t>(3 * sizeof(float), output_bytes_per_hit);
-    const std::uint64_t limit =
-        std::min<std::uint64_t>(context.info().max_allocation_bytes, 0xFFFF'FFFFu);
-    return std::clamp<std::uint64_t>(limit / bytes, 1, comfortable);
+  HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
+    return {.largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
+            .bytes_per_hit = estimate::hit_bytes(store.needs.glossy) + outputs};
   }
 
-  /// Calls launch(page_hits) for the hits of each map page.
-  template <class Launch>
-  void for_each_page(const HitBuffers& hits, std::span<const std::uint32_t> hit_maps,
-                     Launch launch) const {
-    for (const maps::MapPage& page : store.pages) {
-      const auto first = std::lower_bound(hit_maps.begin(), hit_maps.end(), page.first_map);
-      const auto last = std::lower_bound(first, hit_maps.end(), page.last_map);
-      if (first == last) continue;
-      launch(estimate::PageHits{hits, page, static_cast<std::uint32_t>(first - hit_maps.begin()),
-                                static_cast<std::uint32_t>(last - first)});
+  /// The estimates of hits [first, first + count).
+  void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, Estimates& result) {
+    const std::size_t lights = store.needs.light_count;
+    const bool glossy = store.needs.glossy;
+    const HitBuffers buffers = estimate::upload_hits(context, hits, first, count, glossy);
+    auto irradiance = context.allocate<float>(3 * count * lights, "irradiance estimates");
+    auto radiance = context.allocate<float>(glossy ? 3 * count * lights : 0, "radiance estimates");
+    context.fill(irradiance, 0.0f);
+    context.fill(radiance, 0.0f);
+    estimate::for_each_page(store, buffers, std::span(hits.sided_triangle).subspan(first, count),
+                            [&](const estimate::PageHits& page_hits) {
+                              query->estimate(page_hits, irradiance, radiance);
+                            });
+    context.read(irradiance, std::span(&result.irradiance[first * lights].x, 3 * count * lights));
+    if (glossy) {
+      context.read(radiance, std::span(&result.radiance[first * lights].x, 3 * count * lights));
+    }
+  }
+
+  /// The neighbours of hits [first, first + count).
+  void nearest(const PrimaryHits& hits, std::size_t first, std::size_t count,
+               NeighbourLists& result) {
+    const std::size_t k = neighbours;
+    const HitBuffers buffers = estimate::upload_hits(context, hits, first, count, false);
+    auto photons = context.allocate<std::uint32_t>(count * k, "neighbour lists");
+    auto squared_radius = context.allocate<float>(count, "neighbour radii");
+    context.fill(photons, none);
+    context.fill(squared_radius, radius * radius);
+    estimate::for_each_page(store, buffers, std::span(hits.sided_triangle).subspan(first, count),
+                            [&](const estimate::PageHits& page_hits) {
+                              query->nearest(page_hits, photons, squared_radius);
+                            });
+    context.read(photons, std::span(result.photons).subspan(first * k, count * k));
+    context.read(squared_radius, std::span(result.squared_radius).subspan(first, count));
+    for (std::size_t hit = first; hit < first + count; ++hit) {
+      std::sort(result.photons.begin() + static_cast<std::ptrdiff_t>(hit * k),
+                result.photons.begin() + static_cast<std::ptrdiff_t>((hit + 1) * k));
     }
   }
 };
@@ -92,28 +120,12 @@ Estimates Estimator::estimate(const PrimaryHits& hits) {
 void Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count,
                          Estimates& result) {
   const std::size_t lights = impl_->store.needs.light_count;
+  const std::uint64_t output = 3 * sizeof(float) * lights;
   const bool glossy = impl_->store.needs.glossy;
-  const std::size_t batch = impl_->batch_size(3 * sizeof(float) * lights);
-  const std::size_t end = begin + hit_count;
-  for (std::size_t first = begin; first < end; first += batch) {
-    const std::size_t count = std::min(batch, end - first);
-    const HitBuffers buffers = estimate::upload_hits(impl_->context, hits, first, count, glossy);
-    auto irradiance = impl_->context.allocate<float>(3 * count * lights, "irradiance estimates");
-    auto radiance =
-        impl_->context.allocate<float>(glossy ? 3 * count * lights : 0, "radiance estimates");
-    impl_->context.fill(irradiance, 0.0f);
-    impl_->context.fill(radiance, 0.0f);
-    impl_->for_each_page(buffers, std::span(hits.sided_triangle).subspan(first, count),
-                         [&](const estimate::PageHits& page_hits) {
-                           impl_->query->estimate(page_hits, irradiance, radiance);
-                         });
-    impl_->context.read(irradiance,
-                        std::span(&result.irradiance[first * lights].x, 3 * count * lights));
-    if (glossy) {
-      impl_->context.read(radiance,
-                          std::span(&result.radiance[first * lights].x, 3 * count * lights));
-    }
-  }
+  impl_->batches.run(hit_count, impl_->needs(output, glossy ? 2 * output : output),
+                     [&](std::size_t first, std::size_t count) {
+                       impl_->estimate(hits, begin + first, count, result);
+                     });
 }
 
 std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) const {
@@ -122,7 +134,8 @@ std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) cons
   constexpr std::size_t together =
       *std::max_element(estimate::vector_widths.begin(), estimate::vector_widths.end());
   std::size_t page_begin = 0;
-  for (const maps::MapPage& page : impl_->store.pages) {
+  for (std::size_t i = 0; i < impl_->store.pages.size(); ++i) {
+    const maps::PageExtent& page = impl_->store.pages[i];
     if (page.first_map > hits.sided_triangle[hit]) break;
     page_begin = static_cast<std::size_t>(
         std::lower_bound(hits.sided_triangle.begin(), hits.sided_triangle.end(), page.first_map) -
@@ -133,30 +146,14 @@ std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) cons
 
 NeighbourLists Estimator::nearest(const PrimaryHits& hits) {
   const std::size_t k = impl_->neighbours;
+  const std::uint64_t output = sizeof(std::uint32_t) * k;
   NeighbourLists result;
   result.k = static_cast<int>(k);
   result.photons.resize(hits.size() * k);
   result.squared_radius.resize(hits.size());
-  const std::size_t batch = impl_->batch_size(sizeof(std::uint32_t) * k);
-  const float radius = impl_->radius;
-  for (std::size_t first = 0; first < hits.size(); first += batch) {
-    const std::size_t count = std::min(batch, hits.size() - first);
-    const HitBuffers buffers = estimate::upload_hits(impl_->context, hits, first, count, false);
-    auto photons = impl_->context.allocate<std::uint32_t>(count * k, "neighbour lists");
-    auto squared_radius = impl_->context.allocate<float>(count, "neighbour radii");
-    impl_->context.fill(photons, none);
-    impl_->context.fill(squared_radius, radius * radius);
-    impl_->for_each_page(buffers, std::span(hits.sided_triangle).subspan(first, count),
-                         [&](const estimate::PageHits& page_hits) {
-                           impl_->query->nearest(page_hits, photons, squared_radius);
-                         });
-    impl_->context.read(photons, std::span(result.photons).subspan(first * k, count * k));
-    impl_->context.read(squared_radius, std::span(result.squared_radius).subspan(first, count));
-    for (std::size_t hit = first; hit < first + count; ++hit) {
-      std::sort(result.photons.begin() + static_cast<std::ptrdiff_t>(hit * k),
-                result.photons.begin() + static_cast<std::ptrdiff_t>((hit + 1) * k));
-    }
-  }
+  impl_->batches.run(
+      hits.size(), impl_->needs(output, output + sizeof(float)),
+      [&](std::size_t first, std::size_t count) { impl_->nearest(hits, first, count, result); });
   return result;
 }
 

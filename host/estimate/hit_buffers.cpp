@@ -23,6 +23,12 @@ device::Buffer<float> upload_lobes(device::Context& context, const PrimaryHits& 
 
 }  // namespace
 
+std::uint64_t hit_bytes(bool glossy) {
+  constexpr std::uint64_t position_and_map = 3 * sizeof(float) + sizeof(std::uint32_t);
+  constexpr std::uint64_t surface = (4 * 3 + 1) * sizeof(float);
+  return position_and_map + (glossy ? surface : 0);
+}
+
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::size_t count, bool glossy) {
   HitBuffers buffers;

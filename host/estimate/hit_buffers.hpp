@@ -18,6 +18,9 @@ struct HitBuffers {
   device::Buffer<float> roughness;         ///< 1 per hit
 };
 
+/// Device memory that a hit takes as input.
+std::uint64_t hit_bytes(bool glossy);
+
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::size_t count, bool glossy);
 

@@ -1,8 +1,10 @@
 // What answers queries on one page of photon maps: the kernels of a structure.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "device/context.hpp"
 #include "estimate/hit_buffers.hpp"
@@ -40,6 +42,22 @@ std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_
                                        float radius, const EstimateTuning& tuning);
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        float radius);
+
+/// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: their sided
+/// triangles, ascending.
+template <class Launch>
+void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
+                   std::span<const std::uint32_t> hit_maps, Launch launch) {
+  const maps::ResidentMaps::Release release_last{store.pages};
+  for (std::size_t i = 0; i < store.pages.size(); ++i) {
+    const maps::PageExtent& extent = store.pages[i];
+    const auto first = std::lower_bound(hit_maps.begin(), hit_maps.end(), extent.first_map);
+    const auto last = std::lower_bound(first, hit_maps.end(), extent.last_map);
+    if (first == last) continue;
+    launch(PageHits{hits, store.pages.use(i), static_cast<std::uint32_t>(first - hit_maps.begin()),
+                    static_cast<std::uint32_t>(last - first)});
+  }
+}
 
 /// Calls launch(...) with the kernel arguments that the scene's needs add: the entries' lights,
 /// then directions, lobes and the radiance output. Kernels take them in this order.

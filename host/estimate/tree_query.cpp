@@ -8,7 +8,8 @@ namespace {
 
 /// Largest k whose list is kept in private memory.
 constexpr std::uint32_t private_list_limit = 256;
-/// Bytes of lists in global memory, for larger k: bounds the work-items in flight.
+/// Most bytes of lists in global memory, for larger k: bounds the work-items in flight. An eighth
+/// of the memory where that is less.
 constexpr std::uint64_t global_list_bytes = 64u << 20;
 
 class TreeQuery : public Query {
@@ -27,7 +28,8 @@ class TreeQuery : public Query {
       defines_.set("LIST_IN_GLOBAL_MEMORY");
       constexpr std::uint64_t group = maps::work_group_size;
       const std::uint64_t bytes_per_item = std::uint64_t{neighbours} * 8;
-      work_items_ = std::max(group, global_list_bytes / bytes_per_item / group * group);
+      const std::uint64_t bytes = std::min(global_list_bytes, context_.memory_limit() / 8);
+      work_items_ = std::max(group, bytes / bytes_per_item / group * group);
       list_distance_ = context_.allocate<float>(work_items_ * neighbours, "candidate lists");
       list_entry_ = context_.allocate<std::uint32_t>(work_items_ * neighbours, "candidate lists");
     }

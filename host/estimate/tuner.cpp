@@ -63,14 +63,9 @@ class Bench {
   }
 
   void run(const maps::MapStore& store, Query& query) {
-    const std::span<const std::uint32_t> hit_maps = sample_.hits.sided_triangle;
-    for (const maps::MapPage& page : store.pages) {
-      const auto first = std::lower_bound(hit_maps.begin(), hit_maps.end(), page.first_map);
-      const auto last = std::lower_bound(first, hit_maps.end(), page.last_map);
-      query.estimate({hits_, page, static_cast<std::uint32_t>(first - hit_maps.begin()),
-                      static_cast<std::uint32_t>(last - first)},
-                     irradiance_, radiance_);
-    }
+    for_each_page(store, hits_, sample_.hits.sided_triangle, [&](const PageHits& page_hits) {
+      query.estimate(page_hits, irradiance_, radiance_);
+    });
     device_.context().finish();
   }
 

@@ -115,7 +115,7 @@ void fill_cells(Build& build, MapPage& page) {
 
 void upload_photons(Build& build, const CandidateMaps& candidates, const Photons& photons,
                     Progress& progress) {
-  const std::uint64_t max_bytes = build.context.info().max_allocation_bytes;
+  const std::uint64_t max_bytes = build.context.largest_buffer();
   for (const PhotonRange range : plan_photon_pages(photons, candidates, max_bytes)) {
     progress.throw_if_cancelled();
     build.photon_pages.push_back(upload_photon_page(build.context, photons, candidates, range));
@@ -135,21 +135,15 @@ void add_page(MapStore& store, MapPage page) {
   statistics.nodes += page.tree_nodes.size();
   statistics.device_bytes += page.device_bytes();
   ++statistics.pages;
-  store.pages.push_back(std::move(page));
+  store.pages.add(std::move(page));
 }
 
 }  // namespace
 
-std::uint64_t MapPage::device_bytes() const {
-  return grids.bytes() + cell_start.bytes() + entry_photon.bytes() + entry_position.bytes() +
-         entry_flux.bytes() + entry_light.bytes() + entry_incoming.bytes() + entry_normal.bytes() +
-         tree_root.bytes() + tree_nodes.bytes();
-}
-
 void build_maps_per_triangle(MapStore& store, const Scene& scene, const Photons& photons,
                              const NeighbourGroups& groups, Progress& progress) {
   Context& context = store.device->context();
-  const std::uint64_t max_bytes = context.info().max_allocation_bytes;
+  const std::uint64_t max_bytes = context.largest_buffer();
   const float reach = reach_of(scene, store.parameters.radius);
   Build build{context,
               store,
@@ -167,7 +161,7 @@ void build_maps_per_triangle(MapStore& store, const Scene& scene, const Photons&
   const std::vector<std::uint32_t> counts = count_photons(build, map_total, map_count);
 
   PhotonMapStatistics& statistics = store.statistics;
-  for (const MapRange range : plan_map_pages(counts, max_bytes)) {
+  for (const MapRange range : plan_map_pages(counts, {.largest_buffer = max_bytes})) {
     progress.throw_if_cancelled();
     MapPage page;
     page.first_map = range.first;
@@ -193,7 +187,7 @@ void build_global_map(MapStore& store, const Scene& scene, const Photons& photon
   if (count == 0) return;
   Context& context = store.device->context();
   const std::vector<std::uint32_t> counts{count};
-  if (plan_map_pages(counts, context.info().max_allocation_bytes).size() != 1) return;
+  if (plan_map_pages(counts, {.largest_buffer = context.largest_buffer()}).size() != 1) return;
   MapPage page;
   page.first_map = 0;
   page.last_map = static_cast<std::uint32_t>(2 * scene.triangle_count());

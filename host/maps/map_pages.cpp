@@ -3,41 +3,68 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
-#include "maps/map_store.hpp"
+#include "maps/map_page.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::maps {
+namespace {
+
+/// Entries of a page at most: three planes of floats are the largest buffer, and kernels index them
+/// in 32 bits.
+std::uint64_t max_entries(std::uint64_t largest_buffer) {
+  const std::uint64_t floats = std::min<std::uint64_t>(largest_buffer / sizeof(float),
+                                                       std::numeric_limits<std::uint32_t>::max());
+  return std::max<std::uint64_t>(floats / 3, entry_padding) - entry_padding;
+}
+
+}  // namespace
 
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
-                                     std::uint64_t max_bytes) {
-  // Three planes of floats are the largest buffer; entry indices are 32 bits wide.
-  constexpr std::uint64_t bytes_per_entry = 3 * sizeof(float);
-  const std::uint64_t max_entries =
-      std::min<std::uint64_t>(max_bytes / bytes_per_entry,
-                              std::numeric_limits<std::uint32_t>::max() / 3) -
-      entry_padding;
-  const std::uint64_t max_maps = max_bytes / sizeof(PhotileGrid);
+                                     const PageLimits& limits) {
+  const std::uint64_t most_entries = max_entries(limits.largest_buffer);
+  const std::uint64_t most_maps = limits.largest_buffer / sizeof(PhotileGrid);
+  const auto page_bytes = [&](std::uint64_t entries, std::uint64_t maps) {
+    return entries * limits.bytes_per_entry + maps * limits.bytes_per_map;
+  };
 
   std::vector<MapRange> pages;
   for (std::uint32_t map = 0; map < map_count.size(); ++map) {
     const std::uint64_t entries = map_count[map];
     if (entries == 0) continue;
-    if (entries > max_entries) {
+    if (entries > most_entries) {
       throw DeviceError(
           fmt::format("the photon map of triangle {} has {} photons, more than the {} that the "
-                      "device's largest "
-                      "buffer holds; use fewer photons or a smaller radius",
-                      map / 2, entries, max_entries));
+                      "device's largest buffer holds; use fewer photons or a smaller radius",
+                      map / 2, entries, most_entries));
     }
-    const bool starts_page = pages.empty() || pages.back().entries + entries > max_entries ||
-                             map - pages.back().first >= max_maps;
-    if (starts_page) pages.push_back({map, map, 0});
+    const auto fits = [&](const MapRange& page) {
+      const std::uint64_t maps = map + 1 - page.first;
+      return page.entries + entries <= most_entries && maps <= most_maps &&
+             page_bytes(page.entries + entries, maps) <= limits.page_bytes;
+    };
+    if (pages.empty() || !fits(pages.back())) pages.push_back({map, map, 0});
     pages.back().last = map + 1;
     pages.back().entries += entries;
   }
   return pages;
+}
+
+std::optional<std::pair<MapRange, MapRange>> halves_of(const MapRange& range,
+                                                       std::span<const std::uint32_t> map_count) {
+  MapRange first, second;
+  for (std::uint32_t map = range.first; map < range.last; ++map) {
+    const std::uint64_t entries = map_count[map];
+    if (entries == 0) continue;
+    // The first part takes maps up to the middle, one at least.
+    const bool to_first = first.entries == 0 || 2 * (first.entries + entries) <= range.entries;
+    MapRange& part = to_first && second.entries == 0 ? first : second;
+    if (part.entries == 0) part.first = map;
+    part.last = map + 1;
+    part.entries += entries;
+  }
+  if (second.entries == 0) return std::nullopt;
+  return std::pair(first, second);
 }
 
 }  // namespace photile::maps

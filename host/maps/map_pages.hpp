@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace photile::maps {
@@ -13,10 +16,24 @@ struct MapRange {
   std::uint64_t entries = 0;
 };
 
-/// Splits the maps so that no buffer of a page is larger than `max_bytes`; maps without photons at
-/// either end of a page are left out. `map_count`: photons per sided triangle.
-/// Errors: DeviceError when a single map alone is larger.
+/// How large a page may be.
+struct PageLimits {
+  std::uint64_t largest_buffer = 0;  ///< bytes; no buffer is larger
+  /// Bytes that the page is to take together. A map that is larger has a page of its own.
+  std::uint64_t page_bytes = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t bytes_per_entry = 0;  ///< of page_bytes
+  std::uint64_t bytes_per_map = 0;    ///< of page_bytes
+};
+
+/// Splits the maps into pages; maps without photons at either end of a page are left out.
+/// `map_count`: photons per sided triangle.
+/// Errors: DeviceError when a single map alone needs a buffer larger than the largest.
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
-                                     std::uint64_t max_bytes);
+                                     const PageLimits& limits);
+
+/// The maps with photons of `range` in two parts of about as many entries; nothing where there is
+/// only one map.
+std::optional<std::pair<MapRange, MapRange>> halves_of(const MapRange& range,
+                                                       std::span<const std::uint32_t> map_count);
 
 }  // namespace photile::maps

@@ -55,14 +55,11 @@ std::string_view name_of(MapStructure structure) {
 
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-                       Progress& progress)
-    : store_(std::make_unique<maps::MapStore>()) {
+                       Progress& progress) {
   check(photons, groups, parameters);
   const Stopwatch stopwatch;
   progress.begin("build photon maps", 0, "references");
-  store_->device = &device;
-  store_->needs = needs_of(scene);
-  store_->parameters = parameters;
+  store_ = std::make_unique<maps::MapStore>(device, needs_of(scene), parameters);
   store_->cos_angle = std::cos(glm::radians(groups.angle_degrees));
   store_->statistics.photons = photons.size();
   if (parameters.structure == MapStructure::kdtree_global) {
@@ -71,6 +68,7 @@ PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photon
     maps::build_maps_per_triangle(*store_, scene, photons, groups, progress);
   }
 
+  store_->statistics.spilled_bytes = store_->pages.spilled_bytes();
   store_->statistics.seconds = stopwatch.seconds();
   progress.end();
 }

@@ -41,7 +41,8 @@ struct DeviceOptions {
   /// Oclgrind's simulator) are for open_devices.
   std::string selector;
   bool use_program_cache = true;
-  bool profile = false;  ///< keep event times of every kernel
+  bool profile = false;            ///< keep event times of every kernel
+  std::uint64_t memory_bytes = 0;  ///< that live buffers may take together; 0 = all the device has
 };
 
 namespace device {
@@ -62,6 +63,7 @@ class Device {
   double compile_seconds() const;  ///< spent building programs so far
   std::uint64_t programs_built() const;
   std::uint64_t programs_from_cache() const;
+  std::uint64_t peak_allocated_bytes() const;  ///< most that live buffers took together so far
 
   device::Context& context() { return *context_; }
 

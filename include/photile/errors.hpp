@@ -50,6 +50,12 @@ struct DeviceError : Error {
   int status;  ///< the OpenCL status code, 0 where none applies
 };
 
+/// The device's memory, or the part of it that may be used, does not suffice. Whoever works in
+/// batches tries again with smaller ones.
+struct DeviceMemoryError : DeviceError {
+  using DeviceError::DeviceError;
+};
+
 /// A kernel did not compile. The build log travels in the exception.
 struct KernelBuildError : DeviceError {
   KernelBuildError(const std::string& message, std::string build_log, int status)

@@ -39,13 +39,14 @@ struct PhotonMapParameters {
 
 struct PhotonMapStatistics {
   std::uint64_t photons = 0;
-  std::uint64_t references = 0;   ///< entries over all maps; references / photons = copies
-  std::uint64_t maps = 0;         ///< sided triangles whose map holds a photon
-  std::uint64_t cells = 0;        ///< of grids
-  std::uint64_t nodes = 0;        ///< of kd-trees
-  std::uint64_t largest_map = 0;  ///< entries
-  std::uint64_t pages = 0;        ///< map pages on the device
-  std::uint64_t device_bytes = 0;
+  std::uint64_t references = 0;     ///< entries over all maps; references / photons = copies
+  std::uint64_t maps = 0;           ///< sided triangles whose map holds a photon
+  std::uint64_t cells = 0;          ///< of grids
+  std::uint64_t nodes = 0;          ///< of kd-trees
+  std::uint64_t largest_map = 0;    ///< entries
+  std::uint64_t pages = 0;          ///< runs of maps that are moved to and from the device
+  std::uint64_t device_bytes = 0;   ///< of all pages, wherever they lie
+  std::uint64_t spilled_bytes = 0;  ///< of these, on the host when the build was done
   double seconds = 0;
 };
 
@@ -54,13 +55,13 @@ struct MapStore;  // host/maps/map_store.hpp
 }
 
 /// Photon maps of every sided triangle. A photon is entered by reference in the maps of its group
-/// that lie within the radius of the photon itself. Build is deterministic: the same input gives the
-/// same bits on every run, device thread count and CPU runtime.
+/// that lie within the radius of the photon itself. Build is deterministic: the same input gives
+/// the same bits on every run, device thread count and CPU runtime.
 class PhotonMaps {
  public:
-  /// Builds on the device (kd-trees on the host). Errors: UsageError for a radius beyond the groups',
-  /// or a global tree with naive groups; DeviceError when the device's memory does not suffice;
-  /// Interrupted.
+  /// Builds on the device (kd-trees on the host). Errors: UsageError for a radius beyond the
+  /// groups', or a global tree with naive groups; DeviceMemoryError when the device's memory does
+  /// not suffice even page by page; Interrupted.
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
              Progress& progress = Progress::none());

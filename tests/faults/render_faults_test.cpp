@@ -1,4 +1,5 @@
-// `photile render` where an OpenCL call fails: one message, the device exit code, and no picture.
+// `photile render` where an OpenCL call fails: the same picture where memory ran out for a moment,
+// else one message, the device exit code, and no picture.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -6,6 +7,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
+#include "photile/image.hpp"
 
 namespace photile::test {
 namespace {
@@ -19,26 +21,34 @@ struct Failure {
   const char* name;
 };
 
-/// A small render under the failing layer; `at` 0 only counts the calls.
-Run render_with(const FileFolder& folder, const Failure& failure, long at, bool on,
-                const char* device = "") {
+/// A small render with the failing layer set up by `layer`.
+Run small_render(const FileFolder& folder, std::map<std::string, std::string> layer,
+                 const std::vector<std::string>& options = {}) {
   Run run;
-  run.arguments = {"render", folder / "box.obj", "--photons", "2000", "--size", "16x12",
-                   "-o",     folder / "out.exr"};
-  run.environment = {{"PHOTILE_DEVICE", device},
-                     {"OPENCL_LAYERS", PHOTILE_FAILING_LAYER},
-                     {"PHOTILE_FAIL_CALL", failure.call},
-                     {"PHOTILE_FAIL_AT", std::to_string(at)},
-                     {"PHOTILE_FAIL_STATUS", std::to_string(failure.status)},
-                     {"PHOTILE_FAIL_ON", on ? "1" : "0"},
-                     {"PHOTILE_FAIL_COUNT_FILE", folder / "count"}};
+  run.arguments = {"render", write_box(folder), "--photons", "2000",
+                   "--size", "16x12",           "-o",        folder / "out.exr"};
+  run.arguments.insert(run.arguments.end(), options.begin(), options.end());
+  run.environment = std::move(layer);
+  run.environment["OPENCL_LAYERS"] = PHOTILE_FAILING_LAYER;
   return run;
+}
+
+/// The settings that make the `at`-th call fail, and if `on` all later ones; 0 only counts the
+/// calls.
+std::map<std::string, std::string> failing(const Failure& failure, long at, bool on,
+                                           const FileFolder& folder, const char* device = "") {
+  return {{"PHOTILE_DEVICE", device},
+          {"PHOTILE_FAIL_CALL", failure.call},
+          {"PHOTILE_FAIL_AT", std::to_string(at)},
+          {"PHOTILE_FAIL_STATUS", std::to_string(failure.status)},
+          {"PHOTILE_FAIL_ON", on ? "1" : "0"},
+          {"PHOTILE_FAIL_COUNT_FILE", folder / "count"}};
 }
 
 long count_calls(const Failure& failure, const char* device = "") {
   const FileFolder folder;
-  write_box(folder);
-  const Outcome outcome = run_photile(render_with(folder, failure, 0, false, device));
+  const Outcome outcome =
+      run_photile(small_render(folder, failing(failure, 0, false, folder, device)));
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == success);
   long count = 0;
@@ -50,8 +60,8 @@ long count_calls(const Failure& failure, const char* device = "") {
 /// The one message of a render whose `at`-th call fails.
 void check_failure(const Failure& failure, long at, bool on, const char* device = "") {
   const FileFolder folder;
-  write_box(folder);
-  const Outcome outcome = run_photile(render_with(folder, failure, at, on, device));
+  const Outcome outcome =
+      run_photile(small_render(folder, failing(failure, at, on, folder, device)));
   CAPTURE(failure.call, at, on);
   CHECK_THAT(last_error(outcome, device_error), Catch::Contains(failure.name));
   for (const auto& entry : std::filesystem::directory_iterator(folder / ".")) {
@@ -59,45 +69,81 @@ void check_failure(const Failure& failure, long at, bool on, const char* device 
   }
 }
 
-Failure any_failure() {
+/// All channels of a render that must succeed.
+std::vector<std::vector<float>> picture_of(const FileFolder& folder, const Run& run) {
+  const Outcome outcome = run_photile(run);
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == success);
+  return read_image(folder / "out.exr").channels;
+}
+
+const std::vector<std::vector<float>>& undisturbed_picture() {
+  static const auto picture = [] {
+    const FileFolder folder;
+    return picture_of(folder, small_render(folder, {}));
+  }();
+  return picture;
+}
+
+void check_same_picture(const Failure& failure, long at) {
+  const FileFolder folder;
+  CAPTURE(failure.call, failure.name, at);
+  const Run run = small_render(folder, failing(failure, at, false, folder));
+  CHECK(picture_of(folder, run) == undisturbed_picture());
+}
+
+Failure out_of_memory() {
   return GENERATE(Failure{"clCreateBuffer", -4, "CL_MEM_OBJECT_ALLOCATION_FAILURE"},
                   Failure{"clEnqueueNDRangeKernel", -5, "CL_OUT_OF_RESOURCES"},
                   Failure{"clEnqueueNDRangeKernel", -4, "CL_MEM_OBJECT_ALLOCATION_FAILURE"},
                   Failure{"clEnqueueReadBuffer", -5, "CL_OUT_OF_RESOURCES"},
                   Failure{"clEnqueueWriteBuffer", -5, "CL_OUT_OF_RESOURCES"},
-                  Failure{"clEnqueueFillBuffer", -6, "CL_OUT_OF_HOST_MEMORY"},
-                  Failure{"clCreateKernel", -46, "CL_INVALID_KERNEL_NAME"});
+                  Failure{"clEnqueueFillBuffer", -6, "CL_OUT_OF_HOST_MEMORY"});
 }
+
+constexpr Failure other_failure{"clCreateKernel", -46, "CL_INVALID_KERNEL_NAME"};
 
 }  // namespace
 
+TEST_CASE("a render in which any allocation fails once gives the same picture") {
+  const Failure failure{"clCreateBuffer", -4, "CL_MEM_OBJECT_ALLOCATION_FAILURE"};
+  for (long at = 1, calls = count_calls(failure); at <= calls; ++at)
+    check_same_picture(failure, at);
+}
+
+TEST_CASE("a render whose 1st, 2nd, 4th, 8th ... call of a kind runs out of memory is the same") {
+  const Failure failure = out_of_memory();
+  for (long at = 1, calls = count_calls(failure); at <= calls; at *= 2) {
+    check_same_picture(failure, at);
+  }
+}
+
 TEST_CASE("a render whose 1st, 2nd, 4th, 8th ... OpenCL call of a kind fails says so once") {
-  const Failure failure = any_failure();
-  const long calls = count_calls(failure);
-  for (long at = 1; at < calls; at *= 2) check_failure(failure, at, false);
-  check_failure(failure, calls, false);
+  for (long at = 1, calls = count_calls(other_failure); at <= calls; at *= 2) {
+    check_failure(other_failure, at, false);
+  }
 }
 
 TEST_CASE("a device that is lost in the middle of a render is reported once") {
-  const Failure failure = any_failure();
+  const Failure failure = out_of_memory();
   check_failure(failure, (count_calls(failure) + 1) / 2, true);
 }
 
 TEST_CASE("a call that fails on one of two devices ends the render on both, and is told once") {
-  const Failure failure = any_failure();
   const char* const halves = "/2";
+  const Failure failure = out_of_memory();
   const long calls = count_calls(failure, halves);
+  check_failure(failure, (calls + 1) / 2, true, halves);
   for (const bool on : {false, true}) {
-    check_failure(failure, (calls + 1) / 2, on, halves);
-    check_failure(failure, calls, on, halves);
+    check_failure(other_failure, count_calls(other_failure, halves), on, halves);
   }
 }
 
-TEST_CASE("a render in which any OpenCL call of a kind fails says so once", "[slow]") {
-  const Failure failure = any_failure();
+TEST_CASE("a render in which any OpenCL call of a kind runs out of memory", "[slow]") {
+  const Failure failure = out_of_memory();
   const long calls = count_calls(failure);
   for (long at = 1; at <= calls; ++at) {
-    check_failure(failure, at, false);
+    check_same_picture(failure, at);
     check_failure(failure, at, true);
   }
 }

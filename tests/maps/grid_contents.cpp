@@ -57,7 +57,8 @@ bool in_cell(double coordinate, double minimum, std::uint32_t index, std::uint32
 
 Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
   Contents contents;
-  for (const maps::MapPage& page : photon_maps.store().pages) {
+  for (std::size_t i = 0; i < photon_maps.store().pages.size(); ++i) {
+    const maps::MapPage& page = photon_maps.store().pages.use(i);
     const auto grids = download(page.grids);
     const auto cell_start = download(page.cell_start);
     const auto entry_photon = download(page.entry_photon);
@@ -142,7 +143,7 @@ TEST_CASE("the shared grid struct has the same size on the device as on the host
   const PhotonMaps photon_maps(test::device(), scene, photons,
                                find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
   // A device that laid the struct out otherwise would not return the values it was sized with.
-  const auto grids = download(photon_maps.store().pages.at(0).grids);
+  const auto grids = download(photon_maps.store().pages.use(0).grids);
   for (const PhotileGrid& grid : grids) {
     if (grid.columns == 0) continue;
     CHECK(grid.minimum_u == Approx(-0.1));
@@ -217,10 +218,10 @@ TEST_CASE("two builds give the same bits") {
   const PhotonMaps second(test::device(), scene, photons, groups, {0.2, 4});
   REQUIRE(first.store().pages.size() == second.store().pages.size());
   for (std::size_t i = 0; i < first.store().pages.size(); ++i) {
-    CHECK(download(first.store().pages[i].entry_photon) ==
-          download(second.store().pages[i].entry_photon));
-    CHECK(download(first.store().pages[i].cell_start) ==
-          download(second.store().pages[i].cell_start));
+    CHECK(download(first.store().pages.use(i).entry_photon) ==
+          download(second.store().pages.use(i).entry_photon));
+    CHECK(download(first.store().pages.use(i).cell_start) ==
+          download(second.store().pages.use(i).cell_start));
   }
 }
 

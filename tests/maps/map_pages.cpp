@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "maps/photon_pages.hpp"
 #include "maps/map_store.hpp"
+#include "maps/photon_pages.hpp"
 #include "photile/errors.hpp"
 #include "photon_sets.hpp"
 
@@ -19,7 +19,7 @@ TEST_CASE("map pages cover every map with photons once, in order, within the lim
     total += count;
   }
   const std::uint64_t max_bytes = 40'000;
-  const auto pages = maps::plan_map_pages(counts, max_bytes);
+  const auto pages = maps::plan_map_pages(counts, {.largest_buffer = max_bytes});
   REQUIRE(pages.size() > 1);
   std::uint64_t paged = 0;
   std::uint32_t previous = 0;
@@ -38,12 +38,60 @@ TEST_CASE("map pages cover every map with photons once, in order, within the lim
 
 TEST_CASE("a single map beyond the device's largest buffer is refused with a remedy") {
   const std::vector<std::uint32_t> counts = {3, 5000};
-  CHECK_THROWS_WITH(maps::plan_map_pages(counts, 12'000),
+  CHECK_THROWS_WITH(maps::plan_map_pages(counts, {.largest_buffer = 12'000}),
                     Catch::Contains("triangle 0") && Catch::Contains("fewer photons"));
 }
 
+TEST_CASE("pages aim at a size of all their buffers together; a larger map has one of its own") {
+  const std::vector<std::uint32_t> counts = {10, 10, 0, 10, 500, 10};
+  const auto pages = maps::plan_map_pages(
+      counts,
+      {.largest_buffer = 100'000, .page_bytes = 1'000, .bytes_per_entry = 40, .bytes_per_map = 80});
+  // Two maps take 20 x 40 + 2 x 80 = 960 bytes.
+  REQUIRE(pages.size() == 4);
+  CHECK((pages[0].first == 0 && pages[0].last == 2 && pages[0].entries == 20));
+  CHECK((pages[1].first == 3 && pages[1].last == 4 && pages[1].entries == 10));
+  CHECK((pages[2].first == 4 && pages[2].last == 5 && pages[2].entries == 500));
+  CHECK((pages[3].first == 5 && pages[3].last == 6 && pages[3].entries == 10));
+}
+
+TEST_CASE("no index into a page passes 32 bits, however large the device's buffers") {
+  constexpr std::uint64_t huge = std::uint64_t{1} << 40;
+  // 24 maps of 2^28 photons: three planes of one are 2^29.6 floats.
+  const std::vector<std::uint32_t> counts(24, 1u << 28);
+  const auto pages = maps::plan_map_pages(counts, {.largest_buffer = huge});
+  std::uint64_t paged = 0;
+  for (const maps::MapRange& page : pages) {
+    CHECK(3 * (page.entries + maps::entry_padding) <= 0xFFFF'FFFFull);
+    CHECK(page.entries < maps::max_items);
+    paged += page.entries;
+  }
+  CHECK(paged == 24ull << 28);
+  // As many as fit, not fewer: five times 2^28 photons are 3.75 x 2^30 floats.
+  CHECK(pages.size() == 5);
+  const std::vector<std::uint32_t> too_many = {0xFFFF'FFFEu};
+  CHECK_THROWS_AS(maps::plan_map_pages(too_many, {.largest_buffer = huge}), DeviceError);
+}
+
+TEST_CASE("buffers smaller than the padding hold no photons") {
+  CHECK_THROWS_AS(maps::plan_map_pages(std::vector<std::uint32_t>{1}, {.largest_buffer = 100}),
+                  DeviceError);
+}
+
+TEST_CASE("a page is halved where its entries are, between maps") {
+  const std::vector<std::uint32_t> counts = {9, 0, 4, 4, 0, 0, 8, 0};
+  const auto halves = maps::halves_of({2, 7, 16}, counts);
+  REQUIRE(halves.has_value());
+  CHECK((halves->first.first == 2 && halves->first.last == 4 && halves->first.entries == 8));
+  CHECK((halves->second.first == 6 && halves->second.last == 7 && halves->second.entries == 8));
+  const auto uneven = maps::halves_of({0, 3, 13}, counts);
+  REQUIRE(uneven.has_value());
+  CHECK((uneven->first.last == 1 && uneven->second.first == 2 && uneven->second.entries == 4));
+  CHECK_FALSE(maps::halves_of({0, 2, 9}, counts).has_value());
+}
+
 TEST_CASE("no photons need no pages") {
-  CHECK(maps::plan_map_pages(std::vector<std::uint32_t>(10, 0), 1000).empty());
+  CHECK(maps::plan_map_pages(std::vector<std::uint32_t>(10, 0), {.largest_buffer = 1000}).empty());
 }
 
 TEST_CASE("photon pages cover every photon once, in order, within the limit") {

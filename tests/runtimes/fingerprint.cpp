@@ -105,7 +105,8 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
       devices, test.scene, photons, find_neighbour_groups(test.scene, {radius, 60}),
       {radius, 4, test.structure}, Progress::none());
   const PhotonMaps& maps = all_maps.back();
-  for (const maps::MapPage& page : maps.store().pages) {
+  for (std::size_t i = 0; i < maps.store().pages.size(); ++i) {
+    const maps::MapPage& page = maps.store().pages.use(i);
     device::Context& context = maps.device().context();
     print_hash(test, "cell_start", context, page.cell_start);
     print_hash(test, "entry_photon", context, page.entry_photon);

@@ -5,6 +5,7 @@
 //   PHOTILE_FAIL_AT=3                  its n-th call fails, counted from 1; 0 = none
 //   PHOTILE_FAIL_STATUS=-4             with this status code
 //   PHOTILE_FAIL_ON=1                  and so do all later ones ("device lost")
+//   PHOTILE_FAIL_ABOVE=4096            instead, clCreateBuffer fails for more bytes than this
 //   PHOTILE_FAIL_COUNT_FILE=path       at exit the number of calls is written there
 //
 // A sweep first counts (PHOTILE_FAIL_AT=0), then lets each call fail in turn: the program must end
@@ -74,6 +75,17 @@ struct Failing<entry, Object*(Arguments...)> {
   }
 };
 
+/// Fails for large buffers.
+CL_API_ENTRY cl_mem CL_API_CALL create_small_buffer(cl_context context, cl_mem_flags flags,
+                                                    size_t bytes, void* host, cl_int* status) {
+  static const auto most = static_cast<size_t>(number_variable("PHOTILE_FAIL_ABOVE"));
+  if (bytes > most) {
+    if (status != nullptr) *status = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    return nullptr;
+  }
+  return next->clCreateBuffer(context, flags, bytes, host, status);
+}
+
 template <class Function>
 struct Pointee;
 template <class Function>
@@ -108,5 +120,6 @@ void replace_entries(cl_icd_dispatch& entries) {
   PHOTILE_FAILABLE(clWaitForEvents)
   PHOTILE_FAILABLE(clFinish)
 #undef PHOTILE_FAILABLE
+  if (*text_variable("PHOTILE_FAIL_ABOVE") != '\0') entries.clCreateBuffer = create_small_buffer;
   std::atexit(write_count);
 }

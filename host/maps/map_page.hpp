@@ -1,0 +1,69 @@
+// The photons of a run of maps, and what finds them, as they lie on the device.
+#pragma once
+
+#include <cstdint>
+
+#include "device/context.hpp"
+#include "photile/device/grid.h"
+#include "photile/device/kdtree.h"
+
+namespace photile::maps {
+
+static_assert(sizeof(PhotileGrid) == 17 * 4, "PhotileGrid must have no padding");
+static_assert(sizeof(PhotileTreeNode) == 4 * 4, "PhotileTreeNode must have no padding");
+
+/// What a page covers: the maps of sided triangles [first_map, last_map).
+struct PageExtent {
+  std::uint32_t first_map = 0, last_map = 0;
+  std::uint32_t entry_count = 0;
+  std::uint32_t entry_stride = 0;  ///< distance of planes: entry_count and padding
+  std::uint32_t cell_count = 0;
+};
+
+/// None is larger than the device's largest allocation. Which exist depends on the structure and on
+/// the scene's needs.
+struct PageBuffers {
+  // Entries: the photons of each map, in ascending order within a grid's cell or in the order of
+  // the leaves of its tree.
+  device::Buffer<std::uint32_t> entry_photon;  ///< index into Photons
+  device::Buffer<float> entry_position;        ///< planes x, y, z
+  device::Buffer<float> entry_flux;            ///< planes r, g, b
+  device::Buffer<std::uint16_t> entry_light;   ///< only with several lights
+  device::Buffer<float> entry_incoming;        ///< planes x, y, z; only in glossy scenes
+  device::Buffer<float> entry_normal;          ///< planes x, y, z; only in a global tree
+
+  // Grids; in the plane of its triangle also the frame of a 2D tree.
+  device::Buffer<PhotileGrid> grids;         ///< per map
+  device::Buffer<std::uint32_t> cell_start;  ///< per cell, and the end of the last
+
+  // Trees.
+  device::Buffer<std::uint32_t> tree_root;  ///< per map; none without photons
+  device::Buffer<PhotileTreeNode> tree_nodes;
+
+  std::uint64_t device_bytes() const;
+};
+
+/// Calls visit(buffer) for each, always in the same order.
+template <class Buffers, class Visit>
+void for_each_buffer(Buffers& buffers, Visit visit) {
+  visit(buffers.entry_photon);
+  visit(buffers.entry_position);
+  visit(buffers.entry_flux);
+  visit(buffers.entry_light);
+  visit(buffers.entry_incoming);
+  visit(buffers.entry_normal);
+  visit(buffers.grids);
+  visit(buffers.cell_start);
+  visit(buffers.tree_root);
+  visit(buffers.tree_nodes);
+}
+
+struct MapPage : PageExtent, PageBuffers {};
+
+/// Cells of a page at most, and photons: kernels step over them in 32 bits.
+inline constexpr std::uint64_t max_items = std::uint64_t{1} << 31;
+
+/// Entries are read in vectors of up to 16 floats, which may reach this far beyond the last.
+inline constexpr std::uint32_t entry_padding = 16;
+
+}  // namespace photile::maps
