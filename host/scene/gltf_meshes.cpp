@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 
 #include "photile/limits.hpp"
+#include "scene/instance_recorder.hpp"
 #include "scene/material_needs.hpp"
 
 namespace photile::scene_io {
@@ -43,18 +45,29 @@ bool has_triangles(int mode) {
 class MeshImporter {
  public:
   MeshImporter(const tinygltf::Model& model, const AccessorReader& accessors,
+               const std::vector<NodeVisit>& visits,
                const std::vector<TextureCoordinates>& coordinates, ImportContext& context)
       : model_(model),
         accessors_(accessors),
         coordinates_(coordinates),
         context_(context),
         needs_(needs_of_materials(context.scene.materials)),
-        builder_(context.scene, needs_.textures, needs_.glossy || needs_.specular_paths) {}
+        builder_(context.scene, needs_.textures, needs_.glossy || needs_.specular_paths),
+        instances_(context.scene) {
+    for (const NodeVisit& visit : visits) ++uses_[mesh_of(visit)];
+  }
 
   void add(const NodeVisit& visit, std::uint64_t visit_number);
-  void finish() { builder_.finish(); }
+  void finish() {
+    builder_.finish();
+    instances_.finish();
+  }
 
  private:
+  int mesh_of(const NodeVisit& visit) const {
+    return model_.nodes[static_cast<std::size_t>(visit.node)].mesh;
+  }
+  LocalMesh read_local(const tinygltf::Mesh& mesh, const std::string& name) const;
   void add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
                      std::uint64_t visit_number, const std::string& mesh_name);
   std::vector<Corner> read_corners(const tinygltf::Primitive& primitive, std::uint32_t material,
@@ -73,7 +86,15 @@ class MeshImporter {
   ImportContext& context_;
   SceneNeeds needs_;
   MeshBuilder builder_;
+  InstanceRecorder instances_;
+  std::map<int, std::size_t> uses_;  ///< of each mesh
+  std::vector<bool> kept_;           ///< triangles of the visit that the scene took
 };
+
+/// Whether triangles can be made of it.
+bool is_usable(const tinygltf::Primitive& primitive) {
+  return has_triangles(primitive.mode) && primitive.attributes.count("POSITION") > 0;
+}
 
 void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
   const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
@@ -87,15 +108,39 @@ void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
   if (node.skin >= 0) {
     context_.warnings.add("node", node_name(model_, visit.node), "skin is ignored: rest pose");
   }
+  const auto first = static_cast<std::uint32_t>(context_.scene.triangles.size());
+  kept_.clear();
   for (const tinygltf::Primitive& primitive : mesh.primitives) {
-    if (!has_triangles(primitive.mode)) {
-      context_.warnings.add("mesh", name, "points and lines are ignored");
-    } else if (attribute(primitive, "POSITION") >= 0) {
+    if (is_usable(primitive)) {
       add_primitive(primitive, visit, visit_number, name);
     } else {
-      context_.warnings.add("mesh", name, "has no positions; ignored");
+      context_.warnings.add("mesh", name,
+                            has_triangles(primitive.mode) ? "has no positions; ignored"
+                                                          : "points and lines are ignored");
     }
   }
+  if (uses_[node.mesh] > 1) {
+    instances_.record(node.mesh, visit.world, first, kept_, [&] { return read_local(mesh, name); });
+  }
+}
+
+LocalMesh MeshImporter::read_local(const tinygltf::Mesh& mesh, const std::string& name) const {
+  LocalMesh local;
+  for (const tinygltf::Primitive& primitive : mesh.primitives) {
+    if (!is_usable(primitive)) continue;
+    const auto first = static_cast<std::uint32_t>(local.positions.size());
+    const std::vector<float> positions =
+        accessors_.floats(attribute(primitive, "POSITION"), 3, "POSITION of mesh '" + name + "'");
+    for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+      local.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
+    }
+    const std::vector<std::uint32_t> indices =
+        read_indices(primitive, positions.size() / 3, "mesh '" + name + "'");
+    for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
+      local.triangles.push_back(first + glm::uvec3(a, b, c));
+    }
+  }
+  return local;
 }
 
 void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
@@ -122,7 +167,7 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
     const std::array<Corner, 3> triangle{corners[mirrored ? c : a], corners[b],
                                          corners[mirrored ? a : c]};
-    builder_.add(triangle, material, light);
+    kept_.push_back(builder_.add(triangle, material, light));
   }
 }
 
@@ -224,7 +269,7 @@ void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accesso
                      const std::vector<NodeVisit>& visits,
                      const std::vector<TextureCoordinates>& coordinates, ImportContext& context) {
   check_triangle_count(model, accessors, visits, context);
-  MeshImporter importer(model, accessors, coordinates, context);
+  MeshImporter importer(model, accessors, visits, coordinates, context);
   for (std::size_t i = 0; i < visits.size(); ++i) importer.add(visits[i], i);
   importer.finish();
 }

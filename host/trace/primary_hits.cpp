@@ -102,7 +102,7 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
   batch.emission = std::move(all.emission);
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
-  batch.hits = sorted(all.hits, ray_scene.impl().bounds(), needs_of(ray_scene.scene()).glossy);
+  batch.hits = sorted(all.hits, ray_scene.impl().bounds, needs_of(ray_scene.scene()).glossy);
   return batch;
 }
 

@@ -3,54 +3,41 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
-#include "photile/errors.hpp"
 #include "trace/ray_scene_impl.hpp"
 
 namespace photile {
 
 namespace {
 
-const char* name_of(RTCError error) {
-  switch (error) {
-    case RTC_ERROR_NONE:
-      return "RTC_ERROR_NONE";
-    case RTC_ERROR_INVALID_ARGUMENT:
-      return "RTC_ERROR_INVALID_ARGUMENT";
-    case RTC_ERROR_INVALID_OPERATION:
-      return "RTC_ERROR_INVALID_OPERATION";
-    case RTC_ERROR_OUT_OF_MEMORY:
-      return "RTC_ERROR_OUT_OF_MEMORY";
-    case RTC_ERROR_UNSUPPORTED_CPU:
-      return "RTC_ERROR_UNSUPPORTED_CPU";
-    case RTC_ERROR_CANCELLED:
-      return "RTC_ERROR_CANCELLED";
-    default:
-      return "RTC_ERROR_UNKNOWN";
+/// The point of `triangle` nearest to `position`, which lies on it within rounding. Weights of an
+/// instance's own triangle would not do: its corners may come in another order.
+TriangleHit hit_at(const Scene& scene, std::uint32_t triangle, const glm::dvec3& position) {
+  const auto [a, b, c] = scene.corners(triangle);
+  const glm::dvec3 along_u = glm::dvec3(b) - glm::dvec3(a), along_v = glm::dvec3(c) - glm::dvec3(a);
+  const glm::dvec3 offset = position - glm::dvec3(a);
+  const double uu = glm::dot(along_u, along_u), uv = glm::dot(along_u, along_v),
+               vv = glm::dot(along_v, along_v);
+  const double pu = glm::dot(offset, along_u), pv = glm::dot(offset, along_v);
+  const double determinant = uu * vv - uv * uv;
+  const double u = std::clamp((vv * pu - uv * pv) / determinant, 0.0, 1.0);
+  const double v = std::clamp((uu * pv - uv * pu) / determinant, 0.0, 1.0 - u);
+  return {triangle, static_cast<float>(u), static_cast<float>(v)};
+}
+
+Box bounds_of(const Scene& scene) {
+  Box box{glm::vec3(std::numeric_limits<float>::infinity()),
+          glm::vec3(-std::numeric_limits<float>::infinity())};
+  for (const glm::vec3& vertex : scene.vertices) {
+    box.low = glm::min(box.low, vertex);
+    box.high = glm::max(box.high, vertex);
   }
-}
-
-/// Throws if Embree recorded an error since the last call. `call` names what was tried.
-void check(RTCDevice device, const Scene& scene, const char* call) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_NONE) return;
-  const std::string remedy = error == RTC_ERROR_OUT_OF_MEMORY
-                                 ? "; free memory or use a smaller scene"
-                                 : "; Embree 3.13 on a CPU with SSE2 is needed";
-  throw Error(ExitCode::failure,
-              scene.source.string() + ": " + call + " of Embree failed with " + name_of(error) +
-                  " for " + std::to_string(scene.triangle_count()) + " triangles" + remedy);
-}
-
-bool count_bytes(void* bytes, ssize_t change, bool /*after the change*/) {
-  static_cast<std::atomic<std::int64_t>*>(bytes)->fetch_add(change, std::memory_order_relaxed);
-  return true;
+  return box;
 }
 
 }  // namespace
 
-RayScene::Impl::Impl(const Scene& scene) : scene(&scene) {
+RayScene::Impl::Impl(const Scene& scene) : scene(&scene), bounds(bounds_of(scene)) {
   try {
     build();
   } catch (...) {
@@ -60,38 +47,6 @@ RayScene::Impl::Impl(const Scene& scene) : scene(&scene) {
 }
 
 RayScene::Impl::~Impl() { release(); }
-
-void RayScene::Impl::build() {
-  device = rtcNewDevice(nullptr);
-  check(device, *scene, "rtcNewDevice");
-  rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
-  bvh = rtcNewScene(device);
-  // Robust: no ray slips through the edge between two triangles.
-  rtcSetSceneFlags(bvh, RTC_SCENE_FLAG_ROBUST);
-
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Embree reads vertices 16 bytes at a time, beyond the end of the last one: its own buffer has
-  // the room. Indices have no such need and are shared.
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(glm::vec3), scene->vertices.size());
-  if (vertices != nullptr) {
-    std::copy(scene->vertices.begin(), scene->vertices.end(), static_cast<glm::vec3*>(vertices));
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               scene->triangles.data(), 0, sizeof(glm::uvec3),
-                               scene->triangles.size());
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(bvh, geometry);
-  }
-  rtcReleaseGeometry(geometry);
-  check(device, *scene, "rtcSetNewGeometryBuffer");
-  rtcCommitScene(bvh);
-  check(device, *scene, "rtcCommitScene");
-}
-
-void RayScene::Impl::release() {
-  if (bvh != nullptr) rtcReleaseScene(bvh);
-  if (device != nullptr) rtcReleaseDevice(device);
-}
 
 std::optional<TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
                                                      const glm::vec3& direction) const {
@@ -118,14 +73,14 @@ std::optional<TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
   rtcInitIntersectContext(&context);
   rtcIntersect1(bvh, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return TriangleHit{query.hit.primID, query.hit.u, query.hit.v};
-}
-
-Box RayScene::Impl::bounds() const {
-  RTCBounds bounds;
-  rtcGetSceneBounds(bvh, &bounds);
-  return {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
-          {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+  if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+    const std::uint32_t triangle =
+        single_triangles.empty() ? query.hit.primID : single_triangles[query.hit.primID];
+    return TriangleHit{triangle, query.hit.u, query.hit.v};
+  }
+  const std::uint32_t first = scene->instances[query.hit.instID[0]].first_triangle;
+  return hit_at(*scene, first + query.hit.primID,
+                glm::dvec3(origin) + double{query.ray.tfar} * glm::dvec3(direction));
 }
 
 RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}

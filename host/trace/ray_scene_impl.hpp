@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "photile/ray_scene.hpp"
 #include "trace/triangle_hit.hpp"
@@ -27,16 +28,21 @@ struct RayScene::Impl {
   /// Nearest hit of the ray, or nothing. Thread-safe. A ray with a NaN or infinity hits nothing.
   std::optional<TriangleHit> intersect(const glm::vec3& origin, const glm::vec3& direction) const;
 
-  /// Encloses all triangles.
-  Box bounds() const;
-
   const Scene* scene;
+  Box bounds;                          ///< encloses all triangles
   std::atomic<std::int64_t> bytes{0};  ///< outlives the device, which reports to it
   RTCDevice device = nullptr;
   RTCScene bvh = nullptr;
+  std::vector<RTCScene> meshes;  ///< of the scene's shared meshes
+
+  // Triangles that belong to no instance; empty where none is an instance's.
+  std::vector<std::uint32_t> single_triangles;  ///< their numbers in the scene
+  std::vector<glm::uvec3> single_corners;       ///< Embree reads them from here
 
  private:
   void build();
+  void build_instances();
+  void build_single_triangles();
   void release();
 };
 

@@ -95,6 +95,20 @@ struct Light {
   float outer_cone_angle = 0.7853982f;     ///< radians, spot
 };
 
+/// A mesh that several places of the scene repeat, in a space of its own around its centre.
+struct SharedMesh {
+  std::vector<glm::vec3> vertices;
+  std::vector<glm::uvec3> triangles;  ///< vertex indices
+};
+
+/// Triangles of the scene that are a shared mesh, moved: triangle first_triangle + i is the mesh's
+/// triangle i, with its corners in any order.
+struct MeshInstance {
+  std::uint32_t mesh = 0;            ///< into Scene::shared_meshes
+  std::uint32_t first_triangle = 0;  ///< into Scene::triangles
+  glm::mat4x3 to_world{1.0f};        ///< metres; a scale along the mesh's axes, then a rotation
+};
+
 /// What the import found worth telling.
 struct ImportReport {
   std::vector<std::string> warnings;  ///< one line each: object, what was found, what was done
@@ -120,6 +134,11 @@ struct Scene {
   /// Shading normals per corner, on the front side; empty when no material is specular or glossy
   /// or the file has none. A zero vector means "use the geometric normal".
   std::vector<std::array<glm::vec3, 3>> corner_normal;
+
+  /// What repeats, for the ray tracing structure alone: every triangle is in the arrays above.
+  /// Instances ascend by first_triangle and do not overlap.
+  std::vector<SharedMesh> shared_meshes;
+  std::vector<MeshInstance> instances;
 
   std::vector<Material> materials;
   std::vector<Texture> textures;

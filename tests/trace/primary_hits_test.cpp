@@ -88,7 +88,7 @@ TEST_CASE("Hits are sorted by sided triangle, then by Morton code") {
   const PrimaryHits hits =
       trace_primary_hits(rays, camera, {.width = 64, .height = 48}, 0, 48).hits;
   REQUIRE(hits.size() > 10'000);
-  const Box box = rays.impl().bounds();
+  const Box box = rays.impl().bounds;
   const auto key = [&](std::size_t i) {
     return std::pair{hits.sided_triangle[i], trace::morton_code(hits.position[i], box)};
   };

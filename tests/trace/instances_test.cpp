@@ -1,0 +1,197 @@
+// Meshes that Embree shares between places: the same hits as without, in less memory.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include "instanced_scenes.hpp"
+#include "photile/photon_tracer.hpp"
+#include "photile/ray_scene.hpp"
+#include "trace/ray_scene_impl.hpp"
+#include "trace/sampling.hpp"
+#include "trace/surface.hpp"
+
+using namespace photile;
+using namespace photile::test;
+using namespace photile::trace;
+
+namespace {
+
+class Uniform {
+ public:
+  explicit Uniform(std::uint64_t seed) : generator_(seed) {}
+  float operator()() { return static_cast<float>(generator_() >> 40) * 0x1p-24f; }
+  glm::vec3 direction() {
+    const float u = (*this)();
+    return sample_sphere(u, (*this)());
+  }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+/// Distance along the ray to the nearest triangle, in double precision and one by one.
+std::optional<double> nearest_distance(const Scene& scene, const glm::dvec3& origin,
+                                       const glm::dvec3& direction) {
+  std::optional<double> nearest;
+  for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
+    const auto [a, b, c] = scene.corners(t);
+    const glm::dvec3 e1 = glm::dvec3(b) - glm::dvec3(a), e2 = glm::dvec3(c) - glm::dvec3(a);
+    const glm::dvec3 p = glm::cross(direction, e2);
+    const double determinant = glm::dot(e1, p);
+    if (determinant == 0) continue;
+    const glm::dvec3 s = origin - glm::dvec3(a);
+    const glm::dvec3 q = glm::cross(s, e1);
+    const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant;
+    const double distance = glm::dot(e2, q) / determinant;
+    if (u >= 0 && v >= 0 && u + v <= 1 && distance > 0 && (!nearest || distance < *nearest)) {
+      nearest = distance;
+    }
+  }
+  return nearest;
+}
+
+std::uint32_t first_of_instances(const Scene& scene) { return scene.instances[0].first_triangle; }
+
+}  // namespace
+
+TEST_CASE("rays meet turned, scaled and mirrored instances where the world's triangles are") {
+  const Scene scene = room_of_balls(6);
+  const RayScene rays(scene);
+  Uniform uniform(3);
+  int on_instances = 0;
+  for (int i = 0; i < 5'000; ++i) {
+    const glm::vec3 origin(0.2f + 3.6f * uniform(), 0.1f + 2.8f * uniform(),
+                           1.4f + 0.9f * uniform());
+    const glm::vec3 direction = uniform.direction();
+    const auto expected = nearest_distance(scene, origin, direction);
+    REQUIRE(expected);
+    const auto hit = rays.impl().intersect(origin, direction);
+    REQUIRE(hit);
+    on_instances += hit->triangle >= first_of_instances(scene);
+    const SurfacePoint point = surface_hit(scene, *hit, direction);
+    const glm::dvec3 at = glm::dvec3(origin) + *expected * glm::dvec3(direction);
+    CAPTURE(i, hit->triangle);
+    CHECK(glm::distance(glm::dvec3(point.position), at) < 1e-5);
+    CHECK(glm::dot(point.normal, direction) <= 0);
+  }
+  CHECK(on_instances > 200);  // the balls cover a few hundredths of all directions
+}
+
+TEST_CASE("a hit on an instance has the weights of the corners as the scene orders them") {
+  const Scene scene = room_of_balls(6);
+  const RayScene rays(scene);
+  Uniform uniform(4);
+  for (std::uint32_t t = first_of_instances(scene); t < scene.triangle_count(); ++t) {
+    // From close by, so that nothing else is in the way.
+    const SurfacePoint point = surface_point(scene, {t, 0.25f, 0.35f}, t % 2);
+    const glm::vec3 origin = point.position + 1e-3f * point.normal;
+    const auto hit = rays.impl().intersect(origin, -point.normal);
+    REQUIRE(hit);
+    if (hit->triangle != t) continue;  // where two balls intersect
+    CHECK(hit->u == Approx(0.25f).margin(1e-3));
+    CHECK(hit->v == Approx(0.35f).margin(1e-3));
+  }
+}
+
+TEST_CASE(
+    "a ray that leaves an instance never meets its own triangle again, at any place and size") {
+  Uniform uniform(7);
+  const SharedMesh ball = dented_ball(8);
+  for (const float size : {1e-2f, 1.0f, 1e2f}) {
+    for (const glm::vec3& offset :
+         {glm::vec3(0.0f), glm::vec3(20.0f, -3.0f, 1.0f), glm::vec3(-481.0f, 212.0f, 97.0f)}) {
+      if (size < 1e-4f * glm::length(offset)) continue;
+      for (int turn = 0; turn < 20; ++turn) {
+        Scene scene = furnished_room();
+        const auto place = [&] {
+          glm::mat4 moved = glm::translate(glm::mat4(1.0f), offset);
+          moved = glm::rotate(moved, 6.0f * uniform(), uniform.direction());
+          const float sign = turn % 2 == 0 ? 1.0f : -1.0f;
+          return glm::mat4x3(glm::scale(moved, size * glm::vec3(sign, 0.3f, 2.0f)));
+        };
+        add_instances(scene, ball, {place(), place()}, 0);
+        const RayScene rays(scene);
+        for (int r = 0; r < 500; ++r) {
+          const std::uint32_t first = scene.instances[r % 2].first_triangle;
+          const auto t = first + static_cast<std::uint32_t>(
+                                     uniform() * static_cast<float>(ball.triangles.size()));
+          const float u = uniform();
+          const glm::vec2 uv = sample_triangle(u, uniform());
+          const SurfacePoint point = surface_point(scene, {t, uv.x, uv.y}, r % 2);
+          glm::vec3 direction = uniform.direction();
+          // Nearly along the surface, where the offset has least to spare.
+          if (r % 4 < 2) {
+            direction = glm::normalize(direction -
+                                       0.999f * glm::dot(direction, point.normal) * point.normal);
+          }
+          const auto hit = rays.impl().intersect(point.origin_towards(direction), direction);
+          CAPTURE(size, turn, r);
+          REQUIRE_FALSE((hit && hit->triangle == t));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("photons of a room with instances are those of the flattened room") {
+  const Scene scene = room_of_balls();
+  const Scene flat = flattened(scene);
+  const PhotonTracerParameters parameters{.emitted_photons = 40'000};
+  const PhotonTracerResult shared = trace_photons(RayScene(scene), parameters);
+  const PhotonTracerResult single = trace_photons(RayScene(flat), parameters);
+  // Paths part where a ray passes within rounding of an edge; after that their fates are their own.
+  const auto count = static_cast<double>(single.photons.size());
+  CHECK(std::abs(static_cast<double>(shared.photons.size()) - count) < 2e-3 * count);
+  const auto flux = [](const Photons& photons) {
+    double sum = 0;
+    for (const glm::vec3& each : photons.flux) sum += luminance(glm::dvec3(each));
+    return sum;
+  };
+  CHECK(flux(shared.photons) == Approx(flux(single.photons)).epsilon(2e-3));
+  // Both lie in the order of their sided triangles: nearly all have a twin on the same one.
+  std::vector<std::uint32_t> together;
+  std::set_intersection(shared.photons.sided_triangle.begin(), shared.photons.sided_triangle.end(),
+                        single.photons.sided_triangle.begin(), single.photons.sided_triangle.end(),
+                        std::back_inserter(together));
+  CHECK(static_cast<double>(together.size()) > 0.998 * count);
+}
+
+TEST_CASE("nothing escapes from a closed instance whose triangles meet at every edge") {
+  Scene scene = furnished_room();
+  add_instances(scene, dented_ball(20), places_in_room(), 0);
+  const RayScene rays(scene);
+  Uniform uniform(11);
+  for (const MeshInstance& instance : scene.instances) {
+    // The centre of a place is inside its ball.
+    const glm::vec3 centre = instance.to_world[3];
+    int escaped = 0;
+    for (int i = 0; i < 20'000; ++i) {
+      const auto hit = rays.impl().intersect(centre, uniform.direction());
+      escaped += !hit || hit->triangle < first_of_instances(scene);
+    }
+    CHECK(escaped == 0);
+  }
+}
+
+TEST_CASE("the memory of 1,000 instances of 10,000 triangles is that of one and 1,000 places") {
+  const SharedMesh ball = dented_ball(51);
+  REQUIRE(ball.triangles.size() >= 10'000);
+  std::vector<glm::mat4x3> places;
+  for (int i = 0; i < 1'000; ++i) {
+    const glm::vec3 at(i % 10, i / 10 % 10, i / 100);
+    places.emplace_back(glm::translate(glm::mat4(1.0f), at));
+  }
+  const auto bytes_of = [&](std::size_t count, bool flat) {
+    Scene scene = furnished_room();
+    add_instances(scene, ball, {places.begin(), places.begin() + static_cast<long>(count)}, 0);
+    return RayScene(flat ? flattened(std::move(scene)) : scene).bytes();
+  };
+  const std::uint64_t of_one = bytes_of(1, true);
+  // A node of Embree's top-level BVH, a transform and its inverse, and the instance's own record.
+  constexpr std::uint64_t of_a_place = 2'048;
+  CHECK(bytes_of(1'000, false) < 2 * of_one + 1'000 * of_a_place);
+  // Ten flattened ones show what a mesh costs that is not shared.
+  CHECK(bytes_of(10, true) > 8 * of_one);
+}
