@@ -40,12 +40,17 @@ class SharedProgress : public Progress {
 
 /// Runs `work` and names the device in its error.
 void run_named(const DeviceInfo& device, const std::function<void()>& work) {
+  const auto named = [&](const DeviceError& error) {
+    return fmt::format("{} {}: {}", device.id, device.name, error.what());
+  };
   try {
     work();
   } catch (const KernelBuildError&) {
     throw;  // names its device, and carries the build log
+  } catch (const DeviceMemoryError& error) {
+    throw DeviceMemoryError(named(error), error.status);
   } catch (const DeviceError& error) {
-    throw DeviceError(fmt::format("{} {}: {}", device.id, device.name, error.what()), error.status);
+    throw DeviceError(named(error), error.status);
   }
 }
 

@@ -107,6 +107,14 @@ TEST_CASE("the error of one device names it, stops the others and hides their in
   CHECK(stopped == 1);
 }
 
+TEST_CASE("a device without memory is told from one that fails") {
+  std::vector<Device> devices = halves();
+  const auto work = [](std::size_t i, Progress&) {
+    if (i == 1) throw DeviceMemoryError("no memory", -4);
+  };
+  CHECK_THROWS_AS(for_each_device(devices, Progress::none(), work), DeviceMemoryError);
+}
+
 TEST_CASE("a wish to stop reaches every device") {
   struct Cancelled : Progress {
     bool cancelled() const override { return true; }
