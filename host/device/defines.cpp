@@ -28,6 +28,11 @@ Defines& Defines::set(std::string name) {
   return *this;
 }
 
+Defines& Defines::set_word(std::string name, std::string word) {
+  entries_.emplace_back(std::move(name), std::move(word));
+  return *this;
+}
+
 std::string Defines::options() const {
   std::string text;
   for (const auto& [name, value] : entries_) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_batches.hpp"
 #include "estimate/hit_buffers.hpp"
 #include "estimate/query.hpp"
@@ -43,23 +44,15 @@ struct Estimator::Impl {
             .bytes_per_hit = estimate::hit_bytes(store.needs.glossy) + outputs};
   }
 
-  /// The estimates of hits [first, first + count).
-  void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, Estimates& result) {
-    const std::size_t lights = store.needs.light_count;
-    const bool glossy = store.needs.glossy;
-    const HitBuffers buffers = estimate::upload_hits(context, hits, first, count, glossy);
-    auto irradiance = context.allocate<float>(3 * count * lights, "irradiance estimates");
-    auto radiance = context.allocate<float>(glossy ? 3 * count * lights : 0, "radiance estimates");
-    context.fill(irradiance, 0.0f);
-    context.fill(radiance, 0.0f);
-    estimate::for_each_page(store, buffers, std::span(hits.sided_triangle).subspan(first, count),
-                            [&](const estimate::PageHits& page_hits) {
-                              query->estimate(page_hits, irradiance, radiance);
-                            });
-    context.read(irradiance, std::span(&result.irradiance[first * lights].x, 3 * count * lights));
-    if (glossy) {
-      context.read(radiance, std::span(&result.radiance[first * lights].x, 3 * count * lights));
-    }
+  Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count) {
+    const HitBuffers buffers =
+        estimate::upload_hits(context, hits, first, count, store.needs.glossy);
+    estimate::EstimateBuffers estimates(context, store.needs, neighbours,
+                                        static_cast<std::uint32_t>(count));
+    estimate::for_each_page(
+        store, buffers, std::span(hits.sided_triangle).subspan(first, count),
+        [&](const estimate::PageHits& page_hits) { query->estimate(page_hits, estimates); });
+    return estimates.read();
   }
 
   /// The neighbours of hits [first, first + count).
@@ -103,29 +96,41 @@ Estimator::Estimator(const PhotonMaps& maps, const Scene&, const EstimateParamet
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 
-Estimates Estimator::zeros(std::size_t hits) const {
-  const std::size_t count = hits * impl_->store.needs.light_count;
+void Estimates::append(Estimates part) {
+  if (irradiance.empty() && first.size() <= 1) {
+    *this = std::move(part);
+    return;
+  }
+  const std::uint64_t before = irradiance.size();
+  irradiance.insert(irradiance.end(), part.irradiance.begin(), part.irradiance.end());
+  radiance.insert(radiance.end(), part.radiance.begin(), part.radiance.end());
+  light.insert(light.end(), part.light.begin(), part.light.end());
+  for (std::size_t hit = 1; hit < part.first.size(); ++hit) {
+    first.push_back(before + part.first[hit]);
+  }
+}
+
+Estimates Estimator::estimate(const PrimaryHits& hits) { return estimate(hits, 0, hits.size()); }
+
+Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count) {
+  const auto [largest, together] =
+      estimate::estimate_bytes_per_hit(impl_->store.needs, impl_->neighbours);
   Estimates result;
-  result.irradiance.resize(count);
-  if (impl_->store.needs.glossy) result.radiance.resize(count);
+  if (impl_->store.needs.many_lights()) result.first.push_back(0);
+  // Slots for many lights stay mostly empty: more of them than this at a time gain nothing.
+  constexpr std::uint64_t comfortable_bytes = 128u << 20;
+  constexpr std::size_t least_hits = 4096;
+  const std::size_t most =
+      impl_->store.needs.many_lights()
+          ? std::max<std::size_t>(comfortable_bytes / together / least_hits, 1) * least_hits
+          : hit_count;
+  for (std::size_t part = 0; part < hit_count; part += most) {
+    impl_->batches.run(std::min(most, hit_count - part), impl_->needs(largest, together),
+                       [&](std::size_t first, std::size_t count) {
+                         result.append(impl_->estimate(hits, begin + part + first, count));
+                       });
+  }
   return result;
-}
-
-Estimates Estimator::estimate(const PrimaryHits& hits) {
-  Estimates result = zeros(hits.size());
-  estimate(hits, 0, hits.size(), result);
-  return result;
-}
-
-void Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count,
-                         Estimates& result) {
-  const std::size_t lights = impl_->store.needs.light_count;
-  const std::uint64_t output = 3 * sizeof(float) * lights;
-  const bool glossy = impl_->store.needs.glossy;
-  impl_->batches.run(hit_count, impl_->needs(output, glossy ? 2 * output : output),
-                     [&](std::size_t first, std::size_t count) {
-                       impl_->estimate(hits, begin + first, count, result);
-                     });
 }
 
 std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) const {

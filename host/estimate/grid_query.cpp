@@ -19,17 +19,15 @@ class GridQuery : public Query {
         std::min<std::size_t>(choice_.work_group_size, context_.info().max_work_group_size);
   }
 
-  void estimate(const PageHits& hits, device::Buffer<float>& irradiance,
-                device::Buffer<float>& radiance) override {
+  void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     const device::Kernel kernel =
         context_.kernel(choice_.kernel_file(), "estimate", choice_.defines());
     const maps::MapPage& page = hits.page;
-    with_scene_arguments(store_.needs, hits, radiance, [&](const auto&... scene) {
+    with_scene_arguments(store_.needs, hits, estimates, [&](const auto&... scene) {
       context_.run(kernel, choice_.work_items(hits.count), choice_.work_group_size, hits.count,
                    hits.first, hits.hits.position, hits.hits.map, page.first_map, page.grids,
                    page.cell_start, page.entry_stride, page.entry_position, page.entry_flux,
-                   page.entry_photon, scene..., neighbours_, radius_, store_.needs.light_count,
-                   irradiance);
+                   page.entry_photon, scene..., neighbours_, radius_, estimates.irradiance);
     });
   }
 

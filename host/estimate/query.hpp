@@ -7,6 +7,7 @@
 #include <span>
 
 #include "device/context.hpp"
+#include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_buffers.hpp"
 #include "maps/map_store.hpp"
 #include "photile/estimate_tuning.hpp"
@@ -26,9 +27,7 @@ class Query {
  public:
   virtual ~Query() = default;
 
-  /// Irradiance, and radiance in glossy scenes: 3 floats per hit and light. Before: zero.
-  virtual void estimate(const PageHits& hits, device::Buffer<float>& irradiance,
-                        device::Buffer<float>& radiance) = 0;
+  virtual void estimate(const PageHits& hits, EstimateBuffers& estimates) = 0;
 
   /// k photon indices per hit, in any order. Before: none.
   virtual void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
@@ -59,18 +58,24 @@ void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
   }
 }
 
-/// Calls launch(...) with the kernel arguments that the scene's needs add: the entries' lights,
-/// then directions, lobes and the radiance output. Kernels take them in this order.
+/// Calls launch(...) with SCENE_ARGUMENTS of kernels/estimate/arguments.clh, in their order.
 template <class Launch>
 void with_scene_arguments(const SceneNeeds& needs, const PageHits& page_hits,
-                          device::Buffer<float>& radiance, Launch launch) {
+                          const EstimateBuffers& estimates, Launch launch) {
   const auto& [hits, page, first, count] = page_hits;
+  const auto slots = [&](const auto&... scene) {
+    if (needs.many_lights()) {
+      launch(scene..., estimates.slot_light, estimates.slots_taken);
+    } else {
+      launch(scene...);
+    }
+  };
   const auto glossy = [&](const auto&... light) {
     if (needs.glossy) {
-      launch(light..., page.entry_incoming, hits.outgoing, hits.normal, hits.albedo, hits.specular,
-             hits.roughness, radiance);
+      slots(light..., page.entry_incoming, hits.outgoing, hits.normal, hits.albedo, hits.specular,
+            hits.roughness, estimates.radiance);
     } else {
-      launch(light...);
+      slots(light...);
     }
   };
   if (needs.light_count > 1) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "estimate/light_sums.hpp"
+#include "maps/entry_defines.hpp"
+
 namespace photile::estimate {
 namespace {
 
-/// Lights whose sums a tile keeps; scenes with more are estimated hit by hit.
-constexpr int tile_lights = 16;
+/// Near entries listed before they are added, where they are: about all of k = 50.
+constexpr int near_capacity = 128;
 
 int rounded_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
 
@@ -29,16 +32,16 @@ device::Defines Specialisation::defines() const {
   device::Defines defines;
   defines.set("VECTOR_WIDTH", static_cast<long long>(vector_width));
   defines.set("CAPACITY", static_cast<long long>(capacity));
+  defines.set("NEAR_CAPACITY", static_cast<long long>(near_capacity));
   defines.set("HITS_PER_ITEM", static_cast<long long>(hits_per_item));
   if (strategy == EstimateStrategy::heap) {
-    defines.set("LIST_CAPACITY", static_cast<long long>(list_capacity));
+    defines.set("LIST_CAPACITY", static_cast<long long>(neighbours));
   }
   if (strategy == EstimateStrategy::tile) {
     defines.set("TILE_CAPACITY", static_cast<long long>(tile_capacity));
-    defines.set("TILE_LIGHTS", static_cast<long long>(tile_lights));
   }
-  if (multiple_lights) defines.set("MULTIPLE_LIGHTS");
-  if (glossy) defines.set("GLOSSY");
+  maps::set_entry_defines(defines, needs);
+  set_sum_defines(defines, needs, static_cast<std::uint32_t>(neighbours));
   return defines;
 }
 
@@ -64,19 +67,18 @@ std::uint32_t Specialisation::work_items(std::uint32_t hits) const {
 
 std::size_t Specialisation::private_bytes() const {
   const auto width = static_cast<std::size_t>(vector_width);
-  const std::size_t distances = (static_cast<std::size_t>(capacity) + 3 * width) * sizeof(float);
-  switch (strategy) {
-    case EstimateStrategy::heap:
-      return static_cast<std::size_t>(list_capacity) * (sizeof(float) + sizeof(std::uint32_t));
-    case EstimateStrategy::tile: {
-      const std::size_t lights = multiple_lights ? tile_lights : 1;
-      const std::size_t vectors = static_cast<std::size_t>(tile_capacity) + 3 * lights;
-      return vectors * width * sizeof(float) + distances;
-    }
-    case EstimateStrategy::select:
-      break;
+  const auto k = static_cast<std::uint32_t>(neighbours);
+  const bool listed = needs.glossy || needs.many_lights();
+  std::size_t bytes = private_sum_bytes(needs, k);
+  if (strategy == EstimateStrategy::heap)
+    return bytes + k * (sizeof(float) + sizeof(std::uint32_t));
+  bytes += (static_cast<std::size_t>(capacity) + 3 * width) * sizeof(float);
+  if (listed) bytes += (near_capacity + 2 * width) * sizeof(std::uint32_t);
+  if (strategy == EstimateStrategy::tile && !listed) {
+    bytes +=
+        (static_cast<std::size_t>(tile_capacity) + 3 * needs.light_count) * width * sizeof(float);
   }
-  return distances;
+  return bytes;
 }
 
 Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours) {
@@ -84,13 +86,13 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
   const bool too_many_for_heap =
       tuning.strategy == EstimateStrategy::heap && neighbours > max_heap_neighbours;
   choice.strategy = too_many_for_heap ? EstimateStrategy::select : tuning.strategy;
-  choice.vector_width = tuning.vector_width;
+  // A heap is a list of single entries.
+  choice.vector_width = choice.strategy == EstimateStrategy::heap ? 1 : tuning.vector_width;
   choice.capacity = capacity_for(neighbours);
-  choice.list_capacity = neighbours;
+  choice.neighbours = neighbours;
   choice.tile_capacity = tile_capacity_for(neighbours);
   choice.hits_per_item = choice.strategy == EstimateStrategy::select ? tuning.hits_per_item : 1;
-  choice.multiple_lights = needs.light_count > 1;
-  choice.glossy = needs.glossy;
+  choice.needs = needs;
   choice.work_group_size = static_cast<std::size_t>(tuning.work_group_size);
   while (choice.work_group_size > 1 &&
          choice.work_group_size * choice.private_bytes() > max_private_bytes_per_group) {

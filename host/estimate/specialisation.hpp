@@ -20,14 +20,13 @@ inline constexpr std::size_t max_private_bytes_per_group = 512u << 10;
 /// Compile-time choices of kernels/estimate, and how to launch them.
 struct Specialisation {
   EstimateStrategy strategy = EstimateStrategy::select;
-  int vector_width = 1;   ///< floats per vector: 1, 4, 8 or 16
-  int capacity = 160;     ///< distances kept in private memory by `select`, and where a tile fails
-  int list_capacity = 1;  ///< k, `heap` only
+  int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16
+  int capacity = 160;    ///< distances kept in private memory by `select`, and where a tile fails
+  int neighbours = 1;    ///< k
   int tile_capacity = 512;  ///< candidates of a tile, `tile` only
   int hits_per_item = 1;    ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
-  bool multiple_lights = false;
-  bool glossy = false;
+  SceneNeeds needs;
 
   device::Defines defines() const;
   std::string kernel_file() const;

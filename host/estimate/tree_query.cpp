@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "estimate/light_sums.hpp"
 #include "estimate/query.hpp"
+#include "maps/entry_defines.hpp"
 
 namespace photile::estimate {
 namespace {
@@ -35,20 +37,19 @@ class TreeQuery : public Query {
     }
   }
 
-  void estimate(const PageHits& hits, device::Buffer<float>& irradiance,
-                device::Buffer<float>& radiance) override {
+  void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     device::Defines defines = defines_;
-    if (store_.needs.light_count > 1) defines.set("MULTIPLE_LIGHTS");
-    if (store_.needs.glossy) defines.set("GLOSSY");
+    maps::set_entry_defines(defines, store_.needs);
+    set_sum_defines(defines, store_.needs, neighbours_);
     const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
     const maps::MapPage& page = hits.page;
     with_tree_arguments(page, [&](const auto&... tree) {
-      with_scene_arguments(store_.needs, hits, radiance, [&](const auto&... scene) {
+      with_scene_arguments(store_.needs, hits, estimates, [&](const auto&... scene) {
         context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
                      hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
                      page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
                      page.entry_position, page.entry_flux, page.entry_photon, tree..., scene...,
-                     neighbours_, radius_, store_.needs.light_count, irradiance);
+                     neighbours_, radius_, estimates.irradiance);
       });
     });
   }

@@ -31,11 +31,8 @@ class Bench {
         neighbours_(static_cast<std::uint32_t>(neighbours)),
         sample_(make_tuning_sample(needs, neighbours, size)),
         groups_(find_neighbour_groups(sample_.scene, {sample_.radius})),
-        hits_(upload_hits(device.context(), sample_.hits, 0, sample_.hits.size(), needs.glossy)) {
-    const std::size_t sums = 3 * sample_.hits.size() * needs.light_count;
-    irradiance_ = device.context().allocate<float>(sums, "irradiance estimates");
-    radiance_ = device.context().allocate<float>(needs.glossy ? sums : 0, "radiance estimates");
-  }
+        hits_(upload_hits(device.context(), sample_.hits, 0, sample_.hits.size(), needs.glossy)),
+        estimates_(device.context(), needs, neighbours_, hits_.count) {}
 
   /// Median of 5 runs over all hits, after one that warms up.
   double microseconds_per_hit(const EstimateTuning& tuning) {
@@ -64,7 +61,7 @@ class Bench {
 
   void run(const maps::MapStore& store, Query& query) {
     for_each_page(store, hits_, sample_.hits.sided_triangle, [&](const PageHits& page_hits) {
-      query.estimate(page_hits, irradiance_, radiance_);
+      query.estimate(page_hits, estimates_);
     });
     device_.context().finish();
   }
@@ -74,7 +71,7 @@ class Bench {
   TuningSample sample_;
   NeighbourGroups groups_;
   HitBuffers hits_;
-  device::Buffer<float> irradiance_, radiance_;
+  EstimateBuffers estimates_;
   std::map<float, PhotonMaps> maps_;  ///< by photons per cell
 };
 

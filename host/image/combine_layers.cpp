@@ -50,11 +50,37 @@ void add_scaled(const ScaledLayer& layer, std::size_t first, std::size_t count, 
     sums[i + j] += scaled(values[i + j], scale[j], mask[j]);
 }
 
-std::vector<ScaledLayer> scaled_layers(const LightLayers& layers, const LightMix& mix) {
-  std::vector<ScaledLayer> result;
+/// The factor of each light's radiance.
+std::vector<glm::vec3> scales_of(const LightLayers& layers, const LightMix& mix) {
+  std::vector<glm::vec3> scales;
   for (const LightLayers::Layer& layer : layers.layers) {
     const MixedLight& light = mix.lights[image::index_of(mix, layer.light)];
-    const glm::vec3 scale(light.power * glm::dvec3(light.tint));
+    scales.emplace_back(light.power * glm::dvec3(light.tint));
+  }
+  return scales;
+}
+
+/// Lights that do not reach a pixel would add 0: leaving them out changes no bit.
+void combine_row(const LightLayers::Row& row, std::span<const glm::vec3> scales,
+                 std::span<glm::vec3> picture) {
+  for (std::size_t x = 0; x < picture.size(); ++x) {
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
+      const glm::vec3& scale = scales[row.light[i]];
+      for (int c = 0; c < 3; ++c) {
+        if (scale[c] != 0.0f) sum[c] += row.radiance[i][c] * scale[c];
+      }
+    }
+    picture[x] = sum;
+  }
+}
+
+std::vector<ScaledLayer> scaled_layers(const LightLayers& layers,
+                                       std::span<const glm::vec3> scales) {
+  std::vector<ScaledLayer> result;
+  for (std::size_t l = 0; l < scales.size(); ++l) {
+    const LightLayers::Layer& layer = layers.layers[l];
+    const glm::vec3& scale = scales[l];
     ScaledLayer entry{layer.radiance.empty() ? nullptr : &layer.radiance[0].x, {}, {}};
     for (std::size_t i = 0; i < stride; ++i) {
       entry.scale[i] = scale[static_cast<int>(i % 3)];
@@ -74,7 +100,15 @@ void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<gl
     throw UsageError(fmt::format("combine_layers: a picture of {} pixels for layers of {} x {}",
                                  picture.size(), layers.width, layers.height));
   }
-  const std::vector<ScaledLayer> entries = scaled_layers(layers, mix);
+  const std::vector<glm::vec3> scales = scales_of(layers, mix);
+  if (layers.sparse()) {
+    const auto width = static_cast<std::size_t>(layers.width);
+    tbb::parallel_for(std::size_t{0}, layers.rows.size(), [&](std::size_t y) {
+      combine_row(layers.rows[y], scales, picture.subspan(y * width, width));
+    });
+    return;
+  }
+  const std::vector<ScaledLayer> entries = scaled_layers(layers, scales);
   const std::size_t blocks = (pixels + pixels_per_block - 1) / pixels_per_block;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const std::size_t first = block * pixels_per_block;

@@ -50,6 +50,7 @@ LightMix LightMix::of(const Scene& scene, double lumen_per_watt) {
 }
 
 Image mix_layers(const LightLayers& layers, const LightMix& mix) {
+  if (layers.sparse()) return mix_layers(layers.dense(), mix);
   Image picture;
   picture.width = layers.width;
   picture.height = layers.height;

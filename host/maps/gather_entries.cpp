@@ -1,5 +1,7 @@
 #include "maps/gather_entries.hpp"
 
+#include "maps/entry_defines.hpp"
+
 namespace photile::maps {
 
 using device::Defines;
@@ -13,12 +15,12 @@ void gather_entries(device::Context& context, const SceneNeeds& needs,
   context.fill(page.entry_position, 0.0f);
   context.fill(page.entry_flux, 0.0f);
   Defines defines;
+  set_entry_defines(defines, needs);
   if (needs.light_count > 1) {
-    defines.set("MULTIPLE_LIGHTS");
-    page.entry_light = context.allocate<std::uint16_t>(page.entry_count, "photon map lights");
+    page.entry_light = context.allocate<std::uint8_t>(
+        std::size_t{bytes_per_light(needs)} * page.entry_stride, "photon map lights");
   }
   if (needs.glossy) {
-    defines.set("GLOSSY");
     page.entry_incoming = context.allocate<float>(3 * page.entry_stride, "photon map directions");
   }
   const device::Kernel kernel = context.kernel("grid/gather_entries.cl", "gather_entries", defines);

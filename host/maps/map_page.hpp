@@ -28,7 +28,7 @@ struct PageBuffers {
   device::Buffer<std::uint32_t> entry_photon;  ///< index into Photons
   device::Buffer<float> entry_position;        ///< planes x, y, z
   device::Buffer<float> entry_flux;            ///< planes r, g, b
-  device::Buffer<std::uint16_t> entry_light;   ///< only with several lights
+  device::Buffer<std::uint8_t> entry_light;    ///< bytes_per_light(needs) each
   device::Buffer<float> entry_incoming;        ///< planes x, y, z; only in glossy scenes
   device::Buffer<float> entry_normal;          ///< planes x, y, z; only in a global tree
 

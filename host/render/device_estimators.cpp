@@ -29,7 +29,7 @@ DeviceEstimators::DeviceEstimators(std::span<Device> devices, std::span<const Ph
 }
 
 Estimates DeviceEstimators::estimate(const PrimaryHits& hits) {
-  Estimates result = estimators_.front().zeros(hits.size());
+  Estimates result;
   for (std::size_t first = 0; first < hits.size();) {
     const std::size_t end = first + balance_.round(hits.size() - first);
     const std::size_t cut = end == hits.size() ? end : estimators_.front().cut_before(hits, end);
@@ -47,12 +47,14 @@ void DeviceEstimators::estimate_round(const PrimaryHits& hits, std::size_t first
     cut = std::max(estimators_.front().cut_before(hits, first + cut), first) - first;
   }
   std::vector<double> seconds(devices_.size());
+  std::vector<Estimates> parts(devices_.size());
   for_each_device(devices_, Progress::none(), [&](std::size_t i, Progress&) {
     const Stopwatch stopwatch;
-    estimators_[i].estimate(hits, first + cuts[i], cuts[i + 1] - cuts[i], result);
+    parts[i] = estimators_[i].estimate(hits, first + cuts[i], cuts[i + 1] - cuts[i]);
     seconds[i] = stopwatch.seconds();
   });
   for (std::size_t i = 0; i < devices_.size(); ++i) {
+    result.append(std::move(parts[i]));
     balance_.record(i, cuts[i + 1] - cuts[i], seconds[i]);
   }
   balance_.end_round();

@@ -4,6 +4,8 @@
 
 #include <glm/gtc/constants.hpp>
 
+#include "render/sparse_film.hpp"
+
 namespace photile {
 namespace {
 
@@ -24,6 +26,10 @@ void add_hits(LightLayers::Layer& layer, std::size_t light, std::size_t light_co
 
 void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estimates& estimates,
                  float sample_weight) {
+  if (layers.sparse()) {
+    add_to_sparse_film(layers, batch, estimates, sample_weight);
+    return;
+  }
   const std::size_t light_count = layers.layers.size();
   tbb::parallel_for(std::size_t{0}, light_count, [&](std::size_t light) {
     add_hits(layers.layers[light], light, light_count, batch.hits, estimates, sample_weight);

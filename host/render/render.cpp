@@ -120,9 +120,7 @@ LightLayers estimate_picture(const RayScene& rays, const Camera& camera,
     const DeviceInfo& device = devices[i].info();
     estimate_stage.figures.emplace_back("share of " + device.id + " " + device.name, shares[i]);
   }
-  film_stage.host_bytes = static_cast<std::uint64_t>(film.width) *
-                          static_cast<std::uint64_t>(film.height) * layers.layers.size() *
-                          (sizeof(glm::vec3) + sizeof(float));
+  film_stage.host_bytes = layers.bytes();
   statistics.insert(statistics.end(), {hit_stage, estimate_stage, film_stage});
   return layers;
 }

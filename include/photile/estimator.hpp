@@ -21,12 +21,20 @@ struct EstimateParameters {
   std::optional<EstimateTuning> tuning = std::nullopt;
 };
 
-/// Estimates of a batch of hits, each light at power 1. Row-major [hit][light].
+/// Estimates of a batch of hits, each light at power 1. Row-major [hit][light]; with more than
+/// max_dense_lights lights only of those whose photons a hit found, at most min(k, lights).
 struct Estimates {
   std::vector<glm::vec3> irradiance;  ///< W/m2 or lm/m2, linear RGB
-  /// Reflected radiance towards the eye. Empty unless the scene is glossy: then radiance is
+  /// Reflected radiance towards the eye. Empty unless the scene is glossy: elsewhere radiance is
   /// albedo / pi x irradiance.
   std::vector<glm::vec3> radiance;
+
+  // With many lights, else empty:
+  std::vector<std::uint64_t> first;  ///< hit h's estimates are [first[h], first[h + 1])
+  std::vector<std::uint16_t> light;  ///< of each estimate; each once per hit, in no order
+
+  /// Appends the estimates of the hits that follow.
+  void append(Estimates part);
 };
 
 /// Neighbours of a batch of hits: photon indices, ascending, `none` beyond the last.
@@ -49,12 +57,8 @@ class Estimator {
   /// Radiance estimates. Hits must be grouped by sided triangle (PrimaryHits are).
   Estimates estimate(const PrimaryHits& hits);
 
-  /// Room for the estimates of so many hits: zeros.
-  Estimates zeros(std::size_t hits) const;
-
-  /// The same for hits [first, first + count) alone, into their rows of `result`, which has rows
-  /// for all of `hits`. Estimators of several devices may fill other rows of it at the same time.
-  void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, Estimates& result);
+  /// The same for hits [first, first + count) alone.
+  Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count);
 
   /// The last place at or before `hit` where a batch may be cut without changing a bit of what is
   /// estimated: neighbouring hits that a kernel takes together stay together.

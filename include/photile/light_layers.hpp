@@ -10,7 +10,8 @@
 
 namespace photile {
 
-/// Radiance and illuminance per pixel and light, each light at power 1.
+/// Radiance and illuminance per pixel and light, each light at power 1. With up to max_dense_lights
+/// lights a plane for each; with more, per pixel the lights that reach it.
 struct LightLayers {
   int width = 0, height = 0;
   struct Layer {
@@ -18,10 +19,25 @@ struct LightLayers {
     std::vector<glm::vec3> radiance;  ///< linear RGB, cd/m2 per lm or W/(m2 sr) per W
     std::vector<float> illuminance;   ///< of the surface seen: lux per lm or W/m2 per W, luminance
   };
-  std::vector<Layer> layers;  ///< in the order of Scene::lights
+  std::vector<Layer> layers;  ///< in the order of Scene::lights; planes are empty in sparse layers
+
+  /// A row of sparse layers. Pixel x has the values [first[x], first[x + 1]).
+  struct Row {
+    std::vector<std::uint32_t> first;  ///< width + 1
+    std::vector<std::uint16_t> light;  ///< index into `layers`, ascending within a pixel
+    std::vector<glm::vec3> radiance;   ///< as in Layer
+    std::vector<float> illuminance;    ///< as in Layer
+  };
+  std::vector<Row> rows;  ///< of sparse layers, one per row of the picture; else empty
 
   LightLayers() = default;
+  /// Black layers, sparse where the lights are many.
   LightLayers(int width, int height, const std::vector<Light>& lights);
+
+  bool sparse() const { return !rows.empty(); }
+  std::uint64_t bytes() const;
+  /// The same with a plane per light: 16 bytes per pixel and light.
+  LightLayers dense() const;
 };
 
 }  // namespace photile

@@ -176,12 +176,19 @@ struct BoundingSphere {
 };
 BoundingSphere bounding_sphere(const Scene& scene);
 
+/// Up to this many lights each has a value at every hit and pixel. With more, memory and time grow
+/// with the lights that reach a hit, not with all.
+inline constexpr std::uint32_t max_dense_lights = 8;
+
 /// What later stages must provide for; whatever is false costs nothing anywhere.
 struct SceneNeeds {
   bool glossy = false;          ///< some opaque material has a specular lobe
   bool textures = false;        ///< some material has a texture
   bool specular_paths = false;  ///< some material is a mirror or glass
   std::uint32_t light_count = 0;
+
+  /// Whether only the lights that reach a point are kept for it.
+  bool many_lights() const { return light_count > max_dense_lights; }
 };
 SceneNeeds needs_of(const Scene& scene);
 

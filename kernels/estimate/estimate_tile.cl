@@ -1,26 +1,28 @@
 // The radiance estimate for tiles of hits: VECTOR_WIDTH neighbouring hits share one block of
 // candidates (estimate/tile.clh). For maps that many hits lie on; hits that share a map with few
-// others, glossy surfaces and crowded blocks are estimated one by one, as in estimate.cl.
+// others, glossy surfaces, many lights and crowded blocks are estimated one by one, as in estimate.cl.
 //
-// Symbols the host defines: those of estimate/estimate.cl, TILE_CAPACITY, TILE_LIGHTS
+// Symbols the host defines: those of estimate/estimate.cl, TILE_CAPACITY
 
 #include "estimate/tile.clh"
 
 // Fewer hits than this on a map are estimated one by one.
 #define LEAST_TILE (VECTOR_WIDTH / 4 + 1)
 
+#if !defined(GLOSSY) && !defined(MANY_LIGHTS)
+
 // Estimates hits [first, first + count) of one map; count <= VECTOR_WIDTH. Returns false, without
 // having written anything, where the hits do not suit a tile. Lanes whose k-th photon ties with the
 // next are left in `undone`.
 bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
-                   __global const uint* cell_start, __global const float* hit_position, uint first,
-                   uint count, uint k, float radius, uint light_count, float* expected,
-                   int* undone, __global float* irradiance) {
+                   __global const uint* cell_start, const Hits* hits, uint first, uint count,
+                   uint k, float radius, float* expected, int* undone,
+                   const Estimates* estimates) {
   Tile tile;
   float coordinates[3][VECTOR_WIDTH];
   float2 low = INFINITY, high = -INFINITY;
   for (uint lane = 0; lane < VECTOR_WIDTH; ++lane) {
-    const float3 hit = vload3(first + min(lane, count - 1), hit_position);
+    const float3 hit = vload3(first + min(lane, count - 1), hits->position);
     coordinates[0][lane] = hit.x;
     coordinates[1][lane] = hit.y;
     coordinates[2][lane] = hit.z;
@@ -58,15 +60,10 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
                                  *expected * *expected, bracket);
   below = select((wide_float)(next_float(squared_radius)), below, full);
 
-#ifdef MULTIPLE_LIGHTS
-  wide_float sums[TILE_LIGHTS][3];
-  for (uint light = 0; light < light_count; ++light) {
+  wide_float sums[LIGHT_COUNT][3];
+  for (uint light = 0; light < LIGHT_COUNT; ++light) {
     sums[light][0] = sums[light][1] = sums[light][2] = 0.0f;
   }
-#else
-  wide_float sums[1][3];
-  sums[0][0] = sums[0][1] = sums[0][2] = 0.0f;
-#endif
   wide_float beyond = INFINITY;
   wide_int found = 0;
   const wide_float zero = 0.0f;
@@ -79,11 +76,7 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
       const wide_int is_near = d < below;
       beyond = select(fmin(beyond, d), beyond, is_near);
       found += TRUE_LANES(is_near);
-#ifdef MULTIPLE_LIGHTS
-      const uint light = entries->light[entry];
-#else
-      const uint light = 0;
-#endif
+      const uint light = light_of(entries, entry);
       const wide_float red = entries->flux[entry];
       const wide_float green = entries->flux[entries->stride + entry];
       const wide_float blue = entries->flux[2 * entries->stride + entry];
@@ -96,18 +89,20 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
   float disc[VECTOR_WIDTH];
   wide_store(select((wide_float)(squared_radius), beyond, full), disc);
   wide_store((found < wanted) & tile.active, undone);
-  for (uint light = 0; light < light_count; ++light) {
+  for (uint light = 0; light < LIGHT_COUNT; ++light) {
     float lanes[3][VECTOR_WIDTH];
     for (uint c = 0; c < 3; ++c) wide_store(sums[light][c], lanes[c]);
     for (uint lane = 0; lane < count; ++lane) {
       const float per_area = 1.0f / estimate_area(disc[lane], radius);
       vstore3((float3)(lanes[0][lane], lanes[1][lane], lanes[2][lane]) * per_area,
-              (first + lane) * light_count + light, irradiance);
+              (first + lane) * LIGHT_COUNT + light, estimates->irradiance);
     }
   }
   *expected = sqrt(disc[count - 1]);
   return true;
 }
+
+#endif
 
 // One work-item per VECTOR_WIDTH hits; arguments as in estimate/estimate.cl.
 __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit_position,
@@ -115,27 +110,10 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                        __global const PhotileGrid* grids, __global const uint* cell_start,
                        uint entry_stride, __global const float* entry_position,
                        __global const float* entry_flux, __global const uint* entry_photon,
-#ifdef MULTIPLE_LIGHTS
-                       __global const ushort* entry_light,
-#endif
-#ifdef GLOSSY
-                       __global const float* entry_incoming, __global const float* hit_outgoing,
-                       __global const float* hit_normal, __global const float* hit_albedo,
-                       __global const float* hit_specular, __global const float* hit_roughness,
-                       __global float* radiance,
-#endif
-                       uint k, float radius, uint light_count, __global float* irradiance) {
-  Entries entries;
-  entries.stride = entry_stride;
-  entries.position = entry_position;
-  entries.flux = entry_flux;
-  entries.photon = entry_photon;
-#ifdef MULTIPLE_LIGHTS
-  entries.light = entry_light;
-#endif
-#ifdef GLOSSY
-  entries.incoming = entry_incoming;
-#endif
+                       SCENE_ARGUMENTS uint k, float radius, __global float* irradiance) {
+  const Entries entries = GIVEN_ENTRIES;
+  const Hits hits = GIVEN_HITS;
+  const Estimates estimates = GIVEN_ESTIMATES;
   const uint begin = get_global_id(0) * VECTOR_WIDTH;
   const uint end = first_hit + min(begin + VECTOR_WIDTH, hit_count);
   for (uint first = first_hit + begin; first < end;) {
@@ -150,26 +128,18 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     float expected = 0.0f;
     int undone[VECTOR_WIDTH];
     bool one_by_one = true;
-#ifndef GLOSSY
-    if (count >= LEAST_TILE && k > 1 && light_count <= TILE_LIGHTS) {
-      one_by_one = !estimate_tile(&entries, grid, cell_start, hit_position, first, count, k, radius,
-                                  light_count, &expected, undone, irradiance);
+#if !defined(GLOSSY) && !defined(MANY_LIGHTS)
+    if (count >= LEAST_TILE && k > 1) {
+      one_by_one = !estimate_tile(&entries, grid, cell_start, &hits, first, count, k, radius,
+                                  &expected, undone, &estimates);
     }
 #endif
     for (uint i = 0; i < count; ++i) {
       if (!one_by_one && !undone[i]) continue;
-      const uint hit = first + i;
-#ifdef GLOSSY
-      const Surface surface = {vload3(hit, hit_outgoing), vload3(hit, hit_normal),
-                               vload3(hit, hit_albedo), vload3(hit, hit_specular),
-                               hit_roughness[hit]};
-#endif
-      expected = estimate_hit(&entries, grid, cell_start, vload3(hit, hit_position), k, radius,
-                              expected, light_count,
-#ifdef GLOSSY
-                              &surface, radiance + 3 * hit * light_count,
-#endif
-                              irradiance + 3 * hit * light_count);
+      Hit hit;
+      load_hit(&hits, first + i, &hit);
+      expected =
+          estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected, &estimates);
     }
     first += count;
   }

@@ -3,8 +3,8 @@
 // instead would touch a cache line per photon.
 
 // Symbols the host defines:
-//   MULTIPLE_LIGHTS   entries keep the index of their light
-//   GLOSSY            entries keep their incoming direction
+//   LIGHT_INDEX   type of an entry's light; undefined with one light
+//   GLOSSY        entries keep their incoming direction
 
 // One work-item per entry of a map page; handles those whose photon is in the photon page.
 //   entry_stride   entries of the page with padding: component c of entry i is [c * stride + i]
@@ -13,9 +13,9 @@ __kernel void gather_entries(uint entry_count, uint entry_stride,
                              uint photon_count, __global const float* position,
                              __global const float* flux, __global float* entry_position,
                              __global float* entry_flux
-#ifdef MULTIPLE_LIGHTS
+#ifdef LIGHT_INDEX
                              ,
-                             __global const ushort* light, __global ushort* entry_light
+                             __global const ushort* light, __global LIGHT_INDEX* entry_light
 #endif
 #ifdef GLOSSY
                              ,
@@ -32,8 +32,8 @@ __kernel void gather_entries(uint entry_count, uint entry_stride,
       entry_incoming[c * entry_stride + i] = incoming[3 * photon + c];
 #endif
     }
-#ifdef MULTIPLE_LIGHTS
-    entry_light[i] = light[photon];
+#ifdef LIGHT_INDEX
+    entry_light[i] = (LIGHT_INDEX)light[photon];
 #endif
   }
 }

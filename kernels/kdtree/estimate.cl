@@ -1,7 +1,8 @@
 // The radiance estimate over kd-trees, for comparison with the uniform grid: the same neighbours,
-// the same sums (estimate/accumulate.clh).
+// the same sums (estimate/sums.clh).
 //
-// Symbols the host defines: those of estimate/accumulate.clh and kdtree/traverse.clh, and
+// Symbols the host defines: those of estimate/arguments.clh, estimate/sums.clh and
+// kdtree/traverse.clh, and
 //   LIST_CAPACITY   k, where the list is in private memory; else LIST_IN_GLOBAL_MEMORY
 
 #include "estimate/accumulate.clh"
@@ -26,37 +27,13 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
 #ifdef LIST_IN_GLOBAL_MEMORY
                        __global float* list_distance, __global uint* list_entry,
 #endif
-#ifdef MULTIPLE_LIGHTS
-                       __global const ushort* entry_light,
-#endif
-#ifdef GLOSSY
-                       __global const float* entry_incoming, __global const float* hit_outgoing,
-                       __global const float* hit_normal, __global const float* hit_albedo,
-                       __global const float* hit_specular, __global const float* hit_roughness,
-                       __global float* radiance,
-#endif
-                       uint k, float radius, uint light_count, __global float* irradiance) {
-  Entries entries;
-  entries.stride = entry_stride;
-  entries.position = entry_position;
-  entries.flux = entry_flux;
-  entries.photon = entry_photon;
-#ifdef MULTIPLE_LIGHTS
-  entries.light = entry_light;
-#endif
-#ifdef GLOSSY
-  entries.incoming = entry_incoming;
-#endif
+                       SCENE_ARGUMENTS uint k, float radius, __global float* irradiance) {
+  const Entries entries = GIVEN_ENTRIES;
+  const Hits hits = GIVEN_HITS;
+  const Estimates estimates = GIVEN_ESTIMATES;
   for (uint h = get_global_id(0); h < hit_count; h += get_global_size(0)) {
-    const uint hit = first_hit + h;
-    __global float* hit_irradiance = irradiance + 3 * hit * light_count;
-#ifdef GLOSSY
-    __global float* hit_radiance = radiance + 3 * hit * light_count;
-    const Surface surface = {vload3(hit, hit_outgoing), vload3(hit, hit_normal),
-                             vload3(hit, hit_albedo), vload3(hit, hit_specular),
-                             hit_roughness[hit]};
-#endif
-    const uint map = hit_map[hit];
+    const uint index = first_hit + h;
+    const uint map = hit_map[index];
 #ifdef LIST_IN_GLOBAL_MEMORY
     __global float* distances = list_distance + (size_t)get_global_id(0) * k;
     __global uint* listed = list_entry + (size_t)get_global_id(0) * k;
@@ -64,6 +41,8 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     float distances[LIST_CAPACITY];
     uint listed[LIST_CAPACITY];
 #endif
+    Hit hit;
+    load_hit(&hits, index, &hit);
     NearestList list = empty_list(distances, listed, entry_photon, k, radius);
     Tree tree;
     tree.nodes = nodes;
@@ -74,23 +53,17 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     tree.hit_normal = vload3(map, map_normal);
     tree.least_cosine = least_cosine;
 #endif
-    nearest_in_tree(&tree, root[map - first_map], vload3(hit, hit_position),
+    nearest_in_tree(&tree, root[map - first_map], hit.position,
                     frames + (map - first_map), &list);
     if (list.size == 0) continue;
 
+    Sums sums;
+    begin_sums(&sums, &estimates, index);
     // A full list's farthest photon, at 0, only sets the radius (but for k = 1).
     const uint first = list.size == k && k > 1 ? 1 : 0;
     for (uint i = first; i < list.size; ++i) {
-      add_entry(&entries, list.entry[i],
-#ifdef GLOSSY
-                &surface, hit_radiance,
-#endif
-                hit_irradiance);
+      add_entry(&entries, list.entry[i], &hit, &sums);
     }
-    scale_sums(1.0f / estimate_area(squared_radius_of(&list), radius), light_count,
-#ifdef GLOSSY
-               hit_radiance,
-#endif
-               hit_irradiance);
+    end_sums(&sums, 1.0f / estimate_area(squared_radius_of(&list), radius), &estimates, index);
   }
 }

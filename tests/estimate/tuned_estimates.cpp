@@ -45,9 +45,11 @@ struct Case {
     for (const EstimateTuning& tuning : tunings) {
       CAPTURE(name_of(tuning.strategy), tuning.vector_width, tuning.hits_per_item, k);
       const Estimates estimates = Estimator(maps, scene, {k, 0, tuning}).estimate(hits);
-      CHECK(test::worst_difference(estimates.irradiance, irradiance) <=
-            test::estimate_tolerance(k));
-      CHECK(test::worst_difference(estimates.radiance, radiance) <= test::glossy_tolerance(k));
+      const std::size_t lights = scene.lights.size();
+      CHECK(test::worst_difference(test::by_light(estimates.irradiance, estimates, lights),
+                                   irradiance) <= test::estimate_tolerance(k));
+      CHECK(test::worst_difference(test::by_light(estimates.radiance, estimates, lights),
+                                   radiance) <= test::glossy_tolerance(k));
     }
   }
 };
@@ -70,8 +72,16 @@ Case several_lights() {
   return data;
 }
 
-Case glossy() {
-  Case data{.scene = test::empty_scene(2)};
+Case many_lights() {
+  Case data{.scene = test::empty_scene(70)};
+  test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  data.photons = test::uniform_photons(data.scene, 6000, 78);
+  data.hits = test::uniform_hits(data.scene, 300, 79);
+  return data;
+}
+
+Case glossy(std::size_t lights = 2) {
+  Case data{.scene = test::empty_scene(lights)};
   data.scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
   data.scene.materials[0].roughness = 0.3f;
   test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
@@ -93,6 +103,11 @@ TEST_CASE("every strategy and vector width gives the oracle's irradiance for sev
 
 TEST_CASE("every strategy and vector width gives the oracle's irradiance and glossy radiance") {
   glossy().check(tunings({8}));
+}
+
+TEST_CASE("every strategy and vector width gives the oracle's estimates for many lights") {
+  many_lights().check(tunings({8}));
+  glossy(12).check(tunings({8}));
 }
 
 TEST_CASE("every number of hits per work-item gives the oracle's estimates", "[slow]") {

@@ -33,6 +33,19 @@ TEST_CASE("combined layers are the bits of the mixed picture's root, at sizes ar
   }
 }
 
+TEST_CASE("combined sparse layers are the bits of the mixed picture's root") {
+  const LightLayers layers = random_sparse_layers(37, 9, 11);
+  REQUIRE(layers.sparse());
+  LightMix mix;
+  for (const LightLayers::Layer& layer : layers.layers) {
+    mix.lights.push_back(mixed(layer.light, 1.5 * static_cast<double>(mix.lights.size())));
+    mix.lights.back().tint = {2.0f, 1.0f, 0.5f};
+  }
+  check_equal_to_root(layers, mix);
+  mix.lights[3].power = 0;  // off
+  check_equal_to_root(layers, mix);
+}
+
 TEST_CASE("a combined light that is off adds nothing, even where its layer is infinite") {
   LightLayers layers = random_layers(40, 2, {"a", "b"});
   layers.layers[1].radiance[20] = glm::vec3(std::numeric_limits<float>::infinity());

@@ -58,6 +58,27 @@ inline LightLayers random_layers(int width, int height, const std::vector<std::s
   return layers;
 }
 
+/// Sparse layers in which about one in three lights reaches a pixel.
+inline LightLayers random_sparse_layers(int width, int height, std::size_t lights) {
+  std::vector<Light> named(lights);
+  for (std::size_t i = 0; i < lights; ++i) named[i].name = "light" + std::to_string(i);
+  LightLayers layers(width, height, named);
+  std::mt19937 engine(8);
+  std::uniform_real_distribution<float> value(0.01f, 3.0f);
+  for (LightLayers::Row& row : layers.rows) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
+      for (std::size_t light = 0; light < lights; ++light) {
+        if (engine() % 3 != 0) continue;
+        row.light.push_back(static_cast<std::uint16_t>(light));
+        row.radiance.emplace_back(value(engine), value(engine), value(engine));
+        row.illuminance.push_back(value(engine));
+      }
+      row.first[x + 1] = static_cast<std::uint32_t>(row.light.size());
+    }
+  }
+  return layers;
+}
+
 inline MixedLight mixed(const std::string& name, double power, PowerUnit unit = PowerUnit::lumen) {
   MixedLight light;
   light.name = name;

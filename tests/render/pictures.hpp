@@ -13,7 +13,9 @@ inline Camera room_camera() {
   return Camera::look_at({3.6, 0.4, 1.6}, {1, 2, 0.9}, {0, 0, 1}, 1.1);
 }
 
+/// The values, in whichever form either has them.
 inline bool same_bits(const LightLayers& a, const LightLayers& b) {
+  if (a.sparse() || b.sparse()) return same_bits(a.dense(), b.dense());
   if (a.layers.size() != b.layers.size()) return false;
   for (std::size_t i = 0; i < a.layers.size(); ++i) {
     const auto& first = a.layers[i];

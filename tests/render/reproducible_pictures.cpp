@@ -40,6 +40,24 @@ TEST_CASE("one, two and three threads render the same bits") {
   CHECK(same_bits(pictures[0], pictures[2]));
 }
 
+TEST_CASE("one, two and three threads render the same bits of many lights") {
+  Scene scene = test::furnished_room(4);
+  while (scene.lights.size() < 20) {
+    Light light = scene.lights.back();
+    light.name = "lamp " + std::to_string(scene.lights.size());
+    light.position.x = 0.2f * static_cast<float>(scene.lights.size());
+    scene.lights.push_back(light);
+  }
+  std::vector<LightLayers> pictures;
+  for (const std::size_t threads : {1u, 2u, 3u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    pictures.push_back(render(scene, room_camera(), test::device(), small_parameters()).layers);
+  }
+  REQUIRE(pictures[0].sparse());
+  CHECK(same_bits(pictures[0], pictures[1]));
+  CHECK(same_bits(pictures[0], pictures[2]));
+}
+
 TEST_CASE("another seed renders another picture") {
   const Scene scene = test::furnished_room(2);
   RenderParameters parameters = small_parameters();

@@ -121,14 +121,21 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
   const Estimates estimates = estimators.estimate(hits);
   print_hash(test, "irradiance", estimates.irradiance);
   if (needs_of(test.scene).glossy) print_hash(test, "radiance", estimates.radiance);
+  if (!estimates.light.empty()) {
+    print_hash(test, "lights", std::span(estimates.light));
+    print_hash(test, "first", std::span(estimates.first));
+  }
 }
 
 std::vector<Case> cases(bool every_kernel) {
   std::vector<Case> list{{"one-light", torus_and_plate(1, false)},
-                         {"three-lights", torus_and_plate(3, false)}};
+                         {"three-lights", torus_and_plate(3, false)},
+                         {"many-lights", torus_and_plate(300, false)}};
   if (!every_kernel) return list;
   list.push_back({"glossy", torus_and_plate(1, true)});
   list.push_back({"glossy-three-lights", torus_and_plate(3, true)});
+  list.push_back({"glossy-many-lights", torus_and_plate(20, true)});
+  list.push_back({"kdtree-3d-many-lights", torus_and_plate(20, false), MapStructure::kdtree_3d});
   for (const MapStructure structure : all_map_structures) {
     if (structure == MapStructure::uniform_grid) continue;
     list.push_back({std::string(name_of(structure)), torus_and_plate(1, false), structure});

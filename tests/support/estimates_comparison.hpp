@@ -75,6 +75,21 @@ inline ExpectedEstimates expected_radiance(const reference::DensityOracle& oracl
   return expected;
 }
 
+/// Estimates as [hit][light], whichever form they have.
+inline std::vector<glm::vec3> by_light(const std::vector<glm::vec3>& values,
+                                       const Estimates& estimates, std::size_t lights) {
+  if (estimates.first.empty() || values.empty()) return values;
+  const std::size_t hits = estimates.first.size() - 1;
+  std::vector<glm::vec3> dense(hits * lights, glm::vec3(0.0f));
+  for (std::size_t hit = 0; hit < hits; ++hit) {
+    for (std::uint64_t i = estimates.first[hit]; i < estimates.first[hit + 1]; ++i) {
+      // Added, so that a light with two estimates at a hit is seen.
+      dense.at(hit * lights + estimates.light.at(i)) += values.at(i);
+    }
+  }
+  return dense;
+}
+
 /// Largest relative difference over hits, lights and channels.
 inline double worst_difference(const std::vector<glm::vec3>& estimates,
                                const ExpectedEstimates& expected) {

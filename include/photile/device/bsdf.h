@@ -1,6 +1,7 @@
 // The one definition of reflection at an opaque surface, compiled by C++ (photon scattering,
-// tests) and by OpenCL C (radiance estimate). Scalars only, and nothing but + - * / and sqrt, which
-// round alike everywhere.
+// tests) and by OpenCL C (radiance estimate). Nothing but + - * / and sqrt, which round alike
+// everywhere. What differs between the photons of a hit is a PHOTILE_REAL: a float unless whoever
+// includes this defines it as a vector of floats.
 //
 // The model is glTF 2.0's (specification, appendix B.3): a Lambertian base under a GGX reflection,
 // mixed by Fresnel's law as Schlick approximates it at the half vector h between the directions i
@@ -26,19 +27,23 @@
 /// would resolve them; smoother surfaces are mirrors.
 #define PHOTILE_MIN_GGX_ALPHA 0.02f
 
+#ifndef PHOTILE_REAL
+#define PHOTILE_REAL float
+#endif
+
 #define PHOTILE_PI 3.14159265358979f
 
 /// (1 - i.h)^5, Schlick's weight between F0 and 1. `i_dot_h` in [0, 1].
-static inline float photile_schlick(float i_dot_h) {
-  const float c = i_dot_h < 1.0f ? 1.0f - i_dot_h : 0.0f;
-  const float c2 = c * c;
+static inline PHOTILE_REAL photile_schlick(PHOTILE_REAL i_dot_h) {
+  const PHOTILE_REAL c = i_dot_h < 1.0f ? 1.0f - i_dot_h : (PHOTILE_REAL)(0.0f);
+  const PHOTILE_REAL c2 = c * c;
   return c2 * c2 * c;
 }
 
 /// D of GGX per steradian of half vectors; its integral against n.h is 1.
-static inline float photile_ggx_distribution(float n_dot_h, float alpha) {
+static inline PHOTILE_REAL photile_ggx_distribution(PHOTILE_REAL n_dot_h, float alpha) {
   const float a2 = alpha * alpha;
-  const float d = n_dot_h * n_dot_h * (a2 - 1.0f) + 1.0f;
+  const PHOTILE_REAL d = n_dot_h * n_dot_h * (a2 - 1.0f) + 1.0f;
   return a2 / (PHOTILE_PI * d * d);
 }
 
@@ -50,17 +55,21 @@ static inline float photile_ggx_masking(float n_dot_v, float alpha) {
 
 /// The reflection without Fresnel's factor, D G2 / (4 n.i n.o), per steradian. 0 where either
 /// direction lies behind the surface. `alpha` in [PHOTILE_MIN_GGX_ALPHA, 1].
-static inline float photile_ggx_lobe(float n_dot_i, float n_dot_o, float n_dot_h, float alpha) {
-  if (!(n_dot_i > 0.0f) || !(n_dot_o > 0.0f)) return 0.0f;
+static inline PHOTILE_REAL photile_ggx_lobe(PHOTILE_REAL n_dot_i, float n_dot_o,
+                                            PHOTILE_REAL n_dot_h, float alpha) {
+  const PHOTILE_REAL behind = 0.0f;
+  if (!(n_dot_o > 0.0f)) return behind;
   const float a2 = alpha * alpha;
-  const float from_i = n_dot_o * PHOTILE_SQRT(n_dot_i * n_dot_i * (1.0f - a2) + a2);
-  const float from_o = n_dot_i * PHOTILE_SQRT(n_dot_o * n_dot_o * (1.0f - a2) + a2);
-  return photile_ggx_distribution(n_dot_h, alpha) * 0.5f / (from_i + from_o);
+  const PHOTILE_REAL from_i = n_dot_o * PHOTILE_SQRT(n_dot_i * n_dot_i * (1.0f - a2) + a2);
+  const PHOTILE_REAL from_o = n_dot_i * PHOTILE_SQRT(n_dot_o * n_dot_o * (1.0f - a2) + a2);
+  const PHOTILE_REAL lobe = photile_ggx_distribution(n_dot_h, alpha) * 0.5f / (from_i + from_o);
+  return n_dot_i > 0.0f ? lobe : behind;
 }
 
 /// One channel of f, per steradian. `schlick` = photile_schlick(i.h), `lobe` = photile_ggx_lobe(...).
-static inline float photile_opaque_bsdf(float albedo, float f0, float schlick, float lobe) {
-  const float fresnel = f0 + (1.0f - f0) * schlick;
+static inline PHOTILE_REAL photile_opaque_bsdf(float albedo, float f0, PHOTILE_REAL schlick,
+                                               PHOTILE_REAL lobe) {
+  const PHOTILE_REAL fresnel = f0 + (1.0f - f0) * schlick;
   return (1.0f - fresnel) * albedo / PHOTILE_PI + fresnel * lobe;
 }
 

@@ -1,0 +1,17 @@
+// The symbols by which kernels know what the photon records of a scene hold.
+#pragma once
+
+#include <cstdint>
+
+#include "device/context.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::maps {
+
+/// Bytes of an entry's light: 0 with one light, 1 up to 256, else 2.
+std::uint32_t bytes_per_light(const SceneNeeds& needs);
+
+/// LIGHT_INDEX and GLOSSY, each where the scene needs it.
+void set_entry_defines(device::Defines& defines, const SceneNeeds& needs);
+
+}  // namespace photile::maps

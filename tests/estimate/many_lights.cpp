@@ -1,0 +1,134 @@
+// Lights are independent of each other: what a scene's other lights are does not change a layer.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "estimates_comparison.hpp"
+#include "photon_sets.hpp"
+#include "test_device.hpp"
+
+using namespace photile;
+
+namespace {
+
+constexpr double radius = 0.2;
+constexpr int k = 50;
+
+Scene plate(std::size_t lights, bool glossy) {
+  Scene scene = test::empty_scene(lights);
+  if (glossy) {
+    scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
+    scene.materials[0].roughness = 0.3f;
+  }
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  return scene;
+}
+
+Estimates estimate(const Scene& scene, const Photons& photons, const PrimaryHits& hits) {
+  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+                        {radius, 4});
+  return Estimator(maps, scene, {k, 0}).estimate(hits);
+}
+
+/// The same photons, of which only those of one light carry flux: the neighbours stay.
+Photons alone(Photons photons, std::uint16_t light) {
+  for (std::size_t i = 0; i < photons.size(); ++i) {
+    if (photons.light[i] != light) photons.flux[i] = glm::vec3(0.0f);
+  }
+  photons.light.clear();
+  return photons;
+}
+
+/// Sums of at most k positive floats in another order: each is right to k units of 2^-24, and two
+/// of them are compared. The factor of the glossy lobe is the same in both, bit for bit.
+constexpr double tolerance = 2.0 * k / (1 << 24);
+
+double difference(const std::vector<glm::vec3>& values, const std::vector<glm::vec3>& others) {
+  REQUIRE(values.size() == others.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const double scale = std::max({values[i][c], others[i][c], 1e-30f});
+      worst = std::max(worst, std::abs(double{values[i][c]} - others[i][c]) / scale);
+    }
+  }
+  return worst;
+}
+
+std::vector<glm::vec3> layer(const std::vector<glm::vec3>& dense, std::size_t light,
+                             std::size_t lights) {
+  std::vector<glm::vec3> values;
+  for (std::size_t i = light; i < dense.size(); i += lights) values.push_back(dense[i]);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("each light's estimates are those of its photons alone") {
+  const std::size_t lights = GENERATE(5u, 64u);
+  const bool glossy = GENERATE(false, true);
+  CAPTURE(lights, glossy);
+  const Scene scene = plate(lights, glossy);
+  const Photons photons = test::uniform_photons(scene, 4000, 91);
+  PrimaryHits hits = test::uniform_hits(scene, 150, 92);
+  if (glossy) test::add_lobes(hits, scene, 93);
+  const Estimates together = estimate(scene, photons, hits);
+  const auto irradiance = test::by_light(together.irradiance, together, lights);
+  const auto radiance = test::by_light(together.radiance, together, lights);
+  for (const std::size_t light : {std::size_t{0}, std::size_t{3}, lights - 1}) {
+    const Estimates one =
+        estimate(plate(1, glossy), alone(photons, static_cast<std::uint16_t>(light)), hits);
+    CAPTURE(light);
+    CHECK(difference(layer(irradiance, light, lights), one.irradiance) <= tolerance);
+    if (glossy) CHECK(difference(layer(radiance, light, lights), one.radiance) <= tolerance);
+  }
+}
+
+TEST_CASE(
+    "a light without photons changes nothing: eight lights dense, and sparse beside a ninth") {
+  const Scene dense_scene = plate(8, false);
+  const Photons photons = test::uniform_photons(dense_scene, 4000, 94);
+  const PrimaryHits hits = test::uniform_hits(dense_scene, 150, 95);
+  const Estimates dense = estimate(dense_scene, photons, hits);
+  const Estimates sparse = estimate(plate(9, false), photons, hits);
+  REQUIRE(dense.first.empty());
+  REQUIRE(sparse.first.size() == hits.size() + 1);
+  const auto nine = test::by_light(sparse.irradiance, sparse, 9);
+  for (std::size_t light = 0; light < 8; ++light) {
+    CHECK(difference(layer(nine, light, 9), layer(dense.irradiance, light, 8)) <= tolerance);
+  }
+}
+
+TEST_CASE("a hit keeps the lights that reach it, each once, however many there are") {
+  // Each quarter of the plate is lit by three lights of its own among 1,000.
+  Scene scene = test::empty_scene(1000);
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  Photons photons = test::uniform_photons(scene, 8000, 96);
+  const auto quarter_of = [](const glm::vec3& p) {
+    return (p.x < 0.5f ? 0 : 1) + (p.y < 0.5f ? 0 : 2);
+  };
+  for (std::size_t i = 0; i < photons.size(); ++i) {
+    photons.light[i] =
+        static_cast<std::uint16_t>(250 * quarter_of(photons.position[i]) + 100 * (i % 3));
+  }
+  const PrimaryHits hits = test::uniform_hits(scene, 200, 97);
+  const Estimates estimates = estimate(scene, photons, hits);
+  REQUIRE(estimates.first.size() == hits.size() + 1);
+  CHECK(estimates.first.front() == 0);
+  CHECK(estimates.first.back() == estimates.light.size());
+  CHECK(estimates.irradiance.size() == estimates.light.size());
+  for (std::size_t hit = 0; hit < hits.size(); ++hit) {
+    const auto begin = estimates.light.begin() + static_cast<std::ptrdiff_t>(estimates.first[hit]);
+    const auto end =
+        estimates.light.begin() + static_cast<std::ptrdiff_t>(estimates.first[hit + 1]);
+    const std::set<std::uint16_t> found(begin, end);
+    CHECK(found.size() == static_cast<std::size_t>(end - begin));
+    const glm::vec3& p = hits.position[hit];
+    // The disc of 50 among 1,000 photons per square metre and side has a radius of 0.13.
+    const bool inside = std::abs(p.x - 0.5f) > 0.2f && std::abs(p.y - 0.5f) > 0.2f;
+    if (!inside) continue;
+    const int first = 250 * quarter_of(p);
+    CHECK(found == std::set<std::uint16_t>{static_cast<std::uint16_t>(first),
+                                           static_cast<std::uint16_t>(first + 100),
+                                           static_cast<std::uint16_t>(first + 200)});
+  }
+}
