@@ -13,7 +13,7 @@ mkdir -p "$pictures"
   --photons 10M --neighbours 600 -o "$pictures/living-room.png"
 
 # Few photons for so many neighbours make the dark edges wide, many neighbours make the rest calm.
-for maps in naive grouped; do
+for maps in naive triangle; do
   "$photile" render scenes/cornell-box/cornell-box.gltf --maps "$maps" --size 400x400 --samples 16 \
     --photons 200k --neighbours 1000 --quiet -o "$pictures/$maps.png"
 done

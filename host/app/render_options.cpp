@@ -18,8 +18,9 @@ namespace {
 constexpr std::array quotas{std::pair{"balanced", PhotonQuota::balanced},
                             std::pair{"power", PhotonQuota::power},
                             std::pair{"equal", PhotonQuota::equal}};
-constexpr std::array map_modes{std::pair{"naive", MapMode::naive},
-                               std::pair{"grouped", MapMode::grouped}};
+constexpr std::array map_modes{
+    std::pair{"naive", MapMode::naive}, std::pair{"triangle", MapMode::triangle},
+    std::pair{"patch", MapMode::patch}, std::pair{"auto", MapMode::automatic}};
 constexpr std::array structures{std::pair{"uniform-grid", MapStructure::uniform_grid},
                                 std::pair{"kdtree-2d", MapStructure::kdtree_2d},
                                 std::pair{"kdtree-3d", MapStructure::kdtree_3d},
@@ -112,7 +113,7 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
       ->capture_default_str()
       ->group("Estimate");
   options.maps = word_for(map_modes, parameters.maps);
-  command.add_option("--maps", options.maps, "naive: no neighbour groups, dark edges")
+  command.add_option("--maps", options.maps, "naive: dark edges; patch: triangles share maps")
       ->type_name("")
       ->check(CLI::IsMember(words_of(map_modes)))
       ->capture_default_str()

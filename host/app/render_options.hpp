@@ -24,7 +24,7 @@ struct RenderOptions {
   PictureOptions pictures;
   RenderParameters parameters;
   std::string quota;                  ///< "balanced", "power" or "equal"
-  std::string maps;                   ///< "naive" or "grouped"
+  std::string maps;                   ///< "naive", "triangle", "patch" or "auto"
   std::string structure;              ///< "uniform-grid", ...
   bool tuned = false;                 ///< use the tuning that `photile devices --tune` stored
   bool own_photons_per_cell = false;  ///< given by the user: a tuning does not replace it

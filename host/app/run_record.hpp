@@ -18,7 +18,7 @@ namespace photile::app {
 struct RunRecord {
   std::string scene;  ///< the file's name, without folders: a picture should not tell them
   std::string camera;
-  std::string maps;  ///< "naive" or "grouped"
+  std::string maps;  ///< "naive", "triangle", "patch" or "auto"
   RenderParameters parameters;
   std::vector<DeviceInfo> devices;
   std::vector<double> device_shares;  ///< of the hits, per device

@@ -8,6 +8,7 @@
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_batches.hpp"
 #include "estimate/hit_buffers.hpp"
+#include "estimate/map_order.hpp"
 #include "estimate/query.hpp"
 #include "estimate/tuning.hpp"
 #include "maps/map_store.hpp"
@@ -41,17 +42,25 @@ struct Estimator::Impl {
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
     return {.largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
-            .bytes_per_hit = estimate::hit_bytes(store.needs.glossy) + outputs};
+            .bytes_per_hit = estimate::hit_bytes(store.needs.glossy, !store.normals.empty()) +
+                             outputs};
+  }
+
+  /// The maps of hits [first, first + count).
+  std::vector<std::uint32_t> maps_of(const PrimaryHits& hits, std::size_t first,
+                                     std::size_t count) const {
+    return estimate::maps_of(std::span(hits.sided_triangle).subspan(first, count), store.map_of);
   }
 
   Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count) {
+    const std::vector<std::uint32_t> hit_maps = maps_of(hits, first, count);
     const HitBuffers buffers =
-        estimate::upload_hits(context, hits, first, count, store.needs.glossy);
+        estimate::upload_hits(context, hits, first, hit_maps, store.normals, store.needs.glossy);
     estimate::EstimateBuffers estimates(context, store.needs, neighbours,
                                         static_cast<std::uint32_t>(count));
-    estimate::for_each_page(
-        store, buffers, std::span(hits.sided_triangle).subspan(first, count),
-        [&](const estimate::PageHits& page_hits) { query->estimate(page_hits, estimates); });
+    estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
+      query->estimate(page_hits, estimates);
+    });
     return estimates.read();
   }
 
@@ -59,15 +68,16 @@ struct Estimator::Impl {
   void nearest(const PrimaryHits& hits, std::size_t first, std::size_t count,
                NeighbourLists& result) {
     const std::size_t k = neighbours;
-    const HitBuffers buffers = estimate::upload_hits(context, hits, first, count, false);
+    const std::vector<std::uint32_t> hit_maps = maps_of(hits, first, count);
+    const HitBuffers buffers =
+        estimate::upload_hits(context, hits, first, hit_maps, store.normals, false);
     auto photons = context.allocate<std::uint32_t>(count * k, "neighbour lists");
     auto squared_radius = context.allocate<float>(count, "neighbour radii");
     context.fill(photons, none);
     context.fill(squared_radius, radius * radius);
-    estimate::for_each_page(store, buffers, std::span(hits.sided_triangle).subspan(first, count),
-                            [&](const estimate::PageHits& page_hits) {
-                              query->nearest(page_hits, photons, squared_radius);
-                            });
+    estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
+      query->nearest(page_hits, photons, squared_radius);
+    });
     context.read(photons, std::span(result.photons).subspan(first * k, count * k));
     context.read(squared_radius, std::span(result.squared_radius).subspan(first, count));
     for (std::size_t hit = first; hit < first + count; ++hit) {
@@ -110,7 +120,12 @@ void Estimates::append(Estimates part) {
   }
 }
 
-Estimates Estimator::estimate(const PrimaryHits& hits) { return estimate(hits, 0, hits.size()); }
+Estimates Estimator::estimate(const PrimaryHits& hits) {
+  const auto order = estimate::order_by_map(hits, impl_->store.map_of);
+  if (order.empty()) return estimate(hits, 0, hits.size());
+  return estimate::restored(estimate(estimate::reordered(hits, order), 0, hits.size()), order,
+                            impl_->store.needs.light_count);
+}
 
 Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count) {
   const auto [largest, together] =
@@ -138,12 +153,15 @@ std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) cons
   // Work-items take hits from the first one of a page on, at most a vector of them together.
   constexpr std::size_t together =
       *std::max_element(estimate::vector_widths.begin(), estimate::vector_widths.end());
+  const std::vector<std::uint32_t>& map_of = impl_->store.map_of;
+  const auto map = [&](std::uint32_t own) { return map_of.empty() ? own : map_of[own]; };
   std::size_t page_begin = 0;
   for (std::size_t i = 0; i < impl_->store.pages.size(); ++i) {
     const maps::PageExtent& page = impl_->store.pages[i];
-    if (page.first_map > hits.sided_triangle[hit]) break;
+    if (page.first_map > map(hits.sided_triangle[hit])) break;
     page_begin = static_cast<std::size_t>(
-        std::lower_bound(hits.sided_triangle.begin(), hits.sided_triangle.end(), page.first_map) -
+        std::partition_point(hits.sided_triangle.begin(), hits.sided_triangle.end(),
+                             [&](std::uint32_t own) { return map(own) < page.first_map; }) -
         hits.sided_triangle.begin());
   }
   return page_begin + (hit - page_begin) / together * together;
@@ -151,6 +169,12 @@ std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) cons
 
 NeighbourLists Estimator::nearest(const PrimaryHits& hits) {
   const std::size_t k = impl_->neighbours;
+  if (const auto order = estimate::order_by_map(hits, impl_->store.map_of); !order.empty()) {
+    NeighbourLists result = nearest(estimate::reordered(hits, order));
+    estimate::restore_rows(result.photons, order, k);
+    estimate::restore_rows(result.squared_radius, order, 1);
+    return result;
+  }
   const std::uint64_t output = sizeof(std::uint32_t) * k;
   NeighbourLists result;
   result.k = static_cast<int>(k);

@@ -21,9 +21,9 @@ class GridQuery : public Query {
 
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     const device::Kernel kernel =
-        context_.kernel(choice_.kernel_file(), "estimate", choice_.defines());
+        context_.kernel(choice_.kernel_file(), "estimate", defines(hits.page));
     const maps::MapPage& page = hits.page;
-    with_scene_arguments(store_.needs, hits, estimates, [&](const auto&... scene) {
+    with_scene_arguments(store_, hits, estimates, [&](const auto&... scene) {
       context_.run(kernel, choice_.work_items(hits.count), choice_.work_group_size, hits.count,
                    hits.first, hits.hits.position, hits.hits.map, page.first_map, page.grids,
                    page.cell_start, page.entry_stride, page.entry_position, page.entry_flux,
@@ -33,15 +33,24 @@ class GridQuery : public Query {
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
+    const device::Kernel kernel =
+        context_.kernel("estimate/nearest.cl", "nearest", defines(hits.page));
     const maps::MapPage& page = hits.page;
-    context_.run(context_.kernel("estimate/nearest.cl", "nearest", choice_.defines()), hits.count,
-                 maps::work_group_size, hits.count, hits.first, hits.hits.position, hits.hits.map,
-                 page.first_map, page.grids, page.cell_start, page.entry_stride,
-                 page.entry_position, page.entry_photon, neighbours_, radius_, photons,
-                 squared_radius);
+    with_normal_arguments(store_, hits, [&](const auto&... normals) {
+      context_.run(kernel, hits.count, maps::work_group_size, hits.count, hits.first,
+                   hits.hits.position, hits.hits.map, page.first_map, page.grids, page.cell_start,
+                   page.entry_stride, page.entry_position, page.entry_photon, normals...,
+                   neighbours_, radius_, photons, squared_radius);
+    });
   }
 
  private:
+  device::Defines defines(const maps::MapPage& page) const {
+    device::Defines defines = choice_.defines();
+    if (page.entry_normal.size() > 0) defines.set("NORMALS");
+    return defines;
+  }
+
   const maps::MapStore& store_;
   device::Context& context_;
   std::uint32_t neighbours_;

@@ -23,20 +23,27 @@ device::Buffer<float> upload_lobes(device::Context& context, const PrimaryHits& 
 
 }  // namespace
 
-std::uint64_t hit_bytes(bool glossy) {
+std::uint64_t hit_bytes(bool glossy, bool normals) {
   constexpr std::uint64_t position_and_map = 3 * sizeof(float) + sizeof(std::uint32_t);
   constexpr std::uint64_t surface = (4 * 3 + 1) * sizeof(float);
-  return position_and_map + (glossy ? surface : 0);
+  constexpr std::uint64_t normal = 3 * sizeof(float);
+  return position_and_map + (glossy ? surface : 0) + (normals ? normal : 0);
 }
 
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
-                       std::size_t count, bool glossy) {
+                       std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
+                       bool glossy) {
+  const std::size_t count = maps.size();
   HitBuffers buffers;
   buffers.count = static_cast<std::uint32_t>(count);
   if (count == 0) return buffers;
   buffers.position = context.upload(floats(hits.position, first, count), "hit positions");
-  buffers.map = context.upload(
-      std::span<const std::uint32_t>(hits.sided_triangle).subspan(first, count), "hit triangles");
+  buffers.map = context.upload(maps, "maps of hits");
+  if (!normals.empty()) {
+    std::vector<glm::vec3> of_hits(count);
+    for (std::size_t i = 0; i < count; ++i) of_hits[i] = normals[hits.sided_triangle[first + i]];
+    buffers.face_normal = context.upload(floats(of_hits, 0, count), "hit face normals");
+  }
   if (!glossy) return buffers;
   buffers.outgoing = context.upload(floats(hits.outgoing, first, count), "hit directions");
   buffers.albedo = context.upload(floats(hits.diffuse_albedo, first, count), "hit albedos");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "device/context.hpp"
 #include "photile/primary_hits.hpp"
@@ -12,16 +13,22 @@ namespace photile::estimate {
 struct HitBuffers {
   std::uint32_t count = 0;
   device::Buffer<float> position;          ///< 3 per hit, metres
-  device::Buffer<std::uint32_t> map;       ///< sided triangle
+  device::Buffer<std::uint32_t> map;       ///< that the hit lies on
+  device::Buffer<float> face_normal;       ///< 3 per hit: of its sided triangle; or empty
   device::Buffer<float> outgoing, normal;  ///< 3 per hit, unit
   device::Buffer<float> albedo, specular;  ///< 3 per hit
   device::Buffer<float> roughness;         ///< 1 per hit
 };
 
 /// Device memory that a hit takes as input.
-std::uint64_t hit_bytes(bool glossy);
+///   normals   whether normals of faces are uploaded
+std::uint64_t hit_bytes(bool glossy, bool normals);
 
+/// Hits [first, first + maps.size()).
+///   maps      of those hits
+///   normals   per sided triangle, if a map is mixed (maps::MapStore::normals), else empty
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
-                       std::size_t count, bool glossy);
+                       std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
+                       bool glossy);
 
 }  // namespace photile::estimate

@@ -42,8 +42,7 @@ std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        float radius);
 
-/// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: their sided
-/// triangles, ascending.
+/// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs, ascending.
 template <class Launch>
 void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
                    std::span<const std::uint32_t> hit_maps, Launch launch) {
@@ -58,10 +57,24 @@ void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
   }
 }
 
+/// Calls launch(...) with the kernel arguments that a page with mixed maps adds. Its kernels are
+/// compiled with NORMALS.
+template <class Launch>
+void with_normal_arguments(const maps::MapStore& store, const PageHits& page_hits, Launch launch) {
+  if (page_hits.page.entry_normal.size() == 0) {
+    launch();
+    return;
+  }
+  // The slack of normals_agree, which groups are made with.
+  const float least_cosine = static_cast<float>(store.cos_angle - 1e-6);
+  launch(page_hits.page.entry_normal, page_hits.hits.face_normal, least_cosine);
+}
+
 /// Calls launch(...) with SCENE_ARGUMENTS of kernels/estimate/arguments.clh, in their order.
 template <class Launch>
-void with_scene_arguments(const SceneNeeds& needs, const PageHits& page_hits,
+void with_scene_arguments(const maps::MapStore& store, const PageHits& page_hits,
                           const EstimateBuffers& estimates, Launch launch) {
+  const SceneNeeds& needs = store.needs;
   const auto& [hits, page, first, count] = page_hits;
   const auto slots = [&](const auto&... scene) {
     if (needs.many_lights()) {
@@ -70,19 +83,21 @@ void with_scene_arguments(const SceneNeeds& needs, const PageHits& page_hits,
       launch(scene...);
     }
   };
-  const auto glossy = [&](const auto&... light) {
+  const auto glossy = [&](const auto&... scene) {
     if (needs.glossy) {
-      slots(light..., page.entry_incoming, hits.outgoing, hits.normal, hits.albedo, hits.specular,
+      slots(scene..., page.entry_incoming, hits.outgoing, hits.normal, hits.albedo, hits.specular,
             hits.roughness, estimates.radiance);
     } else {
-      slots(light...);
+      slots(scene...);
     }
   };
-  if (needs.light_count > 1) {
-    glossy(page.entry_light);
-  } else {
-    glossy();
-  }
+  with_normal_arguments(store, page_hits, [&](const auto&... normals) {
+    if (needs.light_count > 1) {
+      glossy(normals..., page.entry_light);
+    } else {
+      glossy(normals...);
+    }
+  });
 }
 
 }  // namespace photile::estimate

@@ -20,10 +20,8 @@ class TreeQuery : public Query {
       : store_(store),
         context_(store.device->context()),
         neighbours_(neighbours),
-        radius_(radius),
-        global_(store.parameters.structure == MapStructure::kdtree_global) {
+        radius_(radius) {
     if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
-    if (global_) defines_.set("NORMALS");
     if (neighbours <= private_list_limit) {
       defines_.set("LIST_CAPACITY", static_cast<long long>(neighbours));
     } else {
@@ -38,17 +36,17 @@ class TreeQuery : public Query {
   }
 
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
-    device::Defines defines = defines_;
+    device::Defines defines = page_defines(hits.page);
     maps::set_entry_defines(defines, store_.needs);
     set_sum_defines(defines, store_.needs, neighbours_);
     const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
     const maps::MapPage& page = hits.page;
-    with_tree_arguments(page, [&](const auto&... tree) {
-      with_scene_arguments(store_.needs, hits, estimates, [&](const auto&... scene) {
+    with_lists([&](const auto&... lists) {
+      with_scene_arguments(store_, hits, estimates, [&](const auto&... scene) {
         context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
                      hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
                      page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
-                     page.entry_position, page.entry_flux, page.entry_photon, tree..., scene...,
+                     page.entry_position, page.entry_flux, page.entry_photon, lists..., scene...,
                      neighbours_, radius_, estimates.irradiance);
       });
     });
@@ -56,34 +54,34 @@ class TreeQuery : public Query {
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
-    const device::Kernel kernel = context_.kernel("kdtree/nearest.cl", "nearest", defines_);
+    const device::Kernel kernel =
+        context_.kernel("kdtree/nearest.cl", "nearest", page_defines(hits.page));
     const maps::MapPage& page = hits.page;
-    with_tree_arguments(page, [&](const auto&... tree) {
-      context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
-                   hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
-                   page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
-                   page.entry_position, page.entry_photon, tree..., neighbours_, radius_, photons,
-                   squared_radius);
+    with_normal_arguments(store_, hits, [&](const auto&... normals) {
+      with_lists([&](const auto&... lists) {
+        context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
+                     hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
+                     page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
+                     page.entry_position, page.entry_photon, normals..., lists..., neighbours_,
+                     radius_, photons, squared_radius);
+      });
     });
   }
 
  private:
-  /// Calls launch(...) with the arguments that a global tree and lists in global memory add.
+  device::Defines page_defines(const maps::MapPage& page) const {
+    device::Defines defines = defines_;
+    if (page.entry_normal.size() > 0) defines.set("NORMALS");
+    return defines;
+  }
+
+  /// Calls launch(...) with the arguments that lists in global memory add.
   template <class Launch>
-  void with_tree_arguments(const maps::MapPage& page, Launch launch) {
-    const auto lists = [&](const auto&... normals) {
-      if (list_entry_.size() > 0) {
-        launch(normals..., list_distance_, list_entry_);
-      } else {
-        launch(normals...);
-      }
-    };
-    if (global_) {
-      // The slack of normals_agree, which groups are made with.
-      const float least_cosine = static_cast<float>(store_.cos_angle - 1e-6);
-      lists(page.entry_normal, store_.map_normal, least_cosine);
+  void with_lists(Launch launch) {
+    if (list_entry_.size() > 0) {
+      launch(list_distance_, list_entry_);
     } else {
-      lists();
+      launch();
     }
   }
 
@@ -91,7 +89,6 @@ class TreeQuery : public Query {
   device::Context& context_;
   std::uint32_t neighbours_;
   float radius_;
-  bool global_;
   device::Defines defines_;
   std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();
   device::Buffer<float> list_distance_;

@@ -1,5 +1,7 @@
 #include "maps/build_maps.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +11,7 @@
 #include "maps/gather_entries.hpp"
 #include "maps/kdtree_builder.hpp"
 #include "maps/map_pages.hpp"
+#include "maps/map_shapes.hpp"
 #include "maps/photon_pages.hpp"
 #include "maps/prefix_sum.hpp"
 
@@ -23,7 +26,9 @@ using device::Defines;
 struct Build {
   Context& context;
   const MapStore& store;
-  Buffer<float> corners;  ///< 9 floats per triangle
+  bool patches = false;            ///< maps may serve several triangles
+  Buffer<PhotileMapShape> shapes;  ///< per pair of maps
+  Buffer<float> corners;           ///< 9 floats per triangle
   std::vector<PhotonPage> photon_pages;
   float squared_reach = 0;
   float radius = 0;
@@ -31,7 +36,9 @@ struct Build {
 
   template <class... Args>
   void run(const char* file, const char* kernel, std::size_t size, const Args&... args) {
-    context.run(context.kernel(file, kernel, Defines{}), size, work_group_size, args...);
+    Defines defines;
+    if (patches) defines.set("PATCHES");
+    context.run(context.kernel(file, kernel, defines), size, work_group_size, args...);
   }
 };
 
@@ -46,6 +53,14 @@ std::vector<float> corner_coordinates(const Scene& scene) {
   return corners;
 }
 
+std::vector<glm::vec3> sided_normals(const Scene& scene) {
+  std::vector<glm::vec3> normals(2 * scene.triangle_count());
+  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t s) {
+    normals[s] = glm::vec3(sided_normal(scene, static_cast<std::uint32_t>(s)));
+  });
+  return normals;
+}
+
 /// The radius that photons must lie within of a triangle to enter its map: grown by what rounding
 /// may do to positions as large as the scene's, so that no neighbour is lost.
 float reach_of(const Scene& scene, double radius) {
@@ -57,17 +72,36 @@ float reach_of(const Scene& scene, double radius) {
                             8.0 * std::numeric_limits<float>::epsilon() * largest);
 }
 
-std::vector<std::uint32_t> count_photons(Build& build, std::size_t map_total,
-                                         Buffer<std::uint32_t>& map_count) {
-  build.context.fill(map_count, 0u);
+/// Per map: how many photons it holds, and whether their normals may disagree with its triangles'.
+struct MapCounts {
+  Buffer<std::uint32_t> photons, mixed;  ///< `mixed` only with patches
+};
+
+MapCounts count_photons(Build& build, std::size_t map_total) {
+  MapCounts counts;
+  counts.photons = build.context.allocate<std::uint32_t>(map_total, "photons per map");
+  counts.mixed = build.context.allocate<std::uint32_t>(build.patches ? map_total : 0, "mixed maps");
+  build.context.fill(counts.photons, 0u);
+  build.context.fill(counts.mixed, 0u);
   for (const PhotonPage& page : build.photon_pages) {
-    build.run("grid/count_photons.cl", "count_photons", page.count, page.count, page.position,
-              page.own_map, page.list, page.list_offsets, page.list_members, build.corners,
-              build.squared_reach, map_count);
+    const auto launch = [&](const auto&... patches) {
+      build.run("grid/count_photons.cl", "count_photons", page.count, page.count, page.position,
+                page.own_map, page.list, page.list_offsets, page.list_members, build.shapes,
+                build.corners, build.squared_reach, counts.photons, patches...);
+    };
+    if (build.patches) {
+      launch(page.normal, counts.mixed);
+    } else {
+      launch();
+    }
   }
-  std::vector<std::uint32_t> counts(map_total);
-  build.context.read(map_count, std::span(counts));
   return counts;
+}
+
+std::vector<std::uint32_t> read_all(Context& context, const Buffer<std::uint32_t>& buffer) {
+  std::vector<std::uint32_t> values(buffer.size());
+  context.read(buffer, std::span(values));
+  return values;
 }
 
 /// The last element of a scanned buffer: the total.
@@ -77,13 +111,21 @@ std::uint32_t read_total(Context& context, const Buffer<std::uint32_t>& scanned)
   return total;
 }
 
-void size_grids(Build& build, MapPage& page, const Buffer<std::uint32_t>& map_count) {
+void size_grids(Build& build, MapPage& page, const MapCounts& counts) {
   const std::uint32_t maps = page.last_map - page.first_map;
   page.grids = build.context.allocate<PhotileGrid>(maps, "photon map grids");
   auto first_cell = build.context.allocate<std::uint32_t>(maps + 1, "first cells of photon maps");
   build.context.fill(first_cell, 0u);
-  build.run("grid/size_grids.cl", "size_grids", maps, maps, page.first_map, build.corners,
-            map_count, build.radius, build.photons_per_cell, page.grids, first_cell);
+  const auto launch = [&](const auto&... patches) {
+    build.run("grid/size_grids.cl", "size_grids", maps, maps, page.first_map, build.shapes,
+              counts.photons, patches..., build.radius, build.photons_per_cell, page.grids,
+              first_cell);
+  };
+  if (build.patches) {
+    launch(counts.mixed);
+  } else {
+    launch();
+  }
   exclusive_prefix_sum(build.context, first_cell);
   build.run("grid/size_grids.cl", "place_grids", maps, maps, first_cell, page.grids);
   page.cell_count = read_total(build.context, first_cell);
@@ -96,7 +138,8 @@ void fill_cells(Build& build, MapPage& page) {
   for (const PhotonPage& photons : build.photon_pages) {
     build.run("grid/fill_cells.cl", "count_cells", photons.count, photons.count, photons.position,
               photons.own_map, photons.list, photons.list_offsets, photons.list_members,
-              build.corners, build.squared_reach, page.first_map, page.last_map, page.grids,
+              build.shapes, build.corners, build.squared_reach, page.first_map, page.last_map,
+              page.grids,
               cell_count);
   }
   exclusive_prefix_sum(build.context, cell_count, page.cell_start);
@@ -105,7 +148,8 @@ void fill_cells(Build& build, MapPage& page) {
   for (const PhotonPage& photons : build.photon_pages) {
     build.run("grid/fill_cells.cl", "scatter", photons.count, photons.count, photons.position,
               photons.own_map, photons.list, photons.list_offsets, photons.list_members,
-              build.corners, build.squared_reach, page.first_map, page.last_map, page.grids,
+              build.shapes, build.corners, build.squared_reach, page.first_map, page.last_map,
+              page.grids,
               page.cell_start, cell_count, photons.first_photon, page.entry_photon);
   }
   build.run("grid/sort_cells.cl", "sort_cells", page.cell_count, page.cell_count, page.cell_start,
@@ -114,11 +158,12 @@ void fill_cells(Build& build, MapPage& page) {
 }
 
 void upload_photons(Build& build, const CandidateMaps& candidates, const Photons& photons,
-                    Progress& progress) {
+                    const Patches& patches, Progress& progress) {
   const std::uint64_t max_bytes = build.context.largest_buffer();
   for (const PhotonRange range : plan_photon_pages(photons, candidates, max_bytes)) {
     progress.throw_if_cancelled();
-    build.photon_pages.push_back(upload_photon_page(build.context, photons, candidates, range));
+    build.photon_pages.push_back(upload_photon_page(build.context, photons, build.store.normals,
+                                                    patches, candidates, range));
   }
 }
 
@@ -140,13 +185,18 @@ void add_page(MapStore& store, MapPage page) {
 
 }  // namespace
 
-void build_maps_per_triangle(MapStore& store, const Scene& scene, const Photons& photons,
+void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
                              const NeighbourGroups& groups, Progress& progress) {
   Context& context = store.device->context();
   const std::uint64_t max_bytes = context.largest_buffer();
   const float reach = reach_of(scene, store.parameters.radius);
+  const Patches& patches = groups.patches;
+  store.map_of = patches.map_of;
+  if (!patches.empty()) store.normals = sided_normals(scene);
   Build build{context,
               store,
+              !patches.empty(),
+              {},
               {},
               {},
               reach * reach,
@@ -154,29 +204,39 @@ void build_maps_per_triangle(MapStore& store, const Scene& scene, const Photons&
               photons_per_cell(store.parameters)};
   const std::vector<float> corners = corner_coordinates(scene);
   build.corners = context.upload(std::span<const float>(corners), "triangle corners");
-  upload_photons(build, find_candidate_maps(scene, photons, groups, reach), photons, progress);
+  const std::vector<PhotileMapShape> shapes =
+      map_shapes(scene, patches, glm::radians(groups.angle_degrees));
+  build.shapes = context.upload(std::span<const PhotileMapShape>(shapes), "map shapes");
+  upload_photons(build, find_candidate_maps(scene, photons, groups, reach), photons, patches,
+                 progress);
 
-  const std::size_t map_total = 2 * scene.triangle_count();
-  auto map_count = context.allocate<std::uint32_t>(map_total, "photons per map");
-  const std::vector<std::uint32_t> counts = count_photons(build, map_total, map_count);
+  const MapCounts map_counts = count_photons(build, 2 * shapes.size());
+  const std::vector<std::uint32_t> counts = read_all(context, map_counts.photons);
+  const std::vector<std::uint32_t> mixed = read_all(context, map_counts.mixed);
 
   PhotonMapStatistics& statistics = store.statistics;
-  for (const MapRange range : plan_map_pages(counts, {.largest_buffer = max_bytes})) {
+  for (const MapRange range : plan_map_pages(counts, {.largest_buffer = max_bytes}, patches)) {
     progress.throw_if_cancelled();
     MapPage page;
     page.first_map = range.first;
     page.last_map = range.last;
     page.entry_count = static_cast<std::uint32_t>(range.entries);
-    size_grids(build, page, map_count);
+    size_grids(build, page, map_counts);
     fill_cells(build, page);
     if (is_tree(store.parameters.structure)) {
       build_trees(context, store.parameters.structure, photons, counts, page);
     }
-    gather_entries(context, store.needs, build.photon_pages, page);
+    const bool normals =
+        !mixed.empty() && std::find(mixed.begin() + range.first, mixed.begin() + range.last, 1u) !=
+                              mixed.begin() + range.last;
+    gather_entries(context, store.needs, build.photon_pages, normals, page);
     context.finish();
     add_page(store, std::move(page));
     progress.advance(range.entries);
   }
+  statistics.mixed_maps =
+      static_cast<std::uint64_t>(std::count(mixed.begin(), mixed.end(), 1u));
+  if (statistics.mixed_maps == 0) store.normals.clear();
   statistics.maps = static_cast<std::uint64_t>(
       std::count_if(counts.begin(), counts.end(), [](std::uint32_t count) { return count > 0; }));
   statistics.largest_map = counts.empty() ? 0 : *std::max_element(counts.begin(), counts.end());
@@ -194,19 +254,9 @@ void build_global_map(MapStore& store, const Scene& scene, const Photons& photon
   page.entry_count = count;
   build_global_tree(context, photons, page);
 
-  const PhotonPage all = upload_photon_records(context, photons, {0, count});
-  gather_entries(context, store.needs, std::span(&all, 1), page);
-  std::vector<float> normals(3 * std::size_t{page.last_map});
-  for (std::uint32_t map = 0; map < page.last_map; ++map) {
-    const glm::vec3 normal(sided_normal(scene, map));
-    for (int c = 0; c < 3; ++c)
-      normals[3 * std::size_t{map} + static_cast<std::size_t>(c)] = normal[c];
-  }
-  store.map_normal = context.upload(std::span<const float>(normals), "triangle normals");
-  page.entry_normal = context.allocate<float>(3 * page.entry_stride, "photon normals");
-  context.run(context.kernel("kdtree/gather_normals.cl", "gather_normals", Defines{}), count,
-              work_group_size, count, page.entry_stride, page.entry_photon, all.own_map,
-              store.map_normal, page.entry_normal);
+  store.normals = sided_normals(scene);
+  const PhotonPage all = upload_photon_records(context, photons, store.normals, {}, {0, count});
+  gather_entries(context, store.needs, std::span(&all, 1), true, page);
   context.finish();
   store.statistics.maps = 1;
   store.statistics.largest_map = count;

@@ -26,18 +26,26 @@ struct Box {
   }
 };
 
-/// The lists of one sided triangle.
+constexpr std::size_t triangles_per_chunk = 1024;  ///< sided ones
+
+/// The lists of some sided triangles in a row.
 struct Lists {
-  std::vector<std::uint32_t> list_of_photon;  ///< numbered from 0
-  std::vector<std::uint64_t> sizes;
+  std::vector<std::uint32_t> lists_of_triangle;  ///< their number
+  std::vector<std::uint32_t> list_of_photon;     ///< numbered from 0 in the chunk
+  std::vector<std::uint32_t> sizes;
   std::vector<std::uint32_t> members;
 };
 
 class Splitter {
  public:
-  Splitter(const std::vector<Box>& triangle_boxes, std::span<const glm::vec3> positions,
-           float reach, Lists& lists)
-      : boxes_(triangle_boxes), positions_(positions), reach_(reach), lists_(lists) {}
+  /// `positions`: of the photons that the next lists are for; the last of `lists.list_of_photon`.
+  Splitter(const std::vector<Box>& map_boxes, std::span<const glm::vec3> positions, float reach,
+           Lists& lists)
+      : boxes_(map_boxes),
+        positions_(positions),
+        reach_(reach),
+        lists_(lists),
+        first_photon_(lists.list_of_photon.size() - positions.size()) {}
 
   void split(std::span<std::uint32_t> photons, std::span<const std::uint32_t> members) {
     Box box;
@@ -45,7 +53,7 @@ class Splitter {
     std::vector<std::uint32_t> near;
     near.reserve(members.size());
     for (const std::uint32_t member : members) {
-      if (boxes_[triangle_of(member)].is_within(reach_, box)) near.push_back(member);
+      if (boxes_[member / 2].is_within(reach_, box)) near.push_back(member);
     }
     const glm::vec3 extent = box.high - box.low;
     const bool small = glm::length(extent) <= 0.5f * reach_;
@@ -67,9 +75,10 @@ class Splitter {
  private:
   void add_list(std::span<const std::uint32_t> photons, const std::vector<std::uint32_t>& members) {
     for (const std::uint32_t photon : photons) {
-      lists_.list_of_photon[photon] = static_cast<std::uint32_t>(lists_.sizes.size());
+      lists_.list_of_photon[first_photon_ + photon] =
+          static_cast<std::uint32_t>(lists_.sizes.size());
     }
-    lists_.sizes.push_back(members.size());
+    lists_.sizes.push_back(static_cast<std::uint32_t>(members.size()));
     lists_.members.insert(lists_.members.end(), members.begin(), members.end());
   }
 
@@ -77,12 +86,15 @@ class Splitter {
   std::span<const glm::vec3> positions_;
   float reach_;
   Lists& lists_;
+  std::size_t first_photon_;
 };
 
-std::vector<Box> triangle_boxes(const Scene& scene) {
-  std::vector<Box> boxes(scene.triangle_count());
-  for (std::size_t t = 0; t < boxes.size(); ++t) {
-    for (const glm::vec3& corner : scene.corners(t)) boxes[t].include(corner);
+/// The box of each pair of maps: of a triangle, or of a patch.
+std::vector<Box> map_boxes(const Scene& scene, const Patches& patches) {
+  std::vector<Box> boxes(patches.empty() ? scene.triangle_count() : patches.count());
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    Box& box = boxes[patches.map(sided(t, 0)) / 2];
+    for (const glm::vec3& corner : scene.corners(t)) box.include(corner);
   }
   return boxes;
 }
@@ -91,42 +103,56 @@ std::vector<Box> triangle_boxes(const Scene& scene) {
 
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
                                   const NeighbourGroups& groups, float reach) {
-  const std::vector<Box> boxes = triangle_boxes(scene);
-  const std::size_t map_total = groups.offsets.size() - 1;
-  std::vector<Lists> lists(map_total);
-  tbb::parallel_for(std::size_t{0}, map_total, [&](std::size_t map) {
-    const std::uint32_t first = photons.first_of[map];
-    const std::uint32_t count = photons.first_of[map + 1] - first;
-    if (count == 0) return;
-    lists[map].list_of_photon.resize(count);
-    std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0u);
-    Splitter(boxes, {photons.position.data() + first, count}, reach, lists[map])
-        .split(order, groups.of(static_cast<std::uint32_t>(map)));
+  const std::vector<Box> boxes = map_boxes(scene, groups.patches);
+  const std::size_t triangle_total = groups.offsets.size() - 1;
+  std::vector<Lists> chunks((triangle_total + triangles_per_chunk - 1) / triangles_per_chunk);
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
+    Lists& lists = chunks[c];
+    const std::size_t first = c * triangles_per_chunk;
+    const std::size_t last = std::min(first + triangles_per_chunk, triangle_total);
+    std::vector<std::uint32_t> order;
+    for (std::size_t triangle = first; triangle < last; ++triangle) {
+      const std::uint32_t first_photon = photons.first_of[triangle];
+      const std::uint32_t count = photons.first_of[triangle + 1] - first_photon;
+      const std::size_t lists_before = lists.sizes.size();
+      if (count > 0) {
+        lists.list_of_photon.resize(lists.list_of_photon.size() + count);
+        order.resize(count);
+        std::iota(order.begin(), order.end(), 0u);
+        Splitter(boxes, {photons.position.data() + first_photon, count}, reach, lists)
+            .split(order, groups.of(static_cast<std::uint32_t>(triangle)));
+      }
+      lists.lists_of_triangle.push_back(
+          static_cast<std::uint32_t>(lists.sizes.size() - lists_before));
+    }
   });
 
   CandidateMaps result;
   result.list_of_photon.resize(photons.size());
-  result.first_list_of.reserve(map_total + 1);
+  result.first_list_of.reserve(triangle_total + 1);
   result.first_list_of.push_back(0);
   result.offsets.push_back(0);
-  std::vector<std::uint64_t> first_member_of(map_total + 1, 0);
-  for (std::size_t map = 0; map < map_total; ++map) {
-    for (const std::uint64_t size : lists[map].sizes) {
+  std::vector<std::uint64_t> first_member_of;
+  for (const Lists& lists : chunks) {
+    first_member_of.push_back(result.offsets.back());
+    for (const std::uint32_t count : lists.lists_of_triangle) {
+      result.first_list_of.push_back(result.first_list_of.back() + count);
+    }
+    for (const std::uint32_t size : lists.sizes) {
       result.offsets.push_back(result.offsets.back() + size);
     }
-    result.first_list_of.push_back(result.offsets.size() - 1);
-    first_member_of[map + 1] = result.offsets.back();
   }
   result.members.resize(result.offsets.back());
-  tbb::parallel_for(std::size_t{0}, map_total, [&](std::size_t map) {
-    std::copy(lists[map].members.begin(), lists[map].members.end(),
-              result.members.begin() + static_cast<std::ptrdiff_t>(first_member_of[map]));
-    const auto first_list = static_cast<std::uint32_t>(result.first_list_of[map]);
-    for (std::size_t i = 0; i < lists[map].list_of_photon.size(); ++i) {
-      result.list_of_photon[photons.first_of[map] + i] = first_list + lists[map].list_of_photon[i];
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
+    std::copy(chunks[c].members.begin(), chunks[c].members.end(),
+              result.members.begin() + static_cast<std::ptrdiff_t>(first_member_of[c]));
+    const std::size_t first = c * triangles_per_chunk;
+    const auto first_list = static_cast<std::uint32_t>(result.first_list_of[first]);
+    for (std::size_t i = 0; i < chunks[c].list_of_photon.size(); ++i) {
+      result.list_of_photon[photons.first_of[first] + i] =
+          first_list + chunks[c].list_of_photon[i];
     }
-    lists[map] = Lists{};
+    chunks[c] = Lists{};
   });
   return result;
 }

@@ -11,17 +11,17 @@
 
 namespace photile::maps {
 
-/// Lists of sided triangles in compressed sparse rows; photons that lie close together on a sided
+/// Lists of maps in compressed sparse rows; photons that lie close together on a sided
 /// triangle share a list. A large triangle has thousands of neighbours of which a photon on it
 /// reaches a few: without the lists the build would try them all.
 struct CandidateMaps {
   std::vector<std::uint32_t> list_of_photon;
   std::vector<std::uint64_t> first_list_of;  ///< per sided triangle, and the number of lists
   std::vector<std::uint64_t> offsets;        ///< per list, and the number of members
-  std::vector<std::uint32_t> members;        ///< sided triangles
+  std::vector<std::uint32_t> members;        ///< maps
 };
 
-/// Every list of a photon holds each member of its group whose triangle lies within `reach` metres
+/// Every list of a photon holds each member of its group whose surface lies within `reach` metres
 /// of the photon, and seldom many more. Splits the photons of a sided triangle in halves until the
 /// members near each half are few. Parallel; the result does not depend on the number of threads.
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,

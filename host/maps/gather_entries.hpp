@@ -9,8 +9,8 @@
 namespace photile::maps {
 
 /// Before: page.entry_count and page.entry_photon are set. After: the other entry buffers that the
-/// scene needs are filled, but for normals.
+/// scene needs are filled, normals among them if `normals`.
 void gather_entries(device::Context& context, const SceneNeeds& needs,
-                    std::span<const PhotonPage> photon_pages, MapPage& page);
+                    std::span<const PhotonPage> photon_pages, bool normals, MapPage& page);
 
 }  // namespace photile::maps

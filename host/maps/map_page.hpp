@@ -9,10 +9,11 @@
 
 namespace photile::maps {
 
-static_assert(sizeof(PhotileGrid) == 17 * 4, "PhotileGrid must have no padding");
+static_assert(sizeof(PhotileGrid) == 18 * 4, "PhotileGrid must have no padding");
 static_assert(sizeof(PhotileTreeNode) == 4 * 4, "PhotileTreeNode must have no padding");
 
-/// What a page covers: the maps of sided triangles [first_map, last_map).
+/// What a page covers: maps [first_map, last_map). A map is a sided triangle's or one side of a
+/// patch's.
 struct PageExtent {
   std::uint32_t first_map = 0, last_map = 0;
   std::uint32_t entry_count = 0;
@@ -30,7 +31,9 @@ struct PageBuffers {
   device::Buffer<float> entry_flux;            ///< planes r, g, b
   device::Buffer<std::uint8_t> entry_light;    ///< bytes_per_light(needs) each
   device::Buffer<float> entry_incoming;        ///< planes x, y, z; only in glossy scenes
-  device::Buffer<float> entry_normal;          ///< planes x, y, z; only in a global tree
+  /// Planes x, y, z of the photon's sided triangle; only in a global tree, and in pages with a map
+  /// that serves triangles of different normals.
+  device::Buffer<float> entry_normal;
 
   // Grids; in the plane of its triangle also the frame of a 2D tree.
   device::Buffer<PhotileGrid> grids;         ///< per map

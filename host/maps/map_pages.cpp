@@ -21,7 +21,7 @@ std::uint64_t max_entries(std::uint64_t largest_buffer) {
 }  // namespace
 
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
-                                     const PageLimits& limits) {
+                                     const PageLimits& limits, const Patches& patches) {
   const std::uint64_t most_entries = max_entries(limits.largest_buffer);
   const std::uint64_t most_maps = limits.largest_buffer / sizeof(PhotileGrid);
   const auto page_bytes = [&](std::uint64_t entries, std::uint64_t maps) {
@@ -34,9 +34,11 @@ std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
     if (entries == 0) continue;
     if (entries > most_entries) {
       throw DeviceError(
-          fmt::format("the photon map of triangle {} has {} photons, more than the {} that the "
-                      "device's largest buffer holds; use fewer photons or a smaller radius",
-                      map / 2, entries, most_entries));
+          fmt::format("the photon map of triangle {}{} has {} photons, more than the {} that the "
+                      "device's largest buffer holds; use fewer photons, a smaller radius{}",
+                      patches.empty() ? map / 2 : triangle_of(patches.of(map / 2).front()),
+                      patches.empty() ? "" : " and its patch", entries, most_entries,
+                      patches.empty() ? "" : " or --maps triangle"));
     }
     const auto fits = [&](const MapRange& page) {
       const std::uint64_t maps = map + 1 - page.first;

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "photile/patches.hpp"
+
 namespace photile::maps {
 
 /// Maps [first, last) with their photons.
@@ -26,10 +28,10 @@ struct PageLimits {
 };
 
 /// Splits the maps into pages; maps without photons at either end of a page are left out.
-/// `map_count`: photons per sided triangle.
+/// `map_count`: photons per map. `patches` name the map in the error.
 /// Errors: DeviceError when a single map alone needs a buffer larger than the largest.
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
-                                     const PageLimits& limits);
+                                     const PageLimits& limits, const Patches& patches = {});
 
 /// The maps with photons of `range` in two parts of about as many entries; nothing where there is
 /// only one map.

@@ -20,8 +20,9 @@ struct MapStore {
   PhotonMapParameters parameters;
   PhotonMapStatistics statistics;
   mutable ResidentMaps pages;  ///< maps without photons may lie in none; using one moves others
-  double cos_angle = 0;        ///< of the largest angle between normals
-  device::Buffer<float> map_normal;  ///< 3 per sided triangle; only for a global tree
+  std::vector<std::uint32_t> map_of;  ///< per sided triangle; empty where that is the map itself
+  double cos_angle = 0;               ///< of the largest angle between normals
+  std::vector<glm::vec3> normals;     ///< per sided triangle; only if a page has entry_normal
 };
 
 /// Work-items of a group in every kernel of build and estimate.

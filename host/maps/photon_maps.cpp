@@ -27,7 +27,7 @@ void check(const Photons& photons, const NeighbourGroups& groups,
         fmt::format("photons per cell {}: must be a positive number", parameters.photons_per_cell));
   }
   if (parameters.structure == MapStructure::kdtree_global && std::isinf(groups.radius)) {
-    throw UsageError("a global kd-tree knows no triangles' maps: use it with grouped maps");
+    throw UsageError("a global kd-tree knows no triangles' maps: leave out --maps naive");
   }
   if (photons.size() > limits::max_stored_photons) {
     throw UsageError(fmt::format("{} stored photons; at most {} can be indexed", photons.size(),
@@ -65,7 +65,7 @@ PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photon
   if (parameters.structure == MapStructure::kdtree_global) {
     maps::build_global_map(*store_, scene, photons);
   } else {
-    maps::build_maps_per_triangle(*store_, scene, photons, groups, progress);
+    maps::build_maps_of_groups(*store_, scene, photons, groups, progress);
   }
 
   store_->statistics.spilled_bytes = store_->pages.spilled_bytes();
@@ -80,5 +80,6 @@ PhotonMaps& PhotonMaps::operator=(PhotonMaps&&) noexcept = default;
 const PhotonMapStatistics& PhotonMaps::statistics() const { return store_->statistics; }
 const PhotonMapParameters& PhotonMaps::parameters() const { return store_->parameters; }
 Device& PhotonMaps::device() const { return *store_->device; }
+std::span<const std::uint32_t> PhotonMaps::map_of() const { return store_->map_of; }
 
 }  // namespace photile

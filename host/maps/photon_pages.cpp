@@ -58,21 +58,34 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
 }
 
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
+                                 std::span<const glm::vec3> normals, const Patches& patches,
                                  PhotonRange range) {
   PhotonPage page;
   page.first_photon = range.first;
   page.count = range.last - range.first;
   page.position = context.upload(floats(photons.position, range), "photon positions");
-  page.own_map = context.upload(part(photons.sided_triangle, range), "photon triangles");
+  std::vector<std::uint32_t> own_map(page.count);
+  std::transform(photons.sided_triangle.begin() + range.first,
+                 photons.sided_triangle.begin() + range.last, own_map.begin(),
+                 [&](std::uint32_t sided_triangle) { return patches.map(sided_triangle); });
+  page.own_map = context.upload(std::span<const std::uint32_t>(own_map), "maps of photons");
   page.flux = context.upload(floats(photons.flux, range), "photon flux");
   page.light = context.upload(part(photons.light, range), "photon lights");
   page.incoming = context.upload(floats(photons.incoming, range), "photon directions");
+  if (!normals.empty()) {
+    std::vector<glm::vec3> normal(page.count);
+    for (std::uint32_t i = 0; i < page.count; ++i) {
+      normal[i] = normals[photons.sided_triangle[range.first + i]];
+    }
+    page.normal = context.upload(floats(normal, {0, page.count}), "photon normals");
+  }
   return page;
 }
 
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
+                              std::span<const glm::vec3> normals, const Patches& patches,
                               const CandidateMaps& candidates, PhotonRange range) {
-  PhotonPage page = upload_photon_records(context, photons, range);
+  PhotonPage page = upload_photon_records(context, photons, normals, patches, range);
 
   const std::uint64_t first_list = candidates.first_list_of[photons.sided_triangle[range.first]];
   const std::uint64_t end_list =

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "device/context.hpp"
 #include "maps/candidate_maps.hpp"
+#include "photile/patches.hpp"
 #include "photile/photons.hpp"
 
 namespace photile::maps {
@@ -16,10 +18,11 @@ struct PhotonPage {
   std::uint32_t count = 0;
 
   device::Buffer<float> position;  ///< 3 per photon
-  device::Buffer<std::uint32_t> own_map;
+  device::Buffer<std::uint32_t> own_map;       ///< of the photon's sided triangle
   device::Buffer<float> flux;                  ///< 3 per photon
   device::Buffer<std::uint16_t> light;         ///< empty for a single light
   device::Buffer<float> incoming;              ///< 3 per photon; empty unless glossy
+  device::Buffer<float> normal;                ///< 3 per photon: of its sided triangle; or empty
   device::Buffer<std::uint32_t> list;          ///< of each photon, relative to the page's first
   device::Buffer<std::uint32_t> list_offsets;  ///< relative to the page's first member
   device::Buffer<std::uint32_t> list_members;
@@ -36,10 +39,13 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
                                            std::uint64_t max_bytes);
 
 /// Records only, without candidate maps.
+///   normals   per sided triangle, where maps need them; else empty
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
+                                 std::span<const glm::vec3> normals, const Patches& patches,
                                  PhotonRange range);
 
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
+                              std::span<const glm::vec3> normals, const Patches& patches,
                               const CandidateMaps& candidates, PhotonRange range);
 
 }  // namespace photile::maps

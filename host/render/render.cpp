@@ -32,13 +32,26 @@ PhotonTracerResult trace(const RayScene& rays, const RenderParameters& parameter
   return traced;
 }
 
-NeighbourGroups group(const Scene& scene, const RenderParameters& parameters, double radius,
+NeighbourGroups find_groups(const Scene& scene, const Photons& photons,
+                            const RenderParameters& parameters, double radius,
+                            Progress& progress) {
+  if (parameters.maps == MapMode::naive) return naive_groups(scene);
+  Patches patches;
+  // A global tree has no use for maps.
+  if (parameters.structure != MapStructure::kdtree_global) {
+    patches = find_patches(scene, radius, parameters.maps);
+  }
+  return merge_patches(
+      scene,
+      find_patch_groups(scene, std::move(patches), {radius, parameters.angle_degrees}, progress),
+      photons);
+}
+
+NeighbourGroups group(const Scene& scene, const Photons& photons,
+                      const RenderParameters& parameters, double radius,
                       RunStatistics& statistics, Progress& progress) {
   const Stopwatch stopwatch;
-  NeighbourGroups groups =
-      parameters.maps == MapMode::naive
-          ? naive_groups(scene)
-          : find_neighbour_groups(scene, {radius, parameters.angle_degrees}, progress);
+  NeighbourGroups groups = find_groups(scene, photons, parameters, radius, progress);
   const auto members = static_cast<double>(groups.members.size());
   statistics.push_back(
       {"neighbour groups",
@@ -46,7 +59,8 @@ NeighbourGroups group(const Scene& scene, const RenderParameters& parameters, do
        groups.bytes(),
        0,
        {{"members", members},
-        {"members per sided triangle", members / static_cast<double>(groups.offsets.size() - 1)}}});
+        {"members per sided triangle", members / static_cast<double>(groups.offsets.size() - 1)},
+        {"patches", static_cast<double>(groups.patches.count())}}});
   return groups;
 }
 
@@ -69,6 +83,7 @@ std::vector<PhotonMaps> build_maps(std::span<Device> devices, const Scene& scene
                         0,
                         device_bytes,
                         {{"maps", static_cast<double>(built.maps)},
+                         {"mixed maps", static_cast<double>(built.mixed_maps)},
                          {"references", static_cast<double>(built.references)},
                          {"references per photon",
                           static_cast<double>(built.references) /
@@ -79,9 +94,9 @@ std::vector<PhotonMaps> build_maps(std::span<Device> devices, const Scene& scene
 }
 
 LightLayers estimate_picture(const RayScene& rays, const Camera& camera,
-                             std::span<const Device> devices, DeviceEstimators& estimators,
-                             const RenderParameters& parameters, RunStatistics& statistics,
-                             Progress& progress) {
+                             std::span<const Device> devices, const PhotonMaps& maps,
+                             DeviceEstimators& estimators, const RenderParameters& parameters,
+                             RunStatistics& statistics, Progress& progress) {
   const PrimaryHitParameters& film = parameters.film;
   StageStatistics hit_stage{"primary hits", 0, 0, 0, {}};
   StageStatistics estimate_stage{"radiance estimate", 0, 0, 0, {}};
@@ -96,7 +111,7 @@ LightLayers estimate_picture(const RayScene& rays, const Camera& camera,
     progress.throw_if_cancelled();
     const int last = std::min(first + rows, film.height);
     const Stopwatch hit_watch;
-    const PrimaryHitBatch batch = trace_primary_hits(rays, camera, film, first, last);
+    const PrimaryHitBatch batch = trace_primary_hits(rays, camera, film, first, last, maps.map_of());
     hit_stage.seconds += hit_watch.seconds();
     const Stopwatch estimate_watch;
     const Estimates estimates = estimators.estimate(batch.hits);
@@ -141,14 +156,15 @@ RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> 
   result.stored_photons = traced.photons.size();
   result.radius = parameters.radius > 0 ? parameters.radius
                                         : automatic_radius(traced.photons, parameters.neighbours);
-  const NeighbourGroups groups = group(scene, parameters, result.radius, statistics, progress);
+  const NeighbourGroups groups =
+      group(scene, traced.photons, parameters, result.radius, statistics, progress);
   const std::vector<PhotonMaps> maps = build_maps(
       devices, scene, traced.photons, groups,
       {result.radius, parameters.photons_per_cell, parameters.structure}, statistics, progress);
   traced.photons = Photons{};  // the maps hold copies
   DeviceEstimators estimators(devices, maps, scene, {parameters.neighbours, 0, parameters.tuning});
-  result.layers =
-      estimate_picture(rays, camera, devices, estimators, parameters, statistics, progress);
+  result.layers = estimate_picture(rays, camera, devices, maps.front(), estimators, parameters,
+                                   statistics, progress);
   result.device_shares = estimators.shares();
   return result;
 }

@@ -27,12 +27,11 @@ std::uint64_t cell(double position, double low, double high) {
 }
 
 struct Key {
-  std::uint32_t sided_triangle;
+  std::uint32_t map;
   std::uint32_t index;
   std::uint64_t code;
   bool operator<(const Key& other) const {
-    return std::tie(sided_triangle, code, index) <
-           std::tie(other.sided_triangle, other.code, other.index);
+    return std::tie(map, code, index) < std::tie(other.map, other.code, other.index);
   }
 };
 
@@ -44,10 +43,12 @@ std::uint64_t morton_code(const glm::vec3& position, const Box& box) {
          spread(cell(position.z, box.low.z, box.high.z)) << 2;
 }
 
-std::vector<std::uint32_t> sorted_order(const std::vector<EyeHit>& hits, const Box& box) {
+std::vector<std::uint32_t> sorted_order(const std::vector<EyeHit>& hits, const Box& box,
+                                        std::span<const std::uint32_t> map_of) {
   std::vector<Key> keys(hits.size());
   tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t i) {
-    keys[i] = {hits[i].sided_triangle, static_cast<std::uint32_t>(i),
+    const std::uint32_t own = hits[i].sided_triangle;
+    keys[i] = {map_of.empty() ? own : map_of[own], static_cast<std::uint32_t>(i),
                morton_code(hits[i].position, box)};
   });
   tbb::parallel_sort(keys.begin(), keys.end());

@@ -1,8 +1,9 @@
-// The order of primary hits: by sided triangle, then along a Morton curve.
+// The order of primary hits: by photon map, then along a Morton curve.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "trace/eye_path.hpp"
@@ -13,7 +14,9 @@ namespace photile::trace {
 /// its border.
 std::uint64_t morton_code(const glm::vec3& position, const Box& box);
 
-/// Indices of the hits in the order sided triangle, Morton code within `box`, index.
-std::vector<std::uint32_t> sorted_order(const std::vector<EyeHit>& hits, const Box& box);
+/// Indices of the hits in the order map, Morton code within `box`, index.
+///   map_of   per sided triangle; empty where a sided triangle is the map itself
+std::vector<std::uint32_t> sorted_order(const std::vector<EyeHit>& hits, const Box& box,
+                                        std::span<const std::uint32_t> map_of);
 
 }  // namespace photile::trace

@@ -64,8 +64,9 @@ std::vector<T> gather(const std::vector<EyeHit>& hits, const std::vector<std::ui
   return values;
 }
 
-PrimaryHits sorted(const std::vector<EyeHit>& hits, const Box& box, bool glossy) {
-  const std::vector<std::uint32_t> order = trace::sorted_order(hits, box);
+PrimaryHits sorted(const std::vector<EyeHit>& hits, const Box& box, bool glossy,
+                   std::span<const std::uint32_t> map_of) {
+  const std::vector<std::uint32_t> order = trace::sorted_order(hits, box, map_of);
   PrimaryHits result;
   result.position = gather(hits, order, &EyeHit::position);
   result.sided_triangle = gather(hits, order, &EyeHit::sided_triangle);
@@ -83,7 +84,7 @@ PrimaryHits sorted(const std::vector<EyeHit>& hits, const Box& box, bool glossy)
 
 PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& camera,
                                    const PrimaryHitParameters& parameters, int first_row,
-                                   int last_row) {
+                                   int last_row, std::span<const std::uint32_t> map_of) {
   check(parameters, first_row, last_row);
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(ray_scene.scene());
   const trace::EyeSetup setup{&ray_scene.impl(), &camera, &parameters, &radiance};
@@ -102,7 +103,8 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
   batch.emission = std::move(all.emission);
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
-  batch.hits = sorted(all.hits, ray_scene.impl().bounds, needs_of(ray_scene.scene()).glossy);
+  batch.hits =
+      sorted(all.hits, ray_scene.impl().bounds, needs_of(ray_scene.scene()).glossy, map_of);
   return batch;
 }
 

@@ -54,10 +54,11 @@ class Estimator {
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 
-  /// Radiance estimates. Hits must be grouped by sided triangle (PrimaryHits are).
+  /// Radiance estimates. Hits in the order of their maps (trace_primary_hits with
+  /// PhotonMaps::map_of) need not be sorted.
   Estimates estimate(const PrimaryHits& hits);
 
-  /// The same for hits [first, first + count) alone.
+  /// The same for hits [first, first + count) alone, which must be in the order of their maps.
   Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count);
 
   /// The last place at or before `hit` where a batch may be cut without changing a bit of what is

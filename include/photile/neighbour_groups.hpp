@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "photile/defaults.hpp"
+#include "photile/patches.hpp"
 #include "photile/photons.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
@@ -18,11 +19,13 @@ struct NeighbourGroupParameters {
   double angle_degrees = defaults::group_angle_degrees;  ///< largest angle between their normals
 };
 
-/// Groups in compressed sparse rows: members of sided triangle s are
-/// members[offsets[s] .. offsets[s + 1]), ascending, s itself among them. The relation is symmetric.
+/// Groups in compressed sparse rows: the maps that photons of sided triangle s may have to enter are
+/// members[offsets[s] .. offsets[s + 1]), ascending, its own map among them. Without patches a map
+/// is a sided triangle, and the relation is symmetric.
 struct NeighbourGroups {
   std::vector<std::uint64_t> offsets;  ///< size 2 * triangles + 1
   std::vector<std::uint32_t> members;
+  Patches patches;  ///< which triangles share a map
   double radius = 0;
   double angle_degrees = 0;
 
@@ -31,7 +34,8 @@ struct NeighbourGroups {
             members.data() + offsets[sided_triangle + 1]};
   }
   std::uint64_t bytes() const {
-    return offsets.size() * sizeof(offsets[0]) + members.size() * sizeof(members[0]);
+    return offsets.size() * sizeof(offsets[0]) + members.size() * sizeof(members[0]) +
+           patches.bytes();
   }
 };
 
@@ -42,6 +46,17 @@ struct NeighbourGroups {
 NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       const NeighbourGroupParameters& parameters,
                                       Progress& progress = Progress::none());
+
+/// As above, with the maps of patches for members: each that has a triangle in the sided triangle's
+/// group. Found patch by patch, so that time grows with the patches near a triangle and not with the
+/// triangles.
+NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
+                                  const NeighbourGroupParameters& parameters,
+                                  Progress& progress = Progress::none());
+
+/// Joins patches that hold mostly the same photons, judged by a sample: each joined pair saves the
+/// references they share. What a query finds is the same.
+NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons);
 
 /// Groups of one: every map holds the photons of its own sided triangle only (figure 1 of the
 /// paper: dark edges). Their radius is infinite: no other triangle's photon is ever looked for.

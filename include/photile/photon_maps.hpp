@@ -1,10 +1,11 @@
 // Photon maps on the device: one 2D uniform grid per sided triangle (Graglia et al. 2012,
-// section 5), or a structure to compare it with.
+// section 5) or patch, or a structure to compare it with.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "photile/defaults.hpp"
@@ -40,7 +41,8 @@ struct PhotonMapParameters {
 struct PhotonMapStatistics {
   std::uint64_t photons = 0;
   std::uint64_t references = 0;     ///< entries over all maps; references / photons = copies
-  std::uint64_t maps = 0;           ///< sided triangles whose map holds a photon
+  std::uint64_t maps = 0;           ///< that hold a photon
+  std::uint64_t mixed_maps = 0;     ///< of them, those whose queries filter by normal
   std::uint64_t cells = 0;          ///< of grids
   std::uint64_t nodes = 0;          ///< of kd-trees
   std::uint64_t largest_map = 0;    ///< entries
@@ -54,9 +56,10 @@ namespace maps {
 struct MapStore;  // host/maps/map_store.hpp
 }
 
-/// Photon maps of every sided triangle. A photon is entered by reference in the maps of its group
-/// that lie within the radius of the photon itself. Build is deterministic: the same input gives
-/// the same bits on every run, device thread count and CPU runtime.
+/// Photon maps of every sided triangle, or of patches of them (NeighbourGroups::patches). A photon
+/// is entered in the maps of its group that lie within the radius of the photon itself. Build is
+/// deterministic: the same input gives the same bits on every run, device thread count and CPU
+/// runtime.
 class PhotonMaps {
  public:
   /// Builds on the device (kd-trees on the host). Errors: UsageError for a radius beyond the
@@ -72,6 +75,8 @@ class PhotonMaps {
   const PhotonMapStatistics& statistics() const;
   const PhotonMapParameters& parameters() const;
   Device& device() const;
+  /// Per sided triangle: the map that serves it. Empty where that is the sided triangle itself.
+  std::span<const std::uint32_t> map_of() const;
 
   const maps::MapStore& store() const { return *store_; }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "photile/camera.hpp"
@@ -19,7 +20,7 @@ struct HitLobe {
 };
 
 /// Hits on opaque surfaces, after mirrors and glass were followed. Structure of arrays. Sorted by
-/// sided triangle, then along a space-filling curve, so that neighbours in memory share a map.
+/// photon map, then along a space-filling curve, so that neighbours in memory share a map.
 struct PrimaryHits {
   std::vector<glm::vec3> position;  ///< metres
   std::vector<std::uint32_t> sided_triangle;
@@ -57,9 +58,11 @@ struct PrimaryHitBatch {
 /// Traces all samples of the rows [first_row, last_row). Each sample carries weight 1 /
 /// samples_per_pixel in `throughput` and `radiance`, so that summing gives pixel means. Depends on
 /// the scene, camera, parameters and seed only, not on how rows are split or on threads.
+///   map_of   the photon map of each sided triangle (PhotonMaps::map_of), for the order of hits; empty
+///            where a sided triangle is the map itself
 PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
                                    const PrimaryHitParameters& parameters, int first_row,
-                                   int last_row);
+                                   int last_row, std::span<const std::uint32_t> map_of = {});
 
 /// Radiance that a light emits at unit power towards the front of its triangles: 1 / (pi A) x
 /// colour, A counting both sides of two-sided lights. Zero for lights without area.

@@ -20,15 +20,9 @@
 
 namespace photile {
 
-/// Which maps a photon is entered in.
-enum class MapMode {
-  naive,   ///< its own sided triangle's only (figure 1 of the paper: dark edges)
-  grouped  ///< those of its triangle's neighbour group
-};
-
 struct RenderParameters {
   PhotonTracerParameters photons;
-  MapMode maps = MapMode::grouped;
+  MapMode maps = MapMode::automatic;
   double radius = 0;  ///< metres; 0 = automatic_radius
   double angle_degrees = defaults::group_angle_degrees;
   int neighbours = defaults::neighbours;

@@ -15,8 +15,8 @@
 
 // One work-item per HITS_PER_ITEM hits of one map page.
 //   hit_count, first_hit   the hits [first_hit, first_hit + hit_count) of the batch lie in this page
-//   hit_map                sided triangle of each hit of the batch
-//   first_map              the page's first sided triangle
+//   hit_map                the map that each hit of the batch lies on
+//   first_map              the page's first map
 //   entry_stride           plane distance of entry_position, entry_flux, entry_incoming
 //   k, radius              at most k neighbours, none farther than radius
 //   others                 see estimate/arguments.clh

@@ -29,7 +29,16 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     float distances[LIST_CAPACITY];
     uint listed[LIST_CAPACITY];
     NearestList list = empty_list(distances, listed, entry_photon, k, radius);
-    nearest_in_rings(&list, hit.position, grid, cell_start, entry_position, entry_stride);
+    Search search;
+    search.hit = hit.position;
+    search.position = entry_position;
+    search.stride = entry_stride;
+#ifdef NORMALS
+    const NormalFilter filter = {grid->mixed != 0, entry_normal, entry_stride, hit.face_normal,
+                                 least_cosine};
+    search.filter = filter;
+#endif
+    nearest_in_rings(&list, &search, grid, cell_start);
     Sums sums;
     begin_sums(&sums, &estimates, index);
     // A full list's farthest photon, at 0, only sets the radius (but for k = 1).

@@ -129,7 +129,8 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     int undone[VECTOR_WIDTH];
     bool one_by_one = true;
 #if !defined(GLOSSY) && !defined(MANY_LIGHTS)
-    if (count >= LEAST_TILE && k > 1) {
+    // Hits on a mixed map differ in which candidates they may take.
+    if (count >= LEAST_TILE && k > 1 && !grid->mixed) {
       one_by_one = !estimate_tile(&entries, grid, cell_start, &hits, first, count, k, radius,
                                   &expected, undone, &estimates);
     }

@@ -10,8 +10,13 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
                       __global const uint* hit_map, uint first_map,
                       __global const PhotileGrid* grids, __global const uint* cell_start,
                       uint entry_stride, __global const float* entry_position,
-                      __global const uint* entry_photon, uint k, float radius,
-                      __global uint* neighbours, __global float* squared_radius) {
+                      __global const uint* entry_photon,
+#ifdef NORMALS
+                      __global const float* entry_normal, __global const float* hit_face_normal,
+                      float least_cosine,
+#endif
+                      uint k, float radius, __global uint* neighbours,
+                      __global float* squared_radius) {
   for (uint h = get_global_id(0); h < hit_count; h += get_global_size(0)) {
     const uint hit = first_hit + h;
     __global uint* list = neighbours + hit * k;
@@ -26,6 +31,11 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
     candidates.cell_start = cell_start;
     candidates.position = entry_position;
     candidates.stride = entry_stride;
+#ifdef NORMALS
+    const NormalFilter filter = {grid->mixed != 0, entry_normal, entry_stride,
+                                 vload3(hit, hit_face_normal), least_cosine};
+    candidates.filter = filter;
+#endif
     DECLARE_STORED(stored);
     const Neighbourhood near = find_neighbourhood(&candidates, stored, k, k, radius, 0.0f, grid);
 

@@ -4,16 +4,16 @@
 
 // Arguments of both kernels:
 //   photon_count ... squared_reach   as in count_photons
-//   first_map, last_map   the maps of the page: sided triangles [first_map, last_map)
+//   first_map, last_map   the maps of the page
 //   grids                 one per map of the page
 
 // One work-item per photon. Before: cell_count is zero. After: photons per cell.
 __kernel void count_cells(uint photon_count, __global const float* position,
                           __global const uint* own_map, __global const uint* list,
                           __global const uint* list_offsets, __global const uint* list_members,
-                          __global const float* corners, float squared_reach, uint first_map,
-                          uint last_map, __global const PhotileGrid* grids,
-                          __global uint* cell_count) {
+                          __global const PhotileMapShape* shapes, __global const float* corners,
+                          float squared_reach, uint first_map, uint last_map,
+                          __global const PhotileGrid* grids, __global uint* cell_count) {
   for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
     const float3 photon = vload3(i, position);
     const uint own = own_map[i];
@@ -21,7 +21,7 @@ __kernel void count_cells(uint photon_count, __global const float* position,
     for (uint m = list_offsets[list[i]]; m < end; ++m) {
       const uint map = list_members[m];
       if (map < first_map || map >= last_map) continue;
-      if (!enters_map(photon, own, map, corners, squared_reach)) continue;
+      if (!enters_map(photon, own, map, shapes, corners, squared_reach)) continue;
       atomic_inc(&cell_count[cell_index(photon, &grids[map - first_map])]);
     }
   }
@@ -34,10 +34,11 @@ __kernel void count_cells(uint photon_count, __global const float* position,
 __kernel void scatter(uint photon_count, __global const float* position,
                       __global const uint* own_map, __global const uint* list,
                       __global const uint* list_offsets, __global const uint* list_members,
-                      __global const float* corners, float squared_reach, uint first_map,
-                      uint last_map, __global const PhotileGrid* grids,
-                      __global const uint* cell_start, __global uint* cell_count,
-                      uint first_photon, __global uint* entry_photon) {
+                      __global const PhotileMapShape* shapes, __global const float* corners,
+                      float squared_reach, uint first_map, uint last_map,
+                      __global const PhotileGrid* grids, __global const uint* cell_start,
+                      __global uint* cell_count, uint first_photon,
+                      __global uint* entry_photon) {
   for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
     const float3 photon = vload3(i, position);
     const uint own = own_map[i];
@@ -45,7 +46,7 @@ __kernel void scatter(uint photon_count, __global const float* position,
     for (uint m = list_offsets[list[i]]; m < end; ++m) {
       const uint map = list_members[m];
       if (map < first_map || map >= last_map) continue;
-      if (!enters_map(photon, own, map, corners, squared_reach)) continue;
+      if (!enters_map(photon, own, map, shapes, corners, squared_reach)) continue;
       const uint cell = cell_index(photon, &grids[map - first_map]);
       const uint slot = cell_start[cell] + atomic_dec(&cell_count[cell]) - 1u;
       entry_photon[slot] = first_photon + i;

@@ -5,6 +5,7 @@
 // Symbols the host defines:
 //   LIGHT_INDEX   type of an entry's light; undefined with one light
 //   GLOSSY        entries keep their incoming direction
+//   NORMALS       entries keep the normal of the photon's sided triangle
 
 // One work-item per entry of a map page; handles those whose photon is in the photon page.
 //   entry_stride   entries of the page with padding: component c of entry i is [c * stride + i]
@@ -21,6 +22,10 @@ __kernel void gather_entries(uint entry_count, uint entry_stride,
                              ,
                              __global const float* incoming, __global float* entry_incoming
 #endif
+#ifdef NORMALS
+                             ,
+                             __global const float* normal, __global float* entry_normal
+#endif
 ) {
   for (uint i = get_global_id(0); i < entry_count; i += get_global_size(0)) {
     const uint photon = entry_photon[i] - first_photon;
@@ -30,6 +35,9 @@ __kernel void gather_entries(uint entry_count, uint entry_stride,
       entry_flux[c * entry_stride + i] = flux[3 * photon + c];
 #ifdef GLOSSY
       entry_incoming[c * entry_stride + i] = incoming[3 * photon + c];
+#endif
+#ifdef NORMALS
+      entry_normal[c * entry_stride + i] = normal[3 * photon + c];
 #endif
     }
 #ifdef LIGHT_INDEX

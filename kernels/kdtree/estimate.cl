@@ -12,7 +12,6 @@
 // Work-items stride over the hits [first_hit, first_hit + hit_count) of one page.
 //   root            per map of the page: its root node, 0xFFFFFFFF without photons
 //   frames          per map of the page: the frame of its plane (TREE_2D)
-//   map_normal      3 floats per sided triangle (NORMALS)
 //   list_*          k per work-item (LIST_IN_GLOBAL_MEMORY)
 // Others as in estimate/estimate.cl.
 __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit_position,
@@ -20,10 +19,6 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                        __global const PhotileGrid* frames, __global const PhotileTreeNode* nodes,
                        uint entry_stride, __global const float* entry_position,
                        __global const float* entry_flux, __global const uint* entry_photon,
-#ifdef NORMALS
-                       __global const float* entry_normal, __global const float* map_normal,
-                       float least_cosine,
-#endif
 #ifdef LIST_IN_GLOBAL_MEMORY
                        __global float* list_distance, __global uint* list_entry,
 #endif
@@ -50,7 +45,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     tree.stride = entry_stride;
 #ifdef NORMALS
     tree.normal = entry_normal;
-    tree.hit_normal = vload3(map, map_normal);
+    tree.hit_normal = hit.face_normal;
     tree.least_cosine = least_cosine;
 #endif
     nearest_in_tree(&tree, root[map - first_map], hit.position,

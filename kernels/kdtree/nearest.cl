@@ -10,7 +10,7 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
                       uint entry_stride, __global const float* entry_position,
                       __global const uint* entry_photon,
 #ifdef NORMALS
-                      __global const float* entry_normal, __global const float* map_normal,
+                      __global const float* entry_normal, __global const float* hit_face_normal,
                       float least_cosine,
 #endif
 #ifdef LIST_IN_GLOBAL_MEMORY
@@ -35,7 +35,7 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
     tree.stride = entry_stride;
 #ifdef NORMALS
     tree.normal = entry_normal;
-    tree.hit_normal = vload3(map, map_normal);
+    tree.hit_normal = vload3(hit, hit_face_normal);
     tree.least_cosine = least_cosine;
 #endif
     nearest_in_tree(&tree, root[map - first_map], vload3(hit, hit_position),

@@ -31,7 +31,7 @@ double mean(const Image& picture, const std::string& channel) {
 }  // namespace
 
 TEST_CASE("the same seed gives the same bits on one and on two threads") {
-  const std::string maps = GENERATE("grouped", "naive");
+  const std::string maps = GENERATE("auto", "patch", "triangle", "naive");
   const FileFolder folder;
   const std::vector<std::string> options{"--size", "32x24", "--seed", "7", "--maps", maps};
   const auto with = [&](const char* threads, const char* name) {
@@ -88,7 +88,7 @@ TEST_CASE("an EXR tells how it was made") {
   CHECK(attribute("photile.neighbours") == "30");
   CHECK(attribute("photile.radius") == "0.25 m");
   CHECK(attribute("photile.angle") == "45 degrees");
-  CHECK(attribute("photile.maps") == "grouped");
+  CHECK(attribute("photile.maps") == "auto");
   CHECK(attribute("photile.efficacy") == "179");
   CHECK(attribute("photile.units") == "W/(m2 sr)");
   CHECK_FALSE(attribute("photile.device").empty());
@@ -132,12 +132,12 @@ TEST_CASE("the statistics are JSON with every stage, the parameters and the ligh
   CHECK(seconds <= statistics["total_seconds"].get<double>());
 }
 
-TEST_CASE("naive maps are darker than grouped ones at borders, hence in the mean") {
+TEST_CASE("naive maps are darker than those of neighbour groups at borders, hence in the mean") {
   const FileFolder folder;
-  render(folder, {"--size", "32x24", "-o", folder / "grouped.exr"});
+  render(folder, {"--size", "32x24", "-o", folder / "neighbour-groups.exr"});
   render(folder, {"--size", "32x24", "-o", folder / "naive.exr", "--maps", "naive"});
   CHECK(mean(read_image(folder / "naive.exr"), "G") <
-        mean(read_image(folder / "grouped.exr"), "G"));
+        mean(read_image(folder / "neighbour-groups.exr"), "G"));
 }
 
 TEST_CASE("a profiled render lists the time of each kernel") {

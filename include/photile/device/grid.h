@@ -4,7 +4,7 @@
 #ifndef PHOTILE_DEVICE_GRID_H
 #define PHOTILE_DEVICE_GRID_H
 
-/* Grid over the plane of a triangle. A point p projects to
+/* Grid over the plane of a triangle or patch. A point p projects to
      u = (p - origin) . u_axis,  v = (p - origin) . v_axis      (metres)
    and falls in cell (column, row) = ((u, v) - minimum) / cell_size, clamped to the grid.
 
@@ -16,7 +16,7 @@
          |  +--+--+--+--+
    minimum ----------------> u   columns
 
-   The grid covers the triangle's rectangle grown by the radius. A map without photons has no
+   The grid covers the surface's rectangle grown by the radius. A map without photons has no
    columns. */
 typedef struct {
   float origin_x, origin_y, origin_z;
@@ -28,6 +28,7 @@ typedef struct {
   float slack; /* how far rounding may move a projected point across a cell border, metres */
   unsigned int columns, rows;
   unsigned int first_cell; /* into cell_start of the map's page */
+  unsigned int mixed; /* 1 if some photon's normal may disagree with some triangle of the map */
 } PhotileGrid;
 
 #endif

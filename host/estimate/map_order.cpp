@@ -1,0 +1,75 @@
+#include "estimate/map_order.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace photile::estimate {
+namespace {
+
+template <class T>
+std::vector<T> gather(const std::vector<T>& values, std::span<const std::uint32_t> order) {
+  if (values.empty()) return {};
+  std::vector<T> result;
+  result.reserve(order.size());
+  for (const std::uint32_t i : order) result.push_back(values[i]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> maps_of(std::span<const std::uint32_t> sided_triangles,
+                                   std::span<const std::uint32_t> map_of) {
+  std::vector<std::uint32_t> maps(sided_triangles.begin(), sided_triangles.end());
+  if (!map_of.empty()) {
+    for (std::uint32_t& map : maps) map = map_of[map];
+  }
+  return maps;
+}
+
+std::vector<std::uint32_t> order_by_map(const PrimaryHits& hits,
+                                        std::span<const std::uint32_t> map_of) {
+  const std::vector<std::uint32_t> maps = maps_of(hits.sided_triangle, map_of);
+  if (std::is_sorted(maps.begin(), maps.end())) return {};
+  std::vector<std::uint32_t> order(hits.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return maps[a] < maps[b]; });
+  return order;
+}
+
+Estimates restored(Estimates estimates, std::span<const std::uint32_t> order,
+                   std::size_t light_count) {
+  if (estimates.first.empty()) {
+    restore_rows(estimates.irradiance, order, light_count);
+    restore_rows(estimates.radiance, order, light_count);
+    return estimates;
+  }
+  std::vector<std::uint32_t> place(order.size());  // of each hit among the reordered
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  std::vector<std::uint32_t> slots;
+  std::vector<std::uint64_t> first{0};
+  for (const std::uint32_t i : place) {
+    for (std::uint64_t slot = estimates.first[i]; slot < estimates.first[i + 1]; ++slot) {
+      slots.push_back(static_cast<std::uint32_t>(slot));
+    }
+    first.push_back(slots.size());
+  }
+  Estimates result;
+  result.irradiance = gather(estimates.irradiance, slots);
+  result.radiance = gather(estimates.radiance, slots);
+  result.light = gather(estimates.light, slots);
+  result.first = std::move(first);
+  return result;
+}
+
+PrimaryHits reordered(const PrimaryHits& hits, std::span<const std::uint32_t> order) {
+  PrimaryHits result;
+  result.position = gather(hits.position, order);
+  result.sided_triangle = gather(hits.sided_triangle, order);
+  result.diffuse_albedo = gather(hits.diffuse_albedo, order);
+  result.outgoing = gather(hits.outgoing, order);
+  result.lobe = gather(hits.lobe, order);
+  return result;
+}
+
+}  // namespace photile::estimate

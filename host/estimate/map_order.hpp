@@ -1,0 +1,44 @@
+// Hits in the order of the maps they lie on.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "photile/estimator.hpp"
+#include "photile/primary_hits.hpp"
+
+namespace photile::estimate {
+
+/// Positions of hits in ascending order of their maps, stable; empty if they are in that order
+/// already.
+///   map_of   per sided triangle; empty where a sided triangle is the map itself
+std::vector<std::uint32_t> order_by_map(const PrimaryHits& hits,
+                                        std::span<const std::uint32_t> map_of);
+
+/// Hit i of the result is hit order[i]. Pixels and throughput, which no estimate reads, are left out.
+PrimaryHits reordered(const PrimaryHits& hits, std::span<const std::uint32_t> order);
+
+/// The maps of sided triangles.
+std::vector<std::uint32_t> maps_of(std::span<const std::uint32_t> sided_triangles,
+                                   std::span<const std::uint32_t> map_of);
+
+/// Estimates of reordered hits, put back: those of hit i become those of hit order[i].
+Estimates restored(Estimates estimates, std::span<const std::uint32_t> order,
+                   std::size_t light_count);
+
+/// Puts rows of `width` values back: row i of `values` becomes row order[i].
+template <class T>
+void restore_rows(std::vector<T>& values, std::span<const std::uint32_t> order,
+                  std::size_t width) {
+  if (values.empty()) return;
+  std::vector<T> restored(values.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t j = 0; j < width; ++j) {
+      restored[order[i] * width + j] = values[i * width + j];
+    }
+  }
+  values = std::move(restored);
+}
+
+}  // namespace photile::estimate

@@ -1,0 +1,33 @@
+// The lists behind neighbour groups: one search per triangle, written out as the groups of both sides.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "photile/neighbour_groups.hpp"
+
+namespace photile::groups {
+
+// A neighbour of a triangle (a triangle, or a patch) is kept as 4 * its index + these bits until the
+// groups of both sides are written: equal sides agree, opposite sides agree.
+inline constexpr std::uint32_t equal_sides = 1, opposite_sides = 2;
+
+/// The normal test of photile::normals_agree for both pairs of sides.
+std::uint32_t agreeing_sides(const glm::dvec3& a, const glm::dvec3& b, double cos_angle);
+
+/// Appends the neighbours of a triangle, ascending.
+using AppendNeighbours =
+    std::function<void(std::uint32_t triangle, std::vector<std::uint32_t>& neighbours)>;
+
+/// Errors: UsageError when the radius is not positive and finite or the angle is outside [0, 180].
+void check(const NeighbourGroupParameters& parameters);
+
+/// Groups of both sides of all triangles, searched in parallel. Errors: UsageError when they have
+/// more members than limits.hpp allows; Interrupted.
+NeighbourGroups collect_groups(std::size_t triangle_count,
+                               const NeighbourGroupParameters& parameters,
+                               const AppendNeighbours& append_neighbours, Progress& progress);
+
+}  // namespace photile::groups

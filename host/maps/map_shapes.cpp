@@ -1,0 +1,93 @@
+#include "maps/map_shapes.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "groups/patch_shape.hpp"
+
+namespace photile::maps {
+namespace {
+
+/// What rounding to float may move a corner by, metres.
+double rounding_margin(const Scene& scene) {
+  float largest = 0;
+  for (const glm::vec3& v : scene.vertices) {
+    largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  }
+  return 4.0 * std::numeric_limits<float>::epsilon() * largest;
+}
+
+double perimeter_of(const Scene& scene, std::uint32_t triangle) {
+  const auto corners = scene.corners(triangle);
+  double perimeter = 0;
+  for (int i = 0; i < 3; ++i) perimeter += glm::distance(corners[i], corners[(i + 1) % 3]);
+  return perimeter;
+}
+
+/// `members`: sided triangles of the map whose side the axis points from.
+PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts,
+                          std::span<const std::uint32_t> members, double angle, double margin) {
+  std::vector<std::uint32_t> triangles(members.size());
+  std::transform(members.begin(), members.end(), triangles.begin(), triangle_of);
+  const groups::PatchShape box = groups::shape_of(scene, facts, triangles);
+
+  const auto cosine = [&](std::uint32_t member) {
+    const double cosine = glm::dot(glm::dvec3(facts.normal[triangle_of(member)]), box.axis);
+    return side_of(member) == 0 ? cosine : -cosine;
+  };
+  double sum = 0, least = 1, most = -1;
+  for (const std::uint32_t member : members) {
+    sum += cosine(member);
+    least = std::min(least, cosine(member));
+    most = std::max(most, cosine(member));
+  }
+  const double sign = sum < 0 ? -1 : 1;
+  const double lean = std::acos(std::clamp(sign > 0 ? least : -most, -1.0, 1.0));
+  constexpr double slack = 1e-3;  // radians; far above the rounding of normals
+  const double certain_angle = angle - lean - slack;
+
+  const glm::dvec3 corner = box.low - margin;
+  const glm::vec3 origin(corner.x * box.u_axis + corner.y * box.v_axis + corner.z * box.axis);
+  const glm::vec3 u(box.u_axis), v(box.v_axis), axis(sign * box.axis);
+  // Heights are measured from the origin along the axis: turn it over with the axis.
+  const glm::vec3 base =
+      sign > 0 ? origin
+               : glm::vec3(glm::dvec3(origin) + box.axis * (box.width(2) + 2 * margin));
+  PhotileMapShape shape{};
+  shape.origin_x = base.x, shape.origin_y = base.y, shape.origin_z = base.z;
+  shape.u_axis_x = u.x, shape.u_axis_y = u.y, shape.u_axis_z = u.z;
+  shape.v_axis_x = v.x, shape.v_axis_y = v.y, shape.v_axis_z = v.z;
+  shape.axis_x = axis.x, shape.axis_y = axis.y, shape.axis_z = axis.z;
+  shape.width_u = static_cast<float>(box.width(0) + 2 * margin);
+  shape.width_v = static_cast<float>(box.width(1) + 2 * margin);
+  shape.height = static_cast<float>(box.width(2) + 2 * margin);
+  shape.area = static_cast<float>(box.area);
+  const bool single = members.size() == 1;
+  shape.perimeter = static_cast<float>(single ? perimeter_of(scene, triangles.front())
+                                              : 2 * (box.width(0) + box.width(1)));
+  shape.certain_cosine =
+      certain_angle > 0 ? static_cast<float>(std::cos(certain_angle)) : 2.0f;
+  shape.triangle = single ? triangles.front() : PHOTILE_NO_TRIANGLE;
+  return shape;
+}
+
+}  // namespace
+
+std::vector<PhotileMapShape> map_shapes(const Scene& scene, const Patches& patches,
+                                        double angle_radians) {
+  const groups::TriangleFacts facts(scene);
+  const double margin = rounding_margin(scene);
+  std::vector<PhotileMapShape> shapes(patches.empty() ? scene.triangle_count() : patches.count());
+  tbb::parallel_for(std::size_t{0}, shapes.size(), [&](std::size_t i) {
+    const std::uint32_t own = sided(static_cast<std::uint32_t>(i), 0);
+    const std::span<const std::uint32_t> members =
+        patches.empty() ? std::span(&own, 1) : patches.of(i);
+    shapes[i] = map_shape(scene, facts, members, angle_radians, margin);
+  });
+  return shapes;
+}
+
+}  // namespace photile::maps

@@ -1,0 +1,122 @@
+// Maps of patches find the neighbours that maps of triangles and the oracle find, on real meshes.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "neighbour_comparison.hpp"
+#include "photon_sets.hpp"
+#include "test_device.hpp"
+
+using namespace photile;
+
+namespace {
+
+const std::filesystem::path source_folder = PHOTILE_SOURCE_DIR;
+
+NeighbourGroups groups_of(const Scene& scene, const Photons& photons, double radius, MapMode mode) {
+  return merge_patches(
+      scene, find_patch_groups(scene, find_patches(scene, radius, mode), {radius, 60}), photons);
+}
+
+void check_modes(const Scene& scene, std::size_t photon_count, std::size_t hit_count, double radius,
+                 std::initializer_list<MapStructure> structures,
+                 std::initializer_list<int> neighbour_counts) {
+  const Photons photons = test::uniform_photons(scene, photon_count, 51);
+  const PrimaryHits hits = test::uniform_hits(scene, hit_count, 52);
+  const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
+  for (const MapMode mode : {MapMode::triangle, MapMode::patch, MapMode::automatic}) {
+    const NeighbourGroups groups = groups_of(scene, photons, radius, mode);
+    for (const MapStructure structure : structures) {
+      const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+      for (const int k : neighbour_counts) {
+        CAPTURE(name_of(structure), static_cast<int>(mode), k, radius);
+        Estimator estimator(maps, scene, {k, 0});
+        CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons,
+                                      static_cast<float>(radius)) == 0);
+      }
+    }
+  }
+}
+
+constexpr auto every_structure = {MapStructure::uniform_grid, MapStructure::kdtree_2d,
+                                  MapStructure::kdtree_3d, MapStructure::brute_force};
+
+/// A finely tessellated sphere: triangles of a hundredth of the radius and poles of needles.
+Scene sphere() {
+  Scene scene = test::empty_scene();
+  constexpr int rings = 96, segments = 192;
+  const auto at = [](int i, int j) {
+    const float polar = glm::pi<float>() * static_cast<float>(i) / rings;
+    const float angle = glm::two_pi<float>() * static_cast<float>(j) / segments;
+    return glm::vec3(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
+                     std::cos(polar));
+  };
+  for (int i = 0; i < rings; ++i) {
+    for (int j = 0; j < segments; ++j) {
+      if (i > 0) test::add_triangle(scene, at(i, j), at(i + 1, j), at(i, j + 1));
+      if (i + 1 < rings) test::add_triangle(scene, at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+    }
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("maps of patches find the oracle's neighbours on a fine torus") {
+  Scene scene = test::empty_scene();
+  test::add_torus(scene, 1.0f, 0.2f, 96, 48);
+  check_modes(scene, 20'000, 300, 0.3, every_structure, {1, 50, 400});
+}
+
+TEST_CASE("maps of patches find the oracle's neighbours on a fine sphere") {
+  check_modes(sphere(), 20'000, 300, 0.25, every_structure, {16, 50});
+}
+
+TEST_CASE("maps of patches find the oracle's neighbours in the Cornell box") {
+  const Scene scene = load_scene(source_folder / "scenes/cornell-box/cornell-box.obj");
+  check_modes(scene, 20'000, 300, 0.08, every_structure, {1, 50, 300});
+}
+
+TEST_CASE("maps of patches find the oracle's neighbours in the living room") {
+  const Scene scene = load_scene(source_folder / "scenes/living-room/living-room.gltf");
+  check_modes(scene, 60'000, 400, 0.4, every_structure, {50});
+}
+
+TEST_CASE("maps of patches find the oracle's neighbours in scenes of tens of thousands of triangles",
+          "[slow]") {
+  const char* set = std::getenv("PHOTILE_SHARED_SCENES");
+  const std::filesystem::path folder =
+      set != nullptr ? set : source_folder.parent_path() / "shared/scenes";
+  for (const char* file : {"kitchen/kitchen-diffuse.gltf", "classroom/classroom-diffuse.gltf"}) {
+    if (!std::filesystem::exists(folder / file)) {
+      WARN("skipped: no " << file << " in the shared scenes");
+      continue;
+    }
+    check_modes(load_scene(folder / file), 200'000, 500, 0.2, {MapStructure::uniform_grid}, {50});
+  }
+}
+
+TEST_CASE("estimates of maps of patches equal those of triangles up to the order of the sums") {
+  const Scene scene = load_scene(source_folder / "scenes/living-room/living-room.gltf");
+  const Photons photons = test::uniform_photons(scene, 60'000, 53);
+  PrimaryHits hits = test::uniform_hits(scene, 2000, 54);
+  if (needs_of(scene).glossy) {
+    hits.outgoing.assign(hits.size(), {0, 0, 1});
+    hits.lobe.assign(hits.size(), {glm::vec3(0.04f), 0.3f, {0, 0, 1}});
+  }
+  constexpr double radius = 0.4;
+  const auto estimate = [&](MapMode mode) {
+    const PhotonMaps maps(test::device(), scene, photons, groups_of(scene, photons, radius, mode),
+                          {radius, 4});
+    return Estimator(maps, scene, {50, 0}).estimate(hits);
+  };
+  const Estimates triangles = estimate(MapMode::triangle), patches = estimate(MapMode::patch);
+  REQUIRE(triangles.irradiance.size() == patches.irradiance.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < triangles.irradiance.size(); ++i) {
+    const glm::vec3 a = triangles.irradiance[i], b = patches.irradiance[i];
+    // Fifty positive terms: each order of adding them is right to 50 roundings.
+    if (!(glm::length(a - b) <= 2 * 50 * 6e-8f * glm::length(a))) ++different;
+  }
+  CHECK(different == 0);
+}
