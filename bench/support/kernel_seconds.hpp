@@ -1,24 +1,39 @@
 // Device time, apart from what the host does around it.
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "device/context.hpp"
 #include "photile/device.hpp"
 
 namespace photile::bench {
 
-/// Seconds that all kernels have run so far; needs DeviceOptions::profile.
-inline double kernel_seconds(Device& device) {
-  double seconds = 0;
-  for (const device::KernelTime& time : device.context().kernel_times()) seconds += time.seconds;
+/// Seconds that each kernel has run so far; needs DeviceOptions::profile.
+inline std::map<std::string, double> seconds_by_kernel(Device& device) {
+  std::map<std::string, double> seconds;
+  for (const device::KernelTime& time : device.context().kernel_times()) {
+    seconds[time.kernel] = time.seconds;
+  }
+  return seconds;
+}
+
+/// Seconds that each kernel runs in one call.
+template <class Run>
+std::map<std::string, double> seconds_by_kernel_of(Device& device, Run run) {
+  const std::map<std::string, double> before = seconds_by_kernel(device);
+  run();
+  std::map<std::string, double> seconds = seconds_by_kernel(device);
+  for (const auto& [kernel, earlier] : before) seconds[kernel] -= earlier;
   return seconds;
 }
 
 /// Kernel seconds of one call.
 template <class Run>
 double kernel_seconds_of(Device& device, Run run) {
-  const double before = kernel_seconds(device);
-  run();
-  return kernel_seconds(device) - before;
+  double sum = 0;
+  for (const auto& [kernel, seconds] : seconds_by_kernel_of(device, run)) sum += seconds;
+  return sum;
 }
 
 }  // namespace photile::bench

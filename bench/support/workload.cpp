@@ -4,7 +4,6 @@
 #include <random>
 
 #include "photile/photon_tracer.hpp"
-#include "photile/ray_scene.hpp"
 #include "support/mesh_builder.hpp"
 #include "support/morton_order.hpp"
 
@@ -69,17 +68,6 @@ PrimaryHits plane_hits(const Scene& scene, std::size_t count) {
   return hits;
 }
 
-/// The number of paths that a probe says leave `count` photons.
-Photons traced_photons(const RayScene& rays, std::uint64_t count) {
-  PhotonTracerParameters parameters;
-  parameters.emitted_photons = 50'000;
-  const double per_path = static_cast<double>(trace_photons(rays, parameters).photons.size()) /
-                          static_cast<double>(parameters.emitted_photons);
-  parameters.emitted_photons =
-      static_cast<std::uint64_t>(static_cast<double>(count) / per_path) + 1;
-  return trace_photons(rays, parameters).photons;
-}
-
 }  // namespace
 
 Workload plane_workload(std::size_t queries) {
@@ -99,12 +87,26 @@ Workload interior_workload(const std::string& name, Scene scene, int width, int 
           [shared, rays](std::uint64_t count) { return traced_photons(*rays, count); }};
 }
 
-Scene living_room() {
-  Scene scene = load_scene(PHOTILE_SOURCE_DIR "/scenes/living-room/living-room.gltf");
+void make_diffuse(Scene& scene) {
   for (Material& material : scene.materials) {
     if (material.interaction == Interaction::opaque) material.specular = glm::vec3(0.0f);
   }
+}
+
+Scene living_room(Surfaces surfaces) {
+  Scene scene = load_scene(PHOTILE_SOURCE_DIR "/scenes/living-room/living-room.gltf");
+  if (surfaces == Surfaces::diffuse) make_diffuse(scene);
   return scene;
+}
+
+Photons traced_photons(const RayScene& rays, std::uint64_t count) {
+  PhotonTracerParameters parameters;
+  parameters.emitted_photons = 50'000;
+  const double per_path = static_cast<double>(trace_photons(rays, parameters).photons.size()) /
+                          static_cast<double>(parameters.emitted_photons);
+  parameters.emitted_photons =
+      static_cast<std::uint64_t>(static_cast<double>(count) / per_path) + 1;
+  return trace_photons(rays, parameters).photons;
 }
 
 std::optional<Scene> classroom() {

@@ -10,6 +10,7 @@
 
 #include "photile/photons.hpp"
 #include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::bench {
@@ -30,8 +31,17 @@ Workload plane_workload(std::size_t queries);
 /// Traced photons and the primary hits of the scene's first camera, one sample a pixel.
 Workload interior_workload(const std::string& name, Scene scene, int width, int height);
 
-/// scenes/living-room with every opaque surface diffuse: the rivals do not evaluate lobes.
-Scene living_room();
+enum class Surfaces {
+  diffuse,        ///< every opaque surface: the rivals do not evaluate lobes
+  as_in_the_file  ///< some are glossy
+};
+Scene living_room(Surfaces surfaces = Surfaces::diffuse);  ///< scenes/living-room
+
+/// Takes the specular lobe from every opaque surface.
+void make_diffuse(Scene& scene);
+
+/// About `count` stored photons: from as many paths as a probe says leave so many.
+Photons traced_photons(const RayScene& rays, std::uint64_t count);
 
 /// The classroom of the shared scenes (PHOTILE_SHARED_SCENES, else ../shared/scenes beside the
 /// repository), diffuse; nothing where that folder is missing.

@@ -125,6 +125,9 @@ struct KernelTime {
   std::string kernel;
   std::uint64_t launches = 0;
   double seconds = 0;
+  /// Until it could run first: building its program or loading it, and what the runtime leaves to
+  /// the first launch.
+  double preparation_seconds = 0;
 };
 
 /// One device's context and in-order queue. Not thread-safe: one thread drives it.

@@ -19,6 +19,7 @@ struct Kernel::Impl {
   KernelHandle kernel;
   std::string name;
   unsigned argument_count = 0;
+  bool launched = false;
 };
 
 struct Context::Impl {

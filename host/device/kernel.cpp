@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "device/context_impl.hpp"
+#include "photile/statistics.hpp"
 
 namespace photile::device {
 namespace {
@@ -18,6 +19,7 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
   if (const auto found = impl_->kernels.find(key); found != impl_->kernels.end()) {
     return found->second;
   }
+  const Stopwatch stopwatch;
   auto made = std::make_shared<Kernel::Impl>();
   const cl_program program = impl_->programs->get(file, options);
   const cl_int status = impl_->persevere([&] {
@@ -32,6 +34,7 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
       clGetKernelInfo(made->kernel.get(), CL_KERNEL_NUM_ARGS, sizeof count, &count, nullptr),
       "clGetKernelInfo", name);
   made->argument_count = count;
+  if (impl_->profile) impl_->times.add_preparation(name, stopwatch.seconds());
   return impl_->kernels.emplace(key, Kernel(std::move(made))).first->second;
 }
 
@@ -53,7 +56,7 @@ void Context::set_value_argument(const Kernel& kernel, unsigned index, const voi
 
 void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t global_size,
                       std::size_t local_size) {
-  const auto& impl = kernel.impl();
+  auto& impl = kernel.impl();
   if (argument_count != impl.argument_count) {
     throw DeviceError(fmt::format("kernel '{}' takes {} arguments, {} given", impl.name,
                                   impl.argument_count, argument_count),
@@ -66,6 +69,10 @@ void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t
                                   impl.name, global_size, max_work_items),
                       CL_INVALID_GLOBAL_WORK_SIZE);
   }
+  // A runtime may compile within the first launch: it is timed alone.
+  const bool time_preparation = impl_->profile && !impl.launched;
+  if (time_preparation) finish();
+  const Stopwatch stopwatch;
   cl_event event = nullptr;
   const cl_int status = impl_->persevere([&] {
     return clEnqueueNDRangeKernel(impl_->queue.get(), impl.kernel.get(), 1, nullptr, &global_size,
@@ -77,7 +84,15 @@ void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t
                  fmt::format("kernel '{}', {} work-items in groups of {}", impl.name, global_size,
                              local_size));
   }
-  if (impl_->profile) impl_->times.add(impl.name, EventHandle(event));
+  impl.launched = true;
+  if (!impl_->profile) return;
+  EventHandle owned(event);
+  if (time_preparation) {
+    finish();
+    impl_->times.add_first(impl.name, std::move(owned), stopwatch.seconds());
+  } else {
+    impl_->times.add(impl.name, std::move(owned));
+  }
 }
 
 }  // namespace photile::device

@@ -5,6 +5,20 @@ namespace photile::device {
 /// Events kept before they are summed: bounds the memory of a long run.
 constexpr std::size_t max_pending = 4096;
 
+void KernelTimes::add_preparation(const std::string& kernel, double seconds) {
+  auto& total = totals_[kernel];
+  total.kernel = kernel;
+  total.preparation_seconds += seconds;
+}
+
+void KernelTimes::add_first(const std::string& kernel, EventHandle event, double seconds) {
+  collect();
+  const double before = totals_[kernel].seconds;
+  add(kernel, std::move(event));
+  collect();
+  add_preparation(kernel, seconds - (totals_[kernel].seconds - before));
+}
+
 void KernelTimes::add(const std::string& kernel, EventHandle event) {
   pending_.emplace_back(kernel, std::move(event));
   if (pending_.size() >= max_pending) collect();
@@ -30,7 +44,9 @@ void KernelTimes::collect() {
 std::vector<KernelTime> KernelTimes::total() {
   collect();
   std::vector<KernelTime> times;
-  for (const auto& [kernel, time] : totals_) times.push_back(time);
+  for (const auto& [kernel, time] : totals_) {
+    if (time.launches > 0) times.push_back(time);
+  }
   return times;
 }
 

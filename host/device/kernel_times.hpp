@@ -15,7 +15,12 @@ class KernelTimes {
  public:
   /// Takes over the event of one launch.
   void add(const std::string& kernel, EventHandle event);
-  /// Waits for the launches so far and sums them, by kernel name.
+  /// Takes over the event of a launch that took `seconds` from its call to its end: what it did not
+  /// run is preparation.
+  void add_first(const std::string& kernel, EventHandle event, double seconds);
+  /// Adds seconds spent until a kernel could run.
+  void add_preparation(const std::string& kernel, double seconds);
+  /// Waits for the launches so far and sums them, by name of the kernels launched.
   std::vector<KernelTime> total();
 
  private:

@@ -85,6 +85,20 @@ TEST_CASE("launches over nothing enqueue nothing, and an empty buffer is a valid
   CHECK(times[0].seconds >= 0);
 }
 
+TEST_CASE("what a kernel needs before its first launch is counted once") {
+  photile::device::register_kernel_source("test/affine.cl", affine);
+  Context context(options(true, true));
+  const auto kernel = context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 5ll));
+  const auto empty = context.allocate<int>(0, "empty");
+  context.run(kernel, 64, 0, empty, empty, 0u, 1);
+  const double preparation = context.kernel_times()[0].preparation_seconds;
+  CHECK(preparation > 0);
+  context.run(context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 5ll)), 64, 0,
+              empty, empty, 0u, 1);
+  CHECK(context.kernel_times()[0].launches == 2);
+  CHECK(context.kernel_times()[0].preparation_seconds == preparation);
+}
+
 TEST_CASE("a wrong number of arguments is refused with both numbers") {
   photile::device::register_kernel_source("test/affine.cl", affine);
   Context context({});
