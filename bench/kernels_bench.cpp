@@ -1,7 +1,6 @@
 // What kernels take: each of build and estimate beside the limits of the device, and the estimate
 // of each specialisation (one light or several, diffuse or glossy) with its bytes per photon.
 #include "estimate/tuning_sample.hpp"
-#include "maps/map_store.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photon_tracer.hpp"
 #include "support/bench_record.hpp"
@@ -64,14 +63,10 @@ Subject restricted(Subject subject, const SceneNeeds& needs) {
   return subject;
 }
 
+/// Grids included.
 double bytes_per_reference(const PhotonMaps& maps) {
-  std::uint64_t bytes = 0, references = 0;
-  for (const maps::MapPage& page : maps.store().pages) {
-    bytes += page.entry_photon.bytes() + page.entry_position.bytes() + page.entry_flux.bytes() +
-             page.entry_light.bytes() + page.entry_incoming.bytes();
-    references += page.entry_count;
-  }
-  return static_cast<double>(bytes) / static_cast<double>(references);
+  const PhotonMapStatistics& statistics = maps.statistics();
+  return static_cast<double>(statistics.device_bytes) / static_cast<double>(statistics.references);
 }
 
 class KernelsBench {

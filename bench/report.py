@@ -10,12 +10,14 @@ import argparse
 import json
 import pathlib
 
+import report_kernels
 import report_plots
+import report_scale
 import report_tables
 import report_targets
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BENCHES = ("knn", "paper", "build", "frame", "relight")
+BENCHES = ("knn", "paper", "build", "frame", "relight", "kernels", "startup", "profile", "scale")
 BUSY_LOAD = 0.5  # load average at which other programs count as running
 
 
@@ -36,7 +38,7 @@ def doubts(results):
         reasons.append(f"other programs were running (load average {load:.1f} before the first "
                        "bench), and more or fewer of them from one row to the next, so ratios are "
                        "as doubtful as times")
-    single = [name for name, result in results.items() if result["settings"]["repeats"] < 3]
+    single = [name for name, result in results.items() if result["settings"].get("repeats", 3) < 3]
     if single:
         reasons.append(f"fewer than three repeats ({', '.join(single)}), so the brackets do not "
                        "show the spread")
@@ -85,10 +87,16 @@ def page(results, plots, notes):
         "\n\n".join(f"![Time against photons: {name}](benchmarks/{file})"
                     for name, file in plots),
         report_tables.knn(results["knn"]),
+        "## Where the time of an estimate goes", report_kernels.profile(results["profile"]),
+        "## Kinds of scenes", report_kernels.specialisations(results["kernels"]),
+        "## Beside the limits of the device", report_kernels.roofline(results["kernels"]),
+        report_kernels.build_kernels(results["kernels"]),
         "## The paper's frame", report_tables.paper(results["paper"]),
         "## Build", report_tables.build(results["build"]),
         "## A frame of a walkthrough", report_tables.frame(results["frame"]),
         "## Relighting", report_tables.relight(results["relight"]),
+        "## Scale", report_scale.text(results["scale"]),
+        "## Starting", report_kernels.startup(results["startup"]),
         notes,
         "## See also",
         "[Neighbour groups](neighbour-groups.md); the data behind this page in "
@@ -104,6 +112,7 @@ def main():
         with open(options.results / f"{bench}.json", encoding="utf-8") as file:
             results[bench] = json.load(file)
     plots = report_plots.draw_knn(results["knn"], caption(results), options.results)
+    report_scale.draw(results["scale"], caption(results), options.results)
     notes = (ROOT / "bench/report_notes.md").read_text(encoding="utf-8")
     options.page.write_text(page(results, plots, notes), encoding="utf-8")
     print(f"wrote {options.page}")

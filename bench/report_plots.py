@@ -7,8 +7,11 @@ import matplotlib.pyplot as pyplot  # noqa: E402
 
 matplotlib.rcParams["svg.hashsalt"] = "photile"
 
-# Okabe and Ito's colours, which colour-blind readers can tell apart. The library's structures are
-# solid, rivals dashed.
+# Okabe and Ito's colours, which colour-blind readers can tell apart, and two greys.
+COLOURS = ("#D55E00", "#E69F00", "#009E73", "#0072B2", "#56B4E9", "#CC79A7", "#000000", "#999999",
+           "#BBBB00")
+
+# The library's structures are solid, rivals dashed.
 STYLES = {
     "uniform-grid": ("#D55E00", "-", "o"),
     "kdtree-2d": ("#E69F00", "-", "s"),

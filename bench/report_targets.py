@@ -15,7 +15,7 @@ def knn_seconds(results, workload, structure, k):
 
 
 def speedups(results):
-    """(what, ratio or None, least) for each pair."""
+    """(what, ratio or None, least, workload, k) for each pair."""
     cases = [("plane", 50, REFERENCE, 20), ("plane", 200, REFERENCE, 40),
              ("living-room", 50, REFERENCE, 10), ("classroom", 50, REFERENCE, 10),
              ("plane", 50, "kdtree-2d", 4), ("plane", 50, "kdtree-3d", 10),
@@ -25,7 +25,7 @@ def speedups(results):
         ours = knn_seconds(results, workload, "uniform-grid", k)
         theirs = knn_seconds(results, workload, rival, k)
         ratio = theirs / ours if ours and theirs else None
-        yield f"{workload}, 1M photons, k = {k}: times faster than {rival}", ratio, least
+        yield f"{workload}, 1M photons, k = {k}: times faster than {rival}", ratio, least, workload, k
 
 
 def at_least(name, value, least, form):
@@ -47,7 +47,7 @@ def build_ratios(results):
         if near_target(row["photons"]):
             ours = row["groups"]["median"] + row["uniform-grid"]["median"]
             yield (f"{row['workload']}, 1M photons: groups and maps over nanoflann's index build",
-                   ours / row["nanoflann"]["median"])
+                   ours / row["nanoflann"]["median"], row["workload"])
 
 
 def paper_milliseconds(results):
@@ -62,15 +62,70 @@ def relight_share(results):
     return 100 * rate["combine_layers"] / rate["copy"]
 
 
+def shares(results, case):
+    """The largest stages of a profiled estimate, or ""."""
+    for row in results["profile"]["results"]:
+        if row["case"] == case:
+            largest = sorted(row["shares"].items(), key=lambda item: -item[1])[:3]
+            return ", ".join(f"{stage} {100 * share:.0f}%" for stage, share in largest)
+    return ""
+
+
+def build_shares(results, workload):
+    """The largest parts of groups and maps: groups, kernels."""
+    k = results["kernels"]["settings"]["k"]
+    parts = {f"`{row['kernel']}`": row["seconds"]["median"]
+             for row in results["kernels"]["results"]
+             if row["measured"] == "kernel" and row["workload"] == workload and row["k"] == k
+             and row["kernel"] != "estimate"}
+    for row in results["build"]["results"]:
+        if row["workload"] == workload and near_target(row["photons"]):
+            parts["groups"] = row["groups"]["median"]
+    largest = sorted(parts.items(), key=lambda item: -item[1])[:3]
+    return ", ".join(f"{name} {1e3 * seconds:.0f} ms" for name, seconds in largest)
+
+
+def start_seconds(results):
+    """(slowest kernel to compile, start with compiled kernels), medians, of all variants."""
+    rows = results["startup"]["results"]
+    compiled = max(timing["median"] for row in rows if row["cache"] == "empty"
+                   for timing in row["kernels"].values())
+    started = max(row["open"]["median"] + row["prepare"]["median"] for row in rows
+                  if row["cache"] == "full")
+    return compiled, started
+
+
+def million_triangle_groups(results):
+    """Seconds of the groups of the largest mesh of about a million triangles, or None."""
+    for row in results["scale"]["results"]:
+        if "failure" not in row and 0.9e6 < row["triangles"] < 2e6:
+            return next(stage["seconds"] for stage in row["stages"]
+                        if stage["stage"] == "neighbour groups")
+    return None
+
+
 def table_rows(results):
+    """[what, aim, result, verdict, where the time goes] each."""
     def times(x):
         return f"{x:.3g} x"
-    rows = [at_least(name, ratio, least, times) for name, ratio, least in speedups(results)]
-    rows += [at_most(name, ratio, 0.25, times) for name, ratio in build_ratios(results)]
+
+    def seconds(x):
+        return f"{x:.2g} s"
+    rows = []
+    for name, ratio, least, workload, k in speedups(results):
+        rows.append(at_least(name, ratio, least, times) + [shares(results, f"{workload}, k = {k}")])
+    for name, ratio, workload in build_ratios(results):
+        rows.append(at_most(name, ratio, 0.25, times) + [build_shares(results, workload)])
     rows.append(at_most("the paper's frame, kNN and integration", paper_milliseconds(results), 50,
-                        lambda x: f"{x:.3g} ms"))
+                        lambda x: f"{x:.3g} ms") + [shares(results, "the paper's frame")])
     rows.append(at_least("relighting, of copy bandwidth", relight_share(results), 60,
-                         lambda x: f"{x:.0f}%"))
+                         lambda x: f"{x:.0f}%") + [""])
+    compiled, started = start_seconds(results)
+    rows.append(at_most("the kernel that takes longest to compile", compiled, 2, seconds) + [""])
+    rows.append(at_most("a start with compiled kernels: device and kernels", started, 0.1, seconds)
+                + ["loading each kernel: see [starting](#starting)"])
+    rows.append(at_most("groups of a mesh of a million triangles", million_triangle_groups(results),
+                        10, seconds) + ["see [scale](#scale)"])
     return rows
 
 
@@ -85,13 +140,17 @@ def fastest_host_rows(results):
                 continue
             best = min(rivals, key=rivals.get)
             yield [f"{workload}, 1M photons, k = {k}: times faster than the fastest on the host, "
-                   f"{best}", "none", f"{rivals[best] / ours:.3g} x", ""]
+                   f"{best}", "none", f"{rivals[best] / ours:.3g} x", "", ""]
 
 
 def write_table(results, provisional):
     """`provisional`: the numbers cannot carry a verdict, so none is given."""
     rows = table_rows(results)
+    for row in rows:
+        if row[3] == "reached":
+            row[4] = ""
     if provisional:
-        rows = [[name, aim, value, "open" if verdict else ""]
-                for name, aim, value, verdict in rows]
-    return table(["", "aim", "result", ""], rows + list(fastest_host_rows(results)))
+        rows = [[name, aim, value, "open" if verdict else "", why]
+                for name, aim, value, verdict, why in rows]
+    rows += fastest_host_rows(results)
+    return table(["", "aim", "result", "", "where the time goes"], rows)

@@ -1,21 +1,46 @@
 #!/bin/bash
 # Builds the benches, runs them all and rewrites docs/benchmarks.md with its tables and plots. Takes
-# over an hour on two cores; the machine should do nothing else.
-# Usage: bench/run_all.sh [--repeats N] [--seconds-per-case S] [--quick]
+# half an hour on two cores; the machine should do nothing else.
+# Usage: bench/run_all.sh [option]...
+#   --quick                 tiny sizes: shows that everything works, times nothing
+#   --full                  scale up to 4 million triangles and 100 million photons (24 GB)
+#   --results FOLDER        where JSON files, plots and the page go; default: docs/benchmarks, and
+#                           the page beside it
+#   --benches FOLDER        where the benches are; nothing is built then
+#   --repeats N, --seconds-per-case S   as for each bench
 #   PHOTILE_DEVICE          the OpenCL device, as for photile --device
 #   PHOTILE_SHARED_SCENES   folder with classroom/; default: ../shared/scenes, left out if missing
 set -euo pipefail
 cd "$(dirname "$0")/.."
-benches=(knn paper build frame relight)
+results=docs/benchmarks page=docs/benchmarks.md benches=
+options=() profile_options=() scale_options=()
+while (($#)); do
+  case $1 in
+    --quick) options+=("$1") profile_options+=("$1") ;;
+    --full) scale_options+=("$1") ;;
+    --results) results=$2 page=$2/benchmarks.md && shift ;;
+    --benches) benches=$2 && shift ;;
+    --repeats | --seconds-per-case) options+=("$1" "$2") && shift ;;
+    *) echo "bench/run_all.sh: error: unknown option '$1'; see the head of the file" >&2 && exit 2 ;;
+  esac
+  shift
+done
 
 /usr/bin/python3 -c 'import matplotlib' 2>/dev/null || {
   echo "bench/run_all.sh: error: no matplotlib; install the Debian package python3-matplotlib" >&2
   exit 1
 }
-cmake --preset release >/dev/null
-cmake --build --preset release --target "${benches[@]/#/photile_bench_}"
-mkdir -p docs/benchmarks
-for bench in "${benches[@]}"; do
-  "build/release/bench/photile_bench_$bench" --output "docs/benchmarks/$bench.json" "$@"
+programs=(knn paper build frame relight kernels startup scale)
+if [[ -z $benches ]]; then
+  benches=build/release/bench
+  cmake --preset release >/dev/null
+  cmake --build --preset release --target "${programs[@]/#/photile_bench_}" photile_profiled_estimate
+fi
+mkdir -p "$results"
+for bench in "${programs[@]}"; do
+  extra=()
+  [[ $bench == scale ]] && extra=("${scale_options[@]}")
+  "$benches/photile_bench_$bench" --output "$results/$bench.json" "${options[@]}" "${extra[@]}"
 done
-exec /usr/bin/python3 bench/report.py
+bench/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
+exec /usr/bin/python3 bench/report.py --results "$results" --page "$page"

@@ -1,0 +1,96 @@
+#!/usr/bin/python3
+"""Tests of bench/report*.py against values worked out by hand. Exits with 77 (skipped) where
+python3-matplotlib is not installed.
+
+    tests/bench/report_test.py
+"""
+
+import math
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
+try:
+    import report_kernels
+    import report_scale
+    import report_tables
+    import report_targets
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+SIZES = (1_000, 10_000, 100_000, 1_000_000)
+
+
+def scale_result(**stages):
+    """Rows of one curve: a function of the size for each stage."""
+    return {"results": [
+        {"axis": "triangles", "mesh": "hall", "triangles": n, "peak bytes": n,
+         "stages": [{"stage": name, "seconds": seconds(n)} for name, seconds in stages.items()]}
+        for n in SIZES]}
+
+
+def timing(seconds):
+    return {"median": seconds, "min": seconds, "max": seconds}
+
+
+class Scale(unittest.TestCase):
+    def test_the_exponent_of_a_power_is_that_power(self):
+        for power in (0.5, 1, 2):
+            fit, _ = report_scale.exponent([(n, 0.02 * (n / 1000) ** power) for n in SIZES])
+            self.assertAlmostEqual(fit, power)
+
+    def test_n_log_n_has_its_own_exponent(self):
+        fit, bound = report_scale.exponent([(n, n * math.log(n)) for n in SIZES])
+        self.assertAlmostEqual(fit, bound)
+
+    def test_times_too_short_to_trust_are_left_out(self):
+        self.assertIsNone(report_scale.exponent([(1_000, 0.001), (10_000, 0.002), (100_000, 0.02),
+                                                 (1_000_000, 0.2)]))
+
+    def test_only_the_stage_that_grows_faster_than_n_log_n_is_named(self):
+        result = scale_result(linear=lambda n: 1e-4 * n, sorting=lambda n: 1e-5 * n * math.log(n),
+                              quadratic=lambda n: 1e-7 * n * n)
+        self.assertEqual([(stage, axis, mesh) for stage, axis, mesh, _ in
+                          report_scale.faster_than_n_log_n(result)],
+                         [("quadratic", "triangles", "hall")])
+        self.assertIn("Faster than n log n: quadratic.", report_scale.text(result))
+
+    def test_a_size_that_failed_is_named_and_not_fitted(self):
+        result = scale_result(linear=lambda n: 1e-4 * n)
+        result["results"].append({"axis": "triangles", "mesh": "hall", "detail": 632,
+                                  "emitted photons": 5, "failure": "out of memory"})
+        self.assertIn("632 cells, 5 photons emitted: out of memory", report_scale.text(result))
+        self.assertIn("No stage grows faster", report_scale.text(result))
+
+
+class Knn(unittest.TestCase):
+    def test_ratios_are_of_times_a_query_where_cases_were_asked_differently_often(self):
+        rows = [{"structure": "nanoflann", "k": 50, "queries": 100, "seconds": timing(1)},
+                {"structure": "uniform-grid", "k": 50, "queries": 1000, "seconds": timing(0.5)}]
+        lines = report_tables.knn_table(rows).splitlines()
+        self.assertEqual(lines[-1], "| uniform-grid | 500 (500-500) | 20 |")
+
+    def test_traced_photons_count_as_a_million_within_a_twentieth(self):
+        self.assertTrue(report_tables.near_target(960_000))
+        self.assertFalse(report_tables.near_target(940_000))
+
+
+class Targets(unittest.TestCase):
+    def test_a_missed_target_says_by_how_much(self):
+        form = str
+        self.assertEqual(report_targets.at_least("a", 10, 20, form)[3], "missed by a factor of 2")
+        self.assertEqual(report_targets.at_least("a", 20, 20, form)[3], "reached")
+        self.assertEqual(report_targets.at_most("a", 75, 50, form)[3], "missed by a factor of 1.5")
+        self.assertEqual(report_targets.at_most("a", None, 50, form)[2], "not measured")
+
+
+class Kernels(unittest.TestCase):
+    def test_the_cost_of_a_hit_is_that_of_the_documentation(self):
+        moved, operations = report_kernels.estimate_cost(50)
+        self.assertEqual((round(moved, -2), round(operations, -2)), (5200, 3100))
+
+
+if __name__ == "__main__":
+    unittest.main()
