@@ -130,7 +130,8 @@ def startup(result):
     text = ("Milliseconds until kernels can run, in a process of its own: compiled with an empty "
             "cache, loaded with a full one. A kernel's first launch is in its row, since PoCL "
             "compiles there; kernels of one file share what reading the file costs, which is in the "
-            "row of the first.")
+            "row of the first. With a full cache most of the time is clang's preprocessor, which "
+            "PoCL runs over each program to find it in its cache.")
     return text + "\n\n" + table([""] + [name for _, name in columns], lines)
 
 

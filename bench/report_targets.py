@@ -123,7 +123,7 @@ def table_rows(results):
     compiled, started = start_seconds(results)
     rows.append(at_most("the kernel that takes longest to compile", compiled, 2, seconds) + [""])
     rows.append(at_most("a start with compiled kernels: device and kernels", started, 0.1, seconds)
-                + ["loading each kernel: see [starting](#starting)"])
+                + ["clang's preprocessor: see [starting](#starting)"])
     rows.append(at_most("groups of a mesh of a million triangles", million_triangle_groups(results),
                         10, seconds) + ["see [scale](#scale)"])
     return rows

@@ -4,21 +4,21 @@
 # Usage: bench/run_all.sh [option]...
 #   --quick                 tiny sizes: shows that everything works, times nothing
 #   --full                  scale up to 4 million triangles and 100 million photons (24 GB)
-#   --results FOLDER        where JSON files, plots and the page go; default: docs/benchmarks, and
-#                           the page beside it
+#   --results FOLDER        where JSON files and plots go, and the page beside it as FOLDER.md;
+#                           default: docs/benchmarks
 #   --benches FOLDER        where the benches are; nothing is built then
 #   --repeats N, --seconds-per-case S   as for each bench
 #   PHOTILE_DEVICE          the OpenCL device, as for photile --device
 #   PHOTILE_SHARED_SCENES   folder with classroom/; default: ../shared/scenes, left out if missing
 set -euo pipefail
 cd "$(dirname "$0")/.."
-results=docs/benchmarks page=docs/benchmarks.md benches=
+results=docs/benchmarks benches=
 options=() profile_options=() scale_options=()
 while (($#)); do
   case $1 in
     --quick) options+=("$1") profile_options+=("$1") ;;
     --full) scale_options+=("$1") ;;
-    --results) results=$2 page=$2/benchmarks.md && shift ;;
+    --results) results=$2 && shift ;;
     --benches) benches=$2 && shift ;;
     --repeats | --seconds-per-case) options+=("$1" "$2") && shift ;;
     *) echo "bench/run_all.sh: error: unknown option '$1'; see the head of the file" >&2 && exit 2 ;;
@@ -43,4 +43,4 @@ for bench in "${programs[@]}"; do
   "$benches/photile_bench_$bench" --output "$results/$bench.json" "${options[@]}" "${extra[@]}"
 done
 bench/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
-exec /usr/bin/python3 bench/report.py --results "$results" --page "$page"
+exec /usr/bin/python3 bench/report.py --results "$results" --page "$results.md"
