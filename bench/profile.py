@@ -39,10 +39,18 @@ STAGES = {
     "project": "block of cells",
     "find_neighbourhood": "block of cells",
     "last_tied_photon": "ties",
+    "begin_near": "sums of flux",
+    "add_near": "sums of flux",
+    "add_listed": "sums of flux",
+    "end_near": "sums of flux",
+    "add_vector": "sums of flux",
     "add_entry": "sums of flux",
+    "begin_sums": "sums of flux",
+    "end_sums": "sums of flux",
     "estimate_hit": "sums of flux",
     "estimate": "hits in, estimates out",
 }
+KERNEL_PREFIX = "_pocl_kernel_"  # PoCL's names of a kernel: this, and "_workgroup..." behind
 
 
 class NoProfile(Exception):
@@ -110,9 +118,8 @@ def functions_at(shared_object, places):
 def stage_of(functions):
     for function in functions:
         name = function
-        for prefix in ("_pocl_kernel_",):
-            if name.startswith(prefix):
-                name = name[len(prefix):].partition("_workgroup")[0]
+        if name.startswith(KERNEL_PREFIX):
+            name = name[len(KERNEL_PREFIX):].partition("_workgroup")[0]
         if name in STAGES:
             return STAGES[name]
     return functions[-1]
