@@ -17,7 +17,7 @@ constexpr std::size_t sample_size = 32'768;  ///< photons that sharing is estima
 
 /// A patch joins another that already holds this part of its photons. With less, the queries of
 /// either would look at too many photons of the other in vain.
-constexpr double least_shared = 0.5;
+constexpr double least_shared = 0.75;
 
 /// Normals this close to the axis leave a map flat: no query needs to look at normals. A flat map that
 /// a join would bend must save this part of its references by it, for every query will pay.

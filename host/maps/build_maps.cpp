@@ -12,6 +12,7 @@
 #include "maps/kdtree_builder.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
+#include "maps/photon_crowding.hpp"
 #include "maps/photon_pages.hpp"
 #include "maps/prefix_sum.hpp"
 
@@ -28,6 +29,7 @@ struct Build {
   const MapStore& store;
   bool patches = false;            ///< maps may serve several triangles
   Buffer<PhotileMapShape> shapes;  ///< per pair of maps
+  Buffer<float> crowding;          ///< per map
   Buffer<float> corners;           ///< 9 floats per triangle
   std::vector<PhotonPage> photon_pages;
   float squared_reach = 0;
@@ -118,7 +120,7 @@ void size_grids(Build& build, MapPage& page, const MapCounts& counts) {
   build.context.fill(first_cell, 0u);
   const auto launch = [&](const auto&... patches) {
     build.run("grid/size_grids.cl", "size_grids", maps, maps, page.first_map, build.shapes,
-              counts.photons, patches..., build.radius, build.photons_per_cell, page.grids,
+              counts.photons, build.crowding, patches..., build.radius, build.photons_per_cell, page.grids,
               first_cell);
   };
   if (build.patches) {
@@ -199,6 +201,7 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
               {},
               {},
               {},
+              {},
               reach * reach,
               static_cast<float>(store.parameters.radius),
               photons_per_cell(store.parameters)};
@@ -207,6 +210,8 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
   const std::vector<PhotileMapShape> shapes =
       map_shapes(scene, patches, glm::radians(groups.angle_degrees));
   build.shapes = context.upload(std::span<const PhotileMapShape>(shapes), "map shapes");
+  build.crowding = context.upload(
+      std::span<const float>(photon_crowding(scene, photons, patches)), "photon crowding");
   upload_photons(build, find_candidate_maps(scene, photons, groups, reach), photons, patches,
                  progress);
 

@@ -16,15 +16,16 @@
 //   first_map        the page's first map
 //   shapes           one per pair of maps
 //   map_count        photons per map, from count_photons
+//   map_crowding     per map: density around a photon over the mean density of the surface
 //   map_mixed        per map, from count_photons (PATCHES)
 //   radius           metres
 //   photons_per_cell aimed at
 // After: grids[i] is complete but for first_cell; cell_total[i] = columns * rows, 0 without photons.
 //
-// The cell size aims at photons_per_cell over the surface grown by the radius (its Minkowski sum with
-// a disc), which is where photons of the map can be.
+// The cell size aims at photons_per_cell where photons are, on the surface grown by the radius (its
+// Minkowski sum with a disc), which is where photons of the map can be.
 __kernel void size_grids(uint map_total, uint first_map, __global const PhotileMapShape* shapes,
-                         __global const uint* map_count,
+                         __global const uint* map_count, __global const float* map_crowding,
 #ifdef PATCHES
                          __global const uint* map_mixed,
 #endif
@@ -44,7 +45,7 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
     const float width_v = shape->width_v + 2.0f * radius;
     const float area = shape->area + shape->perimeter * radius + 3.14159265f * radius * radius;
     const float cell_size =
-        fmax(sqrt(area * photons_per_cell / (float)count),
+        fmax(sqrt(area * photons_per_cell / ((float)count * map_crowding[map])),
              fmax(width_u, width_v) / (float)(MAX_CELLS_PER_SIDE - 1));
 
     grid.origin_x = shape->origin_x;
