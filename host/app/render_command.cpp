@@ -154,6 +154,8 @@ void run_render(RenderOptions& options) {
                    .mix = mix,
                    .radius = result.radius,
                    .stored_photons = result.stored_photons,
+                   .passes = result.passes,
+                   .samples_per_pixel = result.samples_per_pixel,
                    .stages = stages};
   record.stages.push_back(timed_stage("write pictures", progress, [&] {
     Image picture = mix_layers(result.layers, mix);

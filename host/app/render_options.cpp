@@ -83,6 +83,12 @@ void add_photon_group(CLI::App& command, RenderOptions& options) {
       ->transform(count_between(limits::min_photons, limits::max_emitted_photons))
       ->capture_default_str()
       ->group("Photons");
+  command
+      .add_option("--passes", parameters.passes,
+                  "photon passes, each of its share of the paths; default: by the memory")
+      ->type_name("N")
+      ->transform(count_between(1, limits::max_passes))
+      ->group("Photons");
   options.quota = word_for(quotas, parameters.photons.quota);
   command.add_option("--quota", options.quota, "how the lights share the paths")
       ->type_name("")

@@ -66,7 +66,8 @@ json parameters_json(const RunRecord& record) {
           {"photons_per_cell", parameters.photons_per_cell},
           {"width", parameters.film.width},
           {"height", parameters.film.height},
-          {"samples_per_pixel", parameters.film.samples_per_pixel}};
+          {"samples_per_pixel", record.samples_per_pixel},
+          {"passes", record.passes}};
 }
 
 }  // namespace
@@ -84,7 +85,8 @@ void set_run_attributes(Image& picture, const RunRecord& record) {
   attributes["photile.radius"] = fmt::format("{} m", record.radius);
   attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
   attributes["photile.maps"] = record.maps;
-  attributes["photile.samples_per_pixel"] = std::to_string(parameters.film.samples_per_pixel);
+  attributes["photile.samples_per_pixel"] = std::to_string(record.samples_per_pixel);
+  attributes["photile.passes"] = std::to_string(record.passes);
   attributes["photile.device"] = devices_text(record.devices);
   attributes["photile.times"] = times_text(record.stages);
 }

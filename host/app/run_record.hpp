@@ -25,6 +25,8 @@ struct RunRecord {
   LightMix mix;
   double radius = 0;  ///< the one used, metres
   std::uint64_t stored_photons = 0;
+  int passes = 1;
+  int samples_per_pixel = 1;  ///< those used
   RunStatistics stages;
   double total_seconds = 0;
 };

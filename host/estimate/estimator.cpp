@@ -37,8 +37,9 @@ struct Estimator::Impl {
                                                          : parameters.radius)),
         batches(context),
         query(estimate::make_query(
-            store, neighbours, radius,
-            parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())))) {}
+            store, neighbours,
+            std::max(neighbours, static_cast<std::uint32_t>(parameters.compiled_neighbours)),
+            radius, parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())))) {}
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
     return {.largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),

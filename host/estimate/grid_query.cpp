@@ -8,13 +8,13 @@ namespace {
 
 class GridQuery : public Query {
  public:
-  GridQuery(const maps::MapStore& store, std::uint32_t neighbours, float radius,
-            const EstimateTuning& tuning)
+  GridQuery(const maps::MapStore& store, std::uint32_t neighbours,
+            std::uint32_t compiled_neighbours, float radius, const EstimateTuning& tuning)
       : store_(store),
         context_(store.device->context()),
         neighbours_(neighbours),
         radius_(radius),
-        choice_(specialise(tuning, store.needs, static_cast<int>(neighbours))) {
+        choice_(specialise(tuning, store.needs, static_cast<int>(compiled_neighbours))) {
     choice_.work_group_size =
         std::min<std::size_t>(choice_.work_group_size, context_.info().max_work_group_size);
   }
@@ -66,8 +66,9 @@ class GridQuery : public Query {
 }  // namespace
 
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       float radius, const EstimateTuning& tuning) {
-  return std::make_unique<GridQuery>(store, neighbours, radius, tuning);
+                                       std::uint32_t compiled_neighbours, float radius,
+                                       const EstimateTuning& tuning) {
+  return std::make_unique<GridQuery>(store, neighbours, compiled_neighbours, radius, tuning);
 }
 
 }  // namespace photile::estimate

@@ -34,13 +34,15 @@ class Query {
                        device::Buffer<float>& squared_radius) = 0;
 };
 
-/// `tuning` counts for uniform grids only.
+/// Kernels are compiled for k up to `compiled_neighbours`. `tuning` counts for uniform grids only.
 std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                  float radius, const EstimateTuning& tuning);
+                                  std::uint32_t compiled_neighbours, float radius,
+                                  const EstimateTuning& tuning);
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       float radius, const EstimateTuning& tuning);
+                                       std::uint32_t compiled_neighbours, float radius,
+                                       const EstimateTuning& tuning);
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       float radius);
+                                       std::uint32_t compiled_neighbours, float radius);
 
 /// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs, ascending.
 template <class Launch>

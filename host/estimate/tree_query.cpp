@@ -16,14 +16,15 @@ constexpr std::uint64_t global_list_bytes = 64u << 20;
 
 class TreeQuery : public Query {
  public:
-  TreeQuery(const maps::MapStore& store, std::uint32_t neighbours, float radius)
+  TreeQuery(const maps::MapStore& store, std::uint32_t neighbours,
+            std::uint32_t compiled_neighbours, float radius)
       : store_(store),
         context_(store.device->context()),
         neighbours_(neighbours),
         radius_(radius) {
     if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
-    if (neighbours <= private_list_limit) {
-      defines_.set("LIST_CAPACITY", static_cast<long long>(neighbours));
+    if (compiled_neighbours <= private_list_limit) {
+      defines_.set("LIST_CAPACITY", static_cast<long long>(compiled_neighbours));
     } else {
       defines_.set("LIST_IN_GLOBAL_MEMORY");
       constexpr std::uint64_t group = maps::work_group_size;
@@ -98,22 +99,23 @@ class TreeQuery : public Query {
 }  // namespace
 
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       float radius) {
-  return std::make_unique<TreeQuery>(store, neighbours, radius);
+                                       std::uint32_t compiled_neighbours, float radius) {
+  return std::make_unique<TreeQuery>(store, neighbours, compiled_neighbours, radius);
 }
 
 std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                  float radius, const EstimateTuning& tuning) {
+                                  std::uint32_t compiled_neighbours, float radius,
+                                  const EstimateTuning& tuning) {
   switch (store.parameters.structure) {
     case MapStructure::kdtree_2d:
     case MapStructure::kdtree_3d:
     case MapStructure::kdtree_global:
-      return make_tree_query(store, neighbours, radius);
+      return make_tree_query(store, neighbours, compiled_neighbours, radius);
     case MapStructure::uniform_grid:
     case MapStructure::brute_force:
       break;
   }
-  return make_grid_query(store, neighbours, radius, tuning);
+  return make_grid_query(store, neighbours, compiled_neighbours, radius, tuning);
 }
 
 }  // namespace photile::estimate

@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
 #include "photile/renderer.hpp"
 #include "render/device_estimators.hpp"
 #include "render/film.hpp"
+#include "render/pass_count.hpp"
+#include "render/pass_schedule.hpp"
+#include "render/render_costs.hpp"
 
 namespace photile {
 namespace {
@@ -16,25 +21,8 @@ std::int64_t hits_per_batch(int neighbours) {
          std::max(defaults::neighbours, neighbours);
 }
 
-PhotonTracerResult trace(const RayScene& rays, const RenderParameters& parameters,
-                         RunStatistics& statistics, Progress& progress) {
-  PhotonTracerResult traced = trace_photons(rays, parameters.photons, progress);
-  const auto stored = static_cast<double>(traced.photons.size());
-  std::uint64_t emitted = 0;
-  for (const std::uint64_t count : traced.photons.emitted_per_light) emitted += count;
-  statistics.push_back({"trace photons",
-                        traced.seconds,
-                        traced.photons.bytes(),
-                        0,
-                        {{"emitted photons", static_cast<double>(emitted)},
-                         {"stored photons", stored},
-                         {"stored photons per second", stored / traced.seconds}}});
-  return traced;
-}
-
-NeighbourGroups find_groups(const Scene& scene, const Photons& photons,
-                            const RenderParameters& parameters, double radius,
-                            Progress& progress) {
+NeighbourGroups groups_of(const Scene& scene, const Photons& photons,
+                          const RenderParameters& parameters, double radius, Progress& progress) {
   if (parameters.maps == MapMode::naive) return naive_groups(scene);
   Patches patches;
   // A global tree has no use for maps.
@@ -47,126 +35,183 @@ NeighbourGroups find_groups(const Scene& scene, const Photons& photons,
       photons);
 }
 
-NeighbourGroups group(const Scene& scene, const Photons& photons,
-                      const RenderParameters& parameters, double radius,
-                      RunStatistics& statistics, Progress& progress) {
-  const Stopwatch stopwatch;
-  NeighbourGroups groups = find_groups(scene, photons, parameters, radius, progress);
-  const auto members = static_cast<double>(groups.members.size());
-  statistics.push_back(
-      {"neighbour groups",
-       stopwatch.seconds(),
-       groups.bytes(),
-       0,
-       {{"members", members},
-        {"members per sided triangle", members / static_cast<double>(groups.offsets.size() - 1)},
-        {"patches", static_cast<double>(groups.patches.count())}}});
-  return groups;
-}
-
-std::vector<PhotonMaps> build_maps(std::span<Device> devices, const Scene& scene,
-                                   const Photons& photons, const NeighbourGroups& groups,
-                                   const PhotonMapParameters& parameters, RunStatistics& statistics,
-                                   Progress& progress) {
-  const Stopwatch stopwatch;
-  std::vector<PhotonMaps> maps =
-      build_maps_on_each(devices, scene, photons, groups, parameters, progress);
-  const PhotonMapStatistics& built = maps.front().statistics();
-  std::uint64_t device_bytes = 0;
-  for (const PhotonMaps& one : maps) device_bytes += one.statistics().device_bytes;
-  double compile_seconds = 0;  // devices compile at the same time
-  for (const Device& device : devices) {
-    compile_seconds = std::max(compile_seconds, device.compile_seconds());
+/// One rendering: what its photon passes share.
+class Rendering {
+ public:
+  Rendering(const Scene& scene, const Camera& camera, std::span<Device> devices,
+            const RenderParameters& parameters, Progress& progress)
+      : scene_(scene),
+        camera_(camera),
+        devices_(devices),
+        parameters_(parameters),
+        progress_(progress),
+        rays_(scene),
+        film_(parameters.film),
+        shares_(devices.size(), 0.0) {
+    costs_.structure.add(stopwatch_.seconds(), rays_.bytes());
+    passes_ = parameters.passes > 0 ? parameters.passes
+                                    : automatic_passes(rays_, parameters.photons, progress);
+    // Passes share the samples of a pixel: photons of one pass make the errors of neighbouring
+    // samples alike, those of another do not.
+    film_.passes = passes_;
+    film_.samples_per_pixel = passes_ * ((parameters.film.samples_per_pixel - 1) / passes_ + 1);
+    layers_ = LightLayers(film_.width, film_.height, scene.lights);
+    paths_before_.assign(scene.lights.size(), 0);
   }
-  statistics.push_back({"build photon maps",
-                        stopwatch.seconds(),
-                        0,
-                        device_bytes,
-                        {{"maps", static_cast<double>(built.maps)},
-                         {"mixed maps", static_cast<double>(built.mixed_maps)},
-                         {"references", static_cast<double>(built.references)},
-                         {"references per photon",
-                          static_cast<double>(built.references) /
-                              static_cast<double>(std::max<std::uint64_t>(1, built.photons))},
-                         {"largest map", static_cast<double>(built.largest_map)},
-                         {"kernel compilation seconds", compile_seconds}}});
-  return maps;
-}
 
-LightLayers estimate_picture(const RayScene& rays, const Camera& camera,
-                             std::span<const Device> devices, const PhotonMaps& maps,
-                             DeviceEstimators& estimators, const RenderParameters& parameters,
-                             RunStatistics& statistics, Progress& progress) {
-  const PrimaryHitParameters& film = parameters.film;
-  StageStatistics hit_stage{"primary hits", 0, 0, 0, {}};
-  StageStatistics estimate_stage{"radiance estimate", 0, 0, 0, {}};
-  StageStatistics film_stage{"film", 0, 0, 0, {}};
-  LightLayers layers(film.width, film.height, rays.scene().lights);
-  const std::int64_t samples_per_row = std::int64_t{film.width} * film.samples_per_pixel;
-  const int rows = static_cast<int>(std::clamp<std::int64_t>(
-      hits_per_batch(parameters.neighbours) / samples_per_row, 1, film.height));
-  std::uint64_t ray_count = 0, hit_count = 0;
-  progress.begin("estimate radiance", static_cast<std::uint64_t>(film.height), "rows");
-  for (int first = 0; first < film.height; first += rows) {
-    progress.throw_if_cancelled();
-    const int last = std::min(first + rows, film.height);
+  RenderResult run() {
+    for (int pass = 0; pass < passes_; ++pass) run_pass(pass);
+    costs_.film.host_bytes = layers_.bytes();
+    for (const Device& device : devices_) {  // devices compile at the same time
+      costs_.compile_seconds = std::max(costs_.compile_seconds, device.compile_seconds());
+    }
+    for (std::size_t i = 0; i < devices_.size() && devices_.size() > 1; ++i) {
+      const DeviceInfo& device = devices_[i].info();
+      costs_.shares.emplace_back("share of " + device.id + " " + device.name, shares_[i]);
+    }
+    return {.layers = std::move(layers_),
+            .statistics = costs_.statistics(),
+            .radius = first_.radius,
+            .stored_photons = costs_.stored_photons,
+            .passes = passes_,
+            .samples_per_pixel = film_.samples_per_pixel,
+            .device_shares = shares_};
+  }
+
+ private:
+  void run_pass(int pass) {
+    const std::vector<PhotonMaps> maps = trace_and_build(pass);
+    const PassEstimate estimate = estimate_of_pass(pass, first_);
+    DeviceEstimators estimators(
+        devices_, maps, scene_,
+        {estimate.neighbours, 0, parameters_.tuning, parameters_.neighbours});
+    film_.pass = pass;
+    add_pass(estimators, maps.front().map_of());
+    const std::vector<double> shares = estimators.shares();
+    for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / passes_;
+  }
+
+  /// The maps of a pass. Its photons are gone when this returns: the maps hold copies.
+  std::vector<PhotonMaps> trace_and_build(int pass) {
+    const Photons photons = trace(pass);
+    if (pass == 0) {
+      first_ = {parameters_.radius > 0 ? parameters_.radius
+                                       : automatic_radius(photons, parameters_.neighbours),
+                parameters_.neighbours};
+      find_groups(photons);  // once: no later radius is larger
+    }
+    const Stopwatch stopwatch;
+    std::vector<PhotonMaps> maps =
+        build_maps_on_each(devices_, scene_, photons, groups_,
+                           {estimate_of_pass(pass, first_).radius, parameters_.photons_per_cell,
+                            parameters_.structure},
+                           progress_);
+    std::uint64_t device_bytes = 0, spilled_bytes = 0;
+    for (const PhotonMaps& one : maps) {
+      device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
+      spilled_bytes += one.statistics().spilled_bytes;
+    }
+    costs_.build.add(stopwatch.seconds(), spilled_bytes, device_bytes);
+    const PhotonMapStatistics& built = maps.front().statistics();
+    costs_.maps = built.maps;
+    costs_.mixed_maps = built.mixed_maps;
+    costs_.references += built.references;
+    costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
+    return maps;
+  }
+
+  Photons trace(int pass) {
+    PhotonTracerParameters parameters = parameters_.photons;
+    const auto until = [&](int p) {  // paths of the passes before p
+      return parameters_.photons.emitted_photons / passes_ * p +
+             parameters_.photons.emitted_photons % passes_ * p / passes_;
+    };
+    if (passes_ > 1) {
+      parameters.emitted_photons = std::max<std::uint64_t>(1, until(pass + 1) - until(pass));
+      parameters.paths_before = paths_before_;
+    }
+    PhotonTracerResult traced = trace_photons(rays_, parameters, progress_);
+    for (std::size_t light = 0; light < paths_before_.size(); ++light) {
+      const std::uint64_t paths = traced.photons.emitted_per_light[light];
+      paths_before_[light] += paths;
+      costs_.emitted_photons += paths;
+    }
+    costs_.stored_photons += traced.photons.size();
+    costs_.trace.add(traced.seconds, traced.photons.bytes());
+    return std::move(traced.photons);
+  }
+
+  void find_groups(const Photons& photons) {
+    const Stopwatch stopwatch;
+    groups_ = groups_of(scene_, photons, parameters_, first_.radius, progress_);
+    costs_.group.add(stopwatch.seconds(), groups_.bytes());
+    costs_.group_members = groups_.members.size();
+    costs_.groups = groups_.offsets.size() - 1;
+    costs_.patches = groups_.patches.count();
+  }
+
+  /// Adds what the camera sees by the photons of this pass.
+  void add_pass(DeviceEstimators& estimators, std::span<const std::uint32_t> map_of) {
+    const std::int64_t samples_per_row =
+        std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
+    const int rows = static_cast<int>(std::clamp<std::int64_t>(
+        hits_per_batch(parameters_.neighbours) / samples_per_row, 1, film_.height));
+    progress_.begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
+    for (int first = 0; first < film_.height; first += rows) {
+      progress_.throw_if_cancelled();
+      const int last = std::min(first + rows, film_.height);
+      add_rows(estimators, map_of, first, last);
+      progress_.advance(static_cast<std::uint64_t>(last - first));
+    }
+    progress_.end();
+  }
+
+  void add_rows(DeviceEstimators& estimators, std::span<const std::uint32_t> map_of, int first,
+                int last) {
     const Stopwatch hit_watch;
-    const PrimaryHitBatch batch = trace_primary_hits(rays, camera, film, first, last, maps.map_of());
-    hit_stage.seconds += hit_watch.seconds();
+    const PrimaryHitBatch batch = trace_primary_hits(rays_, camera_, film_, first, last, map_of);
+    costs_.hits.add(hit_watch.seconds());
     const Stopwatch estimate_watch;
     const Estimates estimates = estimators.estimate(batch.hits);
-    estimate_stage.seconds += estimate_watch.seconds();
+    costs_.estimate.add(estimate_watch.seconds());
     const Stopwatch film_watch;
-    add_to_film(layers, batch, estimates, 1.0f / static_cast<float>(film.samples_per_pixel));
-    film_stage.seconds += film_watch.seconds();
-    ray_count += batch.rays;
-    hit_count += batch.hits.size();
-    progress.advance(static_cast<std::uint64_t>(last - first));
+    add_to_film(layers_, batch, estimates, 1.0f / static_cast<float>(film_.samples_per_pixel));
+    costs_.film.add(film_watch.seconds());
+    costs_.rays += batch.rays;
+    costs_.hit_count += batch.hits.size();
   }
-  progress.end();
-  hit_stage.figures = {{"rays", static_cast<double>(ray_count)},
-                       {"rays per second", static_cast<double>(ray_count) / hit_stage.seconds}};
-  estimate_stage.figures = {
-      {"hits", static_cast<double>(hit_count)},
-      {"microseconds per hit",
-       1e6 * estimate_stage.seconds / static_cast<double>(std::max<std::uint64_t>(1, hit_count))}};
-  const std::vector<double> shares = estimators.shares();
-  for (std::size_t i = 0; i < devices.size() && devices.size() > 1; ++i) {
-    const DeviceInfo& device = devices[i].info();
-    estimate_stage.figures.emplace_back("share of " + device.id + " " + device.name, shares[i]);
+
+  const Stopwatch stopwatch_;  // before rays_, whose construction it times
+  const Scene& scene_;
+  const Camera& camera_;
+  std::span<Device> devices_;
+  const RenderParameters& parameters_;
+  Progress& progress_;
+  const RayScene rays_;
+  int passes_ = 1;
+  PrimaryHitParameters film_;
+  LightLayers layers_;
+  std::vector<std::uint64_t> paths_before_;  ///< per light
+  PassEstimate first_;
+  NeighbourGroups groups_;
+  std::vector<double> shares_;
+  RenderCosts costs_;
+};
+
+void check(std::span<const Device> devices, const RenderParameters& parameters) {
+  if (devices.empty()) throw UsageError("rendering needs a device; give at least one");
+  if (parameters.passes < 0 || parameters.passes > limits::max_passes) {
+    throw UsageError("passes: " + std::to_string(parameters.passes) + " is not between 0 and " +
+                     std::to_string(limits::max_passes));
   }
-  film_stage.host_bytes = layers.bytes();
-  statistics.insert(statistics.end(), {hit_stage, estimate_stage, film_stage});
-  return layers;
 }
 
 }  // namespace
 
 RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress) {
-  if (devices.empty()) throw UsageError("rendering needs a device; give at least one");
-  RenderResult result;
-  RunStatistics& statistics = result.statistics;
-
-  const Stopwatch bvh_watch;
-  const RayScene rays(scene);
-  statistics.push_back({"ray tracing structure", bvh_watch.seconds(), rays.bytes(), 0, {}});
-
-  PhotonTracerResult traced = trace(rays, parameters, statistics, progress);
-  result.stored_photons = traced.photons.size();
-  result.radius = parameters.radius > 0 ? parameters.radius
-                                        : automatic_radius(traced.photons, parameters.neighbours);
-  const NeighbourGroups groups =
-      group(scene, traced.photons, parameters, result.radius, statistics, progress);
-  const std::vector<PhotonMaps> maps = build_maps(
-      devices, scene, traced.photons, groups,
-      {result.radius, parameters.photons_per_cell, parameters.structure}, statistics, progress);
-  traced.photons = Photons{};  // the maps hold copies
-  DeviceEstimators estimators(devices, maps, scene, {parameters.neighbours, 0, parameters.tuning});
-  result.layers = estimate_picture(rays, camera, devices, maps.front(), estimators, parameters,
-                                   statistics, progress);
-  result.device_shares = estimators.shares();
-  return result;
+  check(devices, parameters);
+  return Rendering(scene, camera, devices, parameters, progress).run();
 }
 
 RenderResult render(const Scene& scene, const Camera& camera, Device& device,

@@ -79,8 +79,10 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                  glm::vec3(glm::dvec3(scene.scene().lights[chunk.light].color) /
                                            static_cast<double>(paths_per_light[chunk.light])),
                                  keep_incoming};
+    const std::uint64_t before =
+        parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
-      trace::trace_photon_path(setup, path, records[c]);
+      trace::trace_photon_path(setup, before + path, records[c]);
 
     const std::uint64_t so_far = stored += records[c].position.size();
     if (so_far > limits::max_stored_photons)

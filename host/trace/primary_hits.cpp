@@ -31,8 +31,10 @@ void check(const PrimaryHitParameters& film, int first_row, int last_row) {
   check_range("specular depth", film.max_specular_depth, 0, 1'000'000);
   check_range("first row", first_row, 0, film.height);
   check_range("last row", last_row, first_row, film.height);
-  check_range("samples in one batch",
-              std::int64_t{last_row - first_row} * film.width * film.samples_per_pixel, 0,
+  check_range("passes", film.passes, 1, limits::max_passes);
+  check_range("pass", film.pass, 0, film.passes - 1);
+  const std::int64_t samples = (film.samples_per_pixel - 1) / film.passes + 1;
+  check_range("samples in one batch", std::int64_t{last_row - first_row} * film.width * samples, 0,
               static_cast<std::int64_t>(limits::max_stored_photons));
 }
 
@@ -93,7 +95,8 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
     const trace::FlushDenormals flush_denormals;
     EyeRecord& row = rows[static_cast<std::size_t>(y - first_row)];
     for (int x = 0; x < parameters.width; ++x)
-      for (int sample = 0; sample < parameters.samples_per_pixel; ++sample)
+      for (int sample = parameters.pass; sample < parameters.samples_per_pixel;
+           sample += parameters.passes)
         trace::trace_eye_path(setup, x, y, sample, row);
   });
 

@@ -19,6 +19,12 @@ inline constexpr std::uint64_t seed = 1;
 inline constexpr int max_path_length = 64;  ///< a bound that roulette hardly ever reaches
 inline constexpr int roulette_start = 1;    ///< first bounce at which a path may end
 
+// Photon passes
+/// The exponent by which radius and k shrink from pass to pass (Knaus and Zwicker 2011): bias and
+/// variance vanish at the same rate.
+inline constexpr double pass_alpha = 2.0 / 3.0;
+inline constexpr int least_pass_neighbours = 5;  ///< k shrinks no further: fewer are too noisy
+
 // Density estimation
 inline constexpr int neighbours = 50;                ///< k
 inline constexpr double group_angle_degrees = 60.0;  ///< largest angle between normals of a group

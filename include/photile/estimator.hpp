@@ -19,6 +19,9 @@ struct EstimateParameters {
   double radius = 0;
   /// How uniform grids are queried; none = shipped_tuning of the device.
   std::optional<EstimateTuning> tuning = std::nullopt;
+  /// Kernels are compiled for k up to this; 0 = `neighbours`. Estimators with different k share
+  /// them; what they compute does not depend on it.
+  int compiled_neighbours = 0;
 };
 
 /// Estimates of a batch of hits, each light at power 1. Row-major [hit][light]; with more than

@@ -11,6 +11,8 @@ inline constexpr std::uint64_t min_photons = 1;
 /// Photon indices on the device are 32 bits wide, and the largest one marks "none".
 inline constexpr std::uint64_t max_stored_photons = 0xFFFF'FFFEull;
 inline constexpr std::uint64_t max_emitted_photons = 10'000'000'000ull;
+/// Each traces a sample of every pixel at least.
+inline constexpr int max_passes = 65'536;
 inline constexpr int max_neighbours = 1'000'000;  ///< k
 
 // Neighbour groups
@@ -18,9 +20,9 @@ inline constexpr int max_neighbours = 1'000'000;  ///< k
 inline constexpr std::uint64_t max_group_members = 1'000'000'000;
 
 // Scene
-inline constexpr std::uint64_t max_file_bytes = 2ull << 30;       ///< the scene file itself
-inline constexpr std::uint64_t max_external_bytes = 8ull << 30;   ///< buffers and images together
-inline constexpr std::uint64_t max_triangles = 500'000'000ull;    ///< sided indices fit 32 bits
+inline constexpr std::uint64_t max_file_bytes = 2ull << 30;      ///< the scene file itself
+inline constexpr std::uint64_t max_external_bytes = 8ull << 30;  ///< buffers and images together
+inline constexpr std::uint64_t max_triangles = 500'000'000ull;   ///< sided indices fit 32 bits
 inline constexpr std::uint64_t max_vertices = 0x7FFF'FFFFull;
 inline constexpr std::uint64_t max_materials = 1'000'000;
 inline constexpr std::uint64_t max_lights = 10'000;

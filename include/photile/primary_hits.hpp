@@ -47,6 +47,9 @@ struct PrimaryHitParameters {
   int samples_per_pixel = defaults::samples_per_pixel;
   std::uint64_t seed = defaults::seed;
   int max_specular_depth = defaults::max_specular_depth;
+  /// Only samples pass, pass + passes, pass + 2 passes ... of each pixel are traced.
+  int pass = 0;
+  int passes = 1;
 };
 
 struct PrimaryHitBatch {
@@ -55,9 +58,10 @@ struct PrimaryHitBatch {
   std::uint64_t rays = 0;
 };
 
-/// Traces all samples of the rows [first_row, last_row). Each sample carries weight 1 /
-/// samples_per_pixel in `throughput` and `radiance`, so that summing gives pixel means. Depends on
-/// the scene, camera, parameters and seed only, not on how rows are split or on threads.
+/// Traces the samples of the rows [first_row, last_row) that belong to the pass. Each sample
+/// carries weight 1 / samples_per_pixel in `throughput` and `radiance`, so that summing gives pixel
+/// means. Depends on the scene, camera, parameters and seed only, not on how rows are split or on
+/// threads.
 ///   map_of   the photon map of each sided triangle (PhotonMaps::map_of), for the order of hits; empty
 ///            where a sided triangle is the map itself
 PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,

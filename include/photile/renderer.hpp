@@ -32,13 +32,18 @@ struct RenderParameters {
   /// not count, the one above does.
   std::optional<EstimateTuning> tuning = std::nullopt;
   PrimaryHitParameters film;
+  /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
+  /// their mean. 0 = as many as the host's memory asks for.
+  int passes = 0;
 };
 
 struct RenderResult {
   LightLayers layers;
   RunStatistics statistics;
-  double radius = 0;  ///< the one used, metres
-  std::uint64_t stored_photons = 0;
+  double radius = 0;  ///< the one used, metres; of the first pass
+  std::uint64_t stored_photons = 0;  ///< over all passes
+  int passes = 1;
+  int samples_per_pixel = 1;  ///< over all passes: those asked for, or one more for a pass
   std::vector<double> device_shares;  ///< each device's part of the hits, in [0, 1]
 };
 

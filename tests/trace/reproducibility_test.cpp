@@ -2,6 +2,8 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -150,4 +152,65 @@ TEST_CASE("Each pixel's hits come in the same order however rows are split into 
   const PerPixel whole = collect({0, film.height});
   CHECK(collect({0, 1, 20, film.height}) == whole);
   CHECK(collect({0, 17, 17, film.height}) == whole);
+}
+
+TEST_CASE("passes trace the paths of one pass, each path once") {
+  const Scene scene = difficult_room();
+  const RayScene rays(scene);
+  PhotonTracerParameters parameters;
+  parameters.quota = PhotonQuota::equal;
+  parameters.emitted_photons = 2'000;
+  const Photons all = trace_photons(rays, parameters).photons;
+  parameters.emitted_photons = 1'000;
+  const Photons first = trace_photons(rays, parameters).photons;
+  parameters.paths_before = first.emitted_per_light;
+  const Photons second = trace_photons(rays, parameters).photons;
+  CHECK_FALSE(same_bits(first.position, second.position));
+  // In the order of their triangles, lights and paths, the photons of the first pass come first.
+  REQUIRE(first.size() + second.size() == all.size());
+  std::size_t differences = 0;
+  for (std::uint32_t s = 0; s + 1 < all.first_of.size(); ++s) {
+    for (std::uint32_t i = all.first_of[s], a = first.first_of[s], b = second.first_of[s];
+         i < all.first_of[s + 1]; ++i) {
+      const bool of_first = a < first.first_of[s + 1] && first.position[a] == all.position[i] &&
+                            first.light[a] == all.light[i];
+      const bool of_second = !of_first && b < second.first_of[s + 1] &&
+                             second.position[b] == all.position[i] &&
+                             second.light[b] == all.light[i];
+      differences += !of_first && !of_second;
+      a += of_first;
+      b += of_second;
+    }
+  }
+  CHECK(differences == 0);
+}
+
+TEST_CASE("passes trace the samples of one pass, each sample once") {
+  const Scene scene = difficult_room();
+  const RayScene rays(scene);
+  PrimaryHitParameters film;
+  film.width = 16;
+  film.height = 12;
+  film.samples_per_pixel = 5;
+  const auto traced = [&] { return trace_primary_hits(rays, camera_into_room(), film, 0, 12); };
+  const PrimaryHitBatch all = traced();
+  film.passes = 3;
+  std::vector<std::array<float, 4>> together, expected;
+  std::uint64_t ray_count = 0;
+  const auto append = [](const PrimaryHits& hits, std::vector<std::array<float, 4>>& list) {
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      list.push_back(
+          {hits.position[i].x, hits.position[i].y, hits.position[i].z, hits.throughput[i].x});
+    }
+  };
+  append(all.hits, expected);
+  for (film.pass = 0; film.pass < film.passes; ++film.pass) {
+    const PrimaryHitBatch batch = traced();
+    ray_count += batch.rays;
+    append(batch.hits, together);
+  }
+  std::sort(together.begin(), together.end());
+  std::sort(expected.begin(), expected.end());
+  CHECK(together == expected);
+  CHECK(ray_count == all.rays);
 }

@@ -1,0 +1,60 @@
+#include "render/pass_count.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "render/host_memory.hpp"
+
+namespace photile {
+
+std::uint64_t bytes_per_stored_photon(const SceneNeeds& needs) {
+  constexpr std::uint64_t copies = 2;      // while arrays are joined and sorted
+  constexpr std::uint64_t references = 4;  // an entry repeats the record
+  const std::uint64_t record = 3 * sizeof(float) + 3 * sizeof(float) + sizeof(std::uint32_t) +
+                               (needs.light_count > 1 ? sizeof(std::uint16_t) : 0) +
+                               (needs.glossy ? 3 * sizeof(float) : 0);
+  return (copies + references) * record;
+}
+
+int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t bytes_per_photon,
+                  std::uint64_t available_bytes) {
+  const double stored = static_cast<double>(paths) * stored_per_path;
+  const double most =
+      std::min(static_cast<double>(available_bytes) / 2 / static_cast<double>(bytes_per_photon),
+               // Paths differ: keep a distance to what cannot be indexed.
+               0.9 * static_cast<double>(limits::max_stored_photons));
+  const double passes = std::ceil(stored / std::max(1.0, most));
+  return static_cast<int>(std::clamp(passes, 1.0, 1.0 + limits::max_passes));
+}
+
+int automatic_passes(const RayScene& rays, const PhotonTracerParameters& parameters,
+                     Progress& progress) {
+  constexpr std::uint64_t few = 10'000;
+  if (parameters.emitted_photons <= 10 * few) return 1;  // fits wherever a scene does
+  PhotonTracerParameters sample = parameters;
+  sample.emitted_photons = few;
+  const double stored_per_path =
+      static_cast<double>(trace_photons(rays, sample).photons.size()) / static_cast<double>(few);
+  const std::uint64_t available = available_host_bytes();
+  const int passes = passes_within(parameters.emitted_photons, stored_per_path,
+                                   bytes_per_stored_photon(needs_of(rays.scene())), available);
+  if (passes > limits::max_passes) {
+    throw UsageError(
+        fmt::format("{} photons do not fit in {} bytes of memory even in {} passes; "
+                    "use fewer photons",
+                    parameters.emitted_photons, available, limits::max_passes));
+  }
+  if (passes > 1) {
+    progress.note(
+        fmt::format("{} photons do not fit in {:.1f} GB of memory: {} passes (--passes "
+                    "N chooses)",
+                    parameters.emitted_photons, static_cast<double>(available) / 1e9, passes));
+  }
+  return passes;
+}
+
+}  // namespace photile

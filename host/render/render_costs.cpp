@@ -1,0 +1,56 @@
+#include "render/render_costs.hpp"
+
+#include <algorithm>
+
+namespace photile {
+namespace {
+
+StageStatistics stage(const char* name, const StageCost& cost,
+                      std::vector<std::pair<std::string, double>> figures = {}) {
+  return {name, cost.seconds, cost.host_bytes, cost.device_bytes, std::move(figures)};
+}
+
+double ratio(std::uint64_t a, std::uint64_t b) {
+  return static_cast<double>(a) / static_cast<double>(std::max<std::uint64_t>(1, b));
+}
+
+}  // namespace
+
+void StageCost::add(double more_seconds, std::uint64_t more_host_bytes,
+                    std::uint64_t more_device_bytes) {
+  seconds += more_seconds;
+  host_bytes = std::max(host_bytes, more_host_bytes);
+  device_bytes = std::max(device_bytes, more_device_bytes);
+}
+
+RunStatistics RenderCosts::statistics() const {
+  const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+  RunStatistics stages{
+      stage("ray tracing structure", structure),
+      stage("trace photons", trace,
+            {{"emitted photons", number(emitted_photons)},
+             {"stored photons", number(stored_photons)},
+             {"stored photons per second", number(stored_photons) / trace.seconds}}),
+      stage("neighbour groups", group,
+            {{"members", number(group_members)},
+             {"members per sided triangle", ratio(group_members, groups)},
+             {"patches", number(patches)}}),
+      stage("build photon maps", build,
+            {{"maps", number(maps)},
+             {"mixed maps", number(mixed_maps)},
+             {"references", number(references)},
+             {"references per photon", ratio(references, stored_photons)},
+             {"largest map", number(largest_map)},
+             {"kernel compilation seconds", compile_seconds}}),
+      stage("primary hits", hits,
+            {{"rays", number(rays)}, {"rays per second", number(rays) / hits.seconds}}),
+      stage("radiance estimate", estimate,
+            {{"hits", number(hit_count)},
+             {"microseconds per hit", 1e6 * estimate.seconds / std::max(1.0, number(hit_count))}}),
+      stage("film", film)};
+  auto& figures = stages[5].figures;
+  figures.insert(figures.end(), shares.begin(), shares.end());
+  return stages;
+}
+
+}  // namespace photile

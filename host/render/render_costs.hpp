@@ -1,0 +1,37 @@
+// What the stages of a rendering cost, over all its photon passes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "photile/statistics.hpp"
+
+namespace photile {
+
+/// Seconds add up over passes; bytes are those of the pass that took most.
+struct StageCost {
+  double seconds = 0;
+  std::uint64_t host_bytes = 0;
+  std::uint64_t device_bytes = 0;
+
+  void add(double seconds, std::uint64_t host_bytes = 0, std::uint64_t device_bytes = 0);
+};
+
+/// Counts add up over passes.
+struct RenderCosts {
+  StageCost structure, trace, group, build, hits, estimate, film;
+  std::uint64_t emitted_photons = 0, stored_photons = 0;
+  std::uint64_t group_members = 0, groups = 0, patches = 0;
+  std::uint64_t maps = 0, mixed_maps = 0;  ///< of the last pass
+  std::uint64_t references = 0, largest_map = 0;
+  std::uint64_t rays = 0, hit_count = 0;
+  double compile_seconds = 0;
+  std::vector<std::pair<std::string, double>> shares;  ///< of several devices
+
+  /// The stages in their order, with figures.
+  RunStatistics statistics() const;
+};
+
+}  // namespace photile
