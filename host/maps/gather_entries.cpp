@@ -6,12 +6,12 @@ namespace photile::maps {
 
 using device::Defines;
 
-void gather_entries(device::Context& context, const SceneNeeds& needs,
-                    std::span<const PhotonPage> photon_pages, bool normals, MapPage& page) {
+void gather_entries(device::Context& context, const SceneNeeds& needs, PhotonPages& photon_pages,
+                    bool normals, MapPage& page) {
   page.entry_stride = page.entry_count + entry_padding;
   // Vector loads reach into the padding; what they find there is masked, but must be a number.
   const auto planes = [&](std::string_view what) {
-    auto buffer = context.allocate<float>(3 * page.entry_stride, what);
+    auto buffer = context.allocate<float>(3 * std::size_t{page.entry_stride}, what);
     context.fill(buffer, 0.0f);
     return buffer;
   };

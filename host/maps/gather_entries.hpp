@@ -1,8 +1,6 @@
 // Copies photon records into the order of a page's entries.
 #pragma once
 
-#include <span>
-
 #include "maps/map_store.hpp"
 #include "maps/photon_pages.hpp"
 
@@ -11,6 +9,6 @@ namespace photile::maps {
 /// Before: page.entry_count and page.entry_photon are set. After: the other entry buffers that the
 /// scene needs are filled, normals among them if `normals`.
 void gather_entries(device::Context& context, const SceneNeeds& needs,
-                    std::span<const PhotonPage> photon_pages, bool normals, MapPage& page);
+                    PhotonPages& photon_pages, bool normals, MapPage& page);
 
 }  // namespace photile::maps

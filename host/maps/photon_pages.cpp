@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace photile::maps {
 namespace {
@@ -27,9 +28,12 @@ std::span<const T> part(const std::vector<T>& values, PhotonRange range) {
 
 std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes) {
-  const std::uint64_t max_photons = std::max<std::uint64_t>(1, max_bytes / bytes_per_photon);
-  const std::uint64_t max_members = std::min<std::uint64_t>(
-      max_bytes / sizeof(std::uint32_t) - 1, std::numeric_limits<std::uint32_t>::max() - 1);
+  // Kernels index three floats of a photon, and the members of lists, in 32 bits.
+  constexpr std::uint64_t most_indices = std::numeric_limits<std::uint32_t>::max();
+  const std::uint64_t max_photons =
+      std::clamp<std::uint64_t>(max_bytes / bytes_per_photon, 1, most_indices / 3);
+  const std::uint64_t max_members =
+      std::clamp<std::uint64_t>(max_bytes / sizeof(std::uint32_t), 2, most_indices) - 1;
   const auto first_member_of = [&](std::uint32_t map) {
     return candidates.offsets[candidates.first_list_of[map]];
   };
@@ -45,10 +49,14 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
       --end_map;
     }
     if (end_map == first_map) {
-      throw DeviceError(fmt::format(
-          "the photons of triangle {} may enter {} maps, more than the device's largest "
-          "buffer holds; use a smaller radius",
-          triangle_of(first_map), first_member_of(first_map + 1) - first_member_of(first_map)));
+      end_map = first_map + 1;
+      const std::uint64_t members = first_member_of(end_map) - first_member_of(first_map);
+      if (members >= most_indices) {
+        throw DeviceError(fmt::format(
+            "the photons of triangle {} may enter {} maps, more than 32 bits count; use a smaller "
+            "radius",
+            triangle_of(first_map), members));
+      }
     }
     const std::uint64_t last = std::min<std::uint64_t>(most, photons.first_of[end_map]);
     pages.push_back({first, static_cast<std::uint32_t>(last)});
@@ -106,6 +114,42 @@ PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
       std::span<const std::uint32_t>(candidates.members.data() + first_member, offsets.back()),
       "candidate maps");
   return page;
+}
+
+PhotonPages::PhotonPages(device::Context& context, Plan plan, Upload upload,
+                         std::uint64_t max_bytes)
+    : Residents(context),
+      plan_(std::move(plan)),
+      upload_(std::move(upload)),
+      max_bytes_(max_bytes),
+      ranges_(plan_(max_bytes)),
+      pages_(ranges_.size()) {}
+
+const PhotonPage& PhotonPages::Iterator::operator*() const {
+  pages_.use(page_);
+  return pages_.pages_[page_];
+}
+
+PhotonPages::Iterator& PhotonPages::Iterator::operator++() {
+  ++page_;
+  pages_.release();
+  return *this;
+}
+
+bool PhotonPages::halve() {
+  constexpr std::uint64_t least_bytes = 4096;
+  std::uint64_t largest = 0;  // of the buffers there are now
+  for (const PhotonRange& range : ranges_) {
+    largest = std::max<std::uint64_t>(largest, bytes_per_photon * (range.last - range.first));
+  }
+  if (largest < 2 * least_bytes) return false;
+  release();
+  while (reclaim()) {
+  }
+  max_bytes_ = largest / 2;
+  ranges_ = plan_(max_bytes_);
+  pages_ = std::vector<PhotonPage>(ranges_.size());
+  return true;
 }
 
 }  // namespace photile::maps

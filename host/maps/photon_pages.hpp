@@ -1,13 +1,16 @@
 // Photons and the maps they may enter on the device, in pages for the build.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "device/context.hpp"
 #include "maps/candidate_maps.hpp"
 #include "photile/patches.hpp"
+#include "maps/residents.hpp"
 #include "photile/photons.hpp"
 
 namespace photile::maps {
@@ -33,8 +36,8 @@ struct PhotonRange {
   std::uint32_t first = 0, last = 0;
 };
 
-/// Splits photons so that no buffer of a page is larger than `max_bytes`.
-/// Errors: DeviceError when the lists of a single sided triangle alone are larger.
+/// Splits photons so that no buffer of a page is larger than `max_bytes`, but for the lists of a
+/// sided triangle that alone are larger. Errors: DeviceError when those are beyond 32 bits.
 std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes);
 
@@ -47,5 +50,45 @@ PhotonPage upload_photon_records(device::Context& context, const Photons& photon
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
                               std::span<const glm::vec3> normals, const Patches& patches,
                               const CandidateMaps& candidates, PhotonRange range);
+
+/// The photons of a build, page by page: on the device while there is memory, uploaded again where
+/// there was none. `for (const PhotonPage& page : pages)` goes through all of them; a page stays
+/// until the next one is reached.
+class PhotonPages final : private Residents {
+ public:
+  using Plan = std::function<std::vector<PhotonRange>(std::uint64_t max_bytes)>;
+  using Upload = std::function<PhotonPage(PhotonRange range)>;
+
+  /// `max_bytes`: of any buffer, for the plan.
+  PhotonPages(device::Context& context, Plan plan, Upload upload, std::uint64_t max_bytes);
+
+  class Iterator {
+   public:
+    Iterator(PhotonPages& pages, std::size_t page) : pages_(pages), page_(page) {}
+    /// Errors: DeviceMemoryError.
+    const PhotonPage& operator*() const;
+    Iterator& operator++();
+    bool operator!=(const Iterator& other) const { return page_ != other.page_; }
+
+   private:
+    PhotonPages& pages_;
+    std::size_t page_;
+  };
+  Iterator begin() { return {*this, 0}; }
+  Iterator end() { return {*this, pages_.size()}; }
+
+  /// Smaller pages from now on. False where they are as small as is sensible.
+  bool halve();
+
+ private:
+  void load(std::size_t page) override { pages_[page] = upload_(ranges_[page]); }
+  void unload(std::size_t page) override { pages_[page] = {}; }
+
+  Plan plan_;
+  Upload upload_;
+  std::uint64_t max_bytes_;
+  std::vector<PhotonRange> ranges_;
+  std::vector<PhotonPage> pages_;
+};
 
 }  // namespace photile::maps

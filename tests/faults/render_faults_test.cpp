@@ -139,6 +139,48 @@ TEST_CASE("a call that fails on one of two devices ends the render on both, and 
   }
 }
 
+TEST_CASE("a device that allocates no large buffer renders the same picture from smaller ones") {
+  // Positions of all photons take about 100 kB, estimates of all hits 18 kB.
+  for (const char* const most : {"60000", "30000", "15000"}) {
+    const FileFolder folder;
+    CAPTURE(most);
+    const Run run = small_render(folder, {{"PHOTILE_FAIL_ABOVE", most}});
+    CHECK(picture_of(folder, run) == undisturbed_picture());
+  }
+}
+
+TEST_CASE("a device that allocates next to nothing is reported once") {
+  const FileFolder folder;
+  const Outcome outcome = run_photile(small_render(folder, {{"PHOTILE_FAIL_ABOVE", "100"}}));
+  CHECK_THAT(
+      last_error(outcome, device_error),
+      Catch::Contains("CL_MEM_OBJECT_ALLOCATION_FAILURE") && Catch::Contains("use fewer photons"));
+}
+
+TEST_CASE("a render in a small --memory is the same; in too small a one it says what to do") {
+  const FileFolder folder;
+  for (const char* const memory : {"300kB", "150kB"}) {
+    CAPTURE(memory);
+    CHECK(picture_of(folder, small_render(folder, {}, {"--memory", memory})) ==
+          undisturbed_picture());
+  }
+  const Outcome outcome = run_photile(small_render(folder, {}, {"--memory", "300"}));
+  CHECK_THAT(last_error(outcome, device_error), Catch::Contains("use a larger --memory"));
+}
+
+TEST_CASE("PoCL with 256 MiB a buffer renders the same picture", "[slow]") {
+  const FileFolder folder;
+  // About 25 million stored photons: 300 MB of positions, more in the maps.
+  const auto render_many = [&](std::map<std::string, std::string> environment) {
+    Run run = small_render(folder, std::move(environment));
+    run.arguments[3] = "8M";
+    run.arguments.insert(run.arguments.end(), {"--passes", "1"});
+    return picture_of(folder, run);
+  };
+  const auto expected = render_many({});
+  CHECK(render_many({{"POCL_MEMORY_LIMIT", "1"}}) == expected);
+}
+
 TEST_CASE("a render in which any OpenCL call of a kind runs out of memory", "[slow]") {
   const Failure failure = out_of_memory();
   const long calls = count_calls(failure);
