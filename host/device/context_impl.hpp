@@ -1,6 +1,7 @@
 // What a Context holds.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
@@ -20,6 +21,22 @@ struct Kernel::Impl {
   std::string name;
   unsigned argument_count = 0;
   bool launched = false;
+};
+
+/// Counts the contexts of this process.
+class LiveContext {
+ public:
+  LiveContext() { ++live(); }
+  ~LiveContext() { --live(); }
+  LiveContext(const LiveContext&) = delete;
+  LiveContext& operator=(const LiveContext&) = delete;
+  static int count() { return live(); }
+
+ private:
+  static std::atomic<int>& live() {
+    static std::atomic<int> count{0};
+    return count;
+  }
 };
 
 struct Context::Impl {
@@ -45,6 +62,7 @@ struct Context::Impl {
   /// Whether a reclaimer has released memory.
   bool reclaim();
 
+  LiveContext live;
   DeviceInfo info;
   SubDeviceHandle sub_device;  ///< outlives all that is made on it
   std::uint64_t memory_limit = 0;

@@ -1,6 +1,8 @@
 // Kernels: creation, arguments, launches.
 #include <fmt/format.h>
 
+#include <mutex>
+
 #include "device/context_impl.hpp"
 #include "photile/statistics.hpp"
 
@@ -11,6 +13,14 @@ namespace {
 /// one step must not wrap.
 constexpr std::size_t max_work_items = std::size_t{1} << 31;
 
+/// Held while PoCL compiles for one of several devices: two threads of a process that compile the
+/// same kernel at the same time crash PoCL 3.1 once in a while.
+std::unique_lock<std::mutex> lock_compilation(bool is_pocl) {
+  static std::mutex mutex;
+  const bool alone = LiveContext::count() < 2;
+  return is_pocl && !alone ? std::unique_lock(mutex) : std::unique_lock<std::mutex>();
+}
+
 }  // namespace
 
 Kernel Context::kernel(const std::string& file, const std::string& name, const Defines& defines) {
@@ -20,6 +30,7 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
     return found->second;
   }
   const Stopwatch stopwatch;
+  const auto compiling = lock_compilation(impl_->info.is_pocl);
   auto made = std::make_shared<Kernel::Impl>();
   const cl_program program = impl_->programs->get(file, options);
   const cl_int status = impl_->persevere([&] {
@@ -69,8 +80,10 @@ void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t
                                   impl.name, global_size, max_work_items),
                       CL_INVALID_GLOBAL_WORK_SIZE);
   }
-  // A runtime may compile within the first launch: it is timed alone.
-  const bool time_preparation = impl_->profile && !impl.launched;
+  // A runtime may compile within the first launch: it is timed alone, and in PoCL waited for.
+  const bool prepares = !impl.launched;
+  const auto compiling = lock_compilation(prepares && impl_->info.is_pocl);
+  const bool time_preparation = impl_->profile && prepares;
   if (time_preparation) finish();
   const Stopwatch stopwatch;
   cl_event event = nullptr;
@@ -85,6 +98,7 @@ void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t
                              local_size));
   }
   impl.launched = true;
+  if (compiling.owns_lock()) finish();
   if (!impl_->profile) return;
   EventHandle owned(event);
   if (time_preparation) {
