@@ -120,18 +120,18 @@ def build_kernels(result):
 
 def startup(result):
     rows = result["results"]
-    kernels = list(dict.fromkeys(kernel for row in rows for kernel in row["kernels"]))
     columns = [(row, f"{row['variant']}: {row['cache']} cache") for row in rows]
     lines = [["opening the device"] + [times(row["open"]) for row, _ in columns],
              ["all kernels"] + [times(row["prepare"]) for row, _ in columns]]
-    for kernel in kernels:
-        lines.append([f"`{kernel}`"] + [times(row["kernels"][kernel]) if kernel in row["kernels"]
-                                        else "" for row, _ in columns])
+    for kind, title in (("programs", "program `{}`"), ("kernels", "`{}`")):
+        for name in dict.fromkeys(name for row in rows for name in row[kind]):
+            lines.append([title.format(name)] + [times(row[kind][name]) if name in row[kind] else ""
+                                                 for row, _ in columns])
     text = ("Milliseconds until kernels can run, in a process of its own: compiled with an empty "
-            "cache, loaded with a full one. A kernel's first launch is in its row, since PoCL "
-            "compiles there; kernels of one file share what reading the file costs, which is in the "
-            "row of the first. With a full cache most of the time is clang's preprocessor, which "
-            "PoCL runs over each program to find it in its cache.")
+            "cache, loaded with a full one. Programs are read and checked whole; PoCL compiles each "
+            "kernel at its first launch, which is in the kernel's row. With a full cache most of the "
+            "time is clang's preprocessor, which PoCL runs over each program, and over OpenCL's "
+            "built-in functions before it, to find it in its cache.")
     return text + "\n\n" + table([""] + [name for _, name in columns], lines)
 
 

@@ -36,7 +36,8 @@ class CacheFolder {
   CacheFolder() {
     std::string name = (fs::temp_directory_path() / "photile-startup-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error(name + ": cannot be made; set TMPDIR to a folder that can be written");
+      throw std::runtime_error(name +
+                               ": cannot be made; set TMPDIR to a folder that can be written");
     }
     path_ = name;
   }
@@ -64,8 +65,7 @@ void start(const Variant& variant, const std::string& selector) {
   Device device({.selector = selector, .profile = true});
   const double opened = stopwatch.seconds();
   const auto picture = [&] {
-    const PhotonMaps maps(device, sample.scene, sample.photons, groups,
-                          {.radius = sample.radius});
+    const PhotonMaps maps(device, sample.scene, sample.photons, groups, {.radius = sample.radius});
     Estimator(maps, sample.scene, {}).estimate(sample.hits);
   };
   picture();
@@ -76,8 +76,14 @@ void start(const Variant& variant, const std::string& selector) {
   for (const device::KernelTime& time : device.context().kernel_times()) {
     kernels[time.kernel] = time.preparation_seconds;
   }
-  const nlohmann::json line{
-      {"open", opened}, {"prepare", first - second}, {"kernels", std::move(kernels)}};
+  nlohmann::json programs = nlohmann::json::object();
+  for (const device::ProgramTime& time : device.context().program_times()) {
+    programs[time.file] = programs.value(time.file, 0.0) + time.seconds;
+  }
+  const nlohmann::json line{{"open", opened},
+                            {"prepare", first - second},
+                            {"programs", std::move(programs)},
+                            {"kernels", std::move(kernels)}};
   std::printf("%s\n", line.dump().c_str());
 }
 
@@ -102,24 +108,30 @@ nlohmann::json start_process(const fs::path& cache, std::size_t variant,
 /// The times of one cache state, over repeats.
 struct StartTimings {
   Timing open, prepare;
-  std::map<std::string, Timing> kernels;
+  std::map<std::string, Timing> programs, kernels;
 
   void add(const nlohmann::json& seconds) {
     open.seconds.push_back(seconds["open"]);
     prepare.seconds.push_back(seconds["prepare"]);
+    for (const auto& [file, taken] : seconds["programs"].items()) {
+      programs[file].seconds.push_back(taken);
+    }
     for (const auto& [kernel, taken] : seconds["kernels"].items()) {
       kernels[kernel].seconds.push_back(taken);
     }
   }
 
   nlohmann::json row(const Variant& variant, const char* cache) const {
-    nlohmann::json by_kernel;
-    for (const auto& [kernel, timing] : kernels) by_kernel[kernel] = to_json(timing);
-    return {{"variant", variant.name},
-            {"cache", cache},
-            {"open", to_json(open)},
-            {"prepare", to_json(prepare)},
-            {"kernels", std::move(by_kernel)}};
+    return {{"variant", variant.name},       {"cache", cache},
+            {"open", to_json(open)},         {"prepare", to_json(prepare)},
+            {"programs", by_name(programs)}, {"kernels", by_name(kernels)}};
+  }
+
+ private:
+  static nlohmann::json by_name(const std::map<std::string, Timing>& timings) {
+    nlohmann::json rows;
+    for (const auto& [name, timing] : timings) rows[name] = to_json(timing);
+    return rows;
   }
 };
 

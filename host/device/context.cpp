@@ -126,6 +126,7 @@ std::uint64_t Context::programs_built() const { return impl_->programs->built();
 std::uint64_t Context::programs_from_cache() const { return impl_->programs->from_cache(); }
 std::uint64_t Context::allocated_bytes() const { return impl_->memory->live; }
 std::uint64_t Context::peak_allocated_bytes() const { return impl_->memory->peak; }
+const std::vector<ProgramTime>& Context::program_times() const { return impl_->programs->times(); }
 std::vector<KernelTime> Context::kernel_times() const { return impl_->times.total(); }
 
 }  // namespace photile::device

@@ -125,9 +125,15 @@ struct KernelTime {
   std::string kernel;
   std::uint64_t launches = 0;
   double seconds = 0;
-  /// Until it could run first: building its program or loading it, and what the runtime leaves to
-  /// the first launch.
+  /// Until it could run first: what the runtime leaves to the first launch. Its program is a
+  /// ProgramTime.
   double preparation_seconds = 0;
+};
+
+/// Time until a program was there, built or loaded.
+struct ProgramTime {
+  std::string file;
+  double seconds = 0;
 };
 
 /// One device's context and in-order queue. Not thread-safe: one thread drives it.
@@ -215,6 +221,7 @@ class Context {
   std::uint64_t allocated_bytes() const;       ///< live buffers
   std::uint64_t peak_allocated_bytes() const;  ///< since construction
   std::vector<KernelTime> kernel_times() const;
+  const std::vector<ProgramTime>& program_times() const;  ///< in the order of their first use
 
  private:
   friend class ReclaimerEntry;

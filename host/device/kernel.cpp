@@ -29,10 +29,10 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
   if (const auto found = impl_->kernels.find(key); found != impl_->kernels.end()) {
     return found->second;
   }
-  const Stopwatch stopwatch;
   const auto compiling = lock_compilation(impl_->info.is_pocl);
   auto made = std::make_shared<Kernel::Impl>();
   const cl_program program = impl_->programs->get(file, options);
+  const Stopwatch stopwatch;
   const cl_int status = impl_->persevere([&] {
     cl_int created = CL_SUCCESS;
     made->kernel = KernelHandle(clCreateKernel(program, name.c_str(), &created));

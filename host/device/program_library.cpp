@@ -1,11 +1,12 @@
 #include "device/program_library.hpp"
 
-#include <chrono>
+#include <numeric>
 
 #include "device/cache_folder.hpp"
 #include "device/pocl_work_folder.hpp"
 #include "device/program_source.hpp"
 #include "device/warning.hpp"
+#include "photile/statistics.hpp"
 
 namespace photile::device {
 namespace {
@@ -42,11 +43,16 @@ ProgramLibrary::~ProgramLibrary() {
 cl_program ProgramLibrary::get(const std::string& file, const std::string& defines) {
   const auto key = std::make_pair(file, defines);
   if (const auto found = programs_.find(key); found != programs_.end()) return found->second.get();
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const auto options = defines.empty() ? base_options_ : base_options_ + " " + defines;
   auto program = load_or_build(file, options);
-  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  times_.push_back({file, stopwatch.seconds()});
   return programs_.emplace(key, std::move(program)).first->second.get();
+}
+
+double ProgramLibrary::compile_seconds() const {
+  return std::accumulate(times_.begin(), times_.end(), 0.0,
+                         [](double sum, const ProgramTime& time) { return sum + time.seconds; });
 }
 
 ProgramHandle ProgramLibrary::load_or_build(const std::string& file, const std::string& options) {

@@ -6,7 +6,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "device/context.hpp"
 #include "device/pocl_cache.hpp"
 #include "device/program.hpp"
 #include "device/program_cache.hpp"
@@ -25,7 +27,8 @@ class ProgramLibrary {
   /// the library. Errors: KernelBuildError.
   cl_program get(const std::string& file, const std::string& defines);
 
-  double compile_seconds() const { return seconds_; }
+  const std::vector<ProgramTime>& times() const { return times_; }
+  double compile_seconds() const;
   std::uint64_t built() const { return built_; }
   std::uint64_t from_cache() const { return from_cache_; }
 
@@ -37,7 +40,7 @@ class ProgramLibrary {
   PoclCache* pocl_cache_ = nullptr;    ///< on PoCL, unless switched off
   std::optional<ProgramCache> cache_;  ///< on others, unless switched off
   std::map<std::pair<std::string, std::string>, ProgramHandle> programs_;  ///< by file, defines
-  double seconds_ = 0;
+  std::vector<ProgramTime> times_;
   std::uint64_t built_ = 0, from_cache_ = 0;
 };
 

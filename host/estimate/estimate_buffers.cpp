@@ -8,8 +8,7 @@ namespace photile::estimate {
 namespace {
 
 /// What the buffer holds, 3 floats an element.
-std::vector<glm::vec3> read_vectors(device::Context& context,
-                                    const device::Buffer<float>& buffer) {
+std::vector<glm::vec3> read_vectors(device::Context& context, const device::Buffer<float>& buffer) {
   std::vector<glm::vec3> values(buffer.size() / 3);
   if (!values.empty()) context.read(buffer, std::span(&values[0].x, buffer.size()));
   return values;
@@ -51,8 +50,12 @@ Estimates EstimateBuffers::read() {
 
 /// Takes the empty slots out on the device: it is fast there, and less is read.
 Estimates EstimateBuffers::read_slots() {
+  device::Defines defines;
+  defines.set("LIGHT_SLOTS", static_cast<long long>(slots_));
+  if (needs_.glossy) defines.set("GLOSSY");
+  const device::KernelSet kernels(context_, "estimate/pack_estimates.cl", std::move(defines));
   auto first = context_.allocate<std::uint32_t>(std::size_t{hits_} + 1, "first estimates of hits");
-  maps::exclusive_prefix_sum(context_, slots_taken, first);
+  maps::exclusive_prefix_sum(kernels, slots_taken, first);
   std::vector<std::uint32_t> offsets(std::size_t{hits_} + 1);
   context_.read(first, std::span(offsets));
 
@@ -61,14 +64,9 @@ Estimates EstimateBuffers::read_slots() {
   auto packed_irradiance = context_.allocate<float>(3 * total, "irradiance estimates");
   auto packed_radiance =
       context_.allocate<float>(needs_.glossy ? 3 * total : 0, "radiance estimates");
-  device::Defines defines;
-  defines.set("LIGHT_SLOTS", static_cast<long long>(slots_));
-  if (needs_.glossy) defines.set("GLOSSY");
-  const device::Kernel kernel =
-      context_.kernel("estimate/pack_estimates.cl", "pack_estimates", defines);
   const auto launch = [&](const auto&... glossy) {
-    context_.run(kernel, hits_, maps::work_group_size, hits_, first, slot_light, irradiance, light,
-                 packed_irradiance, glossy...);
+    kernels.run("pack_estimates", hits_, maps::work_group_size, hits_, first, slot_light,
+                irradiance, light, packed_irradiance, glossy...);
   };
   if (needs_.glossy) {
     launch(radiance, packed_radiance);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 
+#include "maps/build_kernels.hpp"
 #include "maps/candidate_maps.hpp"
 #include "maps/gather_entries.hpp"
 #include "maps/kdtree_builder.hpp"
@@ -23,12 +24,12 @@ namespace {
 
 using device::Buffer;
 using device::Context;
-using device::Defines;
 
 /// What every step of the build needs.
 struct Build {
   Context& context;
   const MapStore& store;
+  device::KernelSet kernels;
   bool patches = false;            ///< maps may serve several triangles
   Buffer<PhotileMapShape> shapes;  ///< per pair of maps
   Buffer<float> crowding;          ///< per map
@@ -39,10 +40,8 @@ struct Build {
   float photons_per_cell = 0;
 
   template <class... Args>
-  void run(const char* file, const char* kernel, std::size_t size, const Args&... args) {
-    Defines defines;
-    if (patches) defines.set("PATCHES");
-    context.run(context.kernel(file, kernel, defines), size, work_group_size, args...);
+  void run(const char* kernel, std::size_t size, const Args&... args) {
+    kernels.run(kernel, size, work_group_size, args...);
   }
 };
 
@@ -86,9 +85,9 @@ void count_photons(Build& build, MapCounts& counts) {
   build.context.fill(counts.mixed, 0u);
   for (const PhotonPage& page : *build.photon_pages) {
     const auto launch = [&](const auto&... patches) {
-      build.run("grid/count_photons.cl", "count_photons", page.count, page.count, page.position,
-                page.own_map, page.list, page.list_offsets, page.list_members, build.shapes,
-                build.corners, build.squared_reach, counts.photons, patches...);
+      build.run("count_photons", page.count, page.count, page.position, page.own_map, page.list,
+                page.list_offsets, page.list_members, build.shapes, build.corners,
+                build.squared_reach, counts.photons, patches...);
     };
     if (build.patches) {
       launch(page.normal, counts.mixed);
@@ -126,9 +125,9 @@ void size_grids(Build& build, MapPage& page, const MapCounts& counts) {
   auto first_cell = build.context.allocate<std::uint32_t>(maps + 1, "first cells of photon maps");
   build.context.fill(first_cell, 0u);
   const auto launch = [&](const auto&... patches) {
-    build.run("grid/size_grids.cl", "size_grids", maps, maps, page.first_map, build.shapes,
-              counts.photons, build.crowding, patches..., build.radius, build.photons_per_cell,
-              page.grids, first_cell);
+    build.run("size_grids", maps, maps, page.first_map, build.shapes, counts.photons,
+              build.crowding, patches..., build.radius, build.photons_per_cell, page.grids,
+              first_cell);
   };
   if (build.patches) {
     launch(counts.mixed);
@@ -136,8 +135,8 @@ void size_grids(Build& build, MapPage& page, const MapCounts& counts) {
     launch();
   }
   page.cell_count = total_cells(build.context, first_cell);
-  exclusive_prefix_sum(build.context, first_cell);
-  build.run("grid/size_grids.cl", "place_grids", maps, maps, first_cell, page.grids);
+  exclusive_prefix_sum(build.kernels, first_cell);
+  build.run("place_grids", maps, maps, first_cell, page.grids);
 }
 
 void fill_cells(Build& build, MapPage& page) {
@@ -145,22 +144,20 @@ void fill_cells(Build& build, MapPage& page) {
   page.cell_start = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell offsets");
   build.context.fill(cell_count, 0u);
   for (const PhotonPage& photons : *build.photon_pages) {
-    build.run("grid/fill_cells.cl", "count_cells", photons.count, photons.count, photons.position,
-              photons.own_map, photons.list, photons.list_offsets, photons.list_members,
-              build.shapes, build.corners, build.squared_reach, page.first_map, page.last_map,
-              page.grids, cell_count);
+    build.run("count_cells", photons.count, photons.count, photons.position, photons.own_map,
+              photons.list, photons.list_offsets, photons.list_members, build.shapes, build.corners,
+              build.squared_reach, page.first_map, page.last_map, page.grids, cell_count);
   }
-  exclusive_prefix_sum(build.context, cell_count, page.cell_start);
+  exclusive_prefix_sum(build.kernels, cell_count, page.cell_start);
 
   page.entry_photon = build.context.allocate<std::uint32_t>(page.entry_count, "photon references");
   for (const PhotonPage& photons : *build.photon_pages) {
-    build.run("grid/fill_cells.cl", "scatter", photons.count, photons.count, photons.position,
-              photons.own_map, photons.list, photons.list_offsets, photons.list_members,
-              build.shapes, build.corners, build.squared_reach, page.first_map, page.last_map,
-              page.grids, page.cell_start, cell_count, photons.first_photon, page.entry_photon);
+    build.run("scatter", photons.count, photons.count, photons.position, photons.own_map,
+              photons.list, photons.list_offsets, photons.list_members, build.shapes, build.corners,
+              build.squared_reach, page.first_map, page.last_map, page.grids, page.cell_start,
+              cell_count, photons.first_photon, page.entry_photon);
   }
-  build.run("grid/sort_cells.cl", "sort_cells", page.cell_count, page.cell_count, page.cell_start,
-            page.entry_photon);
+  build.run("sort_cells", page.cell_count, page.cell_count, page.cell_start, page.entry_photon);
   build.context.finish();  // cell_count is released here
 }
 
@@ -223,7 +220,7 @@ MapPage build_page(Build& build, const Photons& photons, const MapRange& range,
   if (is_tree(store.parameters.structure)) {
     build_trees(build.context, store.parameters.structure, photons, counts, page);
   }
-  gather_entries(build.context, store.needs, *build.photon_pages, holds_mixed(mixed, range), page);
+  gather_entries(build.kernels, store.needs, *build.photon_pages, holds_mixed(mixed, range), page);
   build.context.finish();
   return page;
 }
@@ -249,6 +246,7 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
   if (!patches.empty()) store.normals = sided_normals(scene);
   Build build{context,
               store,
+              build_kernels(store),
               !patches.empty(),
               {},
               {},
@@ -333,7 +331,7 @@ void build_global_map(MapStore& store, const Scene& scene, const Photons& photon
         return upload_photon_records(context, photons, store.normals, {}, range);
       },
       context.largest_buffer());
-  gather_entries(context, store.needs, pages, true, page);
+  gather_entries(build_kernels(store), store.needs, pages, true, page);
   context.finish();
   store.statistics.maps = 1;
   store.statistics.largest_map = count;

@@ -4,10 +4,9 @@
 
 namespace photile::maps {
 
-using device::Defines;
-
-void gather_entries(device::Context& context, const SceneNeeds& needs, PhotonPages& photon_pages,
-                    bool normals, MapPage& page) {
+void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
+                    PhotonPages& photon_pages, bool normals, MapPage& page) {
+  device::Context& context = build.context();
   page.entry_stride = page.entry_count + entry_padding;
   // Vector loads reach into the padding; what they find there is masked, but must be a number.
   const auto planes = [&](std::string_view what) {
@@ -17,36 +16,26 @@ void gather_entries(device::Context& context, const SceneNeeds& needs, PhotonPag
   };
   page.entry_position = planes("photon map positions");
   page.entry_flux = planes("photon map flux");
-  Defines defines;
-  set_entry_defines(defines, needs);
   if (needs.light_count > 1) {
     page.entry_light = context.allocate<std::uint8_t>(
         std::size_t{bytes_per_light(needs)} * page.entry_stride, "photon map lights");
   }
   if (needs.glossy) page.entry_incoming = planes("photon map directions");
-  if (normals) {
-    defines.set("NORMALS");
-    page.entry_normal = planes("photon map normals");
-  }
-  const device::Kernel kernel = context.kernel("grid/gather_entries.cl", "gather_entries", defines);
+  if (normals) page.entry_normal = planes("photon map normals");
   for (const PhotonPage& photons : photon_pages) {
-    const auto launch = [&](const auto&... optional) {
-      context.run(kernel, page.entry_count, work_group_size, page.entry_count, page.entry_stride,
-                  page.entry_photon, photons.first_photon, photons.count, photons.position,
-                  photons.flux, page.entry_position, page.entry_flux, optional...);
+    const auto run = [&](const char* kernel, const auto&... arrays) {
+      build.run(kernel, page.entry_count, work_group_size, page.entry_count, page.entry_stride,
+                page.entry_photon, photons.first_photon, photons.count, arrays...);
     };
-    const auto with_normals = [&](const auto&... optional) {
-      if (normals) {
-        launch(optional..., photons.normal, page.entry_normal);
-      } else {
-        launch(optional...);
-      }
+    const auto gather = [&](const auto&... optional) {
+      run("gather_entries", photons.position, photons.flux, page.entry_position, page.entry_flux,
+          optional...);
     };
     const auto with_directions = [&](const auto&... optional) {
       if (needs.glossy) {
-        with_normals(optional..., photons.incoming, page.entry_incoming);
+        gather(optional..., photons.incoming, page.entry_incoming);
       } else {
-        with_normals(optional...);
+        gather(optional...);
       }
     };
     if (needs.light_count > 1) {
@@ -54,6 +43,7 @@ void gather_entries(device::Context& context, const SceneNeeds& needs, PhotonPag
     } else {
       with_directions();
     }
+    if (normals) run("gather_normals", photons.normal, page.entry_normal);
   }
 }
 

@@ -1,14 +1,15 @@
 // Copies photon records into the order of a page's entries.
 #pragma once
 
+#include "device/kernel_set.hpp"
 #include "maps/map_store.hpp"
 #include "maps/photon_pages.hpp"
 
 namespace photile::maps {
 
-/// Before: page.entry_count and page.entry_photon are set. After: the other entry buffers that the
-/// scene needs are filled, normals among them if `normals`.
-void gather_entries(device::Context& context, const SceneNeeds& needs,
+/// `build`: see build_kernels. Before: page.entry_count and page.entry_photon are set. After: the
+/// other entry buffers that the scene needs are filled, normals among them if `normals`.
+void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
                     PhotonPages& photon_pages, bool normals, MapPage& page);
 
 }  // namespace photile::maps

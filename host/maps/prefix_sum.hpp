@@ -3,16 +3,18 @@
 
 #include <cstdint>
 
-#include "device/context.hpp"
+#include "device/kernel_set.hpp"
 
 namespace photile::maps {
 
-/// Replaces `values` by their exclusive prefix sum. With a zero appended by the caller, the last
-/// element becomes the total. Sums must stay below 2^32.
-void exclusive_prefix_sum(device::Context& context, device::Buffer<std::uint32_t>& values);
+/// Replaces `values` by their exclusive prefix sum. `kernels`: of a program that holds
+/// shared/scan.clh. With a zero appended by the caller, the last element becomes the total. Sums
+/// must stay below 2^32.
+void exclusive_prefix_sum(const device::KernelSet& kernels, device::Buffer<std::uint32_t>& values);
 
 /// The same, into another buffer of the same size.
-void exclusive_prefix_sum(device::Context& context, const device::Buffer<std::uint32_t>& values,
+void exclusive_prefix_sum(const device::KernelSet& kernels,
+                          const device::Buffer<std::uint32_t>& values,
                           device::Buffer<std::uint32_t>& scanned);
 
 }  // namespace photile::maps

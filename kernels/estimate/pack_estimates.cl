@@ -2,6 +2,8 @@
 //
 // Symbols the host defines: LIGHT_SLOTS and GLOSSY, see estimate/sums.clh
 
+#include "shared/scan.clh"
+
 // One work-item per hit.
 //   first   where the estimates of a hit begin; hit_count + 1
 // After: light[first[hit] ... first[hit + 1]) and what belongs to them.

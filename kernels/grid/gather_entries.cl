@@ -5,10 +5,11 @@
 // Symbols the host defines:
 //   LIGHT_INDEX   type of an entry's light; undefined with one light
 //   GLOSSY        entries keep their incoming direction
-//   NORMALS       entries keep the normal of the photon's sided triangle
 
-// One work-item per entry of a map page; handles those whose photon is in the photon page.
+// One work-item per entry of a map page, in both kernels; handles those whose photon is in the photon
+// page.
 //   entry_stride   entries of the page with padding: component c of entry i is [c * stride + i]
+
 __kernel void gather_entries(uint entry_count, uint entry_stride,
                              __global const uint* entry_photon, uint first_photon,
                              uint photon_count, __global const float* position,
@@ -22,10 +23,6 @@ __kernel void gather_entries(uint entry_count, uint entry_stride,
                              ,
                              __global const float* incoming, __global float* entry_incoming
 #endif
-#ifdef NORMALS
-                             ,
-                             __global const float* normal, __global float* entry_normal
-#endif
 ) {
   for (uint i = get_global_id(0); i < entry_count; i += get_global_size(0)) {
     const uint photon = entry_photon[i] - first_photon;
@@ -36,12 +33,24 @@ __kernel void gather_entries(uint entry_count, uint entry_stride,
 #ifdef GLOSSY
       entry_incoming[c * entry_stride + i] = incoming[3 * photon + c];
 #endif
-#ifdef NORMALS
-      entry_normal[c * entry_stride + i] = normal[3 * photon + c];
-#endif
     }
 #ifdef LIGHT_INDEX
     entry_light[i] = (LIGHT_INDEX)light[photon];
 #endif
+  }
+}
+
+// For pages with a map whose queries compare normals.
+//   normal   3 floats per photon: of its sided triangle
+__kernel void gather_normals(uint entry_count, uint entry_stride,
+                             __global const uint* entry_photon, uint first_photon,
+                             uint photon_count, __global const float* normal,
+                             __global float* entry_normal) {
+  for (uint i = get_global_id(0); i < entry_count; i += get_global_size(0)) {
+    const uint photon = entry_photon[i] - first_photon;
+    if (photon >= photon_count) continue;
+    for (uint c = 0; c < 3; ++c) {
+      entry_normal[c * entry_stride + i] = normal[3 * photon + c];
+    }
   }
 }

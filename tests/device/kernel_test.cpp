@@ -47,6 +47,10 @@ TEST_CASE("one program is built per file and definitions") {
   context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 2ll));
   CHECK(context.programs_built() == 2);
   CHECK(context.compile_seconds() > 0);
+  const auto& times = context.program_times();
+  REQUIRE(times.size() == 2);
+  CHECK(times[0].file == "test/affine.cl");
+  CHECK(times[0].seconds + times[1].seconds == context.compile_seconds());
 }
 
 TEST_CASE("local memory has the size asked for") {

@@ -8,8 +8,15 @@
 
 using namespace photile;
 
+namespace {
+
+device::KernelSet kernels() { return {test::device().context(), "shared/scan.clh", {}}; }
+
+}  // namespace
+
 TEST_CASE("the device's prefix sum equals the host's for awkward sizes") {
-  auto& context = test::device().context();
+  const device::KernelSet scan = kernels();
+  auto& context = scan.context();
   for (const std::size_t size :
        {1u, 2u, 7u, 93u, 2047u, 2048u, 2049u, 4096u, (1u << 20) + 1u, 5u * 1024u * 1024u}) {
     std::mt19937 random(static_cast<unsigned>(size));
@@ -19,7 +26,7 @@ TEST_CASE("the device's prefix sum equals the host's for awkward sizes") {
     std::exclusive_scan(values.begin(), values.end(), expected.begin(), 0u);
 
     auto buffer = context.upload(std::span<const std::uint32_t>(values), "test values");
-    maps::exclusive_prefix_sum(context, buffer);
+    maps::exclusive_prefix_sum(scan, buffer);
     std::vector<std::uint32_t> scanned(size);
     context.read(buffer, std::span(scanned));
     CAPTURE(size);
@@ -28,7 +35,7 @@ TEST_CASE("the device's prefix sum equals the host's for awkward sizes") {
 }
 
 TEST_CASE("the prefix sum of nothing is nothing") {
-  auto& context = test::device().context();
-  auto buffer = context.allocate<std::uint32_t>(0, "test values");
-  CHECK_NOTHROW(maps::exclusive_prefix_sum(context, buffer));
+  const device::KernelSet scan = kernels();
+  auto buffer = scan.context().allocate<std::uint32_t>(0, "test values");
+  CHECK_NOTHROW(maps::exclusive_prefix_sum(scan, buffer));
 }

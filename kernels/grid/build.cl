@@ -1,0 +1,10 @@
+// The kernels of the build as one program: what a runtime needs to find a compiled program in its
+// cache, or to begin to compile it, is paid per program (PoCL reads all of OpenCL's built-in
+// functions).
+
+#include "grid/count_photons.cl"
+#include "grid/fill_cells.cl"
+#include "grid/gather_entries.cl"
+#include "grid/size_grids.cl"
+#include "grid/sort_cells.cl"
+#include "shared/scan.clh"
