@@ -1,5 +1,8 @@
 // Building what is searched: neighbour groups and photon maps (duplicates included) against the
 // index of nanoflann, which builds on one thread.
+#include <array>
+#include <span>
+
 #include "photile/photon_maps.hpp"
 #include "support/bench_record.hpp"
 #include "support/host_search.hpp"
@@ -10,23 +13,31 @@ namespace {
 using namespace photile;
 using namespace photile::bench;
 
-void run_case(const Workload& workload, std::uint64_t photon_count, const BenchOptions& options,
-              Device& device, BenchRecord& record) {
-  const Photons photons = workload.photons(photon_count);
-  const double radius = automatic_radius(photons, defaults::neighbours);
+/// Photons of a workload and the radius of their maps.
+struct Case {
+  const Workload& workload;
+  Photons photons;
+  double radius;
+};
+
+/// Groups, and maps of each of the structures.
+nlohmann::json map_times(const Case& c, const NamedMapMode& mode,
+                         std::span<const MapStructure> structures, const Repeats& repeats,
+                         Device& device) {
+  const Scene& scene = *c.workload.scene;
   NeighbourGroups groups;
   const Timing group_time =
-      measure(options.repeats, [&] { groups = find_neighbour_groups(*workload.scene, {radius}); });
-  nlohmann::json row{{"workload", workload.name},
-                     {"photons", photons.size()},
-                     {"radius", radius},
+      measure(repeats, [&] { groups = find_map_groups(scene, c.photons, mode.mode, {c.radius}); });
+  nlohmann::json row{{"workload", c.workload.name},
+                     {"maps of", mode.name},
+                     {"photons", c.photons.size()},
+                     {"radius", c.radius},
                      {"groups", to_json(group_time)}};
-  for (const MapStructure structure : all_map_structures) {
-    if (structure == MapStructure::brute_force) continue;
+  for (const MapStructure structure : structures) {
     PhotonMapStatistics statistics;
-    const Timing timing = measure(options.repeats, [&] {
-      const PhotonMaps maps(device, *workload.scene, photons, groups,
-                            {.radius = radius, .structure = structure});
+    const Timing timing = measure(repeats, [&] {
+      const PhotonMaps maps(device, scene, c.photons, groups,
+                            {.radius = c.radius, .structure = structure});
       statistics = maps.statistics();
     });
     row[std::string(name_of(structure))] = to_json(timing);
@@ -34,11 +45,24 @@ void run_case(const Workload& workload, std::uint64_t photon_count, const BenchO
     row["references"] = statistics.references;
     row["device bytes"] = statistics.device_bytes;
   }
+  return row;
+}
+
+void run_case(const Workload& workload, std::uint64_t photon_count, const BenchOptions& options,
+              Device& device, BenchRecord& record) {
+  Case c{workload, workload.photons(photon_count), 0};
+  c.radius = automatic_radius(c.photons, defaults::neighbours);
+  constexpr std::array grids{MapStructure::uniform_grid};
+  constexpr std::array grids_and_trees{MapStructure::uniform_grid, MapStructure::kdtree_2d,
+                                       MapStructure::kdtree_3d, MapStructure::kdtree_global};
+  nlohmann::json row = map_times(c, product_maps, grids_and_trees, options.repeats, device);
+  const Photons& photons = c.photons;
   const NormalFilter filter(*workload.scene, defaults::group_angle_degrees);
   const SearchInput input{photons, filter, workload.scene->lights.size()};
   row["nanoflann"] = to_json(measure(options.repeats, [&] { make_nanoflann_index(photons); }));
   row["embree"] = to_json(measure(options.repeats, [&] { make_embree_search(input); }));
   record.add(std::move(row));
+  record.add(map_times(c, paper_maps, grids, options.repeats, device));
 }
 
 bool run(BenchOptions& options, std::vector<std::uint64_t> counts) {

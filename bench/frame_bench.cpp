@@ -21,7 +21,8 @@ struct FrameTiming {
   Timing hits, estimate, film, total;
 };
 
-FrameTiming measure_frames(const RayScene& rays, Estimator& estimator, const FrameSize& size,
+FrameTiming measure_frames(const RayScene& rays, Estimator& estimator,
+                           std::span<const std::uint32_t> map_of, const FrameSize& size,
                            const Repeats& repeats) {
   PrimaryHitParameters film;
   film.width = size.width;
@@ -31,7 +32,7 @@ FrameTiming measure_frames(const RayScene& rays, Estimator& estimator, const Fra
   timing.total = measure(repeats, [&] {
     const Stopwatch stopwatch;
     const PrimaryHitBatch batch =
-        trace_primary_hits(rays, rays.scene().cameras.front(), film, 0, film.height);
+        trace_primary_hits(rays, rays.scene().cameras.front(), film, 0, film.height, map_of);
     const double hits_done = stopwatch.seconds();
     const Estimates estimates = estimator.estimate(batch.hits);
     const double estimate_done = stopwatch.seconds();
@@ -62,21 +63,25 @@ bool run(BenchOptions& options) {
   const RayScene rays(scene);
   const Photons photons = trace_photons(rays, paths).photons;
   const double radius = automatic_radius(photons, defaults::neighbours);
-  const PhotonMaps maps(device, scene, photons, find_neighbour_groups(scene, {radius}),
-                        {.radius = radius});
-  Estimator estimator(maps, scene, {});
   record.set("k", defaults::neighbours);
   record.set("radius", radius);
   record.set("photons", photons.size());
   record.set("lights", scene.lights.size());
-  for (const FrameSize& size : sizes) {
-    const FrameTiming timing = measure_frames(rays, estimator, size, options.repeats);
-    record.add({{"width", size.width},
-                {"height", size.height},
-                {"primary hits", to_json(timing.hits)},
-                {"estimate", to_json(timing.estimate)},
-                {"film", to_json(timing.film)},
-                {"total", to_json(timing.total)}});
+  for (const NamedMapMode& mode : {product_maps, paper_maps}) {
+    const PhotonMaps maps(device, scene, photons,
+                          find_map_groups(scene, photons, mode.mode, {radius}), {.radius = radius});
+    Estimator estimator(maps, scene, {});
+    for (const FrameSize& size : sizes) {
+      const FrameTiming timing =
+          measure_frames(rays, estimator, maps.map_of(), size, options.repeats);
+      record.add({{"maps", mode.name},
+                  {"width", size.width},
+                  {"height", size.height},
+                  {"primary hits", to_json(timing.hits)},
+                  {"estimate", to_json(timing.estimate)},
+                  {"film", to_json(timing.film)},
+                  {"total", to_json(timing.total)}});
+    }
   }
   record.write();
   return true;

@@ -28,8 +28,8 @@ struct Subject {
 };
 
 Subject plane(const SceneNeeds& needs, const Size& size) {
-  estimate::TuningSample sample = estimate::make_tuning_sample(
-      needs, defaults::neighbours, {size.photons, size.picture_side});
+  estimate::TuningSample sample =
+      estimate::make_tuning_sample(needs, defaults::neighbours, {size.photons, size.picture_side});
   return {"plane", std::move(sample.scene), std::move(sample.photons), std::move(sample.hits)};
 }
 
@@ -42,8 +42,7 @@ Subject whole_living_room(const Size& size) {
   PrimaryHitParameters film;
   film.width = film.height = size.picture_side;
   film.samples_per_pixel = 1;
-  subject.hits =
-      trace_primary_hits(rays, subject.scene.cameras.front(), film, 0, film.height).hits;
+  subject.hits = trace_primary_hits(rays, subject.scene.cameras.front(), film, 0, film.height).hits;
   subject.photons = traced_photons(rays, size.photons);
   return subject;
 }
@@ -90,7 +89,8 @@ class KernelsBench {
     const SceneNeeds needs = needs_of(subject.scene);
     const double radius = automatic_radius(subject.photons, defaults::neighbours);
     const PhotonMaps maps(device_, subject.scene, subject.photons,
-                          find_neighbour_groups(subject.scene, {radius}), {.radius = radius});
+                          default_groups(subject.scene, subject.photons, radius),
+                          {.radius = radius});
     Estimator estimator(maps, subject.scene, {});
     const Timing timing = measure_returned(repeats_, [&] {
       return kernel_seconds_of(device_, [&] { estimator.estimate(subject.hits); });
@@ -107,7 +107,7 @@ class KernelsBench {
   /// A row for each kernel of the build, and one for the estimate.
   void kernels(const Subject& subject, int k) {
     const double radius = automatic_radius(subject.photons, k);
-    const NeighbourGroups groups = find_neighbour_groups(subject.scene, {radius});
+    const NeighbourGroups groups = default_groups(subject.scene, subject.photons, radius);
     const auto build = [&] {
       return PhotonMaps(device_, subject.scene, subject.photons, groups, {.radius = radius});
     };
@@ -134,6 +134,7 @@ class KernelsBench {
                    {"references", statistics.references},
                    {"cells", statistics.cells},
                    {"maps", statistics.maps},
+                   {"patches", !maps.map_of().empty()},
                    {"hits", subject.hits.size()},
                    {"seconds", to_json(timing)}});
     }

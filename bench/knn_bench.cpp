@@ -81,7 +81,8 @@ struct Case {
   int k;
   double radius;
   NeighbourGroups groups;
-  /// nanoflann's, per hit of the workload; where it was not asked, the radius is 0.
+  PrimaryHits hits;  ///< those of the workload, in the order of the maps
+  /// nanoflann's, per hit; where it was not asked, the radius is 0.
   DensityAnswers reference;
   HitSample checked;  ///< some of the hits that it was asked
 };
@@ -98,7 +99,7 @@ HitSample affordable_hits(const PrimaryHits& hits, const Repeats& repeats,
   const double hits_per_second = static_cast<double>(pilot.index.size()) / stopwatch.seconds();
   const double affordable = hits_per_second * repeats.seconds_per_case / passes;
   std::size_t stride = 1;
-  while (stride < most_stride && static_cast<double>(hits.size() / stride) > affordable) {
+  while (stride<most_stride&& static_cast<double>(hits.size() / stride)> affordable) {
     stride *= 2;
   }
   return block_sample(hits, stride);
@@ -126,8 +127,9 @@ class KnnBench {
       const auto embree = make_embree_search(input);
       for (const int k : plan.neighbours) {
         const double radius = automatic_radius(photons, k);
-        Case c{workload, photons, filter, k, radius,
-               find_neighbour_groups(*workload.scene, {radius}), {}, {}};
+        NeighbourGroups groups = default_groups(*workload.scene, photons, radius);
+        PrimaryHits hits = in_map_order(workload.hits, groups);
+        Case c{workload, photons, filter, k, radius, std::move(groups), std::move(hits), {}, {}};
         run_host(c, "nanoflann", *list, given_order);
         run_host(c, "nanoflann-heap", *heap, given_order);
         // Rivals differ little in how much their order matters: once is enough.
@@ -170,7 +172,7 @@ class KnnBench {
       if (order.size() != hits.size()) order = order_of(hits.position);
       search.estimate(hits, order, parameters, answers);
     };
-    const HitSample asked = affordable_hits(c.workload.hits, repeats_, estimate);
+    const HitSample asked = affordable_hits(c.hits, repeats_, estimate);
     order.clear();
     const Timing timing = measure(repeats_, [&] { estimate(asked.hits); });
     if (c.checked.index.empty()) set_reference(c, asked, answers);
@@ -182,8 +184,8 @@ class KnnBench {
 
   static void set_reference(Case& c, const HitSample& asked, const DensityAnswers& answers) {
     const std::size_t lights = answers.irradiance.size() / asked.index.size();
-    c.reference.irradiance.resize(lights * c.workload.hits.size());
-    c.reference.squared_radius.resize(c.workload.hits.size());
+    c.reference.irradiance.resize(lights * c.hits.size());
+    c.reference.squared_radius.resize(c.hits.size());
     for (std::size_t i = 0; i < asked.index.size(); ++i) {
       const std::uint32_t hit = asked.index[i];
       c.reference.squared_radius[hit] = answers.squared_radius[i];
@@ -201,7 +203,7 @@ class KnnBench {
       Estimator estimator(maps, *c.workload.scene, {c.k, c.radius});
       Estimates estimates;
       const auto estimate = [&](const PrimaryHits& hits) { estimates = estimator.estimate(hits); };
-      const HitSample asked = affordable_hits(c.workload.hits, repeats_, estimate);
+      const HitSample asked = affordable_hits(c.hits, repeats_, estimate);
       nlohmann::json row = row_of(c, name, asked);
       row["seconds"] = to_json(measure(repeats_, [&] { estimate(asked.hits); }));
       row["references"] = maps.statistics().references;
@@ -265,7 +267,7 @@ class KnnBench {
     const std::vector<std::size_t> different = irradiance_differences(found, expected, 1e-4);
     constexpr std::size_t most_ties = 100;
     if (different.size() > most_ties) return different.size();
-    const PrimaryHits& all = c.workload.hits;
+    const PrimaryHits& all = c.hits;
     return static_cast<std::uint64_t>(
         std::count_if(different.begin(), different.end(), [&](std::size_t i) {
           const std::uint32_t hit = asked.index[places[i]];

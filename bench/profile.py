@@ -31,6 +31,10 @@ SAMPLES_PER_SECOND = 997
 # inlined at its address that is listed here.
 STAGES = {
     "store_distances": "distances of the candidates",
+    "squared_distances": "distances of the candidates",
+    "squared_distance": "distances of the candidates",
+    "filter_distances": "normals of the candidates",
+    "filter_distance": "normals of the candidates",
     "count_within": "counting",
     "bound_of_nearest": "bounds for the next count",
     "narrow": "bounds for the next count",

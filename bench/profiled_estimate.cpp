@@ -18,7 +18,7 @@ struct Settings {
   std::string workload = "plane";
   std::uint64_t photons = 1'000'000;
   int neighbours = defaults::neighbours;
-  int side = 512;            ///< of the picture; its square is also the number of hits on the plane
+  int side = 512;  ///< of the picture; its square is also the number of hits on the plane
   std::uint32_t cells = 100;  ///< of the waved hall
   double seconds = 4;
   std::string device;
@@ -34,8 +34,7 @@ Workload workload_of(const Settings& settings) {
 }
 
 double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 bool run(const Settings& settings) {
@@ -43,12 +42,13 @@ bool run(const Settings& settings) {
   const Photons photons = workload.photons(settings.photons);
   const double radius = automatic_radius(photons, settings.neighbours);
   Device device({.selector = settings.device});
-  const PhotonMaps maps(device, *workload.scene, photons,
-                        find_neighbour_groups(*workload.scene, {radius}), {.radius = radius});
+  const NeighbourGroups groups = default_groups(*workload.scene, photons, radius);
+  const PhotonMaps maps(device, *workload.scene, photons, groups, {.radius = radius});
+  const PrimaryHits hits = in_map_order(workload.hits, groups);
   Estimator estimator(maps, *workload.scene, {settings.neighbours, 0});
-  estimator.estimate(workload.hits);  // compiles
+  estimator.estimate(hits);  // compiles
   const double begin = now();
-  while (now() < begin + settings.seconds) estimator.estimate(workload.hits);
+  while (now() < begin + settings.seconds) estimator.estimate(hits);
   std::printf("%.6f %.6f\n", begin, now());
   return true;
 }

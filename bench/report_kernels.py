@@ -47,16 +47,33 @@ def estimate_cost(k):
             60 + (8 + 6) * candidates + passes * 3 * counted)
 
 
-# Least bytes that a kernel of the build moves, per photon, reference and cell (docs/kernels.md).
+# Least bytes that a kernel of the build moves, per photon, reference, cell and map
+# (docs/kernels.md), for the records of a diffuse scene with one light. A shape serves two maps.
 BUILD_BYTES = {
-    "count_photons": (12, 4, 0),
-    "count_cells": (12, 8, 0),
-    "sum_blocks": (0, 0, 4),
-    "scan_blocks": (0, 0, 8),
-    "scatter": (12, 12, 0),
-    "sort_cells": (0, 8, 4),
-    "gather_entries": (0, 56, 0),
+    "count_photons": (20, 4, 0, 0),  # position, own map, list
+    "size_grids": (0, 0, 0, 122),    # half a shape, count, crowding; grid, cells
+    "place_grids": (0, 0, 0, 8),
+    "count_cells": (20, 8, 0, 0),
+    "sum_blocks": (0, 0, 4, 0),
+    "scan_blocks": (0, 0, 8, 0),
+    "scatter": (20, 12, 0, 0),
+    "sort_cells": (0, 8, 4, 0),
+    "gather_entries": (0, 52, 0, 0),  # reference, position and flux; position and flux
+    "gather_normals": (0, 28, 0, 0),  # reference, normal; normal
 }
+# What maps of patches add: normals of photons, and a flag per map.
+PATCH_BYTES = {"count_photons": (12, 0, 0, 4), "size_grids": (0, 0, 0, 4)}
+
+
+def build_bytes(row):
+    """What the row's kernel must move, or None where that is not known."""
+    counts = [row[of] for of in ("photons", "references", "cells", "maps")]
+    if row["kernel"] not in BUILD_BYTES:
+        return None
+    moved = [BUILD_BYTES[row["kernel"]]]
+    if row["patches"]:
+        moved.append(PATCH_BYTES.get(row["kernel"], (0, 0, 0, 0)))
+    return sum(count * size for sizes in moved for count, size in zip(counts, sizes))
 
 
 def roofline(result):
@@ -99,11 +116,10 @@ def build_kernels(result):
                 cells += ["", "", ""]
                 continue
             cells.append(times(row["seconds"]))
-            if kernel not in BUILD_BYTES:
+            moved = build_bytes(row)
+            if moved is None:
                 cells += ["", ""]
                 continue
-            moved = sum(count * row[of] for count, of in
-                        zip(BUILD_BYTES[kernel], ("photons", "references", "cells")))
             rate = moved / row["seconds"]["median"]
             cells += [f"{rate / 1e9:.2g}", f"{100 * rate / copy:.0f}%"]
         lines.append(cells)
@@ -111,7 +127,8 @@ def build_kernels(result):
         f"{workload} {next(r for r in rows if r['workload'] == workload)['references']:,}"
         for workload in workloads)
     text = (f"The build, kernel by kernel, k = {k}: milliseconds, GB/s of what it must move at least, "
-            f"and that beside copying. References: {references}.")
+            f"and that beside copying. References: {references}. Maps are those of `--maps auto`, the "
+            "default.")
     header = ["kernel"]
     for workload in workloads:
         header += [f"{workload}: ms", "GB/s", "of copy"]

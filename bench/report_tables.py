@@ -23,7 +23,7 @@ def knn_text():
 Microseconds a query; all hardware threads, the same queries. Hits come in the order of the
 renderer: by sided triangle, then along a Morton curve. Everyone finds the k nearest photons within R
 (`automatic_radius`, twice the median distance to the k-th) on surfaces whose normals agree, and sums
-the flux of k - 1 over the disc, per light.
+the flux of k - 1 over the disc, per light. Maps are those of `--maps auto`, the default.
 
 - Times on the device are those of `Estimator::estimate`: transfers in and out are in them.
 - `nanoflann` is a 3D tree over all photons with leaves of 10 and its own result set,
@@ -36,6 +36,14 @@ the flux of k - 1 over the disc, per light.
   (within 0.01%), elsewhere the distance to the k-th photon.
 
 The ratio is nanoflann's time over that of the row: more is better, below 1 is slower."""
+
+
+PRODUCT_MAPS = "auto"  # of --maps; other rows show what it saves
+
+
+def maps_label(row, key="maps of"):
+    """What to add to the name of a row whose maps are not the default's, or ""."""
+    return "" if row[key] == PRODUCT_MAPS else f", maps of each {row[key]}"
 
 
 def near_target(photons):
@@ -87,8 +95,8 @@ def paper(result):
     for row in result["results"]:
         search, total = row["search kernels"]["median"], row["estimate kernels"]["median"]
         integration = f"{1e3 * (total - search):.3g}" if total > search else "not separable"
-        rows.append([row["structure"], times(row["search kernels"]), integration, times(row["estimate kernels"]),
-                     times(row["estimate"]), times(row["maps"]),
+        rows.append([row["structure"] + maps_label(row), times(row["search kernels"]), integration,
+                     times(row["estimate kernels"]), times(row["estimate"]), times(row["maps"]),
                      times(row["groups"]) if "groups" in row else "none"])
     text = (f"Table 1 of Graglia et al. 2012, in milliseconds, on a generated hall: "
             f"{settings['triangles']:,} triangles, {settings['photons']:,} photons, "
@@ -96,6 +104,8 @@ def paper(result):
             f"R = {1000 * settings['radius']:.0f} mm. photile searches and sums in one kernel, so "
             "*kNN* is another kernel, which only searches and writes out what it found, and "
             "*integration* the difference, where there is one: only *total* is the paper's frame. "
+            "Maps of each triangle are the paper's; the other grids are those of the default, "
+            "`--maps auto`. "
             "*With transfers* is what a caller waits for.")
     header = ["", "kNN", "integration", "total", "with transfers", "build", "groups"]
     return text + "\n\n" + table(header, rows)
@@ -105,14 +115,16 @@ BUILD_COLUMNS = ("uniform-grid", "kdtree-2d", "kdtree-3d", "kdtree-global", "nan
 
 
 def build(result):
-    rows = [[f"{row['workload']}, {row['photons']:,}",
+    rows = [[f"{row['workload']}, {row['photons']:,}{maps_label(row)}",
              f"{row['references'] / row['photons']:.1f}", f"{row['device bytes'] / 1e6:.0f}",
-             times(row["groups"])] + [times(row[name]) for name in BUILD_COLUMNS]
+             times(row["groups"])] + [times(row[name]) if name in row else ""
+                                      for name in BUILD_COLUMNS]
             for row in result["results"]]
     text = (f"Milliseconds, R for k = {result['settings']['k']}. References are entries of the "
-            "uniform grids a photon, duplicates in neighbouring maps included; groups come before "
-            "all maps but the global tree's. nanoflann builds on one thread; the kd-trees of photile "
-            "are built on the host.")
+            "uniform grids a photon, duplicates in neighbouring maps included; groups, in which "
+            "finding and joining patches is counted, come before all maps but the global tree's. "
+            "Maps are those of `--maps auto`, the default, unless a row says otherwise. nanoflann "
+            "builds on one thread; the kd-trees of photile are built on the host.")
     return text + "\n\n" + table(["workload, photons", "references", "MB", "groups",
                                   *BUILD_COLUMNS], rows)
 
@@ -121,7 +133,7 @@ def frame(result):
     rows = []
     for row in result["results"]:
         total = row["total"]["median"]
-        cells = [f"{row['width']} x {row['height']}"]
+        cells = [f"{row['width']} x {row['height']}{maps_label(row, 'maps')}"]
         for stage in ("primary hits", "estimate", "film"):
             cells += [times(row[stage]), f"{100 * row[stage]['median'] / total:.0f}%"]
         rows.append([*cells, times(row["total"]), f"{1 / total:.1f}"])

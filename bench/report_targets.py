@@ -1,6 +1,6 @@
 """What was aimed at, and what the results say."""
 
-from report_tables import REFERENCE, near_target, seconds_per_query, table
+from report_tables import PRODUCT_MAPS, REFERENCE, near_target, seconds_per_query, table
 
 HOST_SEARCHES = ("nanoflann", "nanoflann-heap", "nanoflann-morton", "embree")
 
@@ -44,7 +44,7 @@ def at_most(name, value, most, form):
 
 def build_ratios(results):
     for row in results["build"]["results"]:
-        if near_target(row["photons"]):
+        if near_target(row["photons"]) and row["maps of"] == PRODUCT_MAPS:
             ours = row["groups"]["median"] + row["uniform-grid"]["median"]
             yield (f"{row['workload']}, 1M photons: groups and maps over nanoflann's index build",
                    ours / row["nanoflann"]["median"], row["workload"])
@@ -52,7 +52,7 @@ def build_ratios(results):
 
 def paper_milliseconds(results):
     for row in results["paper"]["results"]:
-        if row["structure"] == "uniform-grid":
+        if (row["structure"], row["maps of"]) == ("uniform-grid", PRODUCT_MAPS):
             return 1e3 * row["estimate kernels"]["median"]
     return None
 
@@ -79,7 +79,8 @@ def build_shares(results, workload):
              if row["measured"] == "kernel" and row["workload"] == workload and row["k"] == k
              and row["kernel"] != "estimate"}
     for row in results["build"]["results"]:
-        if row["workload"] == workload and near_target(row["photons"]):
+        if (row["workload"], row["maps of"]) == (workload, PRODUCT_MAPS) and near_target(
+                row["photons"]):
             parts["groups"] = row["groups"]["median"]
     largest = sorted(parts.items(), key=lambda item: -item[1])[:3]
     return ", ".join(f"{name} {1e3 * seconds:.0f} ms" for name, seconds in largest)

@@ -13,6 +13,7 @@
 #include "photile/estimator.hpp"
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"
+#include "support/workload.hpp"
 
 namespace {
 
@@ -60,7 +61,7 @@ void start(const Variant& variant, const std::string& selector) {
   needs.light_count = variant.lights;
   const estimate::TuningSample sample =
       estimate::make_tuning_sample(needs, defaults::neighbours, {1000, 16});
-  const NeighbourGroups groups = find_neighbour_groups(sample.scene, {sample.radius});
+  const NeighbourGroups groups = default_groups(sample.scene, sample.photons, sample.radius);
   const Stopwatch stopwatch;
   Device device({.selector = selector, .profile = true});
   const double opened = stopwatch.seconds();

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "estimate/map_order.hpp"
 #include "photile/photon_tracer.hpp"
 #include "support/mesh_builder.hpp"
 #include "support/morton_order.hpp"
@@ -97,6 +98,21 @@ Scene living_room(Surfaces surfaces) {
   Scene scene = load_scene(PHOTILE_SOURCE_DIR "/scenes/living-room/living-room.gltf");
   if (surfaces == Surfaces::diffuse) make_diffuse(scene);
   return scene;
+}
+
+NeighbourGroups default_groups(const Scene& scene, const Photons& photons, double radius) {
+  return find_map_groups(scene, photons, product_maps.mode, {radius});
+}
+
+PrimaryHits in_map_order(const PrimaryHits& hits, const NeighbourGroups& groups) {
+  const auto order = estimate::order_by_map(hits, groups.patches.map_of);
+  if (order.empty()) return hits;
+  PrimaryHits ordered = estimate::reordered(hits, order);
+  for (const std::uint32_t hit : order) {
+    ordered.pixel.push_back(hits.pixel[hit]);
+    ordered.throughput.push_back(hits.throughput[hit]);
+  }
+  return ordered;
 }
 
 Photons traced_photons(const RayScene& rays, std::uint64_t count) {

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "photile/neighbour_groups.hpp"
+#include "photile/patches.hpp"
 #include "photile/photons.hpp"
 #include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
@@ -39,6 +41,20 @@ Scene living_room(Surfaces surfaces = Surfaces::diffuse);  ///< scenes/living-ro
 
 /// Takes the specular lobe from every opaque surface.
 void make_diffuse(Scene& scene);
+
+/// The maps that the renderer builds unless told otherwise, and those of the paper.
+struct NamedMapMode {
+  const char* name;  ///< of --maps
+  MapMode mode;
+};
+inline constexpr NamedMapMode product_maps{"auto", MapMode::automatic};
+inline constexpr NamedMapMode paper_maps{"triangle", MapMode::triangle};
+
+/// The groups of the product's maps.
+NeighbourGroups default_groups(const Scene& scene, const Photons& photons, double radius);
+
+/// Hits in the order in which the renderer traces them for maps of these groups.
+PrimaryHits in_map_order(const PrimaryHits& hits, const NeighbourGroups& groups);
 
 /// About `count` stored photons: from as many paths as a probe says leave so many.
 Photons traced_photons(const RayScene& rays, std::uint64_t count);

@@ -23,16 +23,10 @@ std::int64_t hits_per_batch(int neighbours) {
 
 NeighbourGroups groups_of(const Scene& scene, const Photons& photons,
                           const RenderParameters& parameters, double radius, Progress& progress) {
-  if (parameters.maps == MapMode::naive) return naive_groups(scene);
-  Patches patches;
-  // A global tree has no use for maps.
-  if (parameters.structure != MapStructure::kdtree_global) {
-    patches = find_patches(scene, radius, parameters.maps);
-  }
-  return merge_patches(
-      scene,
-      find_patch_groups(scene, std::move(patches), {radius, parameters.angle_degrees}, progress),
-      photons);
+  const bool global = parameters.structure == MapStructure::kdtree_global;  // no use for patches
+  const MapMode mode =
+      global && parameters.maps != MapMode::naive ? MapMode::triangle : parameters.maps;
+  return find_map_groups(scene, photons, mode, {radius, parameters.angle_degrees}, progress);
 }
 
 /// One rendering: what its photon passes share.

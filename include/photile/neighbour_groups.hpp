@@ -58,6 +58,12 @@ NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
 /// references they share. What a query finds is the same.
 NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons);
 
+/// Groups for maps of a mode, as the renderer uses them: the patches that it asks for, their groups,
+/// patches joined.
+NeighbourGroups find_map_groups(const Scene& scene, const Photons& photons, MapMode mode,
+                                const NeighbourGroupParameters& parameters,
+                                Progress& progress = Progress::none());
+
 /// Groups of one: every map holds the photons of its own sided triangle only (figure 1 of the
 /// paper: dark edges). Their radius is infinite: no other triangle's photon is ever looked for.
 NeighbourGroups naive_groups(const Scene& scene);

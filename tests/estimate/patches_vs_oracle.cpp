@@ -13,11 +13,6 @@ namespace {
 
 const std::filesystem::path source_folder = PHOTILE_SOURCE_DIR;
 
-NeighbourGroups groups_of(const Scene& scene, const Photons& photons, double radius, MapMode mode) {
-  return merge_patches(
-      scene, find_patch_groups(scene, find_patches(scene, radius, mode), {radius, 60}), photons);
-}
-
 void check_modes(const Scene& scene, std::size_t photon_count, std::size_t hit_count, double radius,
                  std::initializer_list<MapStructure> structures,
                  std::initializer_list<int> neighbour_counts) {
@@ -25,7 +20,7 @@ void check_modes(const Scene& scene, std::size_t photon_count, std::size_t hit_c
   const PrimaryHits hits = test::uniform_hits(scene, hit_count, 52);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   for (const MapMode mode : {MapMode::triangle, MapMode::patch, MapMode::automatic}) {
-    const NeighbourGroups groups = groups_of(scene, photons, radius, mode);
+    const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
     for (const MapStructure structure : structures) {
       const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
       for (const int k : neighbour_counts) {
@@ -106,7 +101,7 @@ TEST_CASE("estimates of maps of patches equal those of triangles up to the order
   }
   constexpr double radius = 0.4;
   const auto estimate = [&](MapMode mode) {
-    const PhotonMaps maps(test::device(), scene, photons, groups_of(scene, photons, radius, mode),
+    const PhotonMaps maps(test::device(), scene, photons, find_map_groups(scene, photons, mode, {radius, 60}),
                           {radius, 4});
     return Estimator(maps, scene, {50, 0}).estimate(hits);
   };
