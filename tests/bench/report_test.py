@@ -85,11 +85,39 @@ class Targets(unittest.TestCase):
         self.assertEqual(report_targets.at_most("a", 75, 50, form)[3], "missed by a factor of 1.5")
         self.assertEqual(report_targets.at_most("a", None, 50, form)[2], "not measured")
 
+    def test_targets_are_held_to_the_default_maps_in_whatever_order_rows_come(self):
+        rows = [{"structure": "uniform-grid", "maps of": maps, "estimate kernels": timing(seconds)}
+                for maps, seconds in (("triangle", 0.2), ("auto", 0.1))]
+        for order in (rows, rows[::-1]):
+            results = {"paper": {"results": order}}
+            self.assertAlmostEqual(report_targets.paper_milliseconds(results), 100)
+
+    def test_a_kernel_takes_as_long_to_compile_as_itself_and_its_program(self):
+        row = {"cache": "empty", "programs": {"a.cl": timing(0.5), "b.cl": timing(0.75)},
+               "kernels": {"a": timing(0.25), "b": timing(0.125)}}
+        full = {"cache": "full", "open": timing(0.03), "prepare": timing(0.05)}
+        results = {"startup": {"results": [row, full]}}
+        compiled, started = report_targets.start_seconds(results)
+        self.assertAlmostEqual(compiled, 1.0)
+        self.assertAlmostEqual(started, 0.08)
+
 
 class Kernels(unittest.TestCase):
     def test_the_cost_of_a_hit_is_that_of_the_documentation(self):
         moved, operations = report_kernels.estimate_cost(50)
         self.assertEqual((round(moved, -2), round(operations, -2)), (5200, 3100))
+
+    def test_patches_add_normals_of_photons_and_flags_of_maps_to_what_the_build_moves(self):
+        row = {"photons": 1000, "references": 100, "cells": 10, "maps": 1, "patches": False}
+
+        def moved(kernel, **changes):
+            return report_kernels.build_bytes({**row, "kernel": kernel, **changes})
+        self.assertEqual(moved("count_photons"), 20 * 1000 + 4 * 100)
+        self.assertEqual(moved("count_photons", patches=True), 32 * 1000 + 4 * 100 + 4)
+        self.assertEqual(moved("size_grids", patches=True), 122 + 4)
+        self.assertEqual(moved("scatter", patches=True), moved("scatter"))
+        self.assertEqual(moved("gather_normals", patches=True), (4 + 2 * 12) * 100)
+        self.assertIsNone(moved("estimate"))
 
 
 if __name__ == "__main__":
