@@ -138,7 +138,8 @@ def build_kernels(result):
 def startup(result):
     rows = result["results"]
     columns = [(row, f"{row['variant']}: {row['cache']} cache") for row in rows]
-    lines = [["opening the device"] + [times(row["open"]) for row, _ in columns],
+    lines = [["shared libraries, before `main`"] + [times(row["load"]) for row, _ in columns],
+             ["opening the device"] + [times(row["open"]) for row, _ in columns],
              ["all kernels"] + [times(row["prepare"]) for row, _ in columns]]
     for kind, title in (("programs", "program `{}`"), ("kernels", "`{}`")):
         for name in dict.fromkeys(name for row in rows for name in row[kind]):
@@ -148,7 +149,8 @@ def startup(result):
             "cache, loaded with a full one. Programs are read and checked whole; PoCL compiles each "
             "kernel at its first launch, which is in the kernel's row. With a full cache most of the "
             "time is clang's preprocessor, which PoCL runs over each program, and over OpenCL's "
-            "built-in functions before it, to find it in its cache.")
+            "built-in functions before it, to find it in its cache. Shared libraries are those of the "
+            "whole of photile, nearly all of them OpenImageIO's.")
     return text + "\n\n" + table([""] + [name for _, name in columns], lines)
 
 

@@ -1,8 +1,10 @@
 // What a start costs before the first kernel runs: opening the device and compiling the kernels
-// with an empty cache, loading them with a full one. Each start is a process of its own.
+// with an empty cache, loading them with a full one. Each start is a process of its own, whose
+// loading of shared libraries is timed too.
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -54,8 +56,14 @@ class CacheFolder {
   fs::path path_;
 };
 
+/// Seconds of the clock that all processes share.
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 /// The start itself, in the child: prints its seconds as JSON.
-void start(const Variant& variant, const std::string& selector) {
+///   main_begun   of `now`
+void start(const Variant& variant, const std::string& selector, double main_begun) {
   SceneNeeds needs;
   needs.glossy = variant.glossy;
   needs.light_count = variant.lights;
@@ -81,7 +89,8 @@ void start(const Variant& variant, const std::string& selector) {
   for (const device::ProgramTime& time : device.context().program_times()) {
     programs[time.file] = programs.value(time.file, 0.0) + time.seconds;
   }
-  const nlohmann::json line{{"open", opened},
+  const nlohmann::json line{{"main begun", main_begun},
+                            {"open", opened},
                             {"prepare", first - second},
                             {"programs", std::move(programs)},
                             {"kernels", std::move(kernels)}};
@@ -96,6 +105,7 @@ nlohmann::json start_process(const fs::path& cache, std::size_t variant,
   if (!selector.empty()) setenv("PHOTILE_DEVICE", selector.c_str(), 1);
   const std::string command =
       "'" + fs::read_symlink("/proc/self/exe").string() + "' --child " + std::to_string(variant);
+  const double begun = now();
   FILE* const output = popen(command.c_str(), "r");
   if (output == nullptr) throw std::runtime_error(command + ": cannot be started");
   std::string text;
@@ -103,15 +113,18 @@ nlohmann::json start_process(const fs::path& cache, std::size_t variant,
     text.push_back(static_cast<char>(c));
   }
   if (pclose(output) != 0) throw std::runtime_error(command + ": failed");
-  return nlohmann::json::parse(text);
+  nlohmann::json seconds = nlohmann::json::parse(text);
+  seconds["load"] = seconds["main begun"].get<double>() - begun;
+  return seconds;
 }
 
 /// The times of one cache state, over repeats.
 struct StartTimings {
-  Timing open, prepare;
+  Timing load, open, prepare;
   std::map<std::string, Timing> programs, kernels;
 
   void add(const nlohmann::json& seconds) {
+    load.seconds.push_back(seconds["load"]);
     open.seconds.push_back(seconds["open"]);
     prepare.seconds.push_back(seconds["prepare"]);
     for (const auto& [file, taken] : seconds["programs"].items()) {
@@ -123,9 +136,10 @@ struct StartTimings {
   }
 
   nlohmann::json row(const Variant& variant, const char* cache) const {
-    return {{"variant", variant.name},       {"cache", cache},
-            {"open", to_json(open)},         {"prepare", to_json(prepare)},
-            {"programs", by_name(programs)}, {"kernels", by_name(kernels)}};
+    return {{"variant", variant.name},     {"cache", cache},
+            {"load", to_json(load)},       {"open", to_json(open)},
+            {"prepare", to_json(prepare)}, {"programs", by_name(programs)},
+            {"kernels", by_name(kernels)}};
   }
 
  private:
@@ -157,6 +171,7 @@ bool run(BenchOptions& options) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
+  const double begun = now();
   BenchOptions options;
   options.repeats.most = 3;
   int child = -1;
@@ -165,7 +180,7 @@ int main(int argument_count, char** arguments) {
   command.add_option("--child", child)->group("");  // not for users
   return run_bench(command, argument_count, arguments, [&] {
     if (child < 0) return run(options);
-    start(variants.at(static_cast<std::size_t>(child)), options.device);
+    start(variants.at(static_cast<std::size_t>(child)), options.device, begun);
     return true;
   });
 }
