@@ -101,8 +101,8 @@ TEST_CASE("estimates of maps of patches equal those of triangles up to the order
   }
   constexpr double radius = 0.4;
   const auto estimate = [&](MapMode mode) {
-    const PhotonMaps maps(test::device(), scene, photons, find_map_groups(scene, photons, mode, {radius, 60}),
-                          {radius, 4});
+    const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
+    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4});
     return Estimator(maps, scene, {50, 0}).estimate(hits);
   };
   const Estimates triangles = estimate(MapMode::triangle), patches = estimate(MapMode::patch);

@@ -1,0 +1,20 @@
+// A start is paid per program: what is built for maps and an estimate.
+#include <catch2/catch.hpp>
+
+#include "photile/estimator.hpp"
+#include "photon_sets.hpp"
+
+using namespace photile;
+
+TEST_CASE("building maps and estimating from them take one program each") {
+  Scene scene = test::empty_scene(GENERATE(1u, 3u));
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8);
+  const Photons photons = test::uniform_photons(scene, 4096, 91);
+  const MapMode mode = GENERATE(MapMode::triangle, MapMode::automatic);
+  Device device;
+  const PhotonMaps maps(device, scene, photons, find_map_groups(scene, photons, mode, {0.2}),
+                        {.radius = 0.2});
+  CHECK(device.programs_built() + device.programs_from_cache() == 1);
+  Estimator(maps, scene, {}).estimate(test::uniform_hits(scene, 93, 92));
+  CHECK(device.programs_built() + device.programs_from_cache() == 2);
+}
