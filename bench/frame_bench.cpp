@@ -36,7 +36,7 @@ FrameTiming measure_frames(const RayScene& rays, Estimator& estimator,
     const double hits_done = stopwatch.seconds();
     const Estimates estimates = estimator.estimate(batch.hits);
     const double estimate_done = stopwatch.seconds();
-    LightLayers layers(film.width, film.height, rays.scene().lights);
+    LightLayers layers(film.width, film.height, rays.scene());
     add_to_film(layers, batch, estimates, 1.0f);
     timing.hits.seconds.push_back(hits_done);
     timing.estimate.seconds.push_back(estimate_done - hits_done);

@@ -21,8 +21,8 @@ struct Size {
 };
 
 LightLayers random_layers(const Size& size) {
-  std::vector<Light> lights(size.lights);
-  for (std::size_t i = 0; i < lights.size(); ++i) lights[i].name = "light" + std::to_string(i);
+  std::vector<std::string> lights;
+  for (std::size_t i = 0; i < size.lights; ++i) lights.push_back("light" + std::to_string(i));
   LightLayers layers = LightLayers(size.width, size.height, lights).dense();
   std::mt19937 generator(1);
   std::uniform_real_distribution<float> uniform(0, 1);

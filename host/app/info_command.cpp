@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/light_group_option.hpp"
 #include "app/scene_report.hpp"
 #include "app/validators.hpp"
 #include "photile/light_mix.hpp"
@@ -71,6 +72,7 @@ void add_info_command(CLI::App& photile) {
       ->capture_default_str();
   command->add_flag("--allow-outside", options->load.allow_outside,
                     "the scene may name files outside its folder");
+  add_light_group_option(*command, options->load);
   command->callback([options] { run_info(*options); });
 }
 

@@ -65,10 +65,10 @@ std::vector<std::filesystem::path> PictureOutputs::files() const {
   return all;
 }
 
-void PictureOutputs::write(const Image& picture) const {
+void PictureOutputs::write(const LayeredPicture& picture) const {
   for (const auto& file : exr_) write_exr(file, picture);
   if (png_.empty()) return;
-  const Image displayed = tone_map(picture, tone_mapping_);
+  const Image displayed = tone_map(picture.root(), tone_mapping_);
   for (const auto& file : png_) write_png(file, displayed);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "photile/image.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace CLI {
 class App;
@@ -30,12 +30,11 @@ class PictureOutputs {
   explicit PictureOutputs(const PictureOptions& options);
 
   bool empty() const { return exr_.empty() && png_.empty(); }
-  bool has_exr() const { return !exr_.empty(); }
   std::vector<std::filesystem::path> files() const;
 
   /// Writes every file: `picture` as EXR, its tone-mapped root as PNG.
-  /// Errors: OutputError; the file that it names is then as it was before.
-  void write(const Image& picture) const;
+  /// Errors: OutputError; the file that it names is then as it was before. Those of `picture`.
+  void write(const LayeredPicture& picture) const;
 
  private:
   std::vector<std::filesystem::path> exr_, png_;

@@ -10,8 +10,7 @@
 #include "app/picture_outputs.hpp"
 #include "app/signals.hpp"
 #include "photile/errors.hpp"
-#include "photile/image.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace photile::app {
 namespace {
@@ -24,7 +23,8 @@ struct RelightOptions {
 
 void print_lights(const LightMix& mix) {
   for (const MixedLight& light : mix.lights) {
-    std::cout << fmt::format("light: {}: {}\n", light.name,
+    std::cout << fmt::format("{}: {}: {}\n", light.members.empty() ? "light" : "group",
+                             light.name,
                              format_power_in_both(light.power, light.unit, mix.lumen_per_watt));
   }
 }
@@ -39,14 +39,13 @@ void run_relight(const RelightOptions& options) {
   }
   check_outputs(outputs.files(), options.input);
 
-  const Image layered = read_image(options.input);
   if (outputs.empty()) {
-    print_lights(read_light_mix(layered));
+    print_lights(read_light_mix(read_header(options.input)));
     return;
   }
-  const Image picture = relight(layered, changes);
+  const std::unique_ptr<LayeredPicture> picture = relit_picture(options.input, changes);
   throw_if_stop_requested();
-  outputs.write(picture);
+  outputs.write(*picture);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@
 #include "device/context.hpp"
 #include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace photile::app {
 namespace {
@@ -34,16 +34,6 @@ PictureOutputs check_outputs_of(const RenderOptions& options) {
   if (!options.statistics.empty()) files.emplace_back(options.statistics);
   check_outputs(files, options.scene);
   return outputs;
-}
-
-/// An EXR with more channels than the limit could not be read back.
-void check_channels(const PictureOutputs& outputs, const Scene& scene) {
-  const std::size_t channels = 4 + 4 * scene.lights.size();
-  if (outputs.has_exr() && channels > limits::max_image_channels) {
-    throw UsageError(fmt::format(
-        "{}: {} lights need {} channels and an EXR may have {}; write a PNG only",
-        scene.source.string(), scene.lights.size(), channels, limits::max_image_channels));
-  }
 }
 
 void tell_device(const DeviceInfo& device, Progress& progress) {
@@ -136,7 +126,6 @@ void run_render(RenderOptions& options) {
   LightMix mix = LightMix::of(scene, options.lumen_per_watt);
   photile::apply(mix, changes);  // qualified: std::apply would match better
   tell_scene(scene, mix, progress);
-  check_channels(outputs, scene);
   const Camera& camera = choose_camera(scene, options.camera);
   set_film_size(options.parameters.film, options.size, camera);
 
@@ -158,10 +147,10 @@ void run_render(RenderOptions& options) {
                    .samples_per_pixel = result.samples_per_pixel,
                    .stages = stages};
   record.stages.push_back(timed_stage("write pictures", progress, [&] {
-    Image picture = mix_layers(result.layers, mix);
-    set_camera_attributes(picture, camera, result.layers.width, result.layers.height);
-    set_run_attributes(picture, record);
-    outputs.write(picture);
+    const std::unique_ptr<LayeredPicture> picture = mixed_picture(result.layers, mix);
+    set_camera_attributes(picture->header(), camera, result.layers.width, result.layers.height);
+    set_run_attributes(picture->header(), record);
+    outputs.write(*picture);
   }));
   record.total_seconds = stopwatch.seconds();
   if (!options.statistics.empty()) {

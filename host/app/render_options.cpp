@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "app/light_group_option.hpp"
 #include "app/validators.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -159,6 +160,7 @@ void add_scene_group(CLI::App& command, RenderOptions& options) {
       .add_flag("--allow-outside", options.load.allow_outside,
                 "the scene may name files outside its folder")
       ->group("Scene");
+  add_light_group_option(command, options.load)->group("Scene");
 }
 
 void add_run_group(CLI::App& command, RenderOptions& options) {

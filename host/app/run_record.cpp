@@ -72,7 +72,7 @@ json parameters_json(const RunRecord& record) {
 
 }  // namespace
 
-void set_run_attributes(Image& picture, const RunRecord& record) {
+void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
   const RenderParameters& parameters = record.parameters;
   auto& attributes = picture.attributes;
   attributes["photile.version"] = version_number();

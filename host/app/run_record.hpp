@@ -32,7 +32,7 @@ struct RunRecord {
 };
 
 /// Sets the string attributes `photile.*` of a picture.
-void set_run_attributes(Image& picture, const RunRecord& record);
+void set_run_attributes(PictureHeader& picture, const RunRecord& record);
 
 /// The content of --stats FILE.
 nlohmann::json run_json(const RunRecord& record);

@@ -53,15 +53,37 @@ json components(const Vector& vector) {
   return json::array({vector.x, vector.y, vector.z});
 }
 
-json light_json(const Light& light, const MixedLight& mixed, double lumen_per_watt) {
-  const bool lumen = mixed.unit == PowerUnit::lumen;
-  return {{"name", light.name},
-          {"kind", kind_name(light.kind)},
-          {"color", components(light.color)},
-          {"triangles", light.triangles.size()},
-          {"two_sided", light.two_sided},
-          {"lumens", lumen ? mixed.power : mixed.power * lumen_per_watt},
-          {"watts", lumen ? mixed.power / lumen_per_watt : mixed.power}};
+json power_json(double power, PowerUnit unit, double lumen_per_watt) {
+  const bool lumen = unit == PowerUnit::lumen;
+  return {{"lumens", lumen ? power : power * lumen_per_watt},
+          {"watts", lumen ? power / lumen_per_watt : power}};
+}
+
+json light_json(const Light& light, double power, PowerUnit unit, double lumen_per_watt) {
+  json entry{{"name", light.name},
+             {"kind", kind_name(light.kind)},
+             {"color", components(light.color)},
+             {"triangles", light.triangles.size()},
+             {"two_sided", light.two_sided}};
+  if (!light.group.empty()) entry["group"] = light.group;
+  entry.update(power_json(power, unit, lumen_per_watt));
+  return entry;
+}
+
+json group_json(const MixedLight& group, double lumen_per_watt) {
+  json entry{{"name", group.name}, {"lights", group.members}, {"color", components(group.color)}};
+  entry.update(power_json(group.power, group.unit, lumen_per_watt));
+  return entry;
+}
+
+/// Power of each light in the mix; lights of a group change together.
+std::vector<double> powers_of(const Scene& scene, const LightMix& mix) {
+  const LightGroups groups = light_groups_of(scene);
+  std::vector<double> powers;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    powers.push_back(groups.share[i] * mix.lights[groups.group_of[i]].power);
+  }
+  return powers;
 }
 
 json material_json(const Scene& scene, const Material& material) {
@@ -120,10 +142,18 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
           counted(scene.triangle_count(), "triangle"), counted(scene.materials.size(), "material"),
           counted(scene.textures.size(), "texture"), counted(scene.cameras.size(), "camera")),
       fmt::format("extents: {:.4g} x {:.4g} x {:.4g} m", size.x, size.y, size.z)};
+  const std::vector<double> powers = powers_of(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const MixedLight& mixed = mix.lights[i];
-    lines.push_back(fmt::format("light: {}: {}, {}", mixed.name, kind_name(scene.lights[i].kind),
-                                format_power_in_both(mixed.power, mixed.unit, mix.lumen_per_watt)));
+    const Light& light = scene.lights[i];
+    lines.push_back(fmt::format("light: {}: {}, {}{}", light.name, kind_name(light.kind),
+                                format_power_in_both(powers[i], scene.unit, mix.lumen_per_watt),
+                                light.group.empty() ? "" : ", of group " + light.group));
+  }
+  for (const MixedLight& group : mix.lights) {
+    if (group.members.empty()) continue;
+    lines.push_back(fmt::format("group: {}: {}, {}", group.name,
+                                counted(group.members.size(), "light"),
+                                format_power_in_both(group.power, group.unit, mix.lumen_per_watt)));
   }
   return lines;
 }
@@ -152,13 +182,19 @@ json scene_json(const Scene& scene, const LightMix& mix) {
                 {"size", components(extents.size())}}},
               {"materials", json::array()},
               {"lights", json::array()},
+              {"groups", json::array()},
               {"cameras", json::array()},
               {"warnings", scene_warnings(scene)}};
   for (const Material& material : scene.materials) {
     result["materials"].push_back(material_json(scene, material));
   }
+  const std::vector<double> powers = powers_of(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    result["lights"].push_back(light_json(scene.lights[i], mix.lights[i], mix.lumen_per_watt));
+    result["lights"].push_back(
+        light_json(scene.lights[i], powers[i], scene.unit, mix.lumen_per_watt));
+  }
+  for (const MixedLight& group : mix.lights) {
+    if (!group.members.empty()) result["groups"].push_back(group_json(group, mix.lumen_per_watt));
   }
   for (const Camera& camera : scene.cameras) result["cameras"].push_back(camera_json(camera));
   return result;

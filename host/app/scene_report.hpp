@@ -22,7 +22,7 @@ Extents extents_of(const Scene& scene);
 /// few millimetres.
 std::string doubtful_unit(const Extents& extents);
 
-/// The counts and every light with its power in `mix`, a line each.
+/// The counts, every light and every group of lights with its power in `mix`, a line each.
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
 
 /// The import's warnings and a doubtful unit, a line each.

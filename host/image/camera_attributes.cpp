@@ -22,7 +22,7 @@ std::array<float, 16> from_columns(const glm::dvec4& x, const glm::dvec4& y, con
 
 }  // namespace
 
-void set_camera_attributes(Image& image, const Camera& camera, int width, int height) {
+void set_camera_attributes(PictureHeader& image, const Camera& camera, int width, int height) {
   const auto coordinate_along = [&](const glm::dvec3& axis) {
     return glm::dvec4(axis, -glm::dot(axis, camera.position));
   };

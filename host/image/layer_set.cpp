@@ -44,7 +44,7 @@ struct FoundLayer {
 /// Layers in the order in which their first channel stands in the picture.
 class Finder {
  public:
-  explicit Finder(const Image& image) {
+  explicit Finder(const PictureHeader& image) {
     for (std::size_t i = 0; i < image.channel_names.size(); ++i) {
       const ChannelName name(image.channel_names[i]);
       const std::size_t component = std::string_view("RGB").find(name.channel);
@@ -86,7 +86,7 @@ class Finder {
 
 }  // namespace
 
-LayerSet find_layers(const Image& image) {
+LayerSet find_layers(const PictureHeader& image) {
   const Finder finder(image);
   if (finder.layers().empty()) {
     throw InputError(

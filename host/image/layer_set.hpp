@@ -27,6 +27,6 @@ struct LayerSet {
 /// `RGBA_<light>.R/G/B` (Arnold), with `Illuminance_<light>.Y`. The order is that of
 /// `photile.lights`; lights without a record follow as they stand in the file, with power 1.
 /// Errors: InputError when there is no layer, one lacks a channel, or there are several views.
-LayerSet find_layers(const Image& image);
+LayerSet find_layers(const PictureHeader& image);
 
 }  // namespace photile::image

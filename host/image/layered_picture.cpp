@@ -1,28 +1,30 @@
-#include "image/layered_picture.hpp"
+#include "photile/layered_picture.hpp"
 
 #include <utility>
 
-namespace photile::image {
+namespace photile {
 
-void set_layered_channels(Image& image, const std::vector<std::string>& lights,
-                          std::vector<LightPlanes> planes, std::vector<float> alpha) {
-  constexpr std::array<const char*, 3> components{"R", "G", "B"};
-  for (std::size_t component = 0; component < 3; ++component) {
-    std::vector<float>& sum = image.add(components[component]);
-    for (const LightPlanes& light : planes) {
-      const std::vector<float>& plane = light.rgb[component];
-      for (std::size_t pixel = 0; pixel < sum.size(); ++pixel) sum[pixel] += plane[pixel];
-    }
+std::vector<std::string> LayeredPicture::channel_names(std::size_t light) const {
+  const Layer& layer = layers_[light];
+  std::vector<std::string> names;
+  for (const char* component : {".R", ".G", ".B"}) {
+    names.push_back("Combined_" + layer.light + component);
   }
-  image.add("A") = std::move(alpha);
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    for (std::size_t component = 0; component < 3; ++component) {
-      image.add("Combined_" + lights[i] + "." + components[component]) =
-          std::move(planes[i].rgb[component]);
-    }
-    if (planes[i].illuminance.empty()) continue;
-    image.add("Illuminance_" + lights[i] + ".Y") = std::move(planes[i].illuminance);
-  }
+  if (layer.illuminance) names.push_back("Illuminance_" + layer.light + ".Y");
+  return names;
 }
 
-}  // namespace photile::image
+Image to_image(const LayeredPicture& picture) {
+  Image image = picture.root();
+  for (std::size_t light = 0; light < picture.lights(); ++light) {
+    LightRows rows = picture.read(light, 0, image.height);
+    std::vector<std::vector<float>> planes;
+    for (std::vector<float>& plane : rows.rgb) planes.push_back(std::move(plane));
+    planes.push_back(std::move(rows.illuminance));
+    const std::vector<std::string> names = picture.channel_names(light);
+    for (std::size_t i = 0; i < names.size(); ++i) image.add(names[i]) = std::move(planes[i]);
+  }
+  return image;
+}
+
+}  // namespace photile

@@ -8,13 +8,11 @@
 
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
+#include "scene/light_names.hpp"
 
 namespace photile {
 namespace image {
 namespace {
-
-/// Names that a message lists before it only counts the rest.
-constexpr std::size_t listed_lights = 20;
 
 [[noreturn]] void refuse(const LightChange& change, const char* reason) {
   throw UsageError(fmt::format("light '{}': '{}' {}", change.name, change.value, reason));
@@ -108,17 +106,13 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
 }
 
 std::size_t index_of(const LightMix& mix, const std::string& name) {
-  std::string list;
   for (std::size_t i = 0; i < mix.lights.size(); ++i) {
     if (mix.lights[i].name == name) return i;
-    if (i < listed_lights) list += fmt::format("{}'{}'", i == 0 ? "" : ", ", mix.lights[i].name);
   }
-  if (mix.lights.size() > listed_lights) {
-    list += fmt::format(" and {} more", mix.lights.size() - listed_lights);
-  }
-  throw UsageError(fmt::format("there is no light '{}'; there {} {}", name,
-                               mix.lights.size() == 1 ? "is" : "are",
-                               list.empty() ? "none" : list));
+  std::vector<std::string> names;
+  for (const MixedLight& light : mix.lights) names.push_back(light.name);
+  throw UsageError(
+      fmt::format("there is no light '{}'; there {}", name, scene_io::listed_names(names)));
 }
 
 }  // namespace image

@@ -19,12 +19,21 @@ void add_plane(LightLayers::Layer& layer, std::size_t pixels) {
   layer.illuminance.assign(pixels, 0.0f);
 }
 
+std::vector<std::string> layer_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const LightGroup& group : light_groups_of(scene).groups) names.push_back(group.name);
+  return names;
+}
+
 }  // namespace
 
-LightLayers::LightLayers(int width, int height, const std::vector<Light>& lights)
+LightLayers::LightLayers(int width, int height, const Scene& scene)
+    : LightLayers(width, height, layer_names(scene)) {}
+
+LightLayers::LightLayers(int width, int height, const std::vector<std::string>& names)
     : width(width), height(height) {
-  for (const Light& light : lights) layers.push_back({light.name, {}, {}});
-  if (lights.size() > max_dense_lights) {
+  for (const std::string& name : names) layers.push_back({name, {}, {}});
+  if (names.size() > max_dense_lights) {
     rows.resize(static_cast<std::size_t>(height));
     for (Row& row : rows) row.first.assign(static_cast<std::size_t>(width) + 1, 0);
   } else {

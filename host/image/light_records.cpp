@@ -45,6 +45,18 @@ glm::vec3 read_rgb(const Json& record, const char* key) {
   return rgb;
 }
 
+std::vector<std::string> read_members(const Json& record) {
+  const auto found = record.find("lights");
+  if (found == record.end()) return {};
+  if (!found->is_array()) refuse(lights_attribute, "the lights of a group are no list");
+  std::vector<std::string> members;
+  for (const Json& member : *found) {
+    if (!member.is_string()) refuse(lights_attribute, "a light of a group has no name");
+    members.push_back(member.get<std::string>());
+  }
+  return members;
+}
+
 /// One light; its name is added to `relative` where the record has no unit.
 MixedLight read_record(const Json& record, std::set<std::string>& relative) {
   if (!record.is_object() || !record.contains("name") || !record["name"].is_string()) {
@@ -55,6 +67,7 @@ MixedLight read_record(const Json& record, std::set<std::string>& relative) {
   light.power = record.contains("power") ? read_amount(record["power"], "power") : 1.0;
   light.color = read_rgb(record, "color");
   light.tint = read_rgb(record, "tint");
+  light.members = read_members(record);
   const std::string unit = record.contains("unit") && record["unit"].is_string()
                                ? record["unit"].get<std::string>()
                                : std::string();
@@ -67,7 +80,7 @@ MixedLight read_record(const Json& record, std::set<std::string>& relative) {
   return light;
 }
 
-double read_efficacy(const Image& image) {
+double read_efficacy(const PictureHeader& image) {
   const auto found = image.attributes.find(efficacy_attribute);
   if (found == image.attributes.end()) return defaults::lumen_per_watt;
   const std::string& text = found->second;
@@ -82,13 +95,14 @@ double read_efficacy(const Image& image) {
 
 }  // namespace
 
-void write_light_records(Image& image, const LightRecords& records) {
+void write_light_records(PictureHeader& image, const LightRecords& records) {
   Json lights = Json::array();
   for (const MixedLight& light : records.mix.lights) {
     Json record{{"name", light.name}, {"power", light.power}};
     if (!records.relative.contains(light.name)) {
       record["unit"] = light.unit == PowerUnit::lumen ? "lm" : "W";
     }
+    if (!light.members.empty()) record["lights"] = light.members;
     record["color"] = rgb_to_json(light.color);
     record["tint"] = rgb_to_json(light.tint);
     lights.push_back(std::move(record));
@@ -106,7 +120,7 @@ void write_light_records(Image& image, const LightRecords& records) {
   image.numbers["whiteLuminance"] = watts ? static_cast<float>(lumen_per_watt) : 1.0f;
 }
 
-LightRecords read_light_records(const Image& image) {
+LightRecords read_light_records(const PictureHeader& image) {
   LightRecords records;
   records.mix.lumen_per_watt = read_efficacy(image);
   const auto found = image.attributes.find(lights_attribute);

@@ -20,9 +20,9 @@ struct LightRecords {
 
 /// Sets `photile.lights`, `photile.units`, `photile.illuminance.units` and `photile.efficacy`, and
 /// `whiteLuminance` (cd/m2 of RGB (1,1,1)). Units are left out where some power is relative.
-void write_light_records(Image& image, const LightRecords& records);
+void write_light_records(PictureHeader& image, const LightRecords& records);
 
 /// The records of a picture; none gives an empty mix. Errors: InputError for damaged ones.
-LightRecords read_light_records(const Image& image);
+LightRecords read_light_records(const PictureHeader& image);
 
 }  // namespace photile::image

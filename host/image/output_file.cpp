@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 #include "photile/errors.hpp"
 
@@ -55,11 +56,22 @@ OutputFile::~OutputFile() {
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-void OutputFile::fail(const std::string& reason) const {
-  const bool full = write_error_ == ENOSPC || write_error_ == EDQUOT || write_error_ == EFBIG;
+void OutputFile::fail(const std::string& reason) const { fail_with(write_error_, reason); }
+
+void OutputFile::fail_with(int error, const std::string& reason) const {
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
   throw OutputError(fmt::format("{}: cannot be written: {}{}", file_.string(),
-                                write_error_ != 0 ? std::strerror(write_error_) : reason,
+                                error != 0 ? std::strerror(error) : reason,
                                 full ? "; free space or choose another folder" : ""));
+}
+
+void OutputFile::fail_on_behalf(const std::string& reason) const {
+  // More than what a last block may have left free.
+  const std::vector<char> bytes(1 << 20, '\0');
+  if (::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size())) < 0) {
+    fail_with(errno, reason);
+  }
+  fail(reason);
 }
 
 void OutputFile::commit() {

@@ -29,6 +29,11 @@ class OutputFile : public OIIO::Filesystem::IOProxy {
   /// Throws the OutputError of this file: the first failed write's reason, or else `reason`.
   [[noreturn]] void fail(const std::string& reason) const;
 
+  /// Where the bytes go until `commit`, for an encoder that opens files by name.
+  const std::filesystem::path& temporary() const { return temporary_; }
+  /// As `fail`, after such an encoder has failed: finds out whether the storage device is full.
+  [[noreturn]] void fail_on_behalf(const std::string& reason) const;
+
   const char* proxytype() const override { return "file"; }
   std::size_t write(const void* bytes, std::size_t count) override;
   std::size_t pwrite(const void* bytes, std::size_t count, std::int64_t offset) override;
@@ -36,6 +41,8 @@ class OutputFile : public OIIO::Filesystem::IOProxy {
   std::size_t size() const override;
 
  private:
+  [[noreturn]] void fail_with(int error, const std::string& reason) const;
+
   std::filesystem::path file_;       ///< as the user named it, for messages
   std::filesystem::path target_;     ///< links resolved
   std::filesystem::path temporary_;  ///< empty once renamed

@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "image/layer_set.hpp"
-#include "image/layered_picture.hpp"
 #include "image/light_change.hpp"
+#include "image/picture_file.hpp"
 #include "photile/errors.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/limits.hpp"
 
 namespace photile {
 namespace {
@@ -24,32 +26,6 @@ double ratio(double now, double before, const std::string& light) {
   return now / before;
 }
 
-std::vector<float> scaled(const std::vector<float>& plane, double factor) {
-  const float scale = static_cast<float>(factor);
-  if (scale == 0.0f) return std::vector<float>(plane.size());  // off, whatever the layer holds
-  std::vector<float> result(plane);
-  if (scale == 1.0f) return result;
-  for (float& value : result) value *= scale;
-  return result;
-}
-
-/// The planes of one light in the picture, brought from `before` to `now`.
-image::LightPlanes relit(const Image& picture, const image::LayerChannels& channels,
-                         const MixedLight& before, const MixedLight& now) {
-  image::LightPlanes planes;
-  for (int component = 0; component < 3; ++component) {
-    const std::size_t i = static_cast<std::size_t>(component);
-    planes.rgb[i] = scaled(
-        picture.channels[channels.rgb[i]],
-        ratio(now.power * now.tint[component], before.power * before.tint[component], now.name));
-  }
-  if (channels.illuminance) {
-    planes.illuminance =
-        scaled(picture.channels[*channels.illuminance], ratio(now.power, before.power, now.name));
-  }
-  return planes;
-}
-
 void apply_to_picture(image::LightRecords& records, const std::vector<LightChange>& changes) {
   for (const LightChange& change : changes) {
     MixedLight& light = records.mix.lights[image::index_of(records.mix, change.name)];
@@ -63,35 +39,128 @@ void apply_to_picture(image::LightRecords& records, const std::vector<LightChang
   }
 }
 
+void scale(std::vector<float>& values, float factor) {
+  if (factor == 1.0f) return;
+  for (float& value : values) {
+    value = factor == 0.0f ? 0.0f : value * factor;  // off, whatever the layer holds
+  }
+}
+
+/// What a layer's channels are multiplied with.
+struct Factors {
+  std::array<float, 3> rgb;
+  float illuminance = 1.0f;
+};
+
+class RelitPicture : public LayeredPicture {
+ public:
+  RelitPicture(std::unique_ptr<image::ChannelRows> source, const std::vector<LightChange>& changes)
+      : source_(std::move(source)), before_(image::find_layers(source_->header())) {
+    image::LightRecords now = before_.records;
+    apply_to_picture(now, changes);
+    for (std::size_t i = 0; i < now.mix.lights.size(); ++i) {
+      const bool illuminance = before_.channels[i].illuminance.has_value();
+      layers_.push_back({now.mix.lights[i].name, illuminance});
+      factors_.push_back(
+          factors_of(before_.records.mix.lights[i], now.mix.lights[i], illuminance));
+    }
+    header_ = source_->header();
+    header_.channel_names.clear();
+    image::write_light_records(header_, now);
+  }
+
+  LightRows read(std::size_t light, int first, int end) const override {
+    LightRows rows = read_rgb(light, first, end);
+    if (const auto channel = before_.channels[light].illuminance) {
+      rows.illuminance = source_->read(*channel, first, end);
+      scale(rows.illuminance, factors_[light].illuminance);
+    }
+    return rows;
+  }
+
+  Image root() const override {
+    Image image;
+    static_cast<PictureHeader&>(image) = header_;
+    for (const char* component : {"R", "G", "B"}) image.add(component);
+    for (std::size_t light = 0; light < lights(); ++light) {
+      for (int first = 0; first < image.height; first += rows_per_read) {
+        const int end = std::min(first + rows_per_read, image.height);
+        add_rows(read_rgb(light, first, end), first, image);
+      }
+    }
+    image.add("A") = alpha();
+    return image;
+  }
+
+ private:
+  /// Rows that are held at a time.
+  static constexpr int rows_per_read = 64;
+
+  static Factors factors_of(const MixedLight& before, const MixedLight& now, bool illuminance) {
+    Factors factors;
+    for (int i = 0; i < 3; ++i) {
+      factors.rgb[static_cast<std::size_t>(i)] = static_cast<float>(
+          ratio(now.power * now.tint[i], before.power * before.tint[i], now.name));
+    }
+    if (illuminance) {
+      factors.illuminance = static_cast<float>(ratio(now.power, before.power, now.name));
+    }
+    return factors;
+  }
+
+  LightRows read_rgb(std::size_t light, int first, int end) const {
+    LightRows rows;
+    for (std::size_t i = 0; i < 3; ++i) {
+      rows.rgb[i] = source_->read(before_.channels[light].rgb[i], first, end);
+      scale(rows.rgb[i], factors_[light].rgb[i]);
+    }
+    return rows;
+  }
+
+  static void add_rows(const LightRows& rows, int first, Image& image) {
+    const std::size_t offset =
+        static_cast<std::size_t>(first) * static_cast<std::size_t>(image.width);
+    for (std::size_t i = 0; i < 3; ++i) {
+      float* const sums = &image.channels[i][offset];
+      for (std::size_t p = 0; p < rows.rgb[i].size(); ++p) sums[p] += rows.rgb[i][p];
+    }
+  }
+
+  std::vector<float> alpha() const {
+    const auto& names = source_->header().channel_names;
+    const auto found = std::find(names.begin(), names.end(), "A");
+    if (found == names.end()) return std::vector<float>(header_.pixels(), 1.0f);
+    return source_->read(static_cast<std::size_t>(found - names.begin()), 0, header_.height);
+  }
+
+  const std::unique_ptr<image::ChannelRows> source_;
+  const image::LayerSet before_;
+  std::vector<Factors> factors_;  ///< per light
+};
+
 }  // namespace
 
 Image relight(const Image& layered, const std::vector<LightChange>& changes) {
-  const image::LayerSet before = image::find_layers(layered);
-  image::LightRecords now = before.records;
-  apply_to_picture(now, changes);
-
-  Image picture;
-  picture.width = layered.width;
-  picture.height = layered.height;
-  picture.attributes = layered.attributes;
-  picture.matrices = layered.matrices;
-  picture.numbers = layered.numbers;
-  std::vector<std::string> names;
-  std::vector<image::LightPlanes> planes;
-  for (std::size_t i = 0; i < now.mix.lights.size(); ++i) {
-    names.push_back(now.mix.lights[i].name);
-    planes.push_back(
-        relit(layered, before.channels[i], before.records.mix.lights[i], now.mix.lights[i]));
-  }
-  const std::vector<float>* alpha = layered.find("A");
-  const std::size_t pixels =
-      static_cast<std::size_t>(layered.width) * static_cast<std::size_t>(layered.height);
-  image::set_layered_channels(picture, names, std::move(planes),
-                              alpha ? *alpha : std::vector<float>(pixels, 1.0f));
-  image::write_light_records(picture, now);
-  return picture;
+  const std::shared_ptr<const Image> borrowed(std::shared_ptr<const Image>(), &layered);
+  return to_image(RelitPicture(std::make_unique<image::ImageRows>(borrowed), changes));
 }
 
-LightMix read_light_mix(const Image& layered) { return image::find_layers(layered).records.mix; }
+std::unique_ptr<LayeredPicture> relit_picture(const std::filesystem::path& file,
+                                              const std::vector<LightChange>& changes) {
+  auto source = std::make_unique<image::PictureFile>(file);
+  // To read one light's rows is to decode those of its whole part.
+  constexpr std::size_t few = 4 + 4 * limits::max_single_part_lights;
+  const bool many = source->header().channel_names.size() > few;
+  if (many && source->channels_of_largest_part() <= few) {
+    return std::make_unique<RelitPicture>(std::move(source), changes);
+  }
+  auto image = std::make_shared<const Image>(read_image(file));
+  return std::make_unique<RelitPicture>(std::make_unique<image::ImageRows>(std::move(image)),
+                                        changes);
+}
+
+LightMix read_light_mix(const PictureHeader& layered) {
+  return image::find_layers(layered).records.mix;
+}
 
 }  // namespace photile

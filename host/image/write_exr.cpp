@@ -1,17 +1,53 @@
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
-#include <array>
+#include <functional>
 
+#include "image/exr_spec.hpp"
 #include "image/output_file.hpp"
+#include "image/write_exr_parts.hpp"
 #include "photile/errors.hpp"
-#include "photile/image.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/limits.hpp"
 
 namespace photile {
 namespace {
 
 /// Rows that are interleaved and handed over at once; a multiple of the 16 rows of a ZIP block.
 constexpr int rows_per_write = 64;
+
+/// Fills rows [first, end), interleaved.
+using FillRows = std::function<void(int first, int end, std::vector<float>& rows)>;
+
+void write_single_part(const std::filesystem::path& file, const PictureHeader& header,
+                       const std::vector<std::string>& channels, const FillRows& fill) {
+  image::OutputFile output(file);
+  if (header.width < 1 || header.height < 1 || channels.empty()) {
+    output.fail("the picture has no pixels");
+  }
+  OIIO::ImageSpec spec = image::exr_spec(header, channels, "zip");
+  image::add_attributes(header, spec);
+  const auto encoder = OIIO::ImageOutput::create("exr", &output);
+  if (!encoder || !encoder->open(file.string(), spec)) {
+    output.fail(encoder ? encoder->geterror() : OIIO::geterror());
+  }
+  std::vector<float> rows;
+  for (int first = 0; first < header.height; first += rows_per_write) {
+    const int end = std::min(first + rows_per_write, header.height);
+    rows.resize(static_cast<std::size_t>(end - first) * static_cast<std::size_t>(header.width) *
+                channels.size());
+    fill(first, end, rows);
+    if (!encoder->write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, rows.data())) {
+      output.fail(encoder->geterror());
+    }
+  }
+  if (!encoder->close()) output.fail(encoder->geterror());
+  output.commit();
+}
+
+/// Sets one of several channels of interleaved rows.
+void interleave(const float* values, std::size_t channel, std::size_t channels,
+                std::vector<float>& rows) {
+  for (std::size_t i = 0; i * channels < rows.size(); ++i) rows[i * channels + channel] = values[i];
+}
 
 /// Positions of the planes in the order of the file: R G B A of the root, then the others as they
 /// stand, so that viewers without layers find the picture first.
@@ -31,59 +67,45 @@ std::vector<std::size_t> file_order(const Image& image) {
   return order;
 }
 
-OIIO::ImageSpec header_of(const Image& image, const std::vector<std::size_t>& order) {
-  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(order.size()),
-                       OIIO::TypeDesc::FLOAT);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    spec.channelnames[i] = image.channel_names[order[i]];
-  }
-  spec.attribute("compression", "zip");
-  // OpenImageIO would write the present time, and the same render would give other bytes each time.
-  spec.attribute("DateTime", "");
-
-  constexpr std::array<float, 8> rec709{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
-  spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), rec709.data());
-  spec.attribute("colorInteropID", "lin_rec709_scene");
-  for (const auto& [name, value] : image.attributes) spec.attribute(name, value);
-  for (const auto& [name, value] : image.numbers) spec.attribute(name, value);
-  for (const auto& [name, matrix] : image.matrices) {
-    spec.attribute(name, OIIO::TypeDesc::TypeMatrix, matrix.data());
-  }
-  return spec;
-}
-
 }  // namespace
 
 void write_exr(const std::filesystem::path& file, const Image& image) {
-  image::OutputFile output(file);
-  if (image.width < 1 || image.height < 1 || image.channels.empty()) {
-    output.fail("the picture has no pixels");
-  }
   const std::vector<std::size_t> order = file_order(image);
-  const auto encoder = OIIO::ImageOutput::create("exr", &output);
-  if (!encoder || !encoder->open(file.string(), header_of(image, order))) {
-    output.fail(encoder ? encoder->geterror() : OIIO::geterror());
-  }
-
-  const std::size_t width = static_cast<std::size_t>(image.width);
-  std::vector<float> rows;
-  for (int first = 0; first < image.height; first += rows_per_write) {
-    const int last = std::min(first + rows_per_write, image.height);
-    const std::size_t offset = static_cast<std::size_t>(first) * width;
-    const std::size_t pixels = static_cast<std::size_t>(last - first) * width;
-    rows.resize(pixels * order.size());
+  std::vector<std::string> names;
+  for (const std::size_t i : order) names.push_back(image.channel_names[i]);
+  write_single_part(file, image, names, [&](int first, int, std::vector<float>& rows) {
+    const std::size_t offset =
+        static_cast<std::size_t>(first) * static_cast<std::size_t>(image.width);
     for (std::size_t i = 0; i < order.size(); ++i) {
-      const std::vector<float>& plane = image.channels[order[i]];
-      for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        rows[pixel * order.size() + i] = plane[offset + pixel];
-      }
+      interleave(&image.channels[order[i]][offset], i, order.size(), rows);
     }
-    if (!encoder->write_scanlines(first, last, 0, OIIO::TypeDesc::FLOAT, rows.data())) {
-      output.fail(encoder->geterror());
-    }
+  });
+}
+
+void write_exr(const std::filesystem::path& file, const LayeredPicture& picture) {
+  const Image root = picture.root();
+  if (picture.lights() > limits::max_single_part_lights) {
+    image::write_exr_parts(file, picture, root);
+    return;
   }
-  if (!encoder->close()) output.fail(encoder->geterror());
-  output.commit();
+  std::vector<std::string> names = root.channel_names;
+  for (std::size_t light = 0; light < picture.lights(); ++light) {
+    for (std::string& name : picture.channel_names(light)) names.push_back(std::move(name));
+  }
+  write_single_part(file, root, names, [&](int first, int end, std::vector<float>& rows) {
+    const std::size_t offset =
+        static_cast<std::size_t>(first) * static_cast<std::size_t>(root.width);
+    std::size_t channel = 0;
+    const auto add = [&](const float* values) {
+      interleave(values, channel++, names.size(), rows);
+    };
+    for (const std::vector<float>& plane : root.channels) add(&plane[offset]);
+    for (std::size_t light = 0; light < picture.lights(); ++light) {
+      const LightRows values = picture.read(light, first, end);
+      for (const std::vector<float>& plane : values.rgb) add(plane.data());
+      if (!values.illuminance.empty()) add(values.illuminance.data());
+    }
+  });
 }
 
 }  // namespace photile

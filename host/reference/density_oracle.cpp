@@ -13,7 +13,7 @@ DensityOracle::DensityOracle(const Scene& scene, const Photons& photons, PhotonF
     : photons_(photons),
       filter_(filter),
       cos_angle_(std::cos(glm::radians(angle_degrees))),
-      light_count_(scene.lights.size()) {
+      light_count_(needs_of(scene).light_count) {
   normals_.reserve(2 * scene.triangle_count());
   for (std::uint32_t map = 0; map < 2 * scene.triangle_count(); ++map) {
     normals_.push_back(sided_normal(scene, map));

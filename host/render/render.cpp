@@ -49,7 +49,7 @@ class Rendering {
     // samples alike, those of another do not.
     film_.passes = passes_;
     film_.samples_per_pixel = passes_ * ((parameters.film.samples_per_pixel - 1) / passes_ + 1);
-    layers_ = LightLayers(film_.width, film_.height, scene.lights);
+    layers_ = LightLayers(film_.width, film_.height, scene);
     paths_before_.assign(scene.lights.size(), 0);
   }
 

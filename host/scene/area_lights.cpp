@@ -19,7 +19,8 @@ bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_r
 }
 
 std::uint32_t AreaLights::find_or_add(std::uint64_t object, const std::string& object_name,
-                                      std::uint32_t material, const Emission& emission) {
+                                      std::uint32_t material, const Emission& emission,
+                                      const std::string& group) {
   if (luminance(glm::max(emission.radiance, glm::dvec3(0.0))) <= 0.0) return none;
   const auto [entry, inserted] =
       index_.try_emplace(std::pair(object, material), static_cast<std::uint32_t>(pending_.size()));
@@ -28,7 +29,7 @@ std::uint32_t AreaLights::find_or_add(std::uint64_t object, const std::string& o
       throw InputError(fmt::format("{}: more than {} lights; join emissive objects",
                                    scene_.source.string(), limits::max_lights));
     }
-    pending_.push_back({object, object_name, material, emission});
+    pending_.push_back({object, object_name, material, emission, group});
     ++materials_of_object_[object];
   }
   return entry->second;
@@ -55,6 +56,7 @@ void AreaLights::finish(Warnings& warnings) {
     const Pending& pending = pending_[i];
     Light light;
     light.name = name_of(pending);
+    light.group = pending.group;
     double radiance = 0;
     if (triangles[i].empty() || !set_light_color(pending.emission.radiance, light, radiance)) {
       warnings.add("light", light.name, "emits nothing (no area or no finite radiance); dropped");

@@ -23,10 +23,11 @@ class AreaLights {
  public:
   explicit AreaLights(Scene& scene) : scene_(scene) {}
 
-  /// The light of `object` and `material`, or `none` when the material emits nothing. Errors:
-  /// InputError beyond limits::max_lights.
+  /// The light of `object` and `material`, or `none` when the material emits nothing. `group` is
+  /// that of the object's lights, "" = none. Errors: InputError beyond limits::max_lights.
   std::uint32_t find_or_add(std::uint64_t object, const std::string& object_name,
-                            std::uint32_t material, const Emission& emission);
+                            std::uint32_t material, const Emission& emission,
+                            const std::string& group = {});
 
   /// Lists each light's triangles and computes its power. Lights that got no triangle are dropped
   /// with a warning. Call once, after the last triangle.
@@ -38,6 +39,7 @@ class AreaLights {
     std::string object_name;
     std::uint32_t material;
     Emission emission;
+    std::string group;
   };
   std::string name_of(const Pending& light) const;
 

@@ -158,6 +158,11 @@ double number_member(const tinygltf::Value& object, const std::string& key, doub
   return std::isfinite(value) ? value : fallback;
 }
 
+std::string string_member(const tinygltf::Value& object, const std::string& key) {
+  if (!object.Has(key) || !object.Get(key).IsString()) return {};
+  return object.Get(key).Get<std::string>();
+}
+
 glm::dvec3 vector_member(const tinygltf::Value& object, const std::string& key,
                          const glm::dvec3& fallback) {
   glm::dvec3 result = fallback;

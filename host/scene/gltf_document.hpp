@@ -19,6 +19,9 @@ double number_member(const tinygltf::Value& object, const std::string& key, doub
 glm::dvec3 vector_member(const tinygltf::Value& object, const std::string& key,
                          const glm::dvec3& fallback);
 
+/// A member of a JSON object: a string, or "" when it is absent or no string.
+std::string string_member(const tinygltf::Value& object, const std::string& key);
+
 /// An extension's JSON object, or nullptr when `extensions` lacks it.
 const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions,
                                       const std::string& name);

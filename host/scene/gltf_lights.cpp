@@ -43,10 +43,13 @@ bool set_power(const tinygltf::Light& source, double intensity, Light& light, Wa
   return true;
 }
 
-void add_light(const tinygltf::Light& source, const std::string& name, const glm::dmat4& world,
+void add_light(const tinygltf::Light& source, const tinygltf::Node& node, const glm::dmat4& world,
                ImportContext& context) {
+  const std::string name = node.name.empty() ? source.name : node.name;
   Light light;
   light.name = name;
+  light.group = light_group(node.extras);
+  if (light.group.empty()) light.group = light_group(source.extras);
   // The colour multiplies the intensity, so a dark colour makes a weak light.
   double color_luminance = 0;
   const bool coloured =
@@ -86,8 +89,7 @@ void add_gltf_lights(const tinygltf::Model& model, const std::vector<NodeVisit>&
       throw context.error(fmt::format("node '{}': there is no light {}; export it again",
                                       node_name(model, visit.node), index));
     }
-    const tinygltf::Light& light = model.lights[static_cast<std::size_t>(index)];
-    add_light(light, node.name.empty() ? light.name : node.name, visit.world, context);
+    add_light(model.lights[static_cast<std::size_t>(index)], node, visit.world, context);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "photile/limits.hpp"
+#include "scene/gltf_document.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -151,6 +152,10 @@ std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& 
 std::string node_name(const tinygltf::Model& model, int node) {
   const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
   return name.empty() ? fmt::format("node {}", node) : name;
+}
+
+std::string light_group(const tinygltf::Value& extras) {
+  return string_member(extras, "photile_group");
 }
 
 }  // namespace photile::scene_io

@@ -24,4 +24,7 @@ std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& 
 /// A node's name, or "node <number>".
 std::string node_name(const tinygltf::Model& model, int node);
 
+/// `photile_group` among the extras of a node or a light: the group of its lights; "" = none.
+std::string light_group(const tinygltf::Value& extras);
+
 }  // namespace photile::scene_io

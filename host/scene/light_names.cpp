@@ -11,6 +11,9 @@
 namespace photile::scene_io {
 namespace {
 
+/// Names that a message lists before it only counts the rest.
+constexpr std::size_t max_listed_names = 20;
+
 /// Bytes of the UTF-8 sequence at the start of `text`, or 0 where it is none.
 std::size_t utf8_sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -48,16 +51,36 @@ std::string clean_light_name(std::string_view name, std::size_t max_bytes) {
 }
 
 void make_light_names_unique(std::vector<Light>& lights) {
-  std::unordered_set<std::string> taken;
+  std::unordered_set<std::string> taken, groups;
+  for (Light& light : lights) {
+    if (light.group.empty()) continue;
+    light.group = clean_light_name(light.group, limits::max_light_name_bytes);
+    groups.insert(light.group);
+  }
+  const auto take = [&](const Light& light) {
+    return !(light.group.empty() && groups.contains(light.name)) && taken.insert(light.name).second;
+  };
   for (Light& light : lights) {
     const std::string original = light.name;
     light.name = clean_light_name(original, limits::max_light_name_bytes);
-    for (int number = 2; !taken.insert(light.name).second; ++number) {
+    for (int number = 2; !take(light); ++number) {
       const std::string suffix = fmt::format("_{}", number);
       light.name =
           clean_light_name(original, limits::max_light_name_bytes - suffix.size()) + suffix;
     }
   }
+}
+
+std::string listed_names(std::span<const std::string> names) {
+  if (names.empty()) return "are none";
+  std::string list = names.size() == 1 ? "is " : "are ";
+  for (std::size_t i = 0; i < std::min(names.size(), max_listed_names); ++i) {
+    list += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  }
+  if (names.size() > max_listed_names) {
+    list += fmt::format(" and {} more", names.size() - max_listed_names);
+  }
+  return list;
 }
 
 }  // namespace photile::scene_io

@@ -1,6 +1,7 @@
 // Light names that EXR layers and the command line can carry.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,7 +15,12 @@ namespace photile::scene_io {
 /// `max_bytes` bytes between characters. "light" when nothing is left.
 std::string clean_light_name(std::string_view name, std::size_t max_bytes);
 
-/// Cleans the names of all lights and numbers those that occur twice: lamp, lamp_2, lamp_3.
+/// Cleans the names of all lights and groups, and numbers lights whose name occurs twice or belongs
+/// to a group that they are not in: lamp, lamp_2, lamp_3.
 void make_light_names_unique(std::vector<Light>& lights);
+
+/// What follows "there" in a message: "are 'a', 'b'", "is 'a'" or "are none". Only counts the rest
+/// of a long list.
+std::string listed_names(std::span<const std::string> names);
 
 }  // namespace photile::scene_io

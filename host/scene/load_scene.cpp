@@ -11,6 +11,7 @@
 #include "scene/default_camera.hpp"
 #include "scene/gltf_import.hpp"
 #include "scene/import_context.hpp"
+#include "scene/light_grouping.hpp"
 #include "scene/light_names.hpp"
 #include "scene/obj_import.hpp"
 #include "scene/photometry.hpp"
@@ -97,6 +98,7 @@ Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& opti
   }
   finish_directional_lights(scene);
   make_light_names_unique(scene.lights);
+  group_lights(scene, options.light_groups);
   if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
   report_dropped_triangles(scene.report, warnings);
   scene.report.warnings = warnings.lines();

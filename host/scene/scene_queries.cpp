@@ -1,6 +1,7 @@
 // Questions about a scene that several rooms ask.
 #include <algorithm>
 
+#include "photile/light_groups.hpp"
 #include "photile/scene.hpp"
 #include "scene/material_needs.hpp"
 
@@ -47,7 +48,7 @@ SceneNeeds needs_of(const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     if (used[i]) add_needs(scene.materials[i], needs);  // glTF files carry unused materials
   }
-  needs.light_count = static_cast<std::uint32_t>(scene.lights.size());
+  needs.light_count = static_cast<std::uint32_t>(light_groups_of(scene).groups.size());
   return needs;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "photile/errors.hpp"
+#include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 #include "trace/flush_denormals.hpp"
@@ -64,7 +65,8 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                      const PhotonTracerParameters& parameters,
                                      const std::vector<Chunk>& chunks,
                                      const std::vector<std::uint64_t>& paths_per_light,
-                                     bool keep_incoming, Progress& progress) {
+                                     const std::vector<double>& shares, bool keep_incoming,
+                                     Progress& progress) {
   const std::vector<trace::LightEmitter> emitters = emitters_of(scene.scene());
   std::vector<PathRecord> records(chunks.size());
   std::atomic<std::uint64_t> stored{0};
@@ -83,6 +85,9 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
         parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
       trace::trace_photon_path(setup, before + path, records[c]);
+    // Only what is stored: a path is the same whether its light is in a group or not.
+    if (const auto share = static_cast<float>(shares[chunk.light]); share != 1.0f)
+      for (glm::vec3& flux : records[c].flux) flux *= share;
 
     const std::uint64_t so_far = stored += records[c].position.size();
     if (so_far > limits::max_stored_photons)
@@ -127,8 +132,10 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   std::uint64_t paths = 0;
   for (const std::uint64_t count : photons.emitted_per_light) paths += count;
   progress.begin("trace photons", paths, "paths");
-  std::vector<PathRecord> records = trace_chunks(ray_scene, parameters, chunks,
-                                                 photons.emitted_per_light, needs.glossy, progress);
+  const LightGroups groups = light_groups_of(scene);
+  std::vector<PathRecord> records =
+      trace_chunks(ray_scene, parameters, chunks, photons.emitted_per_light, groups.share,
+                   needs.glossy, progress);
 
   result.stored_per_light.assign(light_count, 0);
   result.escaped_flux_per_light.assign(light_count, 0.0);
@@ -143,11 +150,11 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   photons.flux = concatenate(records, &PathRecord::flux);
   photons.incoming = concatenate(records, &PathRecord::incoming);
   photons.sided_triangle = concatenate(records, &PathRecord::sided_triangle);
-  if (light_count > 1) {
+  if (groups.groups.size() > 1) {
     photons.light.reserve(photons.size());
-    for (std::uint32_t light = 0; light < light_count; ++light)
+    for (std::size_t light = 0; light < light_count; ++light)
       photons.light.insert(photons.light.end(), result.stored_per_light[light],
-                           static_cast<std::uint16_t>(light));
+                           static_cast<std::uint16_t>(groups.group_of[light]));
   }
   photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
   progress.end();

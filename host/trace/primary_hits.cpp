@@ -6,6 +6,7 @@
 #include <string>
 
 #include "photile/errors.hpp"
+#include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
@@ -104,6 +105,8 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
   PrimaryHitBatch batch;
   batch.rays = all.rays;
   batch.emission = std::move(all.emission);
+  const std::vector<std::uint32_t> layer_of = light_groups_of(ray_scene.scene()).group_of;
+  for (SeenEmission& seen : batch.emission) seen.light = layer_of[seen.light];
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
   batch.hits =
@@ -112,12 +115,15 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
 }
 
 std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene) {
+  const LightGroups groups = light_groups_of(scene);
   std::vector<glm::vec3> radiance;
-  for (const Light& light : scene.lights) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
     double area = 0;
     for (const std::uint32_t triangle : light.triangles) area += triangle_area(scene, triangle);
     if (light.two_sided) area *= 2;
-    radiance.push_back(area > 0 ? glm::vec3(glm::dvec3(light.color) / (glm::pi<double>() * area))
+    radiance.push_back(area > 0 ? glm::vec3(glm::dvec3(light.color) * groups.share[i] /
+                                            (glm::pi<double>() * area))
                                 : glm::vec3(0.0f));
   }
   return radiance;

@@ -11,6 +11,6 @@ namespace photile {
 /// right, +y up, +z along the view, in metres. NDC, after division by w, is [0,1] x [0,1] over the
 /// picture with (0,0) in its upper left corner; its z is 1 / depth and only keeps the matrix
 /// invertible.
-void set_camera_attributes(Image& image, const Camera& camera, int width, int height);
+void set_camera_attributes(PictureHeader& image, const Camera& camera, int width, int height);
 
 }  // namespace photile

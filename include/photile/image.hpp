@@ -10,21 +10,33 @@
 
 namespace photile {
 
-/// Float channels by name ("R", "Combined_lamp.G", ...), all of one size, row 0 at the top.
-struct Image {
+/// What a picture says of itself beside its pixels.
+struct PictureHeader {
   int width = 0, height = 0;
-  std::vector<std::string> channel_names;
-  std::vector<std::vector<float>> channels;  ///< one plane per name
+  std::vector<std::string> channel_names;  ///< "R", "Combined_lamp.G", ...
 
   /// EXR attributes: strings, and named 4x4 matrices (row vectors, as OpenEXR stores them).
   std::map<std::string, std::string> attributes;
   std::map<std::string, std::array<float, 16>> matrices;
   std::map<std::string, float> numbers;
 
+  std::size_t pixels() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+};
+
+/// Float channels by name, all of one size, row 0 at the top.
+struct Image : PictureHeader {
+  std::vector<std::vector<float>> channels;  ///< one plane per name
+
   /// The plane of a channel, or nullptr.
   const std::vector<float>* find(const std::string& channel) const;
   std::vector<float>& add(const std::string& channel);  ///< a new plane of zeros
 };
+
+/// Reads the header of a picture: that of all parts of an EXR together, however many channels they
+/// have. Errors: InputError naming the file.
+PictureHeader read_header(const std::filesystem::path& file);
 
 /// Reads an EXR (all parts; channels of part P that do not carry its name keep theirs) or any
 /// other picture that OpenImageIO reads. Checks limits.hpp before decoding.

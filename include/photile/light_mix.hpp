@@ -12,9 +12,10 @@
 
 namespace photile {
 
-/// State of one light in a mix.
+/// State of one light, or of a group of lights, in a mix.
 struct MixedLight {
   std::string name;
+  std::vector<std::string> members;  ///< lights of a group; empty for a light alone
   double power = 0;  ///< in `unit`
   PowerUnit unit = PowerUnit::lumen;
   glm::vec3 color{1.0f};  ///< the light's own colour, as its photons carried it; luminance 1
@@ -68,6 +69,6 @@ void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<gl
 Image relight(const Image& layered, const std::vector<LightChange>& changes);
 
 /// The lights of a picture, as `relight` sees them.
-LightMix read_light_mix(const Image& layered);
+LightMix read_light_mix(const PictureHeader& layered);
 
 }  // namespace photile

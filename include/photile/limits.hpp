@@ -2,6 +2,7 @@
 // value found.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace photile::limits {
@@ -38,7 +39,13 @@ inline constexpr std::uint64_t max_implicit_elements = 16'000'000;
 // Pictures
 inline constexpr int max_image_side = 16'384;
 inline constexpr std::uint64_t max_image_pixels = 268'435'456;
-inline constexpr int max_image_channels = 1'024;
+inline constexpr int max_image_channels = 1'024;  ///< of a picture in memory
+/// Of an EXR in a single part, which every program reads. OpenEXR compresses blocks of 16 rows of a
+/// part, two for each thread: with more lights they would take as much memory as the picture, and
+/// from 1,024 channels on other programs refuse the file.
+inline constexpr std::size_t max_single_part_lights = 64;
+/// Of a picture that is read a few rows at a time: a root and all lights.
+inline constexpr std::size_t max_layered_channels = 4 + 4 * max_lights;
 inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
 /// Decoded bytes for each encoded one, in pictures above the size that is not worth a check: a
 /// picture of a few kilobytes must not fill the memory.

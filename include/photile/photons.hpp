@@ -11,11 +11,11 @@ namespace photile {
 /// bounce). Which arrays are filled depends on SceneNeeds.
 struct Photons {
   std::vector<glm::vec3> position;  ///< metres, on the triangle
-  /// Flux of the photon where its light emits 1 lm or 1 W, linear RGB. Summed over the photons
-  /// that a light emitted, before the first hit, the luminance is 1.
+  /// Flux of the photon where the lights of its layer together emit 1 lm or 1 W, linear RGB. Summed
+  /// over the photons that a layer's lights emitted, before the first hit, the luminance is 1.
   std::vector<glm::vec3> flux;
   std::vector<glm::vec3> incoming;  ///< unit, towards where it came from; empty unless glossy
-  std::vector<std::uint16_t> light;  ///< index into Scene::lights; empty for a single light
+  std::vector<std::uint16_t> light;  ///< layer, into LightGroups::groups; empty for one alone
   std::vector<std::uint32_t> sided_triangle;
 
   /// Photons of sided triangle s are [first_of[s], first_of[s + 1]). Size 2 * triangles + 1.

@@ -33,12 +33,11 @@ struct PrimaryHits {
   std::size_t size() const { return position.size(); }
 };
 
-/// A lamp seen directly or through mirrors and glass: adds `weight` x the light's radiance at unit
-/// power to the light's layer.
+/// A lamp seen directly or through mirrors and glass: adds to the layer of its light.
 struct SeenEmission {
   std::uint32_t pixel;
-  std::uint32_t light;
-  glm::vec3 radiance;  ///< throughput x emitted radiance where the light's power is 1
+  std::uint32_t light;  ///< layer, into LightGroups::groups
+  glm::vec3 radiance;   ///< throughput x emitted radiance where the layer's power is 1
 };
 
 struct PrimaryHitParameters {
@@ -68,8 +67,9 @@ PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
                                    const PrimaryHitParameters& parameters, int first_row,
                                    int last_row, std::span<const std::uint32_t> map_of = {});
 
-/// Radiance that a light emits at unit power towards the front of its triangles: 1 / (pi A) x
-/// colour, A counting both sides of two-sided lights. Zero for lights without area.
+/// Radiance that each light emits towards the front of its triangles where its layer's power is 1:
+/// its share of the layer / (pi A) x colour, A counting both sides of two-sided lights. Zero for
+/// lights without area.
 std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene);
 
 }  // namespace photile

@@ -78,6 +78,7 @@ enum class LightKind : std::uint8_t { area, point, spot, directional };
 /// A light. Its photons carry `color` with luminance 1, so that `power` alone scales its layer.
 struct Light {
   std::string name;  ///< unique; no dots; at most limits::max_light_name_bytes bytes
+  std::string group;  ///< of light_groups.hpp; "" = a layer of its own
   LightKind kind = LightKind::area;
   glm::vec3 color{1.0f};  ///< linear RGB scaled to luminance 1
   /// Emitted flux in `Scene::unit`s (luminance-weighted). For a directional light: the flux that
@@ -176,8 +177,8 @@ struct BoundingSphere {
 };
 BoundingSphere bounding_sphere(const Scene& scene);
 
-/// Up to this many lights each has a value at every hit and pixel. With more, memory and time grow
-/// with the lights that reach a hit, not with all.
+/// Up to this many layers (see light_groups.hpp) each has a value at every hit and pixel. With more,
+/// memory and time grow with the lights that reach a hit, not with all.
 inline constexpr std::uint32_t max_dense_lights = 8;
 
 /// What later stages must provide for; whatever is false costs nothing anywhere.
@@ -185,21 +186,31 @@ struct SceneNeeds {
   bool glossy = false;          ///< some opaque material has a specular lobe
   bool textures = false;        ///< some material has a texture
   bool specular_paths = false;  ///< some material is a mirror or glass
-  std::uint32_t light_count = 0;
+  std::uint32_t light_count = 0;  ///< layers: a group of lights counts as one
 
   /// Whether only the lights that reach a point are kept for it.
   bool many_lights() const { return light_count > max_dense_lights; }
 };
 SceneNeeds needs_of(const Scene& scene);
 
+/// Puts lights into a group: `--light-group GLOB=NAME`.
+struct LightGrouping {
+  std::string glob;   ///< of light names: *, ? and [...] as in a shell
+  std::string group;  ///< cleaned as light names are
+  /// Splits at the last '='. Errors: UsageError when `text` has no '=' or an empty side.
+  static LightGrouping parse(const std::string& text);
+};
+
 struct SceneLoadOptions {
   float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 mends Blender files
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
+  std::vector<LightGrouping> light_groups = {};  ///< after the file's own; the last match counts
 };
 
 /// Reads a scene from OBJ+MTL (.obj) or glTF 2.0 (.gltf, .glb).
 /// Errors: InputError naming the file and the remedy when it is missing, unreadable, malformed,
-/// beyond a limit of limits.hpp, without triangles or without lights.
+/// beyond a limit of limits.hpp, without triangles or without lights; UsageError when a grouping
+/// matches no light, or its group bears the name of a light outside it.
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace photile

@@ -114,10 +114,11 @@ TEST_CASE("a scene's own mix has its lights' names, powers, unit and colours") {
 }
 
 TEST_CASE("layers start black, one per light, in the scene's order") {
-  std::vector<Light> lights(2);
-  lights[0].name = "one";
-  lights[1].name = "two";
-  const LightLayers layers(4, 3, lights);
+  Scene scene;
+  scene.lights.resize(2);
+  scene.lights[0].name = "one";
+  scene.lights[1].name = "two";
+  const LightLayers layers(4, 3, scene);
   REQUIRE(layers.layers.size() == 2);
   CHECK(layers.layers[1].light == "two");
   CHECK(layers.layers[1].radiance == std::vector<glm::vec3>(12, glm::vec3(0.0f)));

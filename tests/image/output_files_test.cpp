@@ -1,10 +1,9 @@
-#include <signal.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstring>
 
+#include "file_limits.hpp"
 #include "picture_support.hpp"
 
 using namespace photile;
@@ -27,36 +26,11 @@ Image noise(int width, int height) {
 
 using Writer = void (*)(const fs::path&, const Image&);
 
-std::size_t files_in(const fs::path& folder) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
 std::string refusal(Writer write, const fs::path& file) {
   const std::string message = message_of<OutputError>([&] { write(file, noise(64, 64)); });
   CHECK(message.find(file.string()) != std::string::npos);
   return message;
 }
-
-/// The largest file that the process may write, until the end of the scope: the file system's "no
-/// space" without a file system of one's own.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    previous_action_ = ::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &previous_);
-    const rlimit limited{bytes, previous_.rlim_max};
-    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limited) == 0);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &previous_);
-    ::signal(SIGXFSZ, previous_action_);
-  }
-
- private:
-  rlimit previous_{};
-  void (*previous_action_)(int) = SIG_DFL;
-};
 
 }  // namespace
 

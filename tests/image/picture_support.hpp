@@ -60,8 +60,8 @@ inline LightLayers random_layers(int width, int height, const std::vector<std::s
 
 /// Sparse layers in which about one in three lights reaches a pixel.
 inline LightLayers random_sparse_layers(int width, int height, std::size_t lights) {
-  std::vector<Light> named(lights);
-  for (std::size_t i = 0; i < lights; ++i) named[i].name = "light" + std::to_string(i);
+  std::vector<std::string> named;
+  for (std::size_t i = 0; i < lights; ++i) named.push_back("light" + std::to_string(i));
   LightLayers layers(width, height, named);
   std::mt19937 engine(8);
   std::uniform_real_distribution<float> value(0.01f, 3.0f);

@@ -1,0 +1,61 @@
+// A picture file, opened: what it says of itself, and its pixels a few rows at a time.
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "image/channel_rows.hpp"
+#include "photile/image.hpp"
+
+namespace photile::image {
+
+/// All parts of an EXR as one picture, or the first subimage of any other format.
+class PictureFile : public ChannelRows {
+ public:
+  /// Reads the headers. Checks each part against limits.hpp, but not their sum.
+  /// Errors: InputError naming the file.
+  explicit PictureFile(const std::filesystem::path& file);
+
+  const PictureHeader& header() const override { return header_; }
+  /// Errors: InputError naming the file where it is damaged.
+  std::vector<float> read(std::size_t channel, int first, int end) override;
+
+  std::size_t channels_of_largest_part() const { return largest_part_; }
+
+  /// Refuses a picture that would be too large in memory. Errors: InputError naming the file.
+  void check_total() const;
+
+ private:
+  /// Where a channel is.
+  struct Place {
+    int part;
+    std::size_t index;  ///< among the channels of its part
+  };
+  /// Rows of all channels of a part, as decoded last.
+  struct Block {
+    int part = -1, first = 0, end = 0;  ///< no part: nothing yet
+    std::size_t channels = 0;
+    std::vector<float> interleaved;
+  };
+  void read_headers();
+  void add_part(int part);
+  void add_channel(int part, std::size_t index);
+  void decode(int part, int first, int end);
+  [[noreturn]] void refuse(std::string reason) const;
+
+  std::filesystem::path file_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+  PictureHeader header_;
+  std::vector<Place> places_;       ///< per channel
+  std::set<std::string> names_;     ///< of the channels
+  std::size_t largest_part_ = 0;
+  Block block_;
+};
+
+}  // namespace photile::image
