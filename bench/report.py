@@ -11,13 +11,14 @@ import json
 import pathlib
 
 import report_kernels
+import report_lights
 import report_plots
 import report_scale
 import report_tables
 import report_targets
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BENCHES = ("knn", "paper", "build", "frame", "relight", "kernels", "startup", "profile", "scale")
+BENCHES = ("knn", "paper", "build", "frame", "relight", "lights", "kernels", "startup", "profile", "scale")
 BUSY_LOAD = 0.5  # load average at which other programs count as running
 
 
@@ -95,6 +96,7 @@ def page(results, plots, notes):
         "## Build", report_tables.build(results["build"]),
         "## A frame of a walkthrough", report_tables.frame(results["frame"]),
         "## Relighting", report_tables.relight(results["relight"]),
+        "## Many lights", report_lights.text(results["lights"]),
         "## Scale", report_scale.text(results["scale"]),
         "## Starting", report_kernels.startup(results["startup"]),
         notes,
@@ -112,6 +114,7 @@ def main():
         with open(options.results / f"{bench}.json", encoding="utf-8") as file:
             results[bench] = json.load(file)
     plots = report_plots.draw_knn(results["knn"], caption(results), options.results)
+    report_lights.draw(results["lights"], caption(results), options.results)
     report_scale.draw(results["scale"], caption(results), options.results)
     notes = (ROOT / "bench/report_notes.md").read_text(encoding="utf-8")
     options.page.write_text(page(results, plots, notes), encoding="utf-8")

@@ -13,6 +13,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 try:
     import report_kernels
+    import report_lights
     import report_scale
     import report_tables
     import report_targets
@@ -118,6 +119,18 @@ class Kernels(unittest.TestCase):
         self.assertEqual(moved("scatter", patches=True), moved("scatter"))
         self.assertEqual(moved("gather_normals", patches=True), (4 + 2 * 12) * 100)
         self.assertIsNone(moved("estimate"))
+
+
+class Lights(unittest.TestCase):
+    def test_growth_is_that_from_the_fewest_to_the_most_lights(self):
+        stages = report_lights.STAGES
+        rows = [{"lights": n, "layer bytes": 1e6 * n, "dense bytes": 16e6 * n, "file bytes": 5e5,
+                 **{stage: timing(0.002 * n) for stage in stages}} for n in (1, 4, 256)]
+        self.assertEqual(report_lights.growth(rows, "film"), 256)
+        result = {"results": rows, "settings": {"emitted photons": 10, "width": 4, "height": 3}}
+        text = report_lights.text(result)
+        self.assertIn("From 1 to 256 lights", text)
+        self.assertIn("| 256 | " + "512 (512-512) | " * len(stages) + "256 | 4.1e+03 | 0.5 |", text)
 
 
 if __name__ == "__main__":
