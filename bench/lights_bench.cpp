@@ -39,7 +39,8 @@ Scene hall_with_lamps(std::uint32_t cells, std::size_t lamps) {
     Light light = lamp;
     light.name = fmt::format("lamp_{}", i);
     light.power = 1000.0 / static_cast<double>(lamps);
-    light.position.x = side * (static_cast<float>(i % columns) + 0.5f) / static_cast<float>(columns);
+    light.position.x =
+        side * (static_cast<float>(i % columns) + 0.5f) / static_cast<float>(columns);
     light.position.z = side * (static_cast<float>(i / columns) + 0.5f) / static_cast<float>(rows);
     scene.lights.push_back(light);
   }
@@ -98,8 +99,9 @@ class LightsBench {
     const auto picture = mixed_picture(result.layers, mix);
     const Timing write = measure(once_, [&] { write_exr(file_, *picture); });
     const std::uintmax_t file_bytes = fs::file_size(file_);
-    const Timing relight =
-        measure(once_, [&] { relit_picture(file_, {{"lamp_0", "x2"}})->root(); });
+    const Timing relight = measure(once_, [&] {
+      relit_picture(file_, {{"lamp_0", "x2"}})->root();
+    });
     record_.add({{"lights", lights},
                  {"photons", result.stored_photons},
                  {"trace", to_json(times.trace)},

@@ -23,8 +23,7 @@ struct RelightOptions {
 
 void print_lights(const LightMix& mix) {
   for (const MixedLight& light : mix.lights) {
-    std::cout << fmt::format("{}: {}: {}\n", light.members.empty() ? "light" : "group",
-                             light.name,
+    std::cout << fmt::format("{}: {}: {}\n", light.members.empty() ? "light" : "group", light.name,
                              format_power_in_both(light.power, light.unit, mix.lumen_per_watt));
   }
 }

@@ -10,8 +10,8 @@
 
 namespace photile::image {
 
-/// A part of 32-bit floats with the header's size and the given channels. Says what its colours are,
-/// as every part of a file must, and nothing else.
+/// A part of 32-bit floats with the header's size and the given channels. Says what its colours
+/// are, as every part of a file must, and nothing else.
 OIIO::ImageSpec exr_spec(const PictureHeader& header, const std::vector<std::string>& channels,
                          const char* compression);
 

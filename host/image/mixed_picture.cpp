@@ -21,8 +21,8 @@ struct Scale {
   Scale(const MixedLight& light, double lumen_per_watt)
       : radiance(light.power * glm::dvec3(light.tint)),
         // The tint is not in it: it leaves the luminance that the light emits as it was.
-        illuminance(static_cast<float>(
-            light.power * (light.unit == PowerUnit::lumen ? 1.0 : lumen_per_watt))) {}
+        illuminance(static_cast<float>(light.power *
+                                       (light.unit == PowerUnit::lumen ? 1.0 : lumen_per_watt))) {}
 
   /// Off means black, whatever the layer holds.
   float component(const glm::vec3& value, int i) const {
@@ -98,7 +98,8 @@ class MixedPicture : public LayeredPicture {
     const LightLayers::Row& row = source_.rows[static_cast<std::size_t>(y)];
     const auto wanted = static_cast<std::uint16_t>(light);
     for (std::size_t x = 0; x + 1 < row.first.size(); ++x) {
-      const auto begin = row.light.begin() + row.first[x], end = row.light.begin() + row.first[x + 1];
+      const auto begin = row.light.begin() + row.first[x],
+                 end = row.light.begin() + row.first[x + 1];
       const auto found = std::lower_bound(begin, end, wanted);
       if (found == end || *found != wanted) continue;
       const auto i = static_cast<std::size_t>(found - row.light.begin());

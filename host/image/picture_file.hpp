@@ -52,8 +52,8 @@ class PictureFile : public ChannelRows {
   std::filesystem::path file_;
   std::unique_ptr<OIIO::ImageInput> input_;
   PictureHeader header_;
-  std::vector<Place> places_;       ///< per channel
-  std::set<std::string> names_;     ///< of the channels
+  std::vector<Place> places_;    ///< per channel
+  std::set<std::string> names_;  ///< of the channels
   std::size_t largest_part_ = 0;
   Block block_;
 };

@@ -61,8 +61,7 @@ class RelitPicture : public LayeredPicture {
     for (std::size_t i = 0; i < now.mix.lights.size(); ++i) {
       const bool illuminance = before_.channels[i].illuminance.has_value();
       layers_.push_back({now.mix.lights[i].name, illuminance});
-      factors_.push_back(
-          factors_of(before_.records.mix.lights[i], now.mix.lights[i], illuminance));
+      factors_.push_back(factors_of(before_.records.mix.lights[i], now.mix.lights[i], illuminance));
     }
     header_ = source_->header();
     header_.channel_names.clear();

@@ -13,8 +13,8 @@ namespace {
 /// Rows that are interleaved and handed over at once.
 constexpr int rows_per_write = 64;
 
-/// A row a block. OpenEXR keeps two blocks of each part for each thread until the file is closed: the
-/// 16 rows of ZIP would add up to the picture.
+/// A row a block. OpenEXR keeps two blocks of each part for each thread until the file is closed:
+/// the 16 rows of ZIP would add up to the picture.
 constexpr const char* compression = "zips";
 
 std::vector<OIIO::ImageSpec> specs_of(const LayeredPicture& picture, const Image& root) {
@@ -75,8 +75,8 @@ class PartWriter {
   std::vector<float> rows_;
 };
 
-/// OpenEXR notices no error of its last writes, those of the destructor: what is missing then is the
-/// end of the file.
+/// OpenEXR notices no error of its last writes, those of the destructor: what is missing then is
+/// the end of the file.
 void check_complete(const OutputFile& output, std::size_t parts) {
   const auto file = OIIO::ImageInput::open(output.temporary().string());
   if (!file) output.fail_on_behalf(OIIO::geterror());
@@ -85,9 +85,8 @@ void check_complete(const OutputFile& output, std::size_t parts) {
     const int number = static_cast<int>(part);
     const OIIO::ImageSpec spec = file->spec_dimensions(number);
     row.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
-    if (spec.height < 1 ||
-        !file->read_native_scanlines(number, 0, spec.height - 1, spec.height, 0, 0, spec.nchannels,
-                                     row.data())) {
+    if (spec.height < 1 || !file->read_native_scanlines(number, 0, spec.height - 1, spec.height, 0,
+                                                        0, spec.nchannels, row.data())) {
       output.fail_on_behalf(file->geterror());
     }
   }
@@ -109,8 +108,7 @@ void write_exr_parts(const std::filesystem::path& file, const LayeredPicture& pi
       LightRows rows;
       if (part == 0) {
         for (const std::vector<float>& plane : root.channels) {
-          channels.push_back(plane.data() +
-                             static_cast<std::ptrdiff_t>(first) * root.width);
+          channels.push_back(plane.data() + static_cast<std::ptrdiff_t>(first) * root.width);
         }
       } else {
         rows = picture.read(part - 1, first, end);

@@ -161,10 +161,9 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   // A mirrored node turns the winding of its triangles round.
   const bool mirrored = glm::determinant(glm::dmat3(visit.world)) < 0.0;
   const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
-  const std::uint32_t light =
-      context_.area_lights.find_or_add(visit_number, node.name.empty() ? mesh_name : node.name,
-                                       material, context_.emission[material],
-                                       light_group(node.extras));
+  const std::uint32_t light = context_.area_lights.find_or_add(
+      visit_number, node.name.empty() ? mesh_name : node.name, material,
+      context_.emission[material], light_group(node.extras));
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
     const std::array<Corner, 3> triangle{corners[mirrored ? c : a], corners[b],
                                          corners[mirrored ? a : c]};

@@ -15,8 +15,8 @@ namespace photile {
 LightGrouping LightGrouping::parse(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-    throw UsageError(fmt::format(
-        "'{}' is no group of lights; use GLOB=NAME, such as 'ceiling*=ceiling'", text));
+    throw UsageError(
+        fmt::format("'{}' is no group of lights; use GLOB=NAME, such as 'ceiling*=ceiling'", text));
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
 }

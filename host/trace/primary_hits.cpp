@@ -122,9 +122,9 @@ std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene) {
     double area = 0;
     for (const std::uint32_t triangle : light.triangles) area += triangle_area(scene, triangle);
     if (light.two_sided) area *= 2;
-    radiance.push_back(area > 0 ? glm::vec3(glm::dvec3(light.color) * groups.share[i] /
-                                            (glm::pi<double>() * area))
-                                : glm::vec3(0.0f));
+    radiance.push_back(
+        area > 0 ? glm::vec3(glm::dvec3(light.color) * groups.share[i] / (glm::pi<double>() * area))
+                 : glm::vec3(0.0f));
   }
   return radiance;
 }

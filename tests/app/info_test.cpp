@@ -45,6 +45,26 @@ TEST_CASE("info gives a lamp's power as pi x area x luminance of its radiance") 
   CHECK(left["lumens"].get<double>() == Approx(683 * watts).epsilon(1e-6));
 }
 
+TEST_CASE("info lists the groups that it is given, with the sum of their lights' powers") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  CHECK(info(scene)["groups"].empty());
+  const auto facts = info(scene, {"--light-group", "*t=both"});
+  CHECK(facts["lights"][0]["group"] == "both");
+  REQUIRE(facts["groups"].size() == 1);
+  CHECK(facts["groups"][0]["name"] == "both");
+  CHECK(facts["groups"][0]["lights"] == nlohmann::json{"left", "right"});
+  const auto watts = [](const nlohmann::json& light) { return light["watts"].get<double>(); };
+  CHECK(watts(facts["groups"][0]) ==
+        Approx(watts(facts["lights"][0]) + watts(facts["lights"][1])).epsilon(1e-12));
+
+  const Outcome text = run_photile({"info", scene, "--light-group", "left=own"});
+  CHECK_THAT(text.output, Contains("group: own: 1 light, ") && Contains(", of group own"));
+  const Outcome none = run_photile({"info", scene, "--light-group", "lamp*=lamps"});
+  CHECK(none.exit_code == 2);
+  CHECK_THAT(none.errors, Contains("'left', 'right'"));
+}
+
 TEST_CASE("info applies the emissive scale and the lumens per watt that it is given") {
   const FileFolder folder;
   const std::string scene = write_box(folder);

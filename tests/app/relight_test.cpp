@@ -1,5 +1,6 @@
 // `photile relight` on pictures of the program's own.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
@@ -54,6 +55,21 @@ TEST_CASE("relighting equals rendering with that power up to float rounding") {
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   check_same_root(folder / "relit.exr", rendered, 4 * std::numeric_limits<float>::epsilon());
+}
+
+TEST_CASE("a group of lights is one light of the picture, and its power scales them all") {
+  const FileFolder folder;
+  const std::string grouped = render(folder, "grouped.exr", {"--light-group", "*=both"});
+  CHECK(read_image(grouped).channel_names.size() == 4 + 4);
+  CHECK_THAT(run_photile({"relight", grouped}).output, Contains("group: both: "));
+  const Outcome outcome =
+      run_photile({"relight", grouped, "--light", "both=x2.5", "-o", folder / "relit.exr"});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  const std::string each = render(folder, "each.exr", {"--light", "left=x2.5", "--light",
+                                                       "right=x2.5"});
+  // 50 photons of each of 4 samples, in another order.
+  check_same_root(folder / "relit.exr", each, 2 * (50 + 4 + 10) * std::ldexp(1.0, -24));
 }
 
 TEST_CASE("a relit picture can be relit again and comes back to the original") {

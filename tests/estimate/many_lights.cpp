@@ -79,9 +79,8 @@ TEST_CASE("each light's estimates are those of its photons alone") {
   const auto irradiance = test::by_light(together.irradiance, together, lights);
   const auto radiance = test::by_light(together.radiance, together, lights);
   for (const std::size_t light : {std::size_t{0}, std::size_t{3}, lights - 1}) {
-    const Estimates one =
-        estimate(plate(1, glossy), alone(photons, static_cast<std::uint16_t>(light)), hits,
-                 neighbours);
+    const Estimates one = estimate(
+        plate(1, glossy), alone(photons, static_cast<std::uint16_t>(light)), hits, neighbours);
     CAPTURE(light);
     CHECK(difference(layer(irradiance, light, lights), one.irradiance) <= tolerance);
     if (glossy) CHECK(difference(layer(radiance, light, lights), one.radiance) <= tolerance);
@@ -99,14 +98,13 @@ TEST_CASE(
   REQUIRE(sparse.first.size() == hits.size() + 1);
   const auto nine = test::by_light(sparse.irradiance, sparse, 9);
   for (std::size_t light = 0; light < 8; ++light) {
-    CHECK(difference(layer(nine, light, 9), layer(dense.irradiance, light, 8)) <=
-          tolerance_of(k));
+    CHECK(difference(layer(nine, light, 9), layer(dense.irradiance, light, 8)) <= tolerance_of(k));
   }
 }
 
 TEST_CASE("a hit keeps the lights that reach it, each once, however many there are") {
-  // Each quarter of the plate is lit by three lights of its own among 1,000. Their numbers differ by
-  // a power of two, so that they meet in any smaller hash table.
+  // Each quarter of the plate is lit by three lights of its own among 1,000. Their numbers differ
+  // by a power of two, so that they meet in any smaller hash table.
   Scene scene = test::empty_scene(1000);
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
   Photons photons = test::uniform_photons(scene, 8000, 96);
@@ -114,8 +112,7 @@ TEST_CASE("a hit keeps the lights that reach it, each once, however many there a
     return (p.x < 0.5f ? 0 : 1) + (p.y < 0.5f ? 0 : 2);
   };
   for (std::size_t i = 0; i < photons.size(); ++i) {
-    photons.light[i] =
-        static_cast<std::uint16_t>(quarter_of(photons.position[i]) + 256 * (i % 3));
+    photons.light[i] = static_cast<std::uint16_t>(quarter_of(photons.position[i]) + 256 * (i % 3));
   }
   const PrimaryHits hits = test::uniform_hits(scene, 200, 97);
   const Estimates estimates = estimate(scene, photons, hits);

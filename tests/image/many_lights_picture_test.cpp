@@ -134,8 +134,10 @@ TEST_CASE("a file of many lights is relit as the same picture in memory is") {
   mixed->header().matrices["worldToCamera"] = {1, 2, 3};
   write_exr(folder / "a.exr", *mixed);
   const Image whole = to_image(*mixed);
-  const std::vector<LightChange> changes{{"light0", "x0.3"}, {"light1", "#ff8800"},
-                                         {"light2", "off"},  {"light3", "off"},
+  const std::vector<LightChange> changes{{"light0", "x0.3"},
+                                         {"light1", "#ff8800"},
+                                         {"light2", "off"},
+                                         {"light3", "off"},
                                          {"light64", "17lm"}};
   const Image expected = relight(whole, changes);
   check_same_picture(to_image(*relit_picture(folder / "a.exr", {})), whole);
@@ -201,7 +203,8 @@ TEST_CASE("every limit of the space gives an error or the whole file of many lig
   CHECK(bytes_of(folder / "a.exr") == whole);
 }
 
-TEST_CASE("a file of many lights that is cut anywhere is refused, and what it was to replace kept") {
+TEST_CASE(
+    "a file of many lights that is cut anywhere is refused, and what it was to replace kept") {
   const TemporaryFolder folder;
   const LightLayers layers = random_sparse_layers(8, 70, many);
   write_exr(folder / "a.exr", *mixed_picture(layers, mix_of(layers)));

@@ -28,7 +28,9 @@ void release(void* memory) {
 }  // namespace
 
 // The other forms of new and delete call these.
-void* operator new(std::size_t bytes) { return counted(std::malloc(std::max<std::size_t>(bytes, 1))); }
+void* operator new(std::size_t bytes) {
+  return counted(std::malloc(std::max<std::size_t>(bytes, 1)));
+}
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   const auto step = static_cast<std::size_t>(alignment);
   return counted(std::aligned_alloc(step, (bytes + step) / step * step));

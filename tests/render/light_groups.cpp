@@ -1,7 +1,8 @@
 // The layer of a group of lights beside the layers of its lights alone.
+#include "photile/light_groups.hpp"
+
 #include <catch2/catch.hpp>
 
-#include "photile/light_groups.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
@@ -62,9 +63,9 @@ TEST_CASE("the layer of a group is the sum of its lights at their powers") {
   CHECK(together.stored_photons == alone.stored_photons);
   CHECK(together.radius == alone.radius);
 
-  // Both sum the same terms, none negative: up to k photons of each sample and, of lights alone, the
-  // lights. A sum of n terms is right to n units of 2^-24, and each term is a product of at most
-  // twelve factors.
+  // Both sum the same terms, none negative: up to k photons of each sample and, of lights alone,
+  // the lights. A sum of n terms is right to n units of 2^-24, and each term is a product of at
+  // most twelve factors.
   const double tolerance = (2 * (neighbours + samples + 12) + 12) * std::ldexp(1.0, -24);
   const LightLayers dense = alone.layers.dense();
   const LightGroups groups = light_groups_of(scene);
