@@ -68,7 +68,7 @@ TEST_CASE("each light's estimates are those of its photons alone") {
   const std::size_t lights = GENERATE(5u, 64u);
   const bool glossy = GENERATE(false, true);
   // More than kernels list before they add, too.
-  const int neighbours = GENERATE(k, 200);
+  const int neighbours = GENERATE(as<int>(), k, 200);
   const double tolerance = tolerance_of(neighbours);
   CAPTURE(lights, glossy, neighbours);
   const Scene scene = plate(lights, glossy);
