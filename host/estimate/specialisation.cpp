@@ -16,8 +16,8 @@ int rounded_up(int value, int multiple) { return (value + multiple - 1) / multip
 /// Distances kept for a hit: a block holds about 4 / pi x 1.2 x k candidates and the overhang of
 /// its cells. Counts of what is kept share 32 bits in threes, hence the upper limit.
 int capacity_for(int neighbours) {
-  constexpr int least = 128, most = largest_capacity;
-  return std::clamp(rounded_up(std::min(neighbours, most) * 3, 16), least, most);
+  constexpr int least = 256, most = largest_capacity;
+  return std::clamp(rounded_up(std::min(neighbours, most) * 8, 16), least, most);
 }
 
 /// Candidates kept for a tile, whose block is larger by the extent of its hits.

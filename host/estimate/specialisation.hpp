@@ -18,7 +18,7 @@ namespace photile::estimate {
 inline constexpr std::size_t max_private_bytes_per_group = 512u << 10;
 
 /// Distances that kernels/estimate/candidates.clh can keep: their counts have 10 bits.
-inline constexpr int largest_capacity = 1008;
+inline constexpr int largest_capacity = 4096;
 
 /// Compile-time choices of kernels/estimate, and how to launch them.
 struct Specialisation {

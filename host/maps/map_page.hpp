@@ -9,7 +9,7 @@
 
 namespace photile::maps {
 
-static_assert(sizeof(PhotileGrid) == 18 * 4, "PhotileGrid must have no padding");
+static_assert(sizeof(PhotileGrid) == 20 * 4, "PhotileGrid must have no padding");
 static_assert(sizeof(PhotileTreeNode) == 4 * 4, "PhotileTreeNode must have no padding");
 
 /// What a page covers: maps [first_map, last_map). A map is a sided triangle's or one side of a

@@ -41,11 +41,13 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
                     ? fmin(radius, *expected * 1.15f)
                     : block_for(k, radius, 0.0f, 0.5f * (low + high), grid, cell_start).reach;
   Block block;
+  uint entries_of_block;
   wide_int inside;
   float bound;
   for (;;) {
-    block = block_around(reach, low, high, grid, cell_start);
-    if (block.entries > TILE_CAPACITY) return false;
+    block = block_around(reach, low, high, grid);
+    entries_of_block = entries_in(&block, cell_start);
+    if (entries_of_block > TILE_CAPACITY) return false;
     bound = fmin(reach * reach, squared_radius);
     inside = store_tile(&tile, entries, &block, cell_start, bound, stored);
     if (reach >= radius || !any_lane(inside < (wide_int)((int)k))) break;
@@ -56,9 +58,9 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
   const wide_int full = inside >= (wide_int)((int)k);
   const wide_int wanted = select(inside, (wide_int)((int)k - 1), full);
   const WideBracket bracket = {0.0f, bound, 0, inside};
-  wide_float below = tile_bounds(stored, block.entries, wanted, full & tile.active,
+  wide_float below = tile_bounds(stored, entries_of_block, wanted, full & tile.active,
                                  *expected * *expected, bracket);
-  below = select((wide_float)(next_float(squared_radius)), below, full);
+  below = select((wide_float)(as_float(as_int(squared_radius) + 1)), below, full);
 
   wide_float sums[LIGHT_COUNT][3];
   for (uint light = 0; light < LIGHT_COUNT; ++light) {

@@ -36,8 +36,8 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
                                  vload3(hit, hit_face_normal), least_cosine};
     candidates.filter = filter;
 #endif
-    DECLARE_STORED(stored);
-    const Neighbourhood near = find_neighbourhood(&candidates, stored, k, k, radius, 0.0f, grid);
+    Chunks chunks;
+    const Neighbourhood near = find_neighbourhood(&candidates, &chunks, k, k, radius, 0.0f, grid);
 
     float farthest = 0.0f;
     uint found = 0;
@@ -55,8 +55,8 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
           farthest = fmax(farthest, d);
         }
       }
-      if (found >= near.count) break;
-      last_tied = last_tied_photon(&candidates, near.below, near.count - found, entry_photon);
+      if (near.tied == 0) break;
+      last_tied = last_tied_photon(&candidates, near.below, near.tied, entry_photon);
     }
     // The k-th is the farthest of the neighbours.
     squared_radius[hit] = near.squared_radius > 0.0f ? near.squared_radius : farthest;

@@ -44,9 +44,11 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
     const float width_u = shape->width_u + 2.0f * radius;
     const float width_v = shape->width_v + 2.0f * radius;
     const float area = shape->area + shape->perimeter * radius + 3.14159265f * radius * radius;
-    const float cell_size =
-        fmax(sqrt(area * photons_per_cell / ((float)count * map_crowding[map])),
+    const float cell_area = area * photons_per_cell / ((float)count * map_crowding[map]);
+    const float cell_width =
+        fmax(sqrt(cell_area / (float)PHOTILE_CELL_ASPECT),
              fmax(width_u, width_v) / (float)(MAX_CELLS_PER_SIDE - 1));
+    const float cell_height = (float)PHOTILE_CELL_ASPECT * cell_width;
 
     grid.origin_x = shape->origin_x;
     grid.origin_y = shape->origin_y;
@@ -59,11 +61,13 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
     grid.v_axis_z = shape->v_axis_z;
     grid.minimum_u = -radius;
     grid.minimum_v = -radius;
-    grid.cell_size = cell_size;
-    grid.inverse_cell_size = 1.0f / cell_size;
+    grid.cell_width = cell_width;
+    grid.cell_height = cell_height;
+    grid.inverse_cell_width = 1.0f / cell_width;
+    grid.inverse_cell_height = 1.0f / cell_height;
     grid.slack = 16.0f * FLT_EPSILON * (width_u + width_v);
-    grid.columns = (uint)ceil(width_u / cell_size);
-    grid.rows = (uint)ceil(width_v / cell_size);
+    grid.columns = (uint)ceil(width_u / cell_width);
+    grid.rows = (uint)ceil(width_v / cell_height);
 #ifdef PATCHES
     grid.mixed = map_mixed[map];
 #endif

@@ -48,10 +48,10 @@ struct Contents {
 };
 
 /// Whether a coordinate lies in a column or row, or beyond the grid at the border it is clamped to.
-bool in_cell(double coordinate, double minimum, std::uint32_t index, std::uint32_t count,
-             const PhotileGrid& grid) {
-  const double low = minimum + index * double{grid.cell_size} - grid.slack;
-  const double high = minimum + (index + 1) * double{grid.cell_size} + grid.slack;
+bool in_cell(double coordinate, double minimum, double size, std::uint32_t index,
+             std::uint32_t count, double slack) {
+  const double low = minimum + index * size - slack;
+  const double high = minimum + (index + 1) * size + slack;
   return (index == 0 || coordinate >= low) && (index + 1 == count || coordinate <= high);
 }
 
@@ -77,8 +77,10 @@ Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
                                    glm::dvec3(grid.origin_x, grid.origin_y, grid.origin_z);
           const double u = glm::dot(local, glm::dvec3(grid.u_axis_x, grid.u_axis_y, grid.u_axis_z));
           const double v = glm::dot(local, glm::dvec3(grid.v_axis_x, grid.v_axis_y, grid.v_axis_z));
-          if (!in_cell(u, grid.minimum_u, cell % grid.columns, grid.columns, grid) ||
-              !in_cell(v, grid.minimum_v, cell / grid.columns, grid.rows, grid)) {
+          if (!in_cell(u, grid.minimum_u, grid.cell_width, cell % grid.columns, grid.columns,
+                       grid.slack) ||
+              !in_cell(v, grid.minimum_v, grid.cell_height, cell / grid.columns, grid.rows,
+                       grid.slack)) {
             contents.cells_agree = false;
           }
           for (int c = 0; c < 3; ++c) {
@@ -147,7 +149,9 @@ TEST_CASE("the shared grid struct has the same size on the device as on the host
   for (const PhotileGrid& grid : grids) {
     if (grid.columns == 0) continue;
     CHECK(grid.minimum_u == Approx(-0.1));
-    CHECK(grid.inverse_cell_size * grid.cell_size == Approx(1.0));
+    CHECK(grid.inverse_cell_width * grid.cell_width == Approx(1.0));
+    CHECK(grid.inverse_cell_height * grid.cell_height == Approx(1.0));
+    CHECK(grid.cell_height == Approx(PHOTILE_CELL_ASPECT * grid.cell_width));
     CHECK(grid.u_axis_x * grid.u_axis_x + grid.u_axis_y * grid.u_axis_y == Approx(1.0));
   }
   context.finish();

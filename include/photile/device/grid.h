@@ -4,9 +4,13 @@
 #ifndef PHOTILE_DEVICE_GRID_H
 #define PHOTILE_DEVICE_GRID_H
 
+#define PHOTILE_CELL_ASPECT 4
+
 /* Grid over the plane of a triangle or patch. A point p projects to
      u = (p - origin) . u_axis,  v = (p - origin) . v_axis      (metres)
-   and falls in cell (column, row) = ((u, v) - minimum) / cell_size, clamped to the grid.
+   and falls in column (u - minimum_u) / cell_width and row (v - minimum_v) / cell_height, clamped
+   to the grid. Cells are PHOTILE_CELL_ASPECT times as high as wide: whoever reads the cells of a
+   disc streams a few long ranges, which overhang the disc little at their ends.
 
        v ^   rows
          |  +--+--+--+--+
@@ -23,8 +27,8 @@ typedef struct {
   float u_axis_x, u_axis_y, u_axis_z;
   float v_axis_x, v_axis_y, v_axis_z;
   float minimum_u, minimum_v;
-  float cell_size;
-  float inverse_cell_size;
+  float cell_width, cell_height;
+  float inverse_cell_width, inverse_cell_height;
   float slack; /* how far rounding may move a projected point across a cell border, metres */
   unsigned int columns, rows;
   unsigned int first_cell; /* into cell_start of the map's page */
