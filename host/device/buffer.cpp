@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "device/context_impl.hpp"
+#include "device/huge_pages.hpp"
 
 namespace photile::device {
 namespace {
@@ -73,6 +74,7 @@ RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_byte
     return created;
   });
   if (status != CL_SUCCESS) impl_->check(status, "clCreateBuffer", asked());
+  if (info.type == DeviceType::cpu) prefer_huge_pages(impl_->queue.get(), memory, bytes);
   return RawBuffer(memory, bytes, impl_->memory);
 }
 

@@ -7,7 +7,7 @@ namespace photile::maps {
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
                     PhotonPages& photon_pages, bool normals, MapPage& page) {
   device::Context& context = build.context();
-  page.entry_stride = page.entry_count + entry_padding;
+  page.entry_stride = entry_stride(page.entry_count);
   // Vector loads reach into the padding; what they find there is masked, but must be a number.
   const auto planes = [&](std::string_view what) {
     auto buffer = context.allocate<float>(3 * std::size_t{page.entry_stride}, what);

@@ -68,5 +68,12 @@ inline constexpr std::uint64_t max_items = std::uint64_t{1} << 31;
 
 /// Entries are read in vectors of up to 16 floats, which may reach this far beyond the last.
 inline constexpr std::uint32_t entry_padding = 16;
+inline constexpr std::uint32_t most_entry_padding = 2 * entry_padding - 1;
+
+/// Distance of the planes of so many entries: a multiple of the widest vector, so that aligned
+/// vectors of any plane are one cache line.
+constexpr std::uint32_t entry_stride(std::uint32_t entries) {
+  return (entries + most_entry_padding) / entry_padding * entry_padding;
+}
 
 }  // namespace photile::maps

@@ -15,7 +15,7 @@ namespace {
 std::uint64_t max_entries(std::uint64_t largest_buffer) {
   const std::uint64_t floats = std::min<std::uint64_t>(largest_buffer / sizeof(float),
                                                        std::numeric_limits<std::uint32_t>::max());
-  return std::max<std::uint64_t>(floats / 3, entry_padding) - entry_padding;
+  return std::max<std::uint64_t>(floats / 3, most_entry_padding) - most_entry_padding;
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ TEST_CASE("map pages cover every map with photons once, in order, within the lim
     std::uint64_t entries = 0;
     for (std::uint32_t map = page.first; map < page.last; ++map) entries += counts[map];
     CHECK(entries == page.entries);
-    CHECK((entries + maps::entry_padding) * 12 <= max_bytes);
+    CHECK((entries + maps::most_entry_padding) * 12 <= max_bytes);
     CHECK((page.last - page.first) * sizeof(PhotileGrid) <= max_bytes);
     paged += entries;
   }
@@ -62,7 +62,7 @@ TEST_CASE("no index into a page passes 32 bits, however large the device's buffe
   const auto pages = maps::plan_map_pages(counts, {.largest_buffer = huge});
   std::uint64_t paged = 0;
   for (const maps::MapRange& page : pages) {
-    CHECK(3 * (page.entries + maps::entry_padding) <= 0xFFFF'FFFFull);
+    CHECK(3 * (page.entries + maps::most_entry_padding) <= 0xFFFF'FFFFull);
     CHECK(page.entries < maps::max_items);
     paged += page.entries;
   }
