@@ -38,20 +38,19 @@ def specialisations(result):
 
 def estimate_cost(k):
     """(bytes read from cache, operations) a hit, by the sum in docs/kernels.md."""
-    candidates = 2.3 * k
-    capacity = max(128, math.ceil(3 * k / 16) * 16)
-    # Small capacities are read whole (kernels/estimate/candidates.clh).
-    counted = capacity if capacity <= 192 else candidates
-    passes = 3
-    return (50 + (12 + 16.5) * candidates + passes * 4 * counted,
-            60 + (8 + 6) * candidates + passes * 3 * counted)
+    # In units in which a photon has one unit of area: cells are 1 wide and 4 high.
+    reach = math.sqrt(k / math.pi) * (1 + 0.7 / math.sqrt(k))
+    candidates = (2 * reach + 1) * (2 * reach + 4)
+    passes = 1  # after the first, which is part of the pass over the distances
+    return (30 + (12 + 4 * passes + 16) * candidates,
+            60 + (8 + 7 * (1 + passes) + 6) * candidates)
 
 
 # Least bytes that a kernel of the build moves, per photon, reference, cell and map
 # (docs/kernels.md), for the records of a diffuse scene with one light. A shape serves two maps.
 BUILD_BYTES = {
     "count_photons": (20, 4, 0, 0),  # position, own map, list
-    "size_grids": (0, 0, 0, 122),    # half a shape, count, crowding; grid, cells
+    "size_grids": (0, 0, 0, 130),    # half a shape, count, crowding; grid, cells
     "place_grids": (0, 0, 0, 8),
     "count_cells": (20, 8, 0, 0),
     "sum_blocks": (0, 0, 4, 0),

@@ -19,7 +19,8 @@ constexpr std::size_t least_bytes = 4 * huge_page;
 
 void prefer_huge_pages(cl_command_queue queue, cl_mem memory, std::size_t bytes) {
   if (bytes < least_bytes) return;
-  // On a CPU a mapped buffer is the buffer itself; where it is a copy, the advice is merely useless.
+  // On a CPU a mapped buffer is the buffer itself; where it is a copy, the advice is merely
+  // useless.
   void* const mapped = clEnqueueMapBuffer(queue, memory, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0,
                                           bytes, 0, nullptr, nullptr, nullptr);
   if (mapped == nullptr) return;

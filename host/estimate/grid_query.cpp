@@ -46,13 +46,8 @@ class GridQuery : public Query {
 
  private:
   device::Defines defines(const maps::MapPage& page) const {
-    if (page.entry_normal.size() == 0) return choice_.defines();
-    // Blocks of mixed maps hold photons of several surfaces; streaming them again for each count
-    // would compare their normals again.
-    Specialisation mixed = choice_;
-    mixed.capacity = std::min(largest_capacity, 5 * choice_.capacity / 2 / 16 * 16);
-    device::Defines defines = mixed.defines();
-    defines.set("NORMALS");
+    device::Defines defines = choice_.defines();
+    if (page.entry_normal.size() > 0) defines.set("NORMALS");
     return defines;
   }
 

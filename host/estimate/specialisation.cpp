@@ -13,10 +13,12 @@ constexpr int near_capacity = 128;
 
 int rounded_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
 
-/// Distances kept for a hit: a block holds about 4 / pi x 1.2 x k candidates and the overhang of
-/// its cells. Counts of what is kept share 32 bits in threes, hence the upper limit.
-int capacity_for(int neighbours) {
-  constexpr int least = 256, most = largest_capacity;
+/// Distances kept for a hit: a block holds some 3 k candidates in chunks that are four fifths full,
+/// and several times as many where a map holds more than one surface. Chunks of one are counted,
+/// too.
+int capacity_for(int neighbours, int vector_width) {
+  constexpr int least = 256;
+  const int most = vector_width == 1 ? largest_capacity / 2 : largest_capacity;
   return std::clamp(rounded_up(std::min(neighbours, most) * 8, 16), least, most);
 }
 
@@ -72,7 +74,8 @@ std::size_t Specialisation::private_bytes() const {
   std::size_t bytes = private_sum_bytes(needs, k);
   if (strategy == EstimateStrategy::heap)
     return bytes + k * (sizeof(float) + sizeof(std::uint32_t));
-  bytes += (static_cast<std::size_t>(capacity) + 3 * width) * sizeof(float);
+  bytes += static_cast<std::size_t>(capacity) * sizeof(float) +
+           static_cast<std::size_t>(capacity) / width * sizeof(std::uint32_t);
   if (listed) bytes += (near_capacity + 2 * width) * sizeof(std::uint32_t);
   if (strategy == EstimateStrategy::tile && !listed) {
     bytes +=
@@ -88,7 +91,7 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
   choice.strategy = too_many_for_heap ? EstimateStrategy::select : tuning.strategy;
   // A heap is a list of single entries.
   choice.vector_width = choice.strategy == EstimateStrategy::heap ? 1 : tuning.vector_width;
-  choice.capacity = capacity_for(neighbours);
+  choice.capacity = capacity_for(neighbours, choice.vector_width);
   choice.neighbours = neighbours;
   choice.tile_capacity = tile_capacity_for(neighbours);
   choice.hits_per_item = choice.strategy == EstimateStrategy::select ? tuning.hits_per_item : 1;

@@ -17,14 +17,15 @@ namespace photile::estimate {
 /// cache.
 inline constexpr std::size_t max_private_bytes_per_group = 512u << 10;
 
-/// Distances that kernels/estimate/candidates.clh can keep: their counts have 10 bits.
-inline constexpr int largest_capacity = 4096;
+/// Distances that kernels/estimate/candidates.clh keeps at most, so that a group of 64 work-items
+/// stays within max_private_bytes_per_group.
+inline constexpr int largest_capacity = 1600;
 
 /// Compile-time choices of kernels/estimate, and how to launch them.
 struct Specialisation {
   EstimateStrategy strategy = EstimateStrategy::select;
   int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16
-  int capacity = 160;    ///< distances kept in private memory by `select`, and where a tile fails
+  int capacity = 256;    ///< distances kept in private memory by `select`, and where a tile fails
   int neighbours = 1;    ///< k
   int tile_capacity = 512;  ///< candidates of a tile, `tile` only
   int hits_per_item = 1;    ///< neighbouring hits that a work-item estimates in turn

@@ -16,7 +16,7 @@ namespace photile {
 
 /// How the k nearest photons are selected. All find the same neighbours.
 enum class EstimateStrategy {
-  select,  ///< distances of a block of cells in one pass, the k-th by counting; no list
+  select,  ///< distances of a block of cells in one pass, the k-th by radix selection; no list
   heap,    ///< a bounded max-heap per hit; for k up to max_heap_neighbours, else `select`
   tile     ///< a vector of neighbouring hits shares one block of candidates
 };

@@ -1,5 +1,5 @@
 // The radiance estimate with a bounded max-heap per hit: each work-item searches its own rings of
-// cells and keeps the k nearest in order. What most implementations do, and what the counting of
+// cells and keeps the k nearest in order. What most implementations do, and what the selection of
 // estimate.cl is measured against. The same neighbours; sums in the order of the heap.
 //
 // Symbols the host defines: those of estimate/arguments.clh and estimate/sums.clh, and

@@ -1,6 +1,7 @@
 // The radiance estimate for tiles of hits: VECTOR_WIDTH neighbouring hits share one block of
 // candidates (estimate/tile.clh). For maps that many hits lie on; hits that share a map with few
-// others, glossy surfaces, many lights and crowded blocks are estimated one by one, as in estimate.cl.
+// others, glossy surfaces, many lights and crowded blocks are estimated one by one, as in
+// estimate.cl.
 //
 // Symbols the host defines: those of estimate/estimate.cl, TILE_CAPACITY
 
@@ -16,8 +17,7 @@
 // next are left in `undone`.
 bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
                    __global const uint* cell_start, const Hits* hits, uint first, uint count,
-                   uint k, float radius, float* expected, int* undone,
-                   const Estimates* estimates) {
+                   uint k, float radius, float* expected, int* undone, const Estimates* estimates) {
   Tile tile;
   float coordinates[3][VECTOR_WIDTH];
   float2 low = INFINITY, high = -INFINITY;
@@ -39,13 +39,13 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
   const float squared_radius = radius * radius;
   float reach = *expected > 0.0f
                     ? fmin(radius, *expected * 1.15f)
-                    : block_for(k, radius, 0.0f, 0.5f * (low + high), grid, cell_start).reach;
+                    : reach_for(k, radius, 0.0f, 0.5f * (low + high), grid, cell_start);
   Block block;
   uint entries_of_block;
   wide_int inside;
   float bound;
   for (;;) {
-    block = block_around(reach, low, high, grid);
+    block_around(reach, low, high, grid, &block);
     entries_of_block = entries_in(&block, cell_start);
     if (entries_of_block > TILE_CAPACITY) return false;
     bound = fmin(reach * reach, squared_radius);
@@ -141,8 +141,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
       if (!one_by_one && !undone[i]) continue;
       Hit hit;
       load_hit(&hits, first + i, &hit);
-      expected =
-          estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected, &estimates);
+      expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected, &estimates);
     }
     first += count;
   }

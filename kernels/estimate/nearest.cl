@@ -37,7 +37,8 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
     candidates.filter = filter;
 #endif
     Chunks chunks;
-    const Neighbourhood near = find_neighbourhood(&candidates, &chunks, k, k, radius, 0.0f, grid);
+    Neighbourhood near;
+    find_neighbourhood(&candidates, &chunks, k, k, radius, 0.0f, grid, &near);
 
     float farthest = 0.0f;
     uint found = 0;
@@ -48,8 +49,8 @@ __kernel void nearest(uint hit_count, uint first_hit, __global const float* hit_
         const uint end = cell_start[cell + candidates.block.width];
         for (uint entry = cell_start[cell]; entry < end; ++entry) {
           const float d = squared_distance(&candidates, entry);
-          const bool is_near = pass == 0 ? d < near.below
-                                         : d == near.below && entry_photon[entry] <= last_tied;
+          const bool is_near =
+              pass == 0 ? d < near.below : d == near.below && entry_photon[entry] <= last_tied;
           if (!is_near) continue;
           list[found++] = entry_photon[entry];
           farthest = fmax(farthest, d);
