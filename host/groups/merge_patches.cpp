@@ -6,6 +6,7 @@
 
 #include "groups/patch_shape.hpp"
 #include "groups/patch_union.hpp"
+#include "groups/photon_sample.hpp"
 #include "photile/neighbour_groups.hpp"
 
 namespace photile {
@@ -13,11 +14,13 @@ namespace {
 
 using namespace groups;
 
-constexpr std::size_t sample_size = 32'768;  ///< photons that sharing is estimated from
+/// A patch joins another that already holds this part of its photons.
+constexpr double least_shared = 0.65;
 
-/// A patch joins another that already holds this part of its photons. With less, the queries of
-/// either would look at too many photons of the other in vain.
-constexpr double least_shared = 0.75;
+/// At least as large a part must those be of what the joined patch would hold around it. With less,
+/// the queries of either would look at too many photons of the other in vain: of the bright side of a
+/// lamp for a hit on its dark side.
+constexpr double least_shared_around = 0.5;
 
 /// Normals this close to the axis leave a map flat: no query needs to look at normals. A flat map that
 /// a join would bend must save this part of its references by it, for every query will pay.
@@ -25,23 +28,6 @@ constexpr double flat_angle = 0.17;  // radians
 constexpr double least_saved_by_bending = 0.3;
 
 constexpr int most_rounds = 8;
-
-/// The maps that some photons enter, one list per photon.
-struct Sample {
-  std::vector<std::uint32_t> first_of{0};
-  std::vector<std::uint32_t> maps;
-};
-
-double gap(double coordinate, double low, double high) {
-  return std::max({low - coordinate, coordinate - high, 0.0});
-}
-
-bool is_within(const PatchShape& shape, const glm::dvec3& p, double radius) {
-  const double u = gap(glm::dot(p, shape.u_axis), shape.low.x, shape.high.x);
-  const double v = gap(glm::dot(p, shape.v_axis), shape.low.y, shape.high.y);
-  const double h = gap(glm::dot(p, shape.axis), shape.low.z, shape.high.z);
-  return u * u + v * v + h * h <= radius * radius;
-}
 
 /// The normals of a patch, on the sides of its front map: all within `lean` radians of the axis.
 struct NormalSpread {
@@ -84,20 +70,6 @@ std::vector<PatchShape> shapes_of(const Scene& scene, const TriangleFacts& facts
   return shapes;
 }
 
-Sample sample_photons(std::span<const PatchShape> shapes, const NeighbourGroups& groups,
-                      const Photons& photons) {
-  const std::size_t step = std::max<std::size_t>(1, photons.size() / sample_size);
-  Sample sample;
-  for (std::size_t i = step / 2; i < photons.size(); i += step) {
-    const glm::dvec3 position(photons.position[i]);
-    for (const std::uint32_t map : groups.of(photons.sided_triangle[i])) {
-      if (is_within(shapes[map / 2], position, groups.radius)) sample.maps.push_back(map);
-    }
-    sample.first_of.push_back(static_cast<std::uint32_t>(sample.maps.size()));
-  }
-  return sample;
-}
-
 /// How many photons of the sample two patches share: front with front (turned = 0) and back with
 /// back, or crosswise.
 struct Sharing {
@@ -108,18 +80,35 @@ std::uint64_t key_of(std::uint32_t patch, std::uint32_t other, std::uint32_t tur
   return std::uint64_t{patch} << 33 | std::uint64_t{other} << 1 | turned;
 }
 
+/// Photons that the other patch holds around this one and this one does not: what its queries would
+/// look at in vain if the two were joined.
+std::uint32_t held_in_vain(const Sharing& sharing, const PatchShape& shape,
+                           const PhotonSample& sample, const HeldPhotons& held, double radius) {
+  std::uint32_t count = 0;
+  for (std::uint32_t side = 0; side < 2; ++side) {
+    const std::span own = held.of(2 * sharing.patch + side);
+    auto next = own.begin();
+    for (const std::uint32_t photon : held.of(2 * sharing.other + (side ^ sharing.turned))) {
+      next = std::lower_bound(next, own.end(), photon);
+      const bool is_own = next != own.end() && *next == photon;
+      if (!is_own && is_within(shape, sample.position(photon), radius)) ++count;
+    }
+  }
+  return count;
+}
+
 /// For each patch that has one, the partner that holds most of its photons, if they are enough; the
 /// fullest share first.
-std::vector<Sharing> find_partners(const Sample& sample, std::span<const NormalSpread> spreads) {
+std::vector<Sharing> find_partners(const PhotonSample& sample, std::span<const PatchShape> shapes,
+                                   std::span<const NormalSpread> spreads, double radius) {
   const std::size_t patch_count = spreads.size();
-  std::vector<std::uint32_t> held(patch_count, 0);
+  const HeldPhotons lists(sample, 2 * patch_count);
+  std::vector<std::uint32_t> held(patch_count);
+  for (std::uint32_t patch = 0; patch < patch_count; ++patch) held[patch] = lists.of_patch(patch);
   std::unordered_map<std::uint64_t, std::uint32_t> shared;
-  for (std::size_t i = 0; i + 1 < sample.first_of.size(); ++i) {
-    for (std::uint32_t a = sample.first_of[i]; a < sample.first_of[i + 1]; ++a) {
-      const std::uint32_t map = sample.maps[a];
-      ++held[map / 2];
-      for (std::uint32_t b = sample.first_of[i]; b < sample.first_of[i + 1]; ++b) {
-        const std::uint32_t other = sample.maps[b];
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    for (const std::uint32_t map : sample.maps_of(i)) {
+      for (const std::uint32_t other : sample.maps_of(i)) {
         if (other / 2 != map / 2) ++shared[key_of(map / 2, other / 2, (map ^ other) & 1)];
       }
     }
@@ -140,6 +129,9 @@ std::vector<Sharing> find_partners(const Sample& sample, std::span<const NormalS
     const NormalSpread& other = spreads[found.other];
     const bool bends = other.flat() && !other.joined(spreads[found.patch], found.turned).flat();
     if (bends && photons < least_saved_by_bending * held[found.other]) continue;
+    const std::uint32_t around =
+        held[found.patch] + held_in_vain(found, shapes[found.patch], sample, lists, radius);
+    if (photons < least_shared_around * around) continue;
     known = found;
   }
   std::erase_if(best, [](const Sharing& sharing) { return sharing.patch == none; });
@@ -147,27 +139,6 @@ std::vector<Sharing> find_partners(const Sample& sample, std::span<const NormalS
     return std::uint64_t{a.photons} * held[b.patch] > std::uint64_t{b.photons} * held[a.patch];
   });
   return best;
-}
-
-/// Sorted lists of maps after a renaming, each map once.
-template <class Offset>
-void rename(std::vector<Offset>& offsets, std::vector<std::uint32_t>& maps,
-            const PatchUnion& patches) {
-  std::size_t written = 0;
-  Offset first = offsets.front();
-  for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
-    const Offset last = offsets[i + 1];
-    const auto begin = maps.begin() + static_cast<std::ptrdiff_t>(written);
-    auto end = begin;
-    for (Offset j = first; j < last; ++j) *end++ = patches.map(maps[j]);
-    std::sort(begin, end);
-    end = std::unique(begin, end);
-    written = static_cast<std::size_t>(end - maps.begin());
-    offsets[i + 1] = static_cast<Offset>(written);
-    first = last;
-  }
-  maps.resize(written);
-  maps.shrink_to_fit();
 }
 
 }  // namespace
@@ -181,12 +152,12 @@ NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const 
   for (std::size_t patch = 0; patch < count; ++patch) {
     spreads.push_back(spread_of(facts, groups.patches.of(patch), shapes[patch]));
   }
-  Sample sample = sample_photons(shapes, groups, photons);
+  PhotonSample sample(shapes, groups, photons);
   PatchUnion merged(count);
   for (int round = 0; round < most_rounds; ++round) {
     std::vector<bool> taken(count, false);
     bool changed = false;
-    for (const Sharing& sharing : find_partners(sample, spreads)) {
+    for (const Sharing& sharing : find_partners(sample, shapes, spreads, groups.radius)) {
       if (taken[sharing.patch] || taken[sharing.other]) continue;
       taken[sharing.patch] = true;  // its photons are another's now: others wait for the next round
       merged.join(sharing.patch, sharing.other, sharing.turned);
@@ -194,10 +165,10 @@ NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const 
       changed = true;
     }
     if (!changed) break;
-    rename(sample.first_of, sample.maps, merged);
+    sample.rename(merged);
   }
   merged.number();
-  rename(groups.offsets, groups.members, merged);
+  rename_maps(groups.offsets, groups.members, merged);
   groups.patches = merged.apply(groups.patches);
   return groups;
 }

@@ -55,7 +55,8 @@ NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
                                   Progress& progress = Progress::none());
 
 /// Joins patches that hold mostly the same photons, judged by a sample: each joined pair saves the
-/// references they share. What a query finds is the same.
+/// references they share. Patches whose queries would look at most photons in vain stay apart. What a
+/// query finds is the same.
 NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons);
 
 /// Groups for maps of a mode, as the renderer uses them: the patches that it asks for, their groups,

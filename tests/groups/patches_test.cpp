@@ -1,6 +1,9 @@
 // Patches: a partition of the triangles, with groups that are those of the triangles, renamed.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
 #include <set>
 
 #include "photile/neighbour_groups.hpp"
@@ -125,6 +128,45 @@ TEST_CASE("joining the inner side of a thin plate to the outer side of the other
     (scene.corners(t)[0].z > 0.71f ? above : below).insert(map_above(t));
   }
   CHECK(above == below);
+}
+
+TEST_CASE("a patch joins another only where its queries would not look at most photons in vain") {
+  // The ridge of a roof, with a narrow floor above it. The slopes lean 50 degrees either way, so that
+  // photons of the floor are neighbours on both, and those of one slope none on the other.
+  const float across = 0.05f * std::cos(glm::radians(50.0f));
+  const float down = 0.05f * std::sin(glm::radians(50.0f));
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {across, 0, -down}, {0, 0.05f, 0}, 1);                // right
+  test::add_plate(scene, {-across, 0, -down}, {across, 0, down}, {0, 0.05f, 0}, 1);       // left
+  test::add_plate(scene, {-0.01f, 0, 0.01f}, {0.02f, 0, 0}, {0, 0.05f, 0}, 1);            // floor
+  Patches patches;  // the right slope, and the left one with the floor
+  patches.first_of = {0, 2, 6};
+  for (std::uint32_t t = 0; t < 6; ++t) {
+    patches.members.push_back(sided(t, 0));
+    const std::uint32_t front = t < 2 ? 0 : 2;
+    patches.map_of.insert(patches.map_of.end(), {front, front + 1});
+  }
+  const NeighbourGroups groups = find_patch_groups(scene, patches, {0.2, 60});
+
+  std::mt19937_64 random(7);
+  const auto lit = [&](std::size_t right, std::size_t left, std::size_t floor) {
+    const std::array counts{right, left, floor};
+    Photons photons;
+    for (std::uint32_t plate = 0; plate < 3; ++plate) {
+      for (std::size_t i = 0; i < counts[plate]; ++i) {
+        const std::uint32_t triangle = 2 * plate + i % 2;
+        test::add_photon(photons, scene, test::random_point(scene, triangle, random),
+                         sided(triangle, 0), random);
+      }
+    }
+    return merge_patches(scene, groups, sort_by_sided_triangle(photons, 12)).patches.count();
+  };
+  // The patch of the left slope holds all photons of the right one's: those of both slopes agree with
+  // the floor. What it holds besides are the photons on the left slope.
+  CHECK(lit(500, 10, 500) == 1);
+  CHECK(lit(500, 900, 500) == 1);     // 1000 of 1900 shared: more than half
+  CHECK(lit(500, 1100, 500) == 2);    // 1000 of 2100
+  CHECK(lit(10, 5000, 10) == 2);      // a dark slope beside one hundreds of times as bright
 }
 
 TEST_CASE("naive and triangle maps have no patches") {
