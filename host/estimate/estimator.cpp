@@ -47,14 +47,8 @@ struct Estimator::Impl {
                              outputs};
   }
 
-  /// The maps of hits [first, first + count).
-  std::vector<std::uint32_t> maps_of(const PrimaryHits& hits, std::size_t first,
-                                     std::size_t count) const {
-    return estimate::maps_of(std::span(hits.sided_triangle).subspan(first, count), store.map_of);
-  }
-
   Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count) {
-    const std::vector<std::uint32_t> hit_maps = maps_of(hits, first, count);
+    const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers =
         estimate::upload_hits(context, hits, first, hit_maps, store.normals, store.needs.glossy);
     estimate::EstimateBuffers estimates(context, store.needs, neighbours,
@@ -69,7 +63,7 @@ struct Estimator::Impl {
   void nearest(const PrimaryHits& hits, std::size_t first, std::size_t count,
                NeighbourLists& result) {
     const std::size_t k = neighbours;
-    const std::vector<std::uint32_t> hit_maps = maps_of(hits, first, count);
+    const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers =
         estimate::upload_hits(context, hits, first, hit_maps, store.normals, false);
     auto photons = context.allocate<std::uint32_t>(count * k, "neighbour lists");
@@ -121,14 +115,15 @@ void Estimates::append(Estimates part) {
   }
 }
 
-Estimates Estimator::estimate(const PrimaryHits& hits) {
-  const auto order = estimate::order_by_map(hits, impl_->store.map_of);
-  if (order.empty()) return estimate(hits, 0, hits.size());
-  return estimate::restored(estimate(estimate::reordered(hits, order), 0, hits.size()), order,
-                            impl_->store.needs.light_count);
-}
+Estimates Estimator::estimate(const PrimaryHits& hits) { return estimate(hits, 0, hits.size()); }
 
 Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count) {
+  const auto order = estimate::order_by_map(impl_->store.maps_of(hits, begin, hit_count));
+  if (!order.empty()) {
+    return estimate::restored(
+        estimate(estimate::reordered(hits, begin, order), 0, hit_count), order,
+        impl_->store.needs.light_count);
+  }
   const auto [largest, together] =
       estimate::estimate_bytes_per_hit(impl_->store.needs, impl_->neighbours);
   Estimates result;
@@ -170,8 +165,9 @@ std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) cons
 
 NeighbourLists Estimator::nearest(const PrimaryHits& hits) {
   const std::size_t k = impl_->neighbours;
-  if (const auto order = estimate::order_by_map(hits, impl_->store.map_of); !order.empty()) {
-    NeighbourLists result = nearest(estimate::reordered(hits, order));
+  const auto order = estimate::order_by_map(impl_->store.maps_of(hits, 0, hits.size()));
+  if (!order.empty()) {
+    NeighbourLists result = nearest(estimate::reordered(hits, 0, order));
     estimate::restore_rows(result.photons, order, k);
     estimate::restore_rows(result.squared_radius, order, 1);
     return result;

@@ -6,31 +6,22 @@
 namespace photile::estimate {
 namespace {
 
+/// values[first + order[i]] for each i.
 template <class T>
-std::vector<T> gather(const std::vector<T>& values, std::span<const std::uint32_t> order) {
+std::vector<T> gather(const std::vector<T>& values, std::span<const std::uint32_t> order,
+                      std::size_t first = 0) {
   if (values.empty()) return {};
   std::vector<T> result;
   result.reserve(order.size());
-  for (const std::uint32_t i : order) result.push_back(values[i]);
+  for (const std::uint32_t i : order) result.push_back(values[first + i]);
   return result;
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> maps_of(std::span<const std::uint32_t> sided_triangles,
-                                   std::span<const std::uint32_t> map_of) {
-  std::vector<std::uint32_t> maps(sided_triangles.begin(), sided_triangles.end());
-  if (!map_of.empty()) {
-    for (std::uint32_t& map : maps) map = map_of[map];
-  }
-  return maps;
-}
-
-std::vector<std::uint32_t> order_by_map(const PrimaryHits& hits,
-                                        std::span<const std::uint32_t> map_of) {
-  const std::vector<std::uint32_t> maps = maps_of(hits.sided_triangle, map_of);
+std::vector<std::uint32_t> order_by_map(std::span<const std::uint32_t> maps) {
   if (std::is_sorted(maps.begin(), maps.end())) return {};
-  std::vector<std::uint32_t> order(hits.size());
+  std::vector<std::uint32_t> order(maps.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return maps[a] < maps[b]; });
@@ -62,13 +53,14 @@ Estimates restored(Estimates estimates, std::span<const std::uint32_t> order,
   return result;
 }
 
-PrimaryHits reordered(const PrimaryHits& hits, std::span<const std::uint32_t> order) {
+PrimaryHits reordered(const PrimaryHits& hits, std::size_t first,
+                      std::span<const std::uint32_t> order) {
   PrimaryHits result;
-  result.position = gather(hits.position, order);
-  result.sided_triangle = gather(hits.sided_triangle, order);
-  result.diffuse_albedo = gather(hits.diffuse_albedo, order);
-  result.outgoing = gather(hits.outgoing, order);
-  result.lobe = gather(hits.lobe, order);
+  result.position = gather(hits.position, order, first);
+  result.sided_triangle = gather(hits.sided_triangle, order, first);
+  result.diffuse_albedo = gather(hits.diffuse_albedo, order, first);
+  result.outgoing = gather(hits.outgoing, order, first);
+  result.lobe = gather(hits.lobe, order, first);
   return result;
 }
 

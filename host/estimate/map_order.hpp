@@ -12,16 +12,13 @@ namespace photile::estimate {
 
 /// Positions of hits in ascending order of their maps, stable; empty if they are in that order
 /// already.
-///   map_of   per sided triangle; empty where a sided triangle is the map itself
-std::vector<std::uint32_t> order_by_map(const PrimaryHits& hits,
-                                        std::span<const std::uint32_t> map_of);
+///   maps   of the hits
+std::vector<std::uint32_t> order_by_map(std::span<const std::uint32_t> maps);
 
-/// Hit i of the result is hit order[i]. Pixels and throughput, which no estimate reads, are left out.
-PrimaryHits reordered(const PrimaryHits& hits, std::span<const std::uint32_t> order);
-
-/// The maps of sided triangles.
-std::vector<std::uint32_t> maps_of(std::span<const std::uint32_t> sided_triangles,
-                                   std::span<const std::uint32_t> map_of);
+/// Hit i of the result is hit first + order[i]. Pixels and throughput, which no estimate reads, are
+/// left out.
+PrimaryHits reordered(const PrimaryHits& hits, std::size_t first,
+                      std::span<const std::uint32_t> order);
 
 /// Estimates of reordered hits, put back: those of hit i become those of hit order[i].
 Estimates restored(Estimates estimates, std::span<const std::uint32_t> order,

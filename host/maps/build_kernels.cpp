@@ -4,11 +4,15 @@
 
 namespace photile::maps {
 
-device::KernelSet build_kernels(const MapStore& store) {
+device::KernelSet build_kernels(const MapStore& store, bool patches) {
   device::Defines defines;
   set_entry_defines(defines, store.needs);
-  if (!store.map_of.empty()) defines.set("PATCHES");
+  if (patches) defines.set("PATCHES");
   return {store.device->context(), "grid/build.cl", std::move(defines)};
+}
+
+device::KernelSet tile_kernels(const MapStore& store) {
+  return {store.device->context(), "grid/build_tiles.cl", {}};
 }
 
 }  // namespace photile::maps

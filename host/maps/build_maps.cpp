@@ -8,13 +8,17 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <string>
 
 #include "maps/build_kernels.hpp"
 #include "maps/candidate_maps.hpp"
 #include "maps/gather_entries.hpp"
 #include "maps/kdtree_builder.hpp"
+#include "maps/map_numbers.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
+#include "maps/page_queue.hpp"
 #include "maps/photon_crowding.hpp"
 #include "maps/photon_pages.hpp"
 #include "maps/prefix_sum.hpp"
@@ -30,10 +34,11 @@ struct Build {
   Context& context;
   const MapStore& store;
   device::KernelSet kernels;
+  device::KernelSet tile_kernels;
   bool patches = false;            ///< maps may serve several triangles
   Buffer<PhotileMapShape> shapes;  ///< per pair of maps
   Buffer<float> crowding;          ///< per map
-  Buffer<float> corners;           ///< 9 floats per triangle
+  Buffer<float> corners;           ///< 9 floats per triangle that is alone in its maps
   std::unique_ptr<PhotonPages> photon_pages;
   float squared_reach = 0;
   float radius = 0;
@@ -44,17 +49,6 @@ struct Build {
     kernels.run(kernel, size, work_group_size, args...);
   }
 };
-
-std::vector<float> corner_coordinates(const Scene& scene) {
-  std::vector<float> corners;
-  corners.reserve(9 * scene.triangle_count());
-  for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
-    for (const glm::vec3& corner : scene.corners(t)) {
-      corners.insert(corners.end(), {corner.x, corner.y, corner.z});
-    }
-  }
-  return corners;
-}
 
 std::vector<glm::vec3> sided_normals(const Scene& scene) {
   std::vector<glm::vec3> normals(2 * scene.triangle_count());
@@ -119,43 +113,89 @@ std::uint32_t total_cells(Context& context, const Buffer<std::uint32_t>& cells_o
   return static_cast<std::uint32_t>(total);
 }
 
-void size_grids(Build& build, MapPage& page, const MapCounts& counts) {
+/// Grids of the page's maps, but for their first cells. Returns cells per map, and a zero.
+Buffer<std::uint32_t> size_grids(Build& build, MapPage& page, const MapCounts& counts) {
   const std::uint32_t maps = page.last_map - page.first_map;
   page.grids = build.context.allocate<PhotileGrid>(maps, "photon map grids");
-  auto first_cell = build.context.allocate<std::uint32_t>(maps + 1, "first cells of photon maps");
-  build.context.fill(first_cell, 0u);
+  auto cells = build.context.allocate<std::uint32_t>(maps + 1, "first cells of photon maps");
+  build.context.fill(cells, 0u);
   const auto launch = [&](const auto&... patches) {
     build.run("size_grids", maps, maps, page.first_map, build.shapes, counts.photons,
-              build.crowding, patches..., build.radius, build.photons_per_cell, page.grids,
-              first_cell);
+              build.crowding, patches..., build.radius, build.photons_per_cell, page.grids, cells);
   };
   if (build.patches) {
     launch(counts.mixed);
   } else {
     launch();
   }
+  return cells;
+}
+
+void place_grids(Build& build, MapPage& page, const MapCounts& counts) {
+  auto first_cell = size_grids(build, page, counts);
   page.cell_count = total_cells(build.context, first_cell);
   exclusive_prefix_sum(build.kernels, first_cell);
+  const std::uint32_t maps = page.last_map - page.first_map;
   build.run("place_grids", maps, maps, first_cell, page.grids);
 }
 
-void fill_cells(Build& build, MapPage& page) {
+/// The tiling of a map, with its photons counted.
+MapTiling tiling_of(Build& build, std::uint32_t map, const MapCounts& counts) {
+  MapPage page;
+  page.first_map = map;
+  page.last_map = map + 1;
+  size_grids(build, page, counts);
+  PhotileGrid grid{};
+  build.context.read(page.grids, std::span(&grid, 1));
+  MapTiling tiling(grid, build.store.parameters.radius);
+  auto bins = build.context.allocate<std::uint32_t>(
+      std::size_t{tiling.columns()} * tiling.rows(), "bins of a photon map");
+  build.context.fill(bins, 0u);
+  for (const PhotonPage& photons : build.photon_pages->entering(map, map + 1)) {
+    build.tile_kernels.run("count_bins", photons.count, work_group_size, photons.count,
+                           photons.position, photons.own_map, photons.list, photons.list_offsets,
+                           photons.list_members, build.shapes, build.corners,
+                           build.squared_reach, map, page.grids, tiling.cells_per_bin(),
+                           tiling.columns(), bins);
+  }
+  tiling.set_photons(read_all(build.context, bins));
+  return tiling;
+}
+
+/// `tile`: cells that the page holds, where it holds a tile; else nothing.
+void fill_cells(Build& build, MapPage& page, const std::optional<Rectangle>& tile) {
   auto cell_count = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell counts");
   page.cell_start = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell offsets");
   build.context.fill(cell_count, 0u);
-  for (const PhotonPage& photons : *build.photon_pages) {
-    build.run("count_cells", photons.count, photons.count, photons.position, photons.own_map,
-              photons.list, photons.list_offsets, photons.list_members, build.shapes, build.corners,
-              build.squared_reach, page.first_map, page.last_map, page.grids, cell_count);
+  const auto launch = [&](const char* kernel, const PhotonPage& photons, const auto&... outputs) {
+    const auto run = [&](const device::KernelSet& kernels, const auto&... bounds) {
+      kernels.run(kernel, photons.count, work_group_size, photons.count, photons.position,
+                  photons.own_map, photons.list, photons.list_offsets, photons.list_members,
+                  build.shapes, build.corners, build.squared_reach, page.first_map, page.last_map,
+                  page.grids, outputs..., bounds...);
+    };
+    if (tile) {
+      run(build.tile_kernels, tile->first_column, tile->first_row, tile->last_column,
+          tile->last_row);
+    } else {
+      run(build.kernels);
+    }
+  };
+  const auto photon_pages = build.photon_pages->entering(page.first_map, page.last_map);
+  for (const PhotonPage& photons : photon_pages) launch("count_cells", photons, cell_count);
+  if (tile) {
+    build.tile_kernels.run("narrow_gaps", tile->height(), work_group_size, page.grids, cell_count,
+                           tile->first_column, tile->first_row, tile->last_column,
+                           tile->last_row);
   }
   exclusive_prefix_sum(build.kernels, cell_count, page.cell_start);
+  build.context.read(page.cell_start, std::span(&page.entry_count, 1), page.cell_count);
 
   page.entry_photon = build.context.allocate<std::uint32_t>(page.entry_count, "photon references");
-  for (const PhotonPage& photons : *build.photon_pages) {
-    build.run("scatter", photons.count, photons.count, photons.position, photons.own_map,
-              photons.list, photons.list_offsets, photons.list_members, build.shapes, build.corners,
-              build.squared_reach, page.first_map, page.last_map, page.grids, page.cell_start,
-              cell_count, photons.first_photon, page.entry_photon);
+  if (tile) build.context.fill(page.entry_photon, none);  // that gaps have
+  for (const PhotonPage& photons : photon_pages) {
+    launch("scatter", photons, page.cell_start, cell_count, photons.first_photon,
+           page.entry_photon);
   }
   build.run("sort_cells", page.cell_count, page.cell_count, page.cell_start, page.entry_photon);
   build.context.finish();  // cell_count is released here
@@ -164,14 +204,14 @@ void fill_cells(Build& build, MapPage& page) {
 /// An array of a photon page takes at most a 32nd of the memory, so that the page takes about an
 /// eighth.
 std::unique_ptr<PhotonPages> photon_pages(Context& context, const MapStore& store,
-                                          const Patches& patches, const CandidateMaps& candidates,
-                                          const Photons& photons, Progress& progress) {
+                                          const CandidateMaps& candidates, const Photons& photons,
+                                          Progress& progress) {
   return std::make_unique<PhotonPages>(
       context,
       [&](std::uint64_t max_bytes) { return plan_photon_pages(photons, candidates, max_bytes); },
       [&](PhotonRange range) {
         progress.throw_if_cancelled();
-        return upload_photon_page(context, photons, store.normals, patches, candidates, range);
+        return upload_photon_page(context, photons, store.normals, store.map_of, candidates, range);
       },
       std::min(context.largest_buffer(), context.memory_limit() / 32));
 }
@@ -200,6 +240,12 @@ float photons_per_cell(const PhotonMapParameters& parameters) {
   return parameters.structure == MapStructure::uniform_grid ? parameters.photons_per_cell : all;
 }
 
+std::string surface_name(std::uint32_t pair, const Patches& patches) {
+  return patches.empty()
+             ? fmt::format("triangle {}", pair)
+             : fmt::format("triangle {} and its patch", triangle_of(patches.of(pair).front()));
+}
+
 /// `mixed`: per map, 1 where queries filter by normal; empty without patches.
 bool holds_mixed(std::span<const std::uint32_t> mixed, const MapRange& range) {
   if (mixed.empty()) return false;
@@ -214,9 +260,17 @@ MapPage build_page(Build& build, const Photons& photons, const MapRange& range,
   MapPage page;
   page.first_map = range.first;
   page.last_map = range.last;
-  page.entry_count = static_cast<std::uint32_t>(range.entries);
-  size_grids(build, page, map_counts);
-  fill_cells(build, page);
+  std::optional<Rectangle> cells;
+  if (range.tile) {
+    const MapTiling& tiling = store.tilings.at(range.first);
+    const PhotileGrid grid = tiling.page_grid(*range.tile);
+    cells = tiling.cells(*range.tile);
+    page.grids = build.context.upload(std::span(&grid, 1), "photon map grids");
+    page.cell_count = cells->height() * grid.columns;
+  } else {
+    place_grids(build, page, map_counts);
+  }
+  fill_cells(build, page, cells);
   if (is_tree(store.parameters.structure)) {
     build_trees(build.context, store.parameters.structure, photons, counts, page);
   }
@@ -235,6 +289,24 @@ void add_page(MapStore& store, MapPage page) {
   store.pages.add(std::move(page));
 }
 
+/// Gives the page of a tile a map of its own, numbered `map`.
+void renumber_tile(MapStore& store, const MapRange& range, std::uint32_t map, MapPage& page) {
+  store.tilings.at(range.first).assign(*range.tile, map);
+  page.first_map = map;
+  page.last_map = map + 1;
+}
+
+void count_all_photons(Build& build, MapCounts& counts) {
+  for (;;) {
+    try {
+      count_photons(build, counts);
+      return;
+    } catch (const DeviceMemoryError&) {
+      if (!build.photon_pages->halve()) throw;
+    }
+  }
+}
+
 }  // namespace
 
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
@@ -242,11 +314,14 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
   Context& context = store.device->context();
   const float reach = reach_of(scene, store.parameters.radius);
   const Patches& patches = groups.patches;
-  store.map_of = patches.map_of;
   if (!patches.empty()) store.normals = sided_normals(scene);
+  CandidateMaps candidates = find_candidate_maps(scene, photons, groups, reach);
+  MapNumbers numbers = number_maps(candidates, patches, 2 * scene.triangle_count());
+  store.map_of = std::move(numbers.map_of);
   Build build{context,
               store,
-              build_kernels(store),
+              build_kernels(store, !patches.empty()),
+              tile_kernels(store),
               !patches.empty(),
               {},
               {},
@@ -255,52 +330,42 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
               reach * reach,
               static_cast<float>(store.parameters.radius),
               photons_per_cell(store.parameters)};
-  const std::vector<float> corners = corner_coordinates(scene);
-  build.corners = context.upload(std::span<const float>(corners), "triangle corners");
-  const std::vector<PhotileMapShape> shapes =
-      map_shapes(scene, patches, glm::radians(groups.angle_degrees));
-  build.shapes = context.upload(std::span<const PhotileMapShape>(shapes), "map shapes");
-  build.crowding = context.upload(std::span<const float>(photon_crowding(scene, photons, patches)),
-                                  "photon crowding");
-  const CandidateMaps candidates = find_candidate_maps(scene, photons, groups, reach);
-  build.photon_pages = photon_pages(context, store, patches, candidates, photons, progress);
+  const MapShapes surfaces =
+      map_shapes(scene, patches, numbers.pairs, glm::radians(groups.angle_degrees));
+  build.corners = context.upload(std::span(surfaces.corners), "triangle corners");
+  build.shapes = context.upload(std::span(surfaces.shapes), "map shapes");
+  const std::vector<float> crowding =
+      of_numbered(numbers, photon_crowding(scene, photons, patches));
+  build.crowding = context.upload(std::span(crowding), "photon crowding");
+  build.photon_pages = photon_pages(context, store, candidates, photons, progress);
 
-  const std::size_t map_total = 2 * shapes.size();
+  const std::size_t map_total = numbers.map_count();
   MapCounts map_counts;
   map_counts.photons = context.allocate<std::uint32_t>(map_total, "photons per map");
   map_counts.mixed = context.allocate<std::uint32_t>(build.patches ? map_total : 0, "mixed maps");
-  for (bool counted = false; !counted;) {
-    try {
-      count_photons(build, map_counts);
-      counted = true;
-    } catch (const DeviceMemoryError&) {
-      if (!build.photon_pages->halve()) throw;
-    }
-  }
+  count_all_photons(build, map_counts);
   const std::vector<std::uint32_t> counts = read_all(context, map_counts.photons);
   const std::vector<std::uint32_t> mixed = read_all(context, map_counts.mixed);
 
   PhotonMapStatistics& statistics = store.statistics;
   statistics.mixed_maps = static_cast<std::uint64_t>(std::count(mixed.begin(), mixed.end(), 1u));
-  std::vector<MapRange> ranges = plan_map_pages(
+  PageQueue queue(
       counts, page_limits(context, store, build.photons_per_cell, statistics.mixed_maps > 0),
-      patches);
-  std::reverse(ranges.begin(), ranges.end());
-  while (!ranges.empty()) {
+      store.tilings, [&](std::uint32_t map) { return tiling_of(build, map, map_counts); },
+      [&](std::uint32_t map) { return surface_name(numbers.pairs[map / 2], patches); });
+  auto tile_number = static_cast<std::uint32_t>(map_total);
+  while (const auto range = queue.next()) {
     progress.throw_if_cancelled();
-    const MapRange range = ranges.back();
-    ranges.pop_back();
     try {
-      add_page(store, build_page(build, photons, range, counts, mixed, map_counts));
-      progress.advance(range.entries);
+      MapPage page = build_page(build, photons, *range, counts, mixed, map_counts);
+      if (range->tile) renumber_tile(store, *range, tile_number++, page);
+      add_page(store, std::move(page));
+      progress.advance(range->entries);
     } catch (const DeviceMemoryError&) {
-      const auto halves = halves_of(range, counts);
-      if (!build.photon_pages->halve() && !halves) throw;
-      if (halves) {
-        ranges.insert(ranges.end(), {halves->second, halves->first});
-      } else {
-        ranges.push_back(range);
-      }
+      const bool smaller_photon_pages = build.photon_pages->halve();
+      if (queue.cut(*range)) continue;
+      if (!smaller_photon_pages) throw;
+      queue.put_back(*range);
     }
   }
   if (statistics.mixed_maps == 0) store.normals.clear();
@@ -313,8 +378,13 @@ void build_global_map(MapStore& store, const Scene& scene, const Photons& photon
   const auto count = static_cast<std::uint32_t>(photons.size());
   if (count == 0) return;
   Context& context = store.device->context();
-  const std::vector<std::uint32_t> counts{count};
-  if (plan_map_pages(counts, {.largest_buffer = context.largest_buffer()}).size() != 1) return;
+  const PageLimits limits{.largest_buffer = context.largest_buffer()};
+  if (!limits.fit(count, 1)) {
+    throw DeviceError(fmt::format(
+        "a global kd-tree of {} photons, more than the {} that the device's largest buffer holds; "
+        "use fewer photons, more --passes or another --structure",
+        count, limits.most_entries()));
+  }
   MapPage page;
   page.first_map = 0;
   page.last_map = static_cast<std::uint32_t>(2 * scene.triangle_count());
@@ -328,10 +398,10 @@ void build_global_map(MapStore& store, const Scene& scene, const Photons& photon
         return std::vector<PhotonRange>{{0, count}};
       },
       [&](PhotonRange range) {
-        return upload_photon_records(context, photons, store.normals, {}, range);
+        return upload_photon_records(context, photons, store.normals, range);
       },
       context.largest_buffer());
-  gather_entries(build_kernels(store), store.needs, pages, true, page);
+  gather_entries(build_kernels(store, false), store.needs, pages, true, page);
   context.finish();
   store.statistics.maps = 1;
   store.statistics.largest_map = count;

@@ -22,7 +22,7 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
   }
   if (needs.glossy) page.entry_incoming = planes("photon map directions");
   if (normals) page.entry_normal = planes("photon map normals");
-  for (const PhotonPage& photons : photon_pages) {
+  for (const PhotonPage& photons : photon_pages.entering(page.first_map, page.last_map)) {
     const auto run = [&](const char* kernel, const auto&... arrays) {
       build.run(kernel, page.entry_count, work_group_size, page.entry_count, page.entry_stride,
                 page.entry_photon, photons.first_photon, photons.count, arrays...);

@@ -5,17 +5,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "maps/grid_cells.hpp"
 #include "maps/kdtree.hpp"
 
 namespace photile::maps {
 namespace {
-
-/// Coordinates in the plane of a grid, as kernels/grid/entry.clh computes them.
-glm::vec3 project(const glm::vec3& p, const PhotileGrid& grid) {
-  const glm::vec3 local = p - glm::vec3(grid.origin_x, grid.origin_y, grid.origin_z);
-  return {glm::dot(local, glm::vec3(grid.u_axis_x, grid.u_axis_y, grid.u_axis_z)),
-          glm::dot(local, glm::vec3(grid.v_axis_x, grid.v_axis_y, grid.v_axis_z)), 0.0f};
-}
 
 /// The tree of one map; replaces `entries` (photon indices) by the order of its leaves.
 void build_tree(MapStructure structure, const Photons& photons, const PhotileGrid& grid,
@@ -25,7 +19,7 @@ void build_tree(MapStructure structure, const Photons& photons, const PhotileGri
   std::vector<glm::vec3> points(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const glm::vec3& position = photons.position[entries[i]];
-    points[i] = planar ? project(position, grid) : position;
+    points[i] = planar ? glm::vec3(project(position, grid), 0.0f) : position;
   }
   std::vector<std::uint32_t> order(entries.size());
   std::iota(order.begin(), order.end(), 0u);

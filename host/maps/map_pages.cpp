@@ -1,51 +1,36 @@
 #include "maps/map_pages.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "maps/map_page.hpp"
-#include "photile/errors.hpp"
 
 namespace photile::maps {
-namespace {
 
-/// Entries of a page at most: three planes of floats are the largest buffer, and kernels index them
-/// in 32 bits.
-std::uint64_t max_entries(std::uint64_t largest_buffer) {
+std::uint64_t PageLimits::most_entries() const {
   const std::uint64_t floats = std::min<std::uint64_t>(largest_buffer / sizeof(float),
                                                        std::numeric_limits<std::uint32_t>::max());
   return std::max<std::uint64_t>(floats / 3, most_entry_padding) - most_entry_padding;
 }
 
-}  // namespace
+bool PageLimits::fit(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells) const {
+  constexpr std::uint64_t bytes_per_cell = 2 * sizeof(std::uint32_t);  // a count and a start
+  const std::uint64_t most_cells =
+      std::min(largest_buffer / sizeof(std::uint32_t), max_items) - 1;
+  return entries <= most_entries() && maps <= largest_buffer / sizeof(PhotileGrid) &&
+         cells <= most_cells &&
+         entries * bytes_per_entry + maps * bytes_per_map + cells * bytes_per_cell <= page_bytes;
+}
 
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
-                                     const PageLimits& limits, const Patches& patches) {
-  const std::uint64_t most_entries = max_entries(limits.largest_buffer);
-  const std::uint64_t most_maps = limits.largest_buffer / sizeof(PhotileGrid);
-  const auto page_bytes = [&](std::uint64_t entries, std::uint64_t maps) {
-    return entries * limits.bytes_per_entry + maps * limits.bytes_per_map;
-  };
-
+                                     const PageLimits& limits) {
   std::vector<MapRange> pages;
   for (std::uint32_t map = 0; map < map_count.size(); ++map) {
     const std::uint64_t entries = map_count[map];
     if (entries == 0) continue;
-    if (entries > most_entries) {
-      throw DeviceError(
-          fmt::format("the photon map of triangle {}{} has {} photons, more than the {} that the "
-                      "device's largest buffer holds; use fewer photons, a smaller radius{}",
-                      patches.empty() ? map / 2 : triangle_of(patches.of(map / 2).front()),
-                      patches.empty() ? "" : " and its patch", entries, most_entries,
-                      patches.empty() ? "" : " or --maps triangle"));
+    if (pages.empty() ||
+        !limits.fit(pages.back().entries + entries, map + 1 - pages.back().first)) {
+      pages.push_back({map, map, 0});
     }
-    const auto fits = [&](const MapRange& page) {
-      const std::uint64_t maps = map + 1 - page.first;
-      return page.entries + entries <= most_entries && maps <= most_maps &&
-             page_bytes(page.entries + entries, maps) <= limits.page_bytes;
-    };
-    if (pages.empty() || !fits(pages.back())) pages.push_back({map, map, 0});
     pages.back().last = map + 1;
     pages.back().entries += entries;
   }

@@ -76,18 +76,27 @@ PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts
 
 }  // namespace
 
-std::vector<PhotileMapShape> map_shapes(const Scene& scene, const Patches& patches,
-                                        double angle_radians) {
+MapShapes map_shapes(const Scene& scene, const Patches& patches,
+                     std::span<const std::uint32_t> pairs, double angle_radians) {
   const groups::TriangleFacts facts(scene);
   const double margin = rounding_margin(scene);
-  std::vector<PhotileMapShape> shapes(patches.empty() ? scene.triangle_count() : patches.count());
-  tbb::parallel_for(std::size_t{0}, shapes.size(), [&](std::size_t i) {
-    const std::uint32_t own = sided(static_cast<std::uint32_t>(i), 0);
+  MapShapes result;
+  result.shapes.resize(pairs.size());
+  tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+    const std::uint32_t own = sided(pairs[i], 0);
     const std::span<const std::uint32_t> members =
-        patches.empty() ? std::span(&own, 1) : patches.of(i);
-    shapes[i] = map_shape(scene, facts, members, angle_radians, margin);
+        patches.empty() ? std::span(&own, 1) : patches.of(pairs[i]);
+    result.shapes[i] = map_shape(scene, facts, members, angle_radians, margin);
   });
-  return shapes;
+  for (PhotileMapShape& shape : result.shapes) {
+    if (shape.triangle == PHOTILE_NO_TRIANGLE) continue;
+    const auto place = static_cast<std::uint32_t>(result.corners.size() / 9);
+    for (const glm::vec3& corner : scene.corners(shape.triangle)) {
+      result.corners.insert(result.corners.end(), {corner.x, corner.y, corner.z});
+    }
+    shape.triangle = place;
+  }
+  return result;
 }
 
 }  // namespace photile::maps

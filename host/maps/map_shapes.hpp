@@ -1,6 +1,8 @@
 // The boxes around the triangles that share photon maps.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "photile/device/map_shape.h"
@@ -11,10 +13,17 @@ namespace photile::maps {
 
 static_assert(sizeof(PhotileMapShape) == 19 * 4, "PhotileMapShape must have no padding");
 
-/// Shape i is that of maps 2 i and 2 i + 1: a triangle's, or a patch's. The u axis follows the longest
-/// edge of the largest triangle, so that the rectangle around a triangle is at most twice its area.
+/// The surfaces of pairs of maps.
+struct MapShapes {
+  /// Per pair. The u axis follows the longest edge of the largest triangle, so that the rectangle
+  /// around a triangle is at most twice its area.
+  std::vector<PhotileMapShape> shapes;
+  std::vector<float> corners;  ///< 9 floats per triangle that is alone in its maps
+};
+
+/// The shapes of numbered pairs.
 ///   angle_radians   largest angle between normals of neighbours
-std::vector<PhotileMapShape> map_shapes(const Scene& scene, const Patches& patches,
-                                        double angle_radians);
+MapShapes map_shapes(const Scene& scene, const Patches& patches,
+                     std::span<const std::uint32_t> pairs, double angle_radians);
 
 }  // namespace photile::maps

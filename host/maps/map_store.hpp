@@ -4,8 +4,10 @@
 #include <cstddef>
 
 #include "device/context.hpp"
+#include "maps/page_queue.hpp"
 #include "maps/resident_maps.hpp"
 #include "photile/photon_maps.hpp"
+#include "photile/primary_hits.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::maps {
@@ -20,9 +22,16 @@ struct MapStore {
   PhotonMapParameters parameters;
   PhotonMapStatistics statistics;
   mutable ResidentMaps pages;  ///< maps without photons may lie in none; using one moves others
-  std::vector<std::uint32_t> map_of;  ///< per sided triangle; empty where that is the map itself
+  /// Per sided triangle; `none` where no photon comes near. Empty where that is the map itself.
+  std::vector<std::uint32_t> map_of;
+  MapTilings tilings;                 ///< of maps that lie in several pages
   double cos_angle = 0;               ///< of the largest angle between normals
   std::vector<glm::vec3> normals;     ///< per sided triangle; only if a page has entry_normal
+
+  /// The maps of hits [first, first + count); those on tiles get the tiles' numbers, which follow
+  /// those of all maps.
+  std::vector<std::uint32_t> maps_of(const PrimaryHits& hits, std::size_t first,
+                                     std::size_t count) const;
 };
 
 /// Work-items of a group in every kernel of build and estimate.

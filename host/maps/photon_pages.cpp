@@ -24,6 +24,15 @@ std::span<const T> part(const std::vector<T>& values, PhotonRange range) {
   return {values.data() + range.first, std::size_t{range.last - range.first}};
 }
 
+PhotonRange with_maps(const CandidateMaps& candidates, std::uint32_t first, std::uint32_t last,
+                      std::uint64_t first_member, std::uint64_t last_member) {
+  if (first_member == last_member) return {first, last, 0, 0};
+  const auto members = candidates.members.begin();
+  const auto [least, most] = std::minmax_element(members + static_cast<std::ptrdiff_t>(first_member),
+                                                 members + static_cast<std::ptrdiff_t>(last_member));
+  return {first, last, *least, *most + 1};
+}
+
 }  // namespace
 
 std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
@@ -59,24 +68,19 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
       }
     }
     const std::uint64_t last = std::min<std::uint64_t>(most, photons.first_of[end_map]);
-    pages.push_back({first, static_cast<std::uint32_t>(last)});
+    pages.push_back(with_maps(candidates, first, static_cast<std::uint32_t>(last),
+                              first_member_of(first_map), first_member_of(end_map)));
     first = static_cast<std::uint32_t>(last);
   }
   return pages;
 }
 
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
-                                 std::span<const glm::vec3> normals, const Patches& patches,
-                                 PhotonRange range) {
+                                 std::span<const glm::vec3> normals, PhotonRange range) {
   PhotonPage page;
   page.first_photon = range.first;
   page.count = range.last - range.first;
   page.position = context.upload(floats(photons.position, range), "photon positions");
-  std::vector<std::uint32_t> own_map(page.count);
-  std::transform(photons.sided_triangle.begin() + range.first,
-                 photons.sided_triangle.begin() + range.last, own_map.begin(),
-                 [&](std::uint32_t sided_triangle) { return patches.map(sided_triangle); });
-  page.own_map = context.upload(std::span<const std::uint32_t>(own_map), "maps of photons");
   page.flux = context.upload(floats(photons.flux, range), "photon flux");
   page.light = context.upload(part(photons.light, range), "photon lights");
   page.incoming = context.upload(floats(photons.incoming, range), "photon directions");
@@ -91,9 +95,15 @@ PhotonPage upload_photon_records(device::Context& context, const Photons& photon
 }
 
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
-                              std::span<const glm::vec3> normals, const Patches& patches,
+                              std::span<const glm::vec3> normals,
+                              std::span<const std::uint32_t> map_of,
                               const CandidateMaps& candidates, PhotonRange range) {
-  PhotonPage page = upload_photon_records(context, photons, normals, patches, range);
+  PhotonPage page = upload_photon_records(context, photons, normals, range);
+  std::vector<std::uint32_t> own_map(page.count);
+  std::transform(photons.sided_triangle.begin() + range.first,
+                 photons.sided_triangle.begin() + range.last, own_map.begin(),
+                 [&](std::uint32_t sided_triangle) { return map_of[sided_triangle]; });
+  page.own_map = context.upload(std::span<const std::uint32_t>(own_map), "maps of photons");
 
   const std::uint64_t first_list = candidates.first_list_of[photons.sided_triangle[range.first]];
   const std::uint64_t end_list =
@@ -130,8 +140,16 @@ const PhotonPage& PhotonPages::Iterator::operator*() const {
   return pages_.pages_[page_];
 }
 
+void PhotonPages::Iterator::skip_others() {
+  while (page_ < pages_.pages_.size() &&
+         !pages_.ranges_[page_].may_enter(first_map_, last_map_)) {
+    ++page_;
+  }
+}
+
 PhotonPages::Iterator& PhotonPages::Iterator::operator++() {
   ++page_;
+  skip_others();
   pages_.release();
   return *this;
 }

@@ -9,9 +9,9 @@
 
 #include "device/context.hpp"
 #include "maps/candidate_maps.hpp"
-#include "photile/patches.hpp"
 #include "maps/residents.hpp"
 #include "photile/photons.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::maps {
 
@@ -31,9 +31,14 @@ struct PhotonPage {
   device::Buffer<std::uint32_t> list_members;
 };
 
-/// The bounds of one page: photons [first, last).
+/// The bounds of one page: photons [first, last), which enter maps of [first_map, last_map) at most.
 struct PhotonRange {
   std::uint32_t first = 0, last = 0;
+  std::uint32_t first_map = 0, last_map = none;
+
+  bool may_enter(std::uint32_t first_of_maps, std::uint32_t last_of_maps) const {
+    return first_map < last_of_maps && first_of_maps < last_map;
+  }
 };
 
 /// Splits photons so that no buffer of a page is larger than `max_bytes`, but for the lists of a
@@ -44,16 +49,19 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
 /// Records only, without candidate maps.
 ///   normals   per sided triangle, where maps need them; else empty
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
-                                 std::span<const glm::vec3> normals, const Patches& patches,
-                                 PhotonRange range);
+                                 std::span<const glm::vec3> normals, PhotonRange range);
 
+/// With candidate maps.
+///   map_of   per sided triangle
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
-                              std::span<const glm::vec3> normals, const Patches& patches,
+                              std::span<const glm::vec3> normals,
+                              std::span<const std::uint32_t> map_of,
                               const CandidateMaps& candidates, PhotonRange range);
 
 /// The photons of a build, page by page: on the device while there is memory, uploaded again where
-/// there was none. `for (const PhotonPage& page : pages)` goes through all of them; a page stays
-/// until the next one is reached.
+/// there was none. `for (const PhotonPage& page : pages)` goes through all of them,
+/// `for (const PhotonPage& page : pages.entering(first_map, last_map))` through those that those maps
+/// may hold photons of; a page stays until the next one is reached.
 class PhotonPages final : private Residents {
  public:
   using Plan = std::function<std::vector<PhotonRange>(std::uint64_t max_bytes)>;
@@ -64,18 +72,34 @@ class PhotonPages final : private Residents {
 
   class Iterator {
    public:
-    Iterator(PhotonPages& pages, std::size_t page) : pages_(pages), page_(page) {}
+    Iterator(PhotonPages& pages, std::size_t page, std::uint32_t first_map, std::uint32_t last_map)
+        : pages_(pages), page_(page), first_map_(first_map), last_map_(last_map) {
+      skip_others();
+    }
     /// Errors: DeviceMemoryError.
     const PhotonPage& operator*() const;
     Iterator& operator++();
     bool operator!=(const Iterator& other) const { return page_ != other.page_; }
 
    private:
+    void skip_others();
+
     PhotonPages& pages_;
     std::size_t page_;
+    std::uint32_t first_map_, last_map_;
   };
-  Iterator begin() { return {*this, 0}; }
-  Iterator end() { return {*this, pages_.size()}; }
+  struct View {
+    PhotonPages& pages;
+    std::uint32_t first_map, last_map;
+
+    Iterator begin() const { return {pages, 0, first_map, last_map}; }
+    Iterator end() const { return {pages, pages.pages_.size(), first_map, last_map}; }
+  };
+  View entering(std::uint32_t first_map, std::uint32_t last_map) {
+    return {*this, first_map, last_map};
+  }
+  Iterator begin() { return entering(0, none).begin(); }
+  Iterator end() { return entering(0, none).end(); }
 
   /// Smaller pages from now on. False where they are as small as is sensible.
   bool halve();

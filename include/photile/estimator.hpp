@@ -61,7 +61,7 @@ class Estimator {
   /// PhotonMaps::map_of) need not be sorted.
   Estimates estimate(const PrimaryHits& hits);
 
-  /// The same for hits [first, first + count) alone, which must be in the order of their maps.
+  /// The same for hits [first, first + count) alone.
   Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count);
 
   /// The last place at or before `hit` where a batch may be cut without changing a bit of what is

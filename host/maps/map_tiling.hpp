@@ -1,0 +1,74 @@
+// A photon map that is too large for one page, cut into tiles.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "photile/device/grid.h"
+
+namespace photile::maps {
+
+/// Columns and rows [first, last), of a grid's cells or of bins of them.
+struct Rectangle {
+  std::uint32_t first_column = 0, first_row = 0, last_column = 0, last_row = 0;
+
+  std::uint32_t width() const { return last_column - first_column; }
+  std::uint32_t height() const { return last_row - first_row; }
+};
+
+/// Tiles of a map: disjoint rectangles of bins, which are squares of whole cells. The page of a tile
+/// holds the photons within the radius of the tile, and hits on the tile find all their neighbours
+/// there: by the same grid, in the same cells and the same lanes of vectors as in the undivided map,
+/// hence with the same bits (kernels/grid/tile.clh).
+class MapTiling {
+ public:
+  static constexpr std::uint32_t most_bins = 64;  ///< per side
+
+  /// `radius`: metres, of the search.
+  MapTiling(const PhotileGrid& grid, double radius);
+
+  const PhotileGrid& grid() const { return grid_; }
+  std::uint32_t cells_per_bin() const { return cells_per_bin_; }  ///< per side
+  std::uint32_t columns() const { return columns_; }              ///< of bins
+  std::uint32_t rows() const { return rows_; }
+
+  /// `counts`: photons per bin, in row-major order.
+  void set_photons(std::span<const std::uint32_t> counts);
+
+  Rectangle whole() const { return {0, 0, columns_, rows_}; }
+  /// Photons within the radius of a tile, and a few more.
+  std::uint64_t photons(const Rectangle& tile) const;
+  /// The cells that photons of a tile's page lie in. It has all cells of their rows.
+  Rectangle cells(const Rectangle& tile) const;
+  /// Entries of a tile's page, about: photons, and what gaps between rows take.
+  std::uint64_t entries(const Rectangle& tile) const;
+  /// The grid for the page of a tile: indices of its cells begin with those of the tile's first row.
+  PhotileGrid page_grid(const Rectangle& tile) const;
+
+  /// The tile in two, across the side that leaves fewer entries; nothing where the smallest tiles
+  /// would have hardly fewer than it has.
+  std::optional<std::pair<Rectangle, Rectangle>> halves(const Rectangle& tile) const;
+
+  /// Hits on the tile belong to map `map` from now on.
+  void assign(const Rectangle& tile, std::uint32_t map);
+  /// The map assigned to the place; `none` where no photon is near.
+  std::uint32_t map_at(const glm::vec3& position) const { return map_of_bin_[bin_of(position)]; }
+
+ private:
+  Rectangle grown(const Rectangle& tile) const;
+  /// Entries of the largest tile where this one is cut as far as possible.
+  std::uint64_t least_entries(const Rectangle& tile) const;
+  std::size_t bin_of(const glm::vec3& position) const;
+
+  PhotileGrid grid_;
+  std::uint32_t cells_per_bin_ = 1, columns_ = 1, rows_ = 1;
+  std::uint32_t border_ = 0;  ///< bins around a tile that its hits may find photons in
+  std::vector<std::uint64_t> sums_;  ///< of photons in all bins before a column and a row
+  std::vector<std::uint32_t> map_of_bin_;
+};
+
+}  // namespace photile::maps
