@@ -362,10 +362,14 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
       add_page(store, std::move(page));
       progress.advance(range->entries);
     } catch (const DeviceMemoryError&) {
-      const bool smaller_photon_pages = build.photon_pages->halve();
-      if (queue.cut(*range)) continue;
-      if (!smaller_photon_pages) throw;
-      queue.put_back(*range);
+      // The larger one of what lies on the device together, if it can be made smaller.
+      const bool photons_first = build.photon_pages->page_bytes() >= queue.bytes(*range);
+      if (photons_first && build.photon_pages->halve()) {
+        queue.put_back(*range);
+      } else if (!queue.cut(*range)) {
+        if (!build.photon_pages->halve()) throw;
+        queue.put_back(*range);
+      }
     }
   }
   if (statistics.mixed_maps == 0) store.normals.clear();

@@ -12,13 +12,17 @@ std::uint64_t PageLimits::most_entries() const {
   return std::max<std::uint64_t>(floats / 3, most_entry_padding) - most_entry_padding;
 }
 
-bool PageLimits::fit(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells) const {
+std::uint64_t PageLimits::bytes(std::uint64_t entries, std::uint64_t maps,
+                                std::uint64_t cells) const {
   constexpr std::uint64_t bytes_per_cell = 2 * sizeof(std::uint32_t);  // a count and a start
+  return entries * bytes_per_entry + maps * bytes_per_map + cells * bytes_per_cell;
+}
+
+bool PageLimits::fit(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells) const {
   const std::uint64_t most_cells =
       std::min(largest_buffer / sizeof(std::uint32_t), max_items) - 1;
   return entries <= most_entries() && maps <= largest_buffer / sizeof(PhotileGrid) &&
-         cells <= most_cells &&
-         entries * bytes_per_entry + maps * bytes_per_map + cells * bytes_per_cell <= page_bytes;
+         cells <= most_cells && bytes(entries, maps, cells) <= page_bytes;
 }
 
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,

@@ -29,8 +29,9 @@ struct PageLimits {
 
   /// Three planes of floats are the largest buffer, and kernels index them in 32 bits.
   std::uint64_t most_entries() const;
-  /// Whether a page keeps to all limits. `cells`: that it has beside those that bytes_per_entry
-  /// expects.
+  /// What a page takes. `cells`: that it has beside those that bytes_per_entry expects.
+  std::uint64_t bytes(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells = 0) const;
+  /// Whether a page keeps to all limits.
   bool fit(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells = 0) const;
 };
 

@@ -23,7 +23,9 @@ std::optional<MapRange> PageQueue::next() {
     const MapRange page = pages_.front();
     pages_.pop_front();
     if (page.entries == 0) continue;  // a tile without photons near
-    if (!fits(page) && cut(page)) continue;
+    const bool fits =
+        limits_.fit(page.entries, page.last - page.first, cells_of_tile(page));
+    if (!fits && cut(page)) continue;
     const std::uint64_t most = limits_.most_entries();
     if (page.entries > most) {
       throw DeviceError(fmt::format(
@@ -59,13 +61,14 @@ bool PageQueue::cut(const MapRange& page) {
   return true;
 }
 
-bool PageQueue::fits(const MapRange& page) const {
-  std::uint64_t cells = 0;
-  if (page.tile) {
-    const MapTiling& tiling = tilings_.at(page.first);
-    cells = std::uint64_t{tiling.cells(*page.tile).height()} * tiling.grid().columns;
-  }
-  return limits_.fit(page.entries, page.last - page.first, cells);
+std::uint64_t PageQueue::bytes(const MapRange& page) const {
+  return limits_.bytes(page.entries, page.last - page.first, cells_of_tile(page));
+}
+
+std::uint64_t PageQueue::cells_of_tile(const MapRange& page) const {
+  if (!page.tile) return 0;
+  const MapTiling& tiling = tilings_.at(page.first);
+  return std::uint64_t{tiling.cells(*page.tile).height()} * tiling.grid().columns;
 }
 
 MapRange PageQueue::tile_of(std::uint32_t map, const Rectangle& tile) const {

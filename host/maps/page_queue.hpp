@@ -37,11 +37,14 @@ class PageQueue {
   /// Cuts a page that did not fit, and puts its parts back; false where it cannot be cut.
   bool cut(const MapRange& page);
 
+  /// Device memory that a page is expected to take.
+  std::uint64_t bytes(const MapRange& page) const;
+
   /// The page is the next one, as it is.
   void put_back(const MapRange& page) { pages_.push_front(page); }
 
  private:
-  bool fits(const MapRange& page) const;
+  std::uint64_t cells_of_tile(const MapRange& page) const;
   MapRange tile_of(std::uint32_t map, const Rectangle& tile) const;
 
   std::span<const std::uint32_t> map_count_;

@@ -154,12 +154,22 @@ PhotonPages::Iterator& PhotonPages::Iterator::operator++() {
   return *this;
 }
 
-bool PhotonPages::halve() {
-  constexpr std::uint64_t least_bytes = 4096;
-  std::uint64_t largest = 0;  // of the buffers there are now
+std::uint64_t PhotonPages::largest_array() const {
+  std::uint64_t largest = 0;
   for (const PhotonRange& range : ranges_) {
     largest = std::max<std::uint64_t>(largest, bytes_per_photon * (range.last - range.first));
   }
+  return largest;
+}
+
+std::uint64_t PhotonPages::page_bytes() const {
+  constexpr std::uint64_t arrays = 4;  // positions, flux, and smaller ones
+  return arrays * largest_array();
+}
+
+bool PhotonPages::halve() {
+  constexpr std::uint64_t least_bytes = 4096;
+  const std::uint64_t largest = largest_array();
   if (largest < 2 * least_bytes) return false;
   release();
   while (reclaim()) {

@@ -101,10 +101,14 @@ class PhotonPages final : private Residents {
   Iterator begin() { return entering(0, none).begin(); }
   Iterator end() { return entering(0, none).end(); }
 
+  /// Device memory that the largest page takes, about.
+  std::uint64_t page_bytes() const;
+
   /// Smaller pages from now on. False where they are as small as is sensible.
   bool halve();
 
  private:
+  std::uint64_t largest_array() const;
   void load(std::size_t page) override { pages_[page] = upload_(ranges_[page]); }
   void unload(std::size_t page) override { pages_[page] = {}; }
 
