@@ -57,6 +57,7 @@ bool in_cell(double coordinate, double minimum, double size, std::uint32_t index
 
 Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
   Contents contents;
+  const std::span<const std::uint32_t> map_of = photon_maps.map_of();
   for (std::size_t i = 0; i < photon_maps.store().pages.size(); ++i) {
     const maps::MapPage& page = photon_maps.store().pages.use(i);
     const auto grids = download(page.grids);
@@ -66,12 +67,14 @@ Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
     const auto flux = download(page.entry_flux);
     for (std::uint32_t map = page.first_map; map < page.last_map; ++map) {
       const PhotileGrid& grid = grids[map - page.first_map];
+      const auto own = std::find(map_of.begin(), map_of.end(), map);  // without patches
+      const auto sided_triangle = static_cast<std::uint32_t>(own - map_of.begin());
       for (std::uint32_t cell = 0; cell < grid.columns * grid.rows; ++cell) {
         const std::uint32_t start = cell_start[grid.first_cell + cell];
         const std::uint32_t end = cell_start[grid.first_cell + cell + 1];
         for (std::uint32_t entry = start; entry < end; ++entry) {
           const std::uint32_t photon = entry_photon[entry];
-          contents.photons_of_map[map].push_back(photon);
+          contents.photons_of_map[sided_triangle].push_back(photon);
           if (entry > start && entry_photon[entry - 1] >= photon) contents.cells_ascend = false;
           const glm::dvec3 local = glm::dvec3(photons.position[photon]) -
                                    glm::dvec3(grid.origin_x, grid.origin_y, grid.origin_z);

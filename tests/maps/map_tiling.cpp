@@ -1,0 +1,114 @@
+// Tiles of a grid: whoever looks up a place finds the page that holds all cells within the radius.
+#include "maps/map_tiling.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/gtc/constants.hpp>
+#include <random>
+#include <vector>
+
+#include "photile/scene.hpp"
+
+using namespace photile;
+using maps::MapTiling;
+using maps::Rectangle;
+
+namespace {
+
+constexpr double radius = 0.1;
+
+/// A grid of 2 cm cells around a rectangle of 4 x 1.5 m in the plane z = 0.
+PhotileGrid grid() {
+  PhotileGrid grid{};
+  grid.u_axis_x = 1;
+  grid.v_axis_y = 1;
+  grid.minimum_u = grid.minimum_v = -static_cast<float>(radius);
+  grid.cell_size = 0.02f;
+  grid.inverse_cell_size = 50;
+  grid.slack = 1e-5f;
+  grid.columns = 210;
+  grid.rows = 85;
+  return grid;
+}
+
+/// A photon in every cell.
+MapTiling even_tiling() {
+  MapTiling tiling(grid(), radius);
+  std::vector<std::uint32_t> counts;
+  for (std::uint32_t row = 0; row < tiling.rows(); ++row) {
+    for (std::uint32_t column = 0; column < tiling.columns(); ++column) {
+      const std::uint32_t side = tiling.cells_per_bin();
+      counts.push_back(std::min(side, grid().columns - column * side) *
+                       std::min(side, grid().rows - row * side));
+    }
+  }
+  tiling.set_photons(counts);
+  return tiling;
+}
+
+/// Tiles of at most `most` entries, as far as they can be cut.
+std::vector<Rectangle> cut(const MapTiling& tiling, std::uint64_t most) {
+  std::vector<Rectangle> todo{tiling.whole()}, tiles;
+  while (!todo.empty()) {
+    const Rectangle tile = todo.back();
+    todo.pop_back();
+    const auto halves = tiling.entries(tile) > most ? tiling.halves(tile) : std::nullopt;
+    if (halves) {
+      todo.insert(todo.end(), {halves->first, halves->second});
+    } else {
+      tiles.push_back(tile);
+    }
+  }
+  return tiles;
+}
+
+}  // namespace
+
+TEST_CASE("a tile counts the photons of its cells, the whole all photons") {
+  const MapTiling tiling = even_tiling();
+  CHECK(tiling.photons(tiling.whole()) == 210u * 85u);
+  CHECK(tiling.entries(tiling.whole()) == 210u * 85u);  // no gaps
+  const Rectangle tile{10, 3, 12, 9};
+  const Rectangle cells = tiling.cells(tile);
+  CHECK(tiling.photons(tile) == std::uint64_t{cells.width()} * cells.height());
+}
+
+TEST_CASE("the page of a place has all cells within the radius of it") {
+  MapTiling tiling = even_tiling();
+  const std::vector<Rectangle> tiles = cut(tiling, 3000);
+  REQUIRE(tiles.size() > 4);
+  for (std::uint32_t i = 0; i < tiles.size(); ++i) tiling.assign(tiles[i], i);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<float> u(0, 4), v(0, 1.5f), turn(0, 2 * glm::pi<float>());
+  for (int i = 0; i < 20'000; ++i) {
+    const glm::vec3 place(u(random), v(random), 0.05f);
+    const std::uint32_t map = tiling.map_at(place);
+    REQUIRE(map < tiles.size());
+    const Rectangle cells = tiling.cells(tiles[map]);
+    const float angle = turn(random);
+    const glm::vec2 end = glm::vec2(place) + 0.1f * glm::vec2(std::cos(angle), std::sin(angle));
+    const auto column = static_cast<std::uint32_t>(std::clamp((end.x + 0.1f) * 50, 0.f, 209.f));
+    const auto row = static_cast<std::uint32_t>(std::clamp((end.y + 0.1f) * 50, 0.f, 84.f));
+    REQUIRE((column >= cells.first_column && column < cells.last_column));
+    REQUIRE((row >= cells.first_row && row < cells.last_row));
+  }
+}
+
+TEST_CASE("indices of a tile's cells begin with 0, though those of its grid do not") {
+  const MapTiling tiling = even_tiling();
+  const Rectangle tile{10, 10, 12, 12};
+  const std::uint32_t first_row = tiling.cells(tile).first_row;
+  REQUIRE(first_row > 0);
+  CHECK(tiling.page_grid(tile).first_cell + first_row * grid().columns == 0u);
+}
+
+TEST_CASE("photons in one point cannot be cut apart") {
+  MapTiling tiling(grid(), radius);
+  std::vector<std::uint32_t> counts(std::size_t{tiling.columns()} * tiling.rows(), 0);
+  counts[5 * tiling.columns() + 7] = 1'000'000;
+  tiling.set_photons(counts);
+  CHECK_FALSE(tiling.halves(tiling.whole()).has_value());
+}
+
+TEST_CASE("places that no tile was assigned to have no map") {
+  CHECK(even_tiling().map_at({1, 1, 0}) == none);
+}
