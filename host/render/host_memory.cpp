@@ -23,18 +23,16 @@ std::optional<std::uint64_t> number_in(const char* file, const std::string& labe
 }
 
 std::uint64_t system_bytes() {
-  const auto kib = number_in("/proc/meminfo", "MemAvailable:");
+  const auto kib = number_in("/proc/meminfo", "MemTotal:");
   return kib ? *kib * 1024 : unknown;
 }
 
 std::uint64_t control_group_bytes() {
-  const auto limit = number_in("/sys/fs/cgroup/memory.max", "");  // "max" is no number
-  const auto used = number_in("/sys/fs/cgroup/memory.current", "");
-  return limit && used ? *limit - std::min(*limit, *used) : unknown;
+  return number_in("/sys/fs/cgroup/memory.max", "").value_or(unknown);  // "max" is no number
 }
 
 }  // namespace
 
-std::uint64_t available_host_bytes() { return std::min(system_bytes(), control_group_bytes()); }
+std::uint64_t installed_host_bytes() { return std::min(system_bytes(), control_group_bytes()); }
 
 }  // namespace photile

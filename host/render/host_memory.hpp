@@ -1,12 +1,12 @@
-// How much memory the host has to spare.
+// How much memory the host has.
 #pragma once
 
 #include <cstdint>
 
 namespace photile {
 
-/// Bytes that can be allocated without swapping, by the system's own estimate and the limit of the
-/// process's control group. The largest number where nothing is known.
-std::uint64_t available_host_bytes();
+/// Bytes installed, or the limit of the process's control group where that is less: the same on every
+/// run, whatever else is running. The largest number where nothing is known.
+std::uint64_t installed_host_bytes();
 
 }  // namespace photile

@@ -21,10 +21,10 @@ std::uint64_t bytes_per_stored_photon(const SceneNeeds& needs) {
 }
 
 int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t bytes_per_photon,
-                  std::uint64_t available_bytes) {
+                  std::uint64_t memory_bytes) {
   const double stored = static_cast<double>(paths) * stored_per_path;
   const double most =
-      std::min(static_cast<double>(available_bytes) / 2 / static_cast<double>(bytes_per_photon),
+      std::min(static_cast<double>(memory_bytes) / 2 / static_cast<double>(bytes_per_photon),
                // Paths differ: keep a distance to what cannot be indexed.
                0.9 * static_cast<double>(limits::max_stored_photons));
   const double passes = std::ceil(stored / std::max(1.0, most));
@@ -39,20 +39,20 @@ int automatic_passes(const RayScene& rays, const PhotonTracerParameters& paramet
   sample.emitted_photons = few;
   const double stored_per_path =
       static_cast<double>(trace_photons(rays, sample).photons.size()) / static_cast<double>(few);
-  const std::uint64_t available = available_host_bytes();
+  const std::uint64_t memory = installed_host_bytes();
   const int passes = passes_within(parameters.emitted_photons, stored_per_path,
-                                   bytes_per_stored_photon(needs_of(rays.scene())), available);
+                                   bytes_per_stored_photon(needs_of(rays.scene())), memory);
   if (passes > limits::max_passes) {
     throw UsageError(
         fmt::format("{} photons do not fit in {} bytes of memory even in {} passes; "
                     "use fewer photons",
-                    parameters.emitted_photons, available, limits::max_passes));
+                    parameters.emitted_photons, memory, limits::max_passes));
   }
   if (passes > 1) {
     progress.note(
-        fmt::format("{} photons do not fit in {:.1f} GB of memory: {} passes (--passes "
-                    "N chooses)",
-                    parameters.emitted_photons, static_cast<double>(available) / 1e9, passes));
+        fmt::format("{} photons do not fit in half of {:.1f} GB of memory: --passes {} (gives "
+                    "the same picture on any machine)",
+                    parameters.emitted_photons, static_cast<double>(memory) / 1e9, passes));
   }
   return passes;
 }

@@ -13,13 +13,13 @@ namespace photile {
 /// while its maps are built, a few references each. An estimate: references depend on the mesh.
 std::uint64_t bytes_per_stored_photon(const SceneNeeds& needs);
 
-/// Passes so that the photons of one take at most half of `available_bytes`, and are not more than
+/// Passes so that the photons of one take at most half of `memory_bytes`, and are not more than
 /// can be indexed; at least 1.
 ///   stored_per_path   photons that a path leaves
 int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t bytes_per_photon,
-                  std::uint64_t available_bytes);
+                  std::uint64_t memory_bytes);
 
-/// Passes for what the host has to spare now. Traces a few paths to know what one leaves; says so
+/// Passes for the memory that the host has. Traces a few paths to know what one leaves; says so
 /// in one line where there is more than one pass. Errors: UsageError where there would be more than
 /// limits::max_passes.
 int automatic_passes(const RayScene& rays, const PhotonTracerParameters& parameters,

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "photile/limits.hpp"
 #include "render/host_memory.hpp"
@@ -61,4 +62,11 @@ TEST_CASE("more passes than the limit allows are seen as such") {
   CHECK(passes_within(limits::max_emitted_photons, 100, 100, 1000) > limits::max_passes);
 }
 
-TEST_CASE("the host has memory to spare") { CHECK(available_host_bytes() > (1u << 20)); }
+TEST_CASE("the host's memory is known, and the same however much of it is in use") {
+  const std::uint64_t before = installed_host_bytes();
+  const std::vector<char> taken(64u << 20, 1);
+  CHECK(before > (1u << 20));
+  CHECK(before < (std::uint64_t{1} << 50));
+  CHECK(installed_host_bytes() == before);
+  CHECK(taken.back() == 1);
+}
