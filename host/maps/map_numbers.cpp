@@ -20,8 +20,7 @@ void for_each_member(std::vector<std::uint32_t>& members, const Visit& visit) {
 
 }  // namespace
 
-MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches,
-                       std::size_t sided_count) {
+MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t sided_count) {
   constexpr std::uint32_t reached = 0;
   std::vector<std::uint32_t> number_of(patches.empty() ? sided_count / 2 : patches.count(), none);
   for_each_member(candidates.members, [&](std::uint32_t map) {
@@ -37,9 +36,8 @@ MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches,
     number_of[pair] = static_cast<std::uint32_t>(numbers.pairs.size());
     numbers.pairs.push_back(pair);
   }
-  for_each_member(candidates.members, [&](std::uint32_t& map) {
-    map = 2 * number_of[map / 2] + map % 2;
-  });
+  for_each_member(candidates.members,
+                  [&](std::uint32_t& map) { map = 2 * number_of[map / 2] + map % 2; });
   numbers.map_of.resize(sided_count);
   for (std::uint32_t own = 0; own < sided_count; ++own) {
     const std::uint32_t map = patches.map(own);

@@ -10,9 +10,9 @@
 
 namespace photile::maps {
 
-/// Pairs of maps (both sides of a triangle, or of a patch) of which a photon may enter one, numbered
-/// without gaps in ascending order of their triangles or patches. What no photon comes near has no
-/// map and takes no memory.
+/// Pairs of maps (both sides of a triangle, or of a patch) of which a photon may enter one,
+/// numbered without gaps in ascending order of their triangles or patches. What no photon comes
+/// near has no map and takes no memory.
 struct MapNumbers {
   std::vector<std::uint32_t> pairs;   ///< per pair: its triangle; with patches, its patch
   std::vector<std::uint32_t> map_of;  ///< per sided triangle: its map, or `none`

@@ -19,8 +19,7 @@ std::uint64_t PageLimits::bytes(std::uint64_t entries, std::uint64_t maps,
 }
 
 bool PageLimits::fit(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells) const {
-  const std::uint64_t most_cells =
-      std::min(largest_buffer / sizeof(std::uint32_t), max_items) - 1;
+  const std::uint64_t most_cells = std::min(largest_buffer / sizeof(std::uint32_t), max_items) - 1;
   return entries <= most_entries() && maps <= largest_buffer / sizeof(PhotileGrid) &&
          cells <= most_cells && bytes(entries, maps, cells) <= page_bytes;
 }

@@ -35,9 +35,8 @@ struct PageLimits {
   bool fit(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells = 0) const;
 };
 
-/// Splits the maps into pages; maps without photons at either end of a page are left out. A map that
-/// does not keep to the limits has a page of its own.
-/// `map_count`: photons per map.
+/// Splits the maps into pages; maps without photons at either end of a page are left out. A map
+/// that does not keep to the limits has a page of its own. `map_count`: photons per map.
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
                                      const PageLimits& limits);
 

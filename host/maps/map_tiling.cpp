@@ -26,8 +26,7 @@ MapTiling::MapTiling(const PhotileGrid& grid, double radius)
       columns_(divided_up(grid.columns, cells_per_bin_)),
       rows_(divided_up(grid.rows, cells_per_bin_)),
       map_of_bin_(std::size_t{columns_} * rows_, none) {
-  const double cells =
-      (radius + double{grid.slack}) / double{grid.cell_size} + cells_beyond_radius;
+  const double cells = (radius + double{grid.slack}) / double{grid.cell_size} + cells_beyond_radius;
   border_ = static_cast<std::uint32_t>(
       std::min<double>(most_bins, std::ceil(cells / static_cast<double>(cells_per_bin_))));
 }

@@ -20,10 +20,10 @@ struct Rectangle {
   std::uint32_t height() const { return last_row - first_row; }
 };
 
-/// Tiles of a map: disjoint rectangles of bins, which are squares of whole cells. The page of a tile
-/// holds the photons within the radius of the tile, and hits on the tile find all their neighbours
-/// there: by the same grid, in the same cells and the same lanes of vectors as in the undivided map,
-/// hence with the same bits (kernels/grid/tile.clh).
+/// Tiles of a map: disjoint rectangles of bins, which are squares of whole cells. The page of a
+/// tile holds the photons within the radius of the tile, and hits on the tile find all their
+/// neighbours there: by the same grid, in the same cells and the same lanes of vectors as in the
+/// undivided map, hence with the same bits (kernels/grid/tile.clh).
 class MapTiling {
  public:
   static constexpr std::uint32_t most_bins = 64;  ///< per side
@@ -46,7 +46,8 @@ class MapTiling {
   Rectangle cells(const Rectangle& tile) const;
   /// Entries of a tile's page, about: photons, and what gaps between rows take.
   std::uint64_t entries(const Rectangle& tile) const;
-  /// The grid for the page of a tile: indices of its cells begin with those of the tile's first row.
+  /// The grid for the page of a tile: indices of its cells begin with those of the tile's first
+  /// row.
   PhotileGrid page_grid(const Rectangle& tile) const;
 
   /// The tile in two, across the side that leaves fewer entries; nothing where the smallest tiles
@@ -66,7 +67,7 @@ class MapTiling {
 
   PhotileGrid grid_;
   std::uint32_t cells_per_bin_ = 1, columns_ = 1, rows_ = 1;
-  std::uint32_t border_ = 0;  ///< bins around a tile that its hits may find photons in
+  std::uint32_t border_ = 0;         ///< bins around a tile that its hits may find photons in
   std::vector<std::uint64_t> sums_;  ///< of photons in all bins before a column and a row
   std::vector<std::uint32_t> map_of_bin_;
 };

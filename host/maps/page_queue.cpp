@@ -23,8 +23,7 @@ std::optional<MapRange> PageQueue::next() {
     const MapRange page = pages_.front();
     pages_.pop_front();
     if (page.entries == 0) continue;  // a tile without photons near
-    const bool fits =
-        limits_.fit(page.entries, page.last - page.first, cells_of_tile(page));
+    const bool fits = limits_.fit(page.entries, page.last - page.first, cells_of_tile(page));
     if (!fits && cut(page)) continue;
     const std::uint64_t most = limits_.most_entries();
     if (page.entries > most) {

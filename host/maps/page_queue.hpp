@@ -27,8 +27,8 @@ class PageQueue {
 
   /// `map_count`: photons per map, for the life of the queue. `make_tiling` counts the photons of a
   /// map on its grid; `name_map` says what a map serves, for errors.
-  PageQueue(std::span<const std::uint32_t> map_count, const PageLimits& limits,
-            MapTilings& tilings, MakeTiling make_tiling, NameMap name_map);
+  PageQueue(std::span<const std::uint32_t> map_count, const PageLimits& limits, MapTilings& tilings,
+            MakeTiling make_tiling, NameMap name_map);
 
   /// The next page, as far as possible within the limits; nothing at the end. Errors: DeviceError
   /// where the photons within the radius of one place need a buffer larger than the largest.

@@ -28,8 +28,9 @@ PhotonRange with_maps(const CandidateMaps& candidates, std::uint32_t first, std:
                       std::uint64_t first_member, std::uint64_t last_member) {
   if (first_member == last_member) return {first, last, 0, 0};
   const auto members = candidates.members.begin();
-  const auto [least, most] = std::minmax_element(members + static_cast<std::ptrdiff_t>(first_member),
-                                                 members + static_cast<std::ptrdiff_t>(last_member));
+  const auto [least, most] =
+      std::minmax_element(members + static_cast<std::ptrdiff_t>(first_member),
+                          members + static_cast<std::ptrdiff_t>(last_member));
   return {first, last, *least, *most + 1};
 }
 
@@ -141,8 +142,7 @@ const PhotonPage& PhotonPages::Iterator::operator*() const {
 }
 
 void PhotonPages::Iterator::skip_others() {
-  while (page_ < pages_.pages_.size() &&
-         !pages_.ranges_[page_].may_enter(first_map_, last_map_)) {
+  while (page_ < pages_.pages_.size() && !pages_.ranges_[page_].may_enter(first_map_, last_map_)) {
     ++page_;
   }
 }

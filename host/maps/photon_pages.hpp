@@ -20,7 +20,7 @@ struct PhotonPage {
   std::uint32_t first_photon = 0;
   std::uint32_t count = 0;
 
-  device::Buffer<float> position;  ///< 3 per photon
+  device::Buffer<float> position;              ///< 3 per photon
   device::Buffer<std::uint32_t> own_map;       ///< of the photon's sided triangle
   device::Buffer<float> flux;                  ///< 3 per photon
   device::Buffer<std::uint16_t> light;         ///< empty for a single light
@@ -31,7 +31,8 @@ struct PhotonPage {
   device::Buffer<std::uint32_t> list_members;
 };
 
-/// The bounds of one page: photons [first, last), which enter maps of [first_map, last_map) at most.
+/// The bounds of one page: photons [first, last), which enter maps of [first_map, last_map) at
+/// most.
 struct PhotonRange {
   std::uint32_t first = 0, last = 0;
   std::uint32_t first_map = 0, last_map = none;
@@ -60,8 +61,8 @@ PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
 
 /// The photons of a build, page by page: on the device while there is memory, uploaded again where
 /// there was none. `for (const PhotonPage& page : pages)` goes through all of them,
-/// `for (const PhotonPage& page : pages.entering(first_map, last_map))` through those that those maps
-/// may hold photons of; a page stays until the next one is reached.
+/// `for (const PhotonPage& page : pages.entering(first_map, last_map))` through those that those
+/// maps may hold photons of; a page stays until the next one is reached.
 class PhotonPages final : private Residents {
  public:
   using Plan = std::function<std::vector<PhotonRange>(std::uint64_t max_bytes)>;

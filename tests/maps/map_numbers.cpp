@@ -25,8 +25,8 @@ Scene plates(int count) {
 Photons photons_on(int lit, int count, const Scene& scene) {
   std::mt19937_64 random(9);
   Photons photons;
-  const auto per_plate = static_cast<std::uint32_t>(scene.triangle_count()) /
-                         static_cast<std::uint32_t>(count);
+  const auto per_plate =
+      static_cast<std::uint32_t>(scene.triangle_count()) / static_cast<std::uint32_t>(count);
   for (std::uint32_t t = 0; t < static_cast<std::uint32_t>(lit) * per_plate; ++t) {
     for (int i = 0; i < 4; ++i) {
       test::add_photon(photons, scene, test::random_point(scene, t, random), sided(t, 0), random);
