@@ -105,9 +105,13 @@ NeighbourGroups default_groups(const Scene& scene, const Photons& photons, doubl
 }
 
 PrimaryHits in_map_order(const PrimaryHits& hits, const NeighbourGroups& groups) {
-  const auto order = estimate::order_by_map(hits, groups.patches.map_of);
+  std::vector<std::uint32_t> maps = hits.sided_triangle;
+  if (!groups.patches.empty()) {
+    for (std::uint32_t& map : maps) map = groups.patches.map_of[map];
+  }
+  const auto order = estimate::order_by_map(maps);
   if (order.empty()) return hits;
-  PrimaryHits ordered = estimate::reordered(hits, order);
+  PrimaryHits ordered = estimate::reordered(hits, 0, order);
   for (const std::uint32_t hit : order) {
     ordered.pixel.push_back(hits.pixel[hit]);
     ordered.throughput.push_back(hits.throughput[hit]);
