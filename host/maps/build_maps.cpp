@@ -148,14 +148,14 @@ MapTiling tiling_of(Build& build, std::uint32_t map, const MapCounts& counts) {
   PhotileGrid grid{};
   build.context.read(page.grids, std::span(&grid, 1));
   MapTiling tiling(grid, build.store.parameters.radius);
-  auto bins = build.context.allocate<std::uint32_t>(
-      std::size_t{tiling.columns()} * tiling.rows(), "bins of a photon map");
+  auto bins = build.context.allocate<std::uint32_t>(std::size_t{tiling.columns()} * tiling.rows(),
+                                                    "bins of a photon map");
   build.context.fill(bins, 0u);
   for (const PhotonPage& photons : build.photon_pages->entering(map, map + 1)) {
     build.tile_kernels.run("count_bins", photons.count, work_group_size, photons.count,
                            photons.position, photons.own_map, photons.list, photons.list_offsets,
-                           photons.list_members, build.shapes, build.corners,
-                           build.squared_reach, map, page.grids, tiling.cells_per_bin(),
+                           photons.list_members, build.shapes, build.corners, build.squared_reach,
+                           map, page.grids, tiling.bin_width(), tiling.bin_height(),
                            tiling.columns(), bins);
   }
   tiling.set_photons(read_all(build.context, bins));
@@ -185,8 +185,7 @@ void fill_cells(Build& build, MapPage& page, const std::optional<Rectangle>& til
   for (const PhotonPage& photons : photon_pages) launch("count_cells", photons, cell_count);
   if (tile) {
     build.tile_kernels.run("narrow_gaps", tile->height(), work_group_size, page.grids, cell_count,
-                           tile->first_column, tile->first_row, tile->last_column,
-                           tile->last_row);
+                           tile->first_column, tile->first_row, tile->last_column, tile->last_row);
   }
   exclusive_prefix_sum(build.kernels, cell_count, page.cell_start);
   build.context.read(page.cell_start, std::span(&page.entry_count, 1), page.cell_count);

@@ -19,11 +19,12 @@ inline glm::vec2 project(const glm::vec3& p, const PhotileGrid& grid) {
 /// Column and row, clamped to the grid.
 inline glm::uvec2 cell_of(const glm::vec3& p, const PhotileGrid& grid) {
   const glm::vec2 uv = project(p, grid);
-  const auto index = [&](float coordinate, float minimum, std::uint32_t count) {
-    const float place = (coordinate - minimum) * grid.inverse_cell_size;
+  const auto index = [&](float coordinate, float minimum, float inverse_size, std::uint32_t count) {
+    const float place = (coordinate - minimum) * inverse_size;
     return static_cast<std::uint32_t>(std::clamp(place, 0.0f, static_cast<float>(count - 1)));
   };
-  return {index(uv.x, grid.minimum_u, grid.columns), index(uv.y, grid.minimum_v, grid.rows)};
+  return {index(uv.x, grid.minimum_u, grid.inverse_cell_width, grid.columns),
+          index(uv.y, grid.minimum_v, grid.inverse_cell_height, grid.rows)};
 }
 
 }  // namespace photile::maps

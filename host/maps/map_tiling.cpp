@@ -9,9 +9,9 @@
 namespace photile::maps {
 namespace {
 
-/// Queries look at the cells within the radius, rings of cells at two more, and rounding may put a
-/// hit into the cell beside its own.
-constexpr double cells_beyond_radius = 4;
+/// Queries look at the cells within the radius, rings of cells at two more (in rings of squares as
+/// high as a cell), and rounding may put a hit into the cell beside its own.
+constexpr double rows_beyond_radius = 4;
 
 /// The smallest tiles must be smaller by this than what is to be cut into them.
 constexpr double worthwhile = 0.9;
@@ -22,13 +22,14 @@ std::uint32_t divided_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) 
 
 MapTiling::MapTiling(const PhotileGrid& grid, double radius)
     : grid_(grid),
-      cells_per_bin_(divided_up(std::max(grid.columns, grid.rows), most_bins)),
-      columns_(divided_up(grid.columns, cells_per_bin_)),
-      rows_(divided_up(grid.rows, cells_per_bin_)),
+      bin_height_(divided_up(std::max(divided_up(grid.columns, PHOTILE_CELL_ASPECT), grid.rows),
+                             most_bins)),
+      columns_(divided_up(grid.columns, bin_width())),
+      rows_(divided_up(grid.rows, bin_height_)),
       map_of_bin_(std::size_t{columns_} * rows_, none) {
-  const double cells = (radius + double{grid.slack}) / double{grid.cell_size} + cells_beyond_radius;
+  const double rows = (radius + double{grid.slack}) / double{grid.cell_height} + rows_beyond_radius;
   border_ = static_cast<std::uint32_t>(
-      std::min<double>(most_bins, std::ceil(cells / static_cast<double>(cells_per_bin_))));
+      std::min<double>(most_bins, std::ceil(rows / static_cast<double>(bin_height_))));
 }
 
 void MapTiling::set_photons(std::span<const std::uint32_t> counts) {
@@ -60,9 +61,9 @@ std::uint64_t MapTiling::photons(const Rectangle& tile) const {
 
 Rectangle MapTiling::cells(const Rectangle& tile) const {
   const Rectangle bins = grown(tile);
-  return {bins.first_column * cells_per_bin_, bins.first_row * cells_per_bin_,
-          std::min(grid_.columns, bins.last_column * cells_per_bin_),
-          std::min(grid_.rows, bins.last_row * cells_per_bin_)};
+  return {bins.first_column * bin_width(), bins.first_row * bin_height_,
+          std::min(grid_.columns, bins.last_column * bin_width()),
+          std::min(grid_.rows, bins.last_row * bin_height_)};
 }
 
 std::uint64_t MapTiling::entries(const Rectangle& tile) const {
@@ -116,7 +117,7 @@ void MapTiling::assign(const Rectangle& tile, std::uint32_t map) {
 
 std::size_t MapTiling::bin_of(const glm::vec3& position) const {
   const glm::uvec2 cell = cell_of(position, grid_);
-  return std::size_t{cell.y / cells_per_bin_} * columns_ + cell.x / cells_per_bin_;
+  return std::size_t{cell.y / bin_height_} * columns_ + cell.x / bin_width();
 }
 
 }  // namespace photile::maps

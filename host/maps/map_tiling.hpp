@@ -32,8 +32,10 @@ class MapTiling {
   MapTiling(const PhotileGrid& grid, double radius);
 
   const PhotileGrid& grid() const { return grid_; }
-  std::uint32_t cells_per_bin() const { return cells_per_bin_; }  ///< per side
-  std::uint32_t columns() const { return columns_; }              ///< of bins
+  /// Columns of cells in a bin.
+  std::uint32_t bin_width() const { return PHOTILE_CELL_ASPECT * bin_height_; }
+  std::uint32_t bin_height() const { return bin_height_; }  ///< rows of cells in a bin
+  std::uint32_t columns() const { return columns_; }        ///< of bins
   std::uint32_t rows() const { return rows_; }
 
   /// `counts`: photons per bin, in row-major order.
@@ -66,7 +68,7 @@ class MapTiling {
   std::size_t bin_of(const glm::vec3& position) const;
 
   PhotileGrid grid_;
-  std::uint32_t cells_per_bin_ = 1, columns_ = 1, rows_ = 1;
+  std::uint32_t bin_height_ = 1, columns_ = 1, rows_ = 1;
   std::uint32_t border_ = 0;         ///< bins around a tile that its hits may find photons in
   std::vector<std::uint64_t> sums_;  ///< of photons in all bins before a column and a row
   std::vector<std::uint32_t> map_of_bin_;

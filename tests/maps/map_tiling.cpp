@@ -16,16 +16,18 @@ namespace {
 
 constexpr double radius = 0.1;
 
-/// A grid of 2 cm cells around a rectangle of 4 x 1.5 m in the plane z = 0.
+/// A grid of cells 5 mm wide and 2 cm high around a rectangle of 4 x 1.5 m in the plane z = 0.
 PhotileGrid grid() {
   PhotileGrid grid{};
   grid.u_axis_x = 1;
   grid.v_axis_y = 1;
   grid.minimum_u = grid.minimum_v = -static_cast<float>(radius);
-  grid.cell_size = 0.02f;
-  grid.inverse_cell_size = 50;
+  grid.cell_width = 0.005f;
+  grid.cell_height = 0.02f;
+  grid.inverse_cell_width = 200;
+  grid.inverse_cell_height = 50;
   grid.slack = 1e-5f;
-  grid.columns = 210;
+  grid.columns = 840;
   grid.rows = 85;
   return grid;
 }
@@ -36,9 +38,9 @@ MapTiling even_tiling() {
   std::vector<std::uint32_t> counts;
   for (std::uint32_t row = 0; row < tiling.rows(); ++row) {
     for (std::uint32_t column = 0; column < tiling.columns(); ++column) {
-      const std::uint32_t side = tiling.cells_per_bin();
-      counts.push_back(std::min(side, grid().columns - column * side) *
-                       std::min(side, grid().rows - row * side));
+      const std::uint32_t width = tiling.bin_width(), height = tiling.bin_height();
+      counts.push_back(std::min(width, grid().columns - column * width) *
+                       std::min(height, grid().rows - row * height));
     }
   }
   tiling.set_photons(counts);
@@ -65,8 +67,8 @@ std::vector<Rectangle> cut(const MapTiling& tiling, std::uint64_t most) {
 
 TEST_CASE("a tile counts the photons of its cells, the whole all photons") {
   const MapTiling tiling = even_tiling();
-  CHECK(tiling.photons(tiling.whole()) == 210u * 85u);
-  CHECK(tiling.entries(tiling.whole()) == 210u * 85u);  // no gaps
+  CHECK(tiling.photons(tiling.whole()) == 840u * 85u);
+  CHECK(tiling.entries(tiling.whole()) == 840u * 85u);  // no gaps
   const Rectangle tile{10, 3, 12, 9};
   const Rectangle cells = tiling.cells(tile);
   CHECK(tiling.photons(tile) == std::uint64_t{cells.width()} * cells.height());
@@ -74,7 +76,7 @@ TEST_CASE("a tile counts the photons of its cells, the whole all photons") {
 
 TEST_CASE("the page of a place has all cells within the radius of it") {
   MapTiling tiling = even_tiling();
-  const std::vector<Rectangle> tiles = cut(tiling, 3000);
+  const std::vector<Rectangle> tiles = cut(tiling, 12'000);
   REQUIRE(tiles.size() > 4);
   for (std::uint32_t i = 0; i < tiles.size(); ++i) tiling.assign(tiles[i], i);
   std::mt19937_64 random(3);
@@ -86,7 +88,7 @@ TEST_CASE("the page of a place has all cells within the radius of it") {
     const Rectangle cells = tiling.cells(tiles[map]);
     const float angle = turn(random);
     const glm::vec2 end = glm::vec2(place) + 0.1f * glm::vec2(std::cos(angle), std::sin(angle));
-    const auto column = static_cast<std::uint32_t>(std::clamp((end.x + 0.1f) * 50, 0.f, 209.f));
+    const auto column = static_cast<std::uint32_t>(std::clamp((end.x + 0.1f) * 200, 0.f, 839.f));
     const auto row = static_cast<std::uint32_t>(std::clamp((end.y + 0.1f) * 50, 0.f, 84.f));
     REQUIRE((column >= cells.first_column && column < cells.last_column));
     REQUIRE((row >= cells.first_row && row < cells.last_row));

@@ -12,11 +12,14 @@ using maps::MapTiling;
 
 namespace {
 
-/// A map of 64 x 64 cells with `photons` in each; queries reach a cell.
+/// A map of 64 x 64 bins with `photons` in each; queries reach as far as a bin is wide.
 MapTiling square(std::uint32_t photons) {
   PhotileGrid grid{};
-  grid.cell_size = grid.inverse_cell_size = 1;
-  grid.columns = grid.rows = 64;
+  grid.cell_height = grid.inverse_cell_height = 1;
+  grid.cell_width = 1.0f / PHOTILE_CELL_ASPECT;
+  grid.inverse_cell_width = PHOTILE_CELL_ASPECT;
+  grid.columns = PHOTILE_CELL_ASPECT * 64;
+  grid.rows = 64;
   MapTiling tiling(grid, 1);
   tiling.set_photons(std::vector<std::uint32_t>(64 * 64, photons));
   return tiling;
@@ -56,7 +59,7 @@ TEST_CASE("a map beyond the device's largest buffer comes in tiles, after all ot
   for (std::size_t i = 2; i < pages.size(); ++i) {
     REQUIRE(pages[i].tile.has_value());
     CHECK(pages[i].first == 1);
-    CHECK((pages[i].entries + maps::entry_padding) * 12 <= limits.largest_buffer);
+    CHECK((pages[i].entries + maps::most_entry_padding) * 12 <= limits.largest_buffer);
     for (std::uint32_t row = pages[i].tile->first_row; row < pages[i].tile->last_row; ++row) {
       for (std::uint32_t c = pages[i].tile->first_column; c < pages[i].tile->last_column; ++c) {
         ++covered[row * 64 + c];

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "maps/map_store.hpp"
+#include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "render/device_estimators.hpp"
@@ -31,6 +32,7 @@ struct Case {
   MapStructure structure = MapStructure::uniform_grid;
   int neighbours = 50;
   std::optional<EstimateTuning> tuning = std::nullopt;
+  std::uint64_t memory_per_photon = 0;  ///< bytes that device memory is bounded by; 0 = no bound
 };
 
 struct Sizes {
@@ -73,6 +75,13 @@ Scene torus_and_plate(std::size_t lights, bool glossy) {
   return scene;
 }
 
+/// Two large triangles: bounded memory cuts their maps into tiles.
+Scene plate() {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {-1.5f, -1.5f, 0}, {3, 0, 0}, {0, 3, 0.1f}, 1);
+  return scene;
+}
+
 Photons photons_of(const Scene& scene, std::size_t count) {
   const std::size_t crowd = count / 4;
   Photons photons = test::uniform_photons(scene, count - crowd, 71);
@@ -105,6 +114,9 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
       devices, test.scene, photons, find_neighbour_groups(test.scene, {radius, 60}),
       {radius, 4, test.structure}, Progress::none());
   const PhotonMaps& maps = all_maps.back();
+  if (test.memory_per_photon > 0 && maps.store().tilings.empty()) {
+    throw DeviceError(test.name + ": no map was cut into tiles; take more photons");
+  }
   for (std::size_t i = 0; i < maps.store().pages.size(); ++i) {
     const maps::MapPage& page = maps.store().pages.use(i);
     device::Context& context = maps.device().context();
@@ -130,7 +142,8 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
 std::vector<Case> cases(bool every_kernel) {
   std::vector<Case> list{{"one-light", torus_and_plate(1, false)},
                          {"three-lights", torus_and_plate(3, false)},
-                         {"many-lights", torus_and_plate(300, false)}};
+                         {"many-lights", torus_and_plate(300, false)},
+                         {"tiles", plate(), MapStructure::uniform_grid, 10, std::nullopt, 20}};
   if (!every_kernel) return list;
   list.push_back({"glossy", torus_and_plate(1, true)});
   list.push_back({"glossy-three-lights", torus_and_plate(3, true)});
@@ -167,7 +180,15 @@ int main(int count, char** arguments) {
     for (const Device& device : devices) {
       fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().platform);
     }
-    for (const Case& test : cases(every_kernel)) print_fingerprint(devices, test, sizes);
+    for (const Case& test : cases(every_kernel)) {
+      if (test.memory_per_photon == 0) {
+        print_fingerprint(devices, test, sizes);
+      } else {
+        std::vector<Device> bounded =
+            open_devices({.memory_bytes = test.memory_per_photon * sizes.photons});
+        print_fingerprint(bounded, test, sizes);
+      }
+    }
   } catch (const Error& error) {
     fmt::print(stderr, "photile_fingerprint: error: {}\n", error.what());
     return static_cast<int>(error.exit_code());
