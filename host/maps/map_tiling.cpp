@@ -9,9 +9,9 @@
 namespace photile::maps {
 namespace {
 
-/// Queries look at the cells within the radius, rings of cells at two more (in rings of squares as
-/// high as a cell), and rounding may put a hit into the cell beside its own.
-constexpr double rows_beyond_radius = 4;
+/// Queries look at the cells within the radius and the slack; by rings, at up to two squares more
+/// that are as high as a cell (kernels/estimate/rings.clh).
+constexpr double squares_beyond_radius = 2;
 
 /// The smallest tiles must be smaller by this than what is to be cut into them.
 constexpr double worthwhile = 0.9;
@@ -27,7 +27,9 @@ MapTiling::MapTiling(const PhotileGrid& grid, double radius)
       columns_(divided_up(grid.columns, bin_width())),
       rows_(divided_up(grid.rows, bin_height_)),
       map_of_bin_(std::size_t{columns_} * rows_, none) {
-  const double rows = (radius + double{grid.slack}) / double{grid.cell_height} + rows_beyond_radius;
+  // The slack once more: rounding may put a hit on the other side of the tile's border.
+  const double rows =
+      (radius + 2 * double{grid.slack}) / double{grid.cell_height} + squares_beyond_radius;
   border_ = static_cast<std::uint32_t>(
       std::min<double>(most_bins, std::ceil(rows / static_cast<double>(bin_height_))));
 }

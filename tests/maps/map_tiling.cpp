@@ -2,7 +2,6 @@
 #include "maps/map_tiling.hpp"
 
 #include <catch2/catch.hpp>
-#include <glm/gtc/constants.hpp>
 #include <random>
 #include <vector>
 
@@ -14,7 +13,8 @@ using maps::Rectangle;
 
 namespace {
 
-constexpr double radius = 0.1;
+/// Metres. With less than 0.12 the border of a tile would be one bin narrower.
+constexpr double radius = 0.125;
 
 /// A grid of cells 5 mm wide and 2 cm high around a rectangle of 4 x 1.5 m in the plane z = 0.
 PhotileGrid grid() {
@@ -27,8 +27,8 @@ PhotileGrid grid() {
   grid.inverse_cell_width = 200;
   grid.inverse_cell_height = 50;
   grid.slack = 1e-5f;
-  grid.columns = 840;
-  grid.rows = 85;
+  grid.columns = 850;
+  grid.rows = 88;
   return grid;
 }
 
@@ -67,31 +67,36 @@ std::vector<Rectangle> cut(const MapTiling& tiling, std::uint64_t most) {
 
 TEST_CASE("a tile counts the photons of its cells, the whole all photons") {
   const MapTiling tiling = even_tiling();
-  CHECK(tiling.photons(tiling.whole()) == 840u * 85u);
-  CHECK(tiling.entries(tiling.whole()) == 840u * 85u);  // no gaps
+  CHECK(tiling.photons(tiling.whole()) == 850u * 88u);
+  CHECK(tiling.entries(tiling.whole()) == 850u * 88u);  // no gaps
   const Rectangle tile{10, 3, 12, 9};
   const Rectangle cells = tiling.cells(tile);
   CHECK(tiling.photons(tile) == std::uint64_t{cells.width()} * cells.height());
 }
 
-TEST_CASE("the page of a place has all cells within the radius of it") {
+TEST_CASE("the page of a place has all cells within the radius of it, and two squares more") {
   MapTiling tiling = even_tiling();
   const std::vector<Rectangle> tiles = cut(tiling, 12'000);
   REQUIRE(tiles.size() > 4);
   for (std::uint32_t i = 0; i < tiles.size(); ++i) tiling.assign(tiles[i], i);
+  const auto reach = static_cast<float>(radius) + 2 * grid().cell_height;
+  const auto column_of = [](float u) {
+    return static_cast<std::uint32_t>(std::clamp((u + 0.125f) * 200, 0.f, 849.f));
+  };
+  const auto row_of = [](float v) {
+    return static_cast<std::uint32_t>(std::clamp((v + 0.125f) * 50, 0.f, 87.f));
+  };
   std::mt19937_64 random(3);
-  std::uniform_real_distribution<float> u(0, 4), v(0, 1.5f), turn(0, 2 * glm::pi<float>());
+  std::uniform_real_distribution<float> u(0, 4), v(0, 1.5f);
   for (int i = 0; i < 20'000; ++i) {
     const glm::vec3 place(u(random), v(random), 0.05f);
     const std::uint32_t map = tiling.map_at(place);
     REQUIRE(map < tiles.size());
     const Rectangle cells = tiling.cells(tiles[map]);
-    const float angle = turn(random);
-    const glm::vec2 end = glm::vec2(place) + 0.1f * glm::vec2(std::cos(angle), std::sin(angle));
-    const auto column = static_cast<std::uint32_t>(std::clamp((end.x + 0.1f) * 200, 0.f, 839.f));
-    const auto row = static_cast<std::uint32_t>(std::clamp((end.y + 0.1f) * 50, 0.f, 84.f));
-    REQUIRE((column >= cells.first_column && column < cells.last_column));
-    REQUIRE((row >= cells.first_row && row < cells.last_row));
+    REQUIRE(column_of(place.x - reach) >= cells.first_column);
+    REQUIRE(column_of(place.x + reach) < cells.last_column);
+    REQUIRE(row_of(place.y - reach) >= cells.first_row);
+    REQUIRE(row_of(place.y + reach) < cells.last_row);
   }
 }
 
