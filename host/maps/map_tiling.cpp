@@ -9,10 +9,6 @@
 namespace photile::maps {
 namespace {
 
-/// Queries look at the cells within the radius and the slack; by rings, at up to two squares more
-/// that are as high as a cell (kernels/estimate/rings.clh).
-constexpr double squares_beyond_radius = 2;
-
 /// The smallest tiles must be smaller by this than what is to be cut into them.
 constexpr double worthwhile = 0.9;
 
@@ -27,9 +23,10 @@ MapTiling::MapTiling(const PhotileGrid& grid, double radius)
       columns_(divided_up(grid.columns, bin_width())),
       rows_(divided_up(grid.rows, bin_height_)),
       map_of_bin_(std::size_t{columns_} * rows_, none) {
-  // The slack once more: rounding may put a hit on the other side of the tile's border.
-  const double rows =
-      (radius + 2 * double{grid.slack}) / double{grid.cell_height} + squares_beyond_radius;
+  // Queries look at the cells within the radius and the slack of a hit (kernels/estimate/block.clh,
+  // rings.clh). The slack twice more: rounding may put hits, and the ends of their cells, beyond the
+  // borders.
+  const double rows = (radius + 3 * double{grid.slack}) / double{grid.cell_height};
   border_ = static_cast<std::uint32_t>(
       std::min<double>(most_bins, std::ceil(rows / static_cast<double>(bin_height_))));
 }

@@ -13,8 +13,8 @@ using maps::Rectangle;
 
 namespace {
 
-/// Metres. With less than 0.12 the border of a tile would be one bin narrower.
-constexpr double radius = 0.125;
+/// Metres. The border of a tile would be one bin narrower with less than 0.16.
+constexpr double radius = 0.165;
 
 /// A grid of cells 5 mm wide and 2 cm high around a rectangle of 4 x 1.5 m in the plane z = 0.
 PhotileGrid grid() {
@@ -27,8 +27,8 @@ PhotileGrid grid() {
   grid.inverse_cell_width = 200;
   grid.inverse_cell_height = 50;
   grid.slack = 1e-5f;
-  grid.columns = 850;
-  grid.rows = 88;
+  grid.columns = 866;
+  grid.rows = 92;
   return grid;
 }
 
@@ -67,24 +67,24 @@ std::vector<Rectangle> cut(const MapTiling& tiling, std::uint64_t most) {
 
 TEST_CASE("a tile counts the photons of its cells, the whole all photons") {
   const MapTiling tiling = even_tiling();
-  CHECK(tiling.photons(tiling.whole()) == 850u * 88u);
-  CHECK(tiling.entries(tiling.whole()) == 850u * 88u);  // no gaps
+  CHECK(tiling.photons(tiling.whole()) == 866u * 92u);
+  CHECK(tiling.entries(tiling.whole()) == 866u * 92u);  // no gaps
   const Rectangle tile{10, 3, 12, 9};
   const Rectangle cells = tiling.cells(tile);
   CHECK(tiling.photons(tile) == std::uint64_t{cells.width()} * cells.height());
 }
 
-TEST_CASE("the page of a place has all cells within the radius of it, and two squares more") {
+TEST_CASE("the page of a place has all cells within the radius of it") {
   MapTiling tiling = even_tiling();
   const std::vector<Rectangle> tiles = cut(tiling, 12'000);
   REQUIRE(tiles.size() > 4);
   for (std::uint32_t i = 0; i < tiles.size(); ++i) tiling.assign(tiles[i], i);
-  const auto reach = static_cast<float>(radius) + 2 * grid().cell_height;
+  const auto reach = static_cast<float>(radius) + grid().slack;
   const auto column_of = [](float u) {
-    return static_cast<std::uint32_t>(std::clamp((u + 0.125f) * 200, 0.f, 849.f));
+    return static_cast<std::uint32_t>(std::clamp((u + 0.165f) * 200, 0.f, 865.f));
   };
   const auto row_of = [](float v) {
-    return static_cast<std::uint32_t>(std::clamp((v + 0.125f) * 50, 0.f, 87.f));
+    return static_cast<std::uint32_t>(std::clamp((v + 0.165f) * 50, 0.f, 91.f));
   };
   std::mt19937_64 random(3);
   std::uniform_real_distribution<float> u(0, 4), v(0, 1.5f);

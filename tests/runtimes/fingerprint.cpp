@@ -32,7 +32,8 @@ struct Case {
   MapStructure structure = MapStructure::uniform_grid;
   int neighbours = 50;
   std::optional<EstimateTuning> tuning = std::nullopt;
-  std::uint64_t memory_per_photon = 0;  ///< bytes that device memory is bounded by; 0 = no bound
+  /// Bytes that device memory is bounded by, so that maps are cut into tiles; 0 = no bound.
+  std::uint64_t memory_per_photon = 0;
 };
 
 struct Sizes {
@@ -75,7 +76,7 @@ Scene torus_and_plate(std::size_t lights, bool glossy) {
   return scene;
 }
 
-/// Two large triangles: bounded memory cuts their maps into tiles.
+/// Two large triangles with photons on one side: nothing comes near the other.
 Scene plate() {
   Scene scene = test::empty_scene();
   test::add_plate(scene, {-1.5f, -1.5f, 0}, {3, 0, 0}, {0, 3, 0.1f}, 1);
@@ -108,13 +109,17 @@ PrimaryHits hits_of(const Scene& scene, std::size_t count) {
 }
 
 void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes& sizes) {
-  const Photons photons = photons_of(test.scene, sizes.photons);
+  const bool tiled = test.memory_per_photon > 0;
+  const Photons photons = tiled ? test::uniform_photons(test.scene, sizes.photons, 71, false)
+                                : photons_of(test.scene, sizes.photons);
+  // Small tiles need small cells: pages reach beyond a tile by two of them and the radius.
+  const float photons_per_cell = tiled ? 0.25f : 4.0f;
   const PrimaryHits hits = hits_of(test.scene, sizes.hits);
   const std::vector<PhotonMaps> all_maps = build_maps_on_each(
       devices, test.scene, photons, find_neighbour_groups(test.scene, {radius, 60}),
-      {radius, 4, test.structure}, Progress::none());
+      {radius, photons_per_cell, test.structure}, Progress::none());
   const PhotonMaps& maps = all_maps.back();
-  if (test.memory_per_photon > 0 && maps.store().tilings.empty()) {
+  if (tiled && maps.store().tilings.empty()) {
     throw DeviceError(test.name + ": no map was cut into tiles; take more photons");
   }
   for (std::size_t i = 0; i < maps.store().pages.size(); ++i) {
@@ -143,7 +148,7 @@ std::vector<Case> cases(bool every_kernel) {
   std::vector<Case> list{{"one-light", torus_and_plate(1, false)},
                          {"three-lights", torus_and_plate(3, false)},
                          {"many-lights", torus_and_plate(300, false)},
-                         {"tiles", plate(), MapStructure::uniform_grid, 10, std::nullopt, 20}};
+                         {"tiles", plate(), MapStructure::uniform_grid, 10, std::nullopt, 50}};
   if (!every_kernel) return list;
   list.push_back({"glossy", torus_and_plate(1, true)});
   list.push_back({"glossy-three-lights", torus_and_plate(3, true)});
