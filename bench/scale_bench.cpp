@@ -36,9 +36,9 @@ struct Settings {
 
 /// One point of a curve.
 struct Size {
-  std::string axis;  ///< what grows: "triangles" or "photons"
-  std::string mesh;  ///< "hall", generated and read from a file; "living-room", "classroom"
-  std::uint32_t detail;  ///< cells of the hall, or how often the other meshes are subdivided
+  std::string axis;       ///< what grows: "triangles" or "photons"
+  std::string mesh;       ///< "hall", generated and read from a file; "living-room", "classroom"
+  std::uint32_t detail;   ///< cells of the hall, or how often the other meshes are subdivided
   std::uint64_t photons;  ///< emitted
 };
 
@@ -130,8 +130,7 @@ nlohmann::json measure_size(const Size& size, const std::string& selector) {
   const double seconds = stopwatch.seconds();
   double in_stages = 0;
   for (const StageStatistics& stage : result.statistics) {
-    stages.push_back(
-        stage_json(stage.stage, stage.seconds, stage.host_bytes, stage.device_bytes));
+    stages.push_back(stage_json(stage.stage, stage.seconds, stage.host_bytes, stage.device_bytes));
     in_stages += stage.seconds;
     for (const auto& [figure, value] : stage.figures) {
       if (figure == "references per photon") row[figure] = value;
@@ -198,8 +197,8 @@ class ScaleBench {
   /// The row that a process of this bench prints for a size, or why there is none.
   nlohmann::json run_process(std::size_t size) const {
     const fs::path self = fs::read_symlink("/proc/self/exe");
-    std::string command = fmt::format("timeout {} '{}' --child {}", settings_.seconds_per_size,
-                                      self.string(), size);
+    std::string command =
+        fmt::format("timeout {} '{}' --child {}", settings_.seconds_per_size, self.string(), size);
     if (settings_.common.quick) command += " --quick";
     if (settings_.full) command += " --full";
     if (!settings_.common.device.empty()) {

@@ -58,17 +58,19 @@ DeviceLimits measure_limits(Device& device, const Repeats& repeats, std::size_t 
   context.fill(from, 1.0f);
   const auto median = [&](const char* name, std::size_t size, const auto&... arguments) {
     const device::Kernel kernel = context.kernel(file, name, {});
-    return measure_returned(repeats, [&] {
-             return kernel_seconds_of(
-                 device, [&] { context.run(kernel, size, group_size, arguments...); });
-           })
+    return measure_returned(repeats,
+                            [&] {
+                              return kernel_seconds_of(device, [&] {
+                                context.run(kernel, size, group_size, arguments...);
+                              });
+                            })
         .median();
   };
   // Work-items in whole groups: these kernels do not check their index.
   const std::size_t copies = from.size() / (16 * group_size) * group_size;
   DeviceLimits limits;
-  limits.copied_bytes_per_second = 2.0 * 64.0 * static_cast<double>(copies) /
-                                   median("copy_memory", copies, from, to);
+  limits.copied_bytes_per_second =
+      2.0 * 64.0 * static_cast<double>(copies) / median("copy_memory", copies, from, to);
   limits.cached_bytes_per_second =
       static_cast<double>(items * cached_floats * sizeof(float)) * cache_rounds /
       median("read_cache", items, from, static_cast<std::uint32_t>(cached_floats), cache_rounds,

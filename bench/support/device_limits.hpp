@@ -8,7 +8,7 @@ namespace photile::bench {
 
 struct DeviceLimits {
   double copied_bytes_per_second = 0;  ///< read and written, from buffers that no cache holds
-  double cached_bytes_per_second = 0;  ///< read from 8 KiB, which the first-level cache of a CPU holds
+  double cached_bytes_per_second = 0;  ///< read from 8 KiB, which a first-level cache holds
   /// Single-precision additions and multiplications that are not fused, as in photile's kernels.
   double operations_per_second = 0;
 };

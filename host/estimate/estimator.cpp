@@ -42,9 +42,9 @@ struct Estimator::Impl {
             radius, parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())))) {}
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
-    return {.largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
-            .bytes_per_hit = estimate::hit_bytes(store.needs.glossy, !store.normals.empty()) +
-                             outputs};
+    return {
+        .largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
+        .bytes_per_hit = estimate::hit_bytes(store.needs.glossy, !store.normals.empty()) + outputs};
   }
 
   Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count) {
@@ -120,9 +120,8 @@ Estimates Estimator::estimate(const PrimaryHits& hits) { return estimate(hits, 0
 Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count) {
   const auto order = estimate::order_by_map(impl_->store.maps_of(hits, begin, hit_count));
   if (!order.empty()) {
-    return estimate::restored(
-        estimate(estimate::reordered(hits, begin, order), 0, hit_count), order,
-        impl_->store.needs.light_count);
+    return estimate::restored(estimate(estimate::reordered(hits, begin, order), 0, hit_count),
+                              order, impl_->store.needs.light_count);
   }
   const auto [largest, together] =
       estimate::estimate_bytes_per_hit(impl_->store.needs, impl_->neighbours);

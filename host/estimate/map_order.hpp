@@ -26,8 +26,7 @@ Estimates restored(Estimates estimates, std::span<const std::uint32_t> order,
 
 /// Puts rows of `width` values back: row i of `values` becomes row order[i].
 template <class T>
-void restore_rows(std::vector<T>& values, std::span<const std::uint32_t> order,
-                  std::size_t width) {
+void restore_rows(std::vector<T>& values, std::span<const std::uint32_t> order, std::size_t width) {
   if (values.empty()) return;
   std::vector<T> restored(values.size());
   for (std::size_t i = 0; i < order.size(); ++i) {

@@ -44,7 +44,8 @@ std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        std::uint32_t compiled_neighbours, float radius);
 
-/// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs, ascending.
+/// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs,
+/// ascending.
 template <class Launch>
 void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
                    std::span<const std::uint32_t> hit_maps, Launch launch) {

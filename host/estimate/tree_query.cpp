@@ -18,10 +18,7 @@ class TreeQuery : public Query {
  public:
   TreeQuery(const maps::MapStore& store, std::uint32_t neighbours,
             std::uint32_t compiled_neighbours, float radius)
-      : store_(store),
-        context_(store.device->context()),
-        neighbours_(neighbours),
-        radius_(radius) {
+      : store_(store), context_(store.device->context()), neighbours_(neighbours), radius_(radius) {
     if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
     if (compiled_neighbours <= private_list_limit) {
       defines_.set("LIST_CAPACITY", static_cast<long long>(compiled_neighbours));

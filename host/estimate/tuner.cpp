@@ -61,9 +61,8 @@ class Bench {
   }
 
   void run(const maps::MapStore& store, Query& query) {
-    for_each_page(store, hits_, sample_.hits.sided_triangle, [&](const PageHits& page_hits) {
-      query.estimate(page_hits, estimates_);
-    });
+    for_each_page(store, hits_, sample_.hits.sided_triangle,
+                  [&](const PageHits& page_hits) { query.estimate(page_hits, estimates_); });
     device_.context().finish();
   }
 

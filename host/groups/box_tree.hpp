@@ -1,4 +1,5 @@
-// A binary tree over boxes, for "is any of them within R": nearer children first, stops when told to.
+// A binary tree over boxes, for "is any of them within R": nearer children first, until told to
+// stop.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The lists behind neighbour groups: one search per triangle, written out as the groups of both sides.
+// The lists behind neighbour groups: one search per triangle, written out as groups of both sides.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace photile::groups {
 
-// A neighbour of a triangle (a triangle, or a patch) is kept as 4 * its index + these bits until the
-// groups of both sides are written: equal sides agree, opposite sides agree.
+// A neighbour of a triangle (a triangle, or a patch) is kept as 4 * its index + these bits until
+// the groups of both sides are written: equal sides agree, opposite sides agree.
 inline constexpr std::uint32_t equal_sides = 1, opposite_sides = 2;
 
 /// The normal test of photile::normals_agree for both pairs of sides.

@@ -18,12 +18,12 @@ using namespace groups;
 constexpr double least_shared = 0.65;
 
 /// At least as large a part must those be of what the joined patch would hold around it. With less,
-/// the queries of either would look at too many photons of the other in vain: of the bright side of a
-/// lamp for a hit on its dark side.
+/// the queries of either would look at too many photons of the other in vain: of the bright side of
+/// a lamp for a hit on its dark side.
 constexpr double least_shared_around = 0.5;
 
-/// Normals this close to the axis leave a map flat: no query needs to look at normals. A flat map that
-/// a join would bend must save this part of its references by it, for every query will pay.
+/// Normals this close to the axis leave a map flat: no query needs to look at normals. A flat map
+/// that a join would bend must save this part of its references by it, for every query will pay.
 constexpr double flat_angle = 0.17;  // radians
 constexpr double least_saved_by_bending = 0.3;
 
@@ -115,16 +115,15 @@ std::vector<Sharing> find_partners(const PhotonSample& sample, std::span<const P
   }
   std::vector<Sharing> best(patch_count, Sharing{none, none, 0, 0});
   for (const auto& [key, photons] : shared) {
-    const Sharing found{static_cast<std::uint32_t>(key >> 33),
-                        static_cast<std::uint32_t>(key >> 1), static_cast<std::uint32_t>(key & 1),
-                        photons};
+    const Sharing found{static_cast<std::uint32_t>(key >> 33), static_cast<std::uint32_t>(key >> 1),
+                        static_cast<std::uint32_t>(key & 1), photons};
     const bool into_larger = held[found.patch] < held[found.other] ||
                              (held[found.patch] == held[found.other] && found.patch > found.other);
     Sharing& known = best[found.patch];
     // Ties go to the smaller number, for the order of a hash table is nobody's.
-    const bool better = photons > known.photons ||
-                        (photons == known.photons && key < key_of(known.patch, known.other,
-                                                                  known.turned));
+    const bool better =
+        photons > known.photons ||
+        (photons == known.photons && key < key_of(known.patch, known.other, known.turned));
     if (!into_larger || !better || photons < least_shared * held[found.patch]) continue;
     const NormalSpread& other = spreads[found.other];
     const bool bends = other.flat() && !other.joined(spreads[found.patch], found.turned).flat();
@@ -161,7 +160,8 @@ NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const 
       if (taken[sharing.patch] || taken[sharing.other]) continue;
       taken[sharing.patch] = true;  // its photons are another's now: others wait for the next round
       merged.join(sharing.patch, sharing.other, sharing.turned);
-      spreads[sharing.other] = spreads[sharing.other].joined(spreads[sharing.patch], sharing.turned);
+      spreads[sharing.other] =
+          spreads[sharing.other].joined(spreads[sharing.patch], sharing.turned);
       changed = true;
     }
     if (!changed) break;

@@ -68,10 +68,9 @@ std::array<glm::dvec3, 3> local_corners(const Scene& scene, const PatchShape& sh
 
 PatchShape shape_of(const Scene& scene, const TriangleFacts& facts,
                     std::span<const std::uint32_t> triangles) {
-  const std::uint32_t largest =
-      *std::max_element(triangles.begin(), triangles.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return facts.area[a] < facts.area[b];
-      });
+  const std::uint32_t largest = *std::max_element(
+      triangles.begin(), triangles.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return facts.area[a] < facts.area[b]; });
   PatchShape shape;
   shape.axis = shared_axis(facts, triangles, largest);
   shape.u_axis = longest_edge_across(scene, largest, shape.axis);
@@ -84,16 +83,16 @@ PatchShape shape_of(const Scene& scene, const TriangleFacts& facts,
       shape.high = glm::max(shape.high, corner);
     }
     shape.area += facts.area[t];
-    shape.least_cosine = std::min(shape.least_cosine,
-                                  std::abs(glm::dot(glm::dvec3(facts.normal[t]), shape.axis)));
+    shape.least_cosine =
+        std::min(shape.least_cosine, std::abs(glm::dot(glm::dvec3(facts.normal[t]), shape.axis)));
   }
   return shape;
 }
 
 double covered_part(const Scene& scene, const PatchShape& shape,
                     std::span<const std::uint32_t> triangles, double cell_size) {
-  const double cell = std::max({cell_size, shape.width(0) / raster_side,
-                                shape.width(1) / raster_side});
+  const double cell =
+      std::max({cell_size, shape.width(0) / raster_side, shape.width(1) / raster_side});
   const auto cells_along = [&](int axis) {
     return std::clamp(static_cast<int>(std::ceil(shape.width(axis) / cell)), 1, raster_side);
   };

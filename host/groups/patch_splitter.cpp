@@ -12,12 +12,12 @@ namespace {
 /// Height of a patch at most, in radii: photons of other heights are candidates in vain.
 constexpr double most_thickness = 0.5;
 
-/// Normals lean at most 45 degrees: the projection then squeezes the photons of a surface to no less
-/// than 0.7 of their distance.
+/// Normals lean at most 45 degrees: the projection then squeezes the photons of a surface to no
+/// less than 0.7 of their distance.
 constexpr double least_cosine = 0.7071;
 
-/// Parts this small, in radii, are not split for their normals: every map around would hold the same
-/// photons.
+/// Parts this small, in radii, are not split for their normals: every map around would hold the
+/// same photons.
 constexpr double small_diagonal = 1.0;
 
 /// A patch covers at least this part of its rectangle: photons that lie in the rest enter in vain.
@@ -80,8 +80,7 @@ bool PatchSplitter::serves_as_patch(const PatchShape& shape,
 /// serving as a patch, and a border as wide as the radius.
 double PatchSplitter::cost(std::span<const std::uint32_t> triangles) const {
   const PatchShape shape = shape_of(scene_, facts_, triangles);
-  const double height_excess =
-      std::max(0.0, shape.thickness() / (most_thickness * radius_) - 1.0);
+  const double height_excess = std::max(0.0, shape.thickness() / (most_thickness * radius_) - 1.0);
   return shape.area * (height_excess + angle_excess(shape.least_cosine)) +
          2 * radius_ * (shape.width(0) + shape.width(1));
 }
@@ -112,8 +111,8 @@ PatchSplitter::Halves PatchSplitter::by_normal(const PatchShape& shape,
   return halves;
 }
 
-/// At the widest gap between triangles along an axis of the shape, or in the middle of the box where
-/// there is none.
+/// At the widest gap between triangles along an axis of the shape, or in the middle of the box
+/// where there is none.
 PatchSplitter::Halves PatchSplitter::along(const PatchShape& shape, int axis,
                                            std::span<const std::uint32_t> triangles) const {
   struct Interval {

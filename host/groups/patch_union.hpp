@@ -16,12 +16,12 @@ class PatchUnion {
  public:
   explicit PatchUnion(std::size_t patch_count);
 
-  /// Puts `patch` into the set of `other`; `turned` = 1 puts its front to the other's back. Both must
-  /// be representatives (maps renamed by map()).
+  /// Puts `patch` into the set of `other`; `turned` = 1 puts its front to the other's back. Both
+  /// must be representatives (maps renamed by map()).
   void join(std::uint32_t patch, std::uint32_t other, std::uint32_t turned);
 
-  /// Numbers the sets from 0 in the order of their first patches; map() gives those numbers from now
-  /// on.
+  /// Numbers the sets from 0 in the order of their first patches; map() gives those numbers from
+  /// now on.
   void number();
 
   /// The map that a patch's map has become.

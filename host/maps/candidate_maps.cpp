@@ -149,8 +149,7 @@ CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
     const std::size_t first = c * triangles_per_chunk;
     const auto first_list = static_cast<std::uint32_t>(result.first_list_of[first]);
     for (std::size_t i = 0; i < chunks[c].list_of_photon.size(); ++i) {
-      result.list_of_photon[photons.first_of[first] + i] =
-          first_list + chunks[c].list_of_photon[i];
+      result.list_of_photon[photons.first_of[first] + i] = first_list + chunks[c].list_of_photon[i];
     }
     chunks[c] = Lists{};
   });

@@ -54,8 +54,7 @@ PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts
   const glm::vec3 u(box.u_axis), v(box.v_axis), axis(sign * box.axis);
   // Heights are measured from the origin along the axis: turn it over with the axis.
   const glm::vec3 base =
-      sign > 0 ? origin
-               : glm::vec3(glm::dvec3(origin) + box.axis * (box.width(2) + 2 * margin));
+      sign > 0 ? origin : glm::vec3(glm::dvec3(origin) + box.axis * (box.width(2) + 2 * margin));
   PhotileMapShape shape{};
   shape.origin_x = base.x, shape.origin_y = base.y, shape.origin_z = base.z;
   shape.u_axis_x = u.x, shape.u_axis_y = u.y, shape.u_axis_z = u.z;
@@ -68,8 +67,7 @@ PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts
   const bool single = members.size() == 1;
   shape.perimeter = static_cast<float>(single ? perimeter_of(scene, triangles.front())
                                               : 2 * (box.width(0) + box.width(1)));
-  shape.certain_cosine =
-      certain_angle > 0 ? static_cast<float>(std::cos(certain_angle)) : 2.0f;
+  shape.certain_cosine = certain_angle > 0 ? static_cast<float>(std::cos(certain_angle)) : 2.0f;
   shape.triangle = single ? triangles.front() : PHOTILE_NO_TRIANGLE;
   return shape;
 }

@@ -15,11 +15,12 @@ constexpr int most_halvings = 6;  ///< of each side of a triangle: 4096 bins
 
 /// A triangle's sides are halved so often that its bins hold photons_per_bin on average.
 int halvings_for(std::uint32_t photons) {
-  return std::clamp((static_cast<int>(std::bit_width(photons / photons_per_bin)) - 1) / 2, 0, most_halvings);
+  return std::clamp((static_cast<int>(std::bit_width(photons / photons_per_bin)) - 1) / 2, 0,
+                    most_halvings);
 }
 
-/// The bin of a point among the 4^halvings congruent parts of a triangle: squares of the barycentric
-/// coordinates, each cut in two.
+/// The bin of a point among the 4^halvings congruent parts of a triangle: squares of the
+/// barycentric coordinates, each cut in two.
 std::size_t bin_of(const glm::vec3& point, const std::array<glm::vec3, 3>& corners, int halvings) {
   const glm::dvec3 a(corners[0]), u = glm::dvec3(corners[1]) - a, v = glm::dvec3(corners[2]) - a;
   const glm::dvec3 p = glm::dvec3(point) - a;
@@ -34,7 +35,9 @@ std::size_t bin_of(const glm::vec3& point, const std::array<glm::vec3, 3>& corne
   const int j = std::clamp(static_cast<int>(t), 0, side - 1);
   const bool upper = (s - i) + (t - j) > 1;
   return (static_cast<std::size_t>(i) * static_cast<std::size_t>(side) +
-          static_cast<std::size_t>(j)) * 2 + (upper ? 1 : 0);
+          static_cast<std::size_t>(j)) *
+             2 +
+         (upper ? 1 : 0);
 }
 
 /// The integral of the squared density over a triangle, photons squared per square metre.

@@ -7,11 +7,11 @@
 namespace photile::defaults {
 
 // Picture
-inline constexpr int image_width = 512;              ///< pixels
-inline constexpr int image_height = 384;             ///< pixels
-inline constexpr int samples_per_pixel = 4;          ///< primary hits a pixel
-inline constexpr double exposure = 0.0;              ///< stops, on top of the automatic exposure
-inline constexpr double vertical_field_of_view = 40; ///< degrees, for a camera photile places
+inline constexpr int image_width = 512;               ///< pixels
+inline constexpr int image_height = 384;              ///< pixels
+inline constexpr int samples_per_pixel = 4;           ///< primary hits a pixel
+inline constexpr double exposure = 0.0;               ///< stops, on top of the automatic exposure
+inline constexpr double vertical_field_of_view = 40;  ///< degrees, for a camera photile places
 
 // Photons
 inline constexpr std::uint64_t emitted_photons = 1'000'000;  ///< over all lights

@@ -10,8 +10,8 @@
 
 namespace photile {
 
-/// What one layer of the picture holds: a light, or all lights of a group at their powers. Its power
-/// scales them together.
+/// What one layer of the picture holds: a light, or all lights of a group at their powers. Its
+/// power scales them together.
 struct LightGroup {
   std::string name;                   ///< of the group, or of the light alone
   std::vector<std::uint32_t> lights;  ///< into Scene::lights, ascending

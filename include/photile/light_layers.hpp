@@ -10,8 +10,9 @@
 
 namespace photile {
 
-/// Radiance and illuminance per pixel and light, each light at power 1; a group of lights is one. With
-/// up to max_dense_lights lights a plane for each; with more, per pixel the lights that reach it.
+/// Radiance and illuminance per pixel and light, each light at power 1; a group of lights is one.
+/// With up to max_dense_lights lights a plane for each; with more, per pixel the lights that reach
+/// it.
 struct LightLayers {
   int width = 0, height = 0;
   struct Layer {

@@ -16,7 +16,7 @@ namespace photile {
 struct MixedLight {
   std::string name;
   std::vector<std::string> members;  ///< lights of a group; empty for a light alone
-  double power = 0;  ///< in `unit`
+  double power = 0;                  ///< in `unit`
   PowerUnit unit = PowerUnit::lumen;
   glm::vec3 color{1.0f};  ///< the light's own colour, as its photons carried it; luminance 1
   /// Multiplies the layer, on top of `color`. Scaled so that luminance(tint * color) = 1: a tinted

@@ -19,9 +19,9 @@ struct NeighbourGroupParameters {
   double angle_degrees = defaults::group_angle_degrees;  ///< largest angle between their normals
 };
 
-/// Groups in compressed sparse rows: the maps that photons of sided triangle s may have to enter are
-/// members[offsets[s] .. offsets[s + 1]), ascending, its own map among them. Without patches a map
-/// is a sided triangle, and the relation is symmetric.
+/// Groups in compressed sparse rows: the maps that photons of sided triangle s may have to enter
+/// are members[offsets[s] .. offsets[s + 1]), ascending, its own map among them. Without patches a
+/// map is a sided triangle, and the relation is symmetric.
 struct NeighbourGroups {
   std::vector<std::uint64_t> offsets;  ///< size 2 * triangles + 1
   std::vector<std::uint32_t> members;
@@ -30,8 +30,7 @@ struct NeighbourGroups {
   double angle_degrees = 0;
 
   std::span<const std::uint32_t> of(std::uint32_t sided_triangle) const {
-    return {members.data() + offsets[sided_triangle],
-            members.data() + offsets[sided_triangle + 1]};
+    return {members.data() + offsets[sided_triangle], members.data() + offsets[sided_triangle + 1]};
   }
   std::uint64_t bytes() const {
     return offsets.size() * sizeof(offsets[0]) + members.size() * sizeof(members[0]) +
@@ -48,19 +47,19 @@ NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       Progress& progress = Progress::none());
 
 /// As above, with the maps of patches for members: each that has a triangle in the sided triangle's
-/// group. Found patch by patch, so that time grows with the patches near a triangle and not with the
-/// triangles.
+/// group. Found patch by patch, so that time grows with the patches near a triangle and not with
+/// the triangles.
 NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
                                   const NeighbourGroupParameters& parameters,
                                   Progress& progress = Progress::none());
 
 /// Joins patches that hold mostly the same photons, judged by a sample: each joined pair saves the
-/// references they share. Patches whose queries would look at most photons in vain stay apart. What a
-/// query finds is the same.
+/// references they share. Patches whose queries would look at most photons in vain stay apart. What
+/// a query finds is the same.
 NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons);
 
-/// Groups for maps of a mode, as the renderer uses them: the patches that it asks for, their groups,
-/// patches joined.
+/// Groups for maps of a mode, as the renderer uses them: the patches that it asks for, their
+/// groups, patches joined.
 NeighbourGroups find_map_groups(const Scene& scene, const Photons& photons, MapMode mode,
                                 const NeighbourGroupParameters& parameters,
                                 Progress& progress = Progress::none());

@@ -40,9 +40,9 @@ struct Patches {
 };
 
 /// Clusters triangles, connected or not, into patches: flat to a fraction of `radius`, alike in
-/// normal (whichever way they are wound), and without large gaps. Patches may be any number of radii
-/// wide, for the wider, the fewer photons lie near a border and enter two. Empty for MapMode::naive
-/// and ::triangle. Parallel; the result does not depend on the number of threads.
+/// normal (whichever way they are wound), and without large gaps. Patches may be any number of
+/// radii wide, for the wider, the fewer photons lie near a border and enter two. Empty for
+/// MapMode::naive and ::triangle. Parallel; the result does not depend on the number of threads.
 ///   radius   metres, > 0: the search radius of the maps
 Patches find_patches(const Scene& scene, double radius, MapMode mode);
 

@@ -75,8 +75,8 @@ class PhotonMaps {
   const PhotonMapStatistics& statistics() const;
   const PhotonMapParameters& parameters() const;
   Device& device() const;
-  /// Per sided triangle: the map that serves it, `none` where no photon comes near. Empty where that
-  /// is the sided triangle itself.
+  /// Per sided triangle: the map that serves it, `none` where no photon comes near. Empty where
+  /// that is the sided triangle itself.
   std::span<const std::uint32_t> map_of() const;
 
   const maps::MapStore& store() const { return *store_; }

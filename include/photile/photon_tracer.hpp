@@ -44,9 +44,9 @@ std::vector<std::uint64_t> photons_per_light(const Scene& scene, std::uint64_t t
                                              PhotonQuota quota);
 
 /// Traces photon paths with Embree and TBB and stores a photon at every hit on an opaque surface.
-/// Each layer's lights together emit flux 1 (Scene::unit), shared as LightGroups::share says. The result depends on the scene, the parameters and the
-/// seed only, bit for bit, whatever the number of threads.
-/// Errors: UsageError for counts out of limits.hpp; Interrupted.
+/// Each layer's lights together emit flux 1 (Scene::unit), shared as LightGroups::share says. The
+/// result depends on the scene, the parameters and the seed only, bit for bit, whatever the number
+/// of threads. Errors: UsageError for counts out of limits.hpp; Interrupted.
 PhotonTracerResult trace_photons(const RayScene& scene, const PhotonTracerParameters& parameters,
                                  Progress& progress = Progress::none());
 

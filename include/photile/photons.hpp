@@ -14,7 +14,7 @@ struct Photons {
   /// Flux of the photon where the lights of its layer together emit 1 lm or 1 W, linear RGB. Summed
   /// over the photons that a layer's lights emitted, before the first hit, the luminance is 1.
   std::vector<glm::vec3> flux;
-  std::vector<glm::vec3> incoming;  ///< unit, towards where it came from; empty unless glossy
+  std::vector<glm::vec3> incoming;   ///< unit, towards where it came from; empty unless glossy
   std::vector<std::uint16_t> light;  ///< layer, into LightGroups::groups; empty for one alone
   std::vector<std::uint32_t> sided_triangle;
 

@@ -61,7 +61,7 @@ struct PrimaryHitBatch {
 /// carries weight 1 / samples_per_pixel in `throughput` and `radiance`, so that summing gives pixel
 /// means. Depends on the scene, camera, parameters and seed only, not on how rows are split or on
 /// threads.
-///   map_of   the photon map of each sided triangle (PhotonMaps::map_of), for the order of hits; empty
+///   map_of   map of each sided triangle (PhotonMaps::map_of), for the order of hits; empty
 ///            where a sided triangle is the map itself
 PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
                                    const PrimaryHitParameters& parameters, int first_row,

@@ -40,10 +40,10 @@ struct RenderParameters {
 struct RenderResult {
   LightLayers layers;
   RunStatistics statistics;
-  double radius = 0;  ///< the one used, metres; of the first pass
+  double radius = 0;                 ///< the one used, metres; of the first pass
   std::uint64_t stored_photons = 0;  ///< over all passes
   int passes = 1;
-  int samples_per_pixel = 1;  ///< over all passes: those asked for, or one more for a pass
+  int samples_per_pixel = 1;          ///< over all passes: those asked for, or one more for a pass
   std::vector<double> device_shares;  ///< each device's part of the hits, in [0, 1]
 };
 

@@ -59,7 +59,7 @@ enum class Interaction : std::uint8_t {
 struct Material {
   std::string name;
   Interaction interaction = Interaction::opaque;
-  glm::vec3 diffuse{0.0f};   ///< Lambertian albedo in [0,1], multiplied by the texture
+  glm::vec3 diffuse{0.0f};  ///< Lambertian albedo in [0,1], multiplied by the texture
   std::uint32_t diffuse_texture = none;
   glm::vec3 specular{0.0f};  ///< reflectance at normal incidence, F0; black = no specular lobe
   /// GGX alpha in [PHOTILE_MIN_GGX_ALPHA, 1]; only where `specular` is not black.
@@ -68,16 +68,14 @@ struct Material {
   float index_of_refraction = 1.5f;
   bool thin = false;  ///< glass without volume: refraction does not bend the ray
 
-  bool glossy() const {
-    return interaction == Interaction::opaque && specular != glm::vec3(0.0f);
-  }
+  bool glossy() const { return interaction == Interaction::opaque && specular != glm::vec3(0.0f); }
 };
 
 enum class LightKind : std::uint8_t { area, point, spot, directional };
 
 /// A light. Its photons carry `color` with luminance 1, so that `power` alone scales its layer.
 struct Light {
-  std::string name;  ///< unique; no dots; at most limits::max_light_name_bytes bytes
+  std::string name;   ///< unique; no dots; at most limits::max_light_name_bytes bytes
   std::string group;  ///< of light_groups.hpp; "" = a layer of its own
   LightKind kind = LightKind::area;
   glm::vec3 color{1.0f};  ///< linear RGB scaled to luminance 1
@@ -112,7 +110,7 @@ struct MeshInstance {
 
 /// What the import found worth telling.
 struct ImportReport {
-  std::vector<std::string> warnings;  ///< one line each: object, what was found, what was done
+  std::vector<std::string> warnings;       ///< one line each: object, what was found, what was done
   std::uint64_t degenerate_triangles = 0;  ///< zero area; dropped
   std::uint64_t non_finite_triangles = 0;  ///< NaN or infinite corner; dropped
   std::uint64_t polygons_triangulated = 0;
@@ -126,12 +124,12 @@ struct Scene {
   std::filesystem::path source;
   PowerUnit unit = PowerUnit::lumen;
 
-  std::vector<glm::vec3> vertices;                     ///< metres
-  std::vector<glm::uvec3> triangles;                   ///< vertex indices, canonical order
-  std::vector<std::uint8_t> front_side;                ///< per triangle: 0 or 1
-  std::vector<std::uint32_t> triangle_material;        ///< per triangle
-  std::vector<std::uint32_t> triangle_light;           ///< per triangle: area light, or none
-  std::vector<std::array<glm::vec2, 3>> corner_uv;     ///< empty when nothing is textured
+  std::vector<glm::vec3> vertices;                  ///< metres
+  std::vector<glm::uvec3> triangles;                ///< vertex indices, canonical order
+  std::vector<std::uint8_t> front_side;             ///< per triangle: 0 or 1
+  std::vector<std::uint32_t> triangle_material;     ///< per triangle
+  std::vector<std::uint32_t> triangle_light;        ///< per triangle: area light, or none
+  std::vector<std::array<glm::vec2, 3>> corner_uv;  ///< empty when nothing is textured
   /// Shading normals per corner, on the front side; empty when no material is specular or glossy
   /// or the file has none. A zero vector means "use the geometric normal".
   std::vector<std::array<glm::vec3, 3>> corner_normal;
@@ -177,15 +175,15 @@ struct BoundingSphere {
 };
 BoundingSphere bounding_sphere(const Scene& scene);
 
-/// Up to this many layers (see light_groups.hpp) each has a value at every hit and pixel. With more,
-/// memory and time grow with the lights that reach a hit, not with all.
+/// Up to this many layers (see light_groups.hpp) each has a value at every hit and pixel. With
+/// more, memory and time grow with the lights that reach a hit, not with all.
 inline constexpr std::uint32_t max_dense_lights = 8;
 
 /// What later stages must provide for; whatever is false costs nothing anywhere.
 struct SceneNeeds {
-  bool glossy = false;          ///< some opaque material has a specular lobe
-  bool textures = false;        ///< some material has a texture
-  bool specular_paths = false;  ///< some material is a mirror or glass
+  bool glossy = false;            ///< some opaque material has a specular lobe
+  bool textures = false;          ///< some material has a texture
+  bool specular_paths = false;    ///< some material is a mirror or glass
   std::uint32_t light_count = 0;  ///< layers: a group of lights counts as one
 
   /// Whether only the lights that reach a point are kept for it.

@@ -11,9 +11,9 @@ namespace photile {
 
 /// Cost of one stage.
 struct StageStatistics {
-  std::string stage;             ///< "trace photons", "build photon maps", ...
-  double seconds = 0;            ///< wall clock
-  std::uint64_t host_bytes = 0;  ///< memory that the stage's result keeps on the host
+  std::string stage;               ///< "trace photons", "build photon maps", ...
+  double seconds = 0;              ///< wall clock
+  std::uint64_t host_bytes = 0;    ///< memory that the stage's result keeps on the host
   std::uint64_t device_bytes = 0;  ///< memory that the stage's result keeps on the device
   /// Named figures of the stage, in the order they were added ("photons per second", 1.9e6).
   std::vector<std::pair<std::string, double>> figures;

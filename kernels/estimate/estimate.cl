@@ -4,7 +4,7 @@
 // Symbols the host defines:
 //   VECTOR_WIDTH     see shared/wide.clh
 //   CAPACITY         see estimate/candidates.clh
-//   HITS_PER_ITEM    hits in a row that a work-item estimates, each expecting the radius of the last
+//   HITS_PER_ITEM    hits in a row of a work-item, each expecting the radius of the one before
 //   those of estimate/arguments.clh and estimate/sums.clh
 
 #include "estimate/estimate_hit.clh"
@@ -14,7 +14,7 @@
 #endif
 
 // One work-item per HITS_PER_ITEM hits of one map page.
-//   hit_count, first_hit   the hits [first_hit, first_hit + hit_count) of the batch lie in this page
+//   hit_count, first_hit   hits [first_hit, first_hit + hit_count) of the batch lie in this page
 //   hit_map                the map that each hit of the batch lies on
 //   first_map              the page's first map
 //   entry_stride           plane distance of entry_position, entry_flux, entry_incoming
@@ -45,7 +45,6 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     expected_map = map;
     Hit hit;
     load_hit(&hits, index, &hit);
-    expected =
-        estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected, &estimates);
+    expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected, &estimates);
   }
 }

@@ -17,8 +17,7 @@
 // need not agree with every triangle of the map.
 __kernel void count_photons(uint photon_count, __global const float* position,
                             __global const uint* own_map, __global const uint* list,
-                            __global const uint* list_offsets,
-                            __global const uint* list_members,
+                            __global const uint* list_offsets, __global const uint* list_members,
                             __global const PhotileMapShape* shapes, __global const float* corners,
                             float squared_reach, __global uint* map_count
 #ifdef PATCHES

@@ -1,18 +1,17 @@
 // Build, step 7: copy what the estimate streams into the order of the cells. An entry repeats its
-// photon's record, so that the rows of a block of cells are read front to back; following references
-// instead would touch a cache line per photon.
+// photon's record, so that the rows of a block of cells are read front to back; following
+// references instead would touch a cache line per photon.
 
 // Symbols the host defines:
 //   LIGHT_INDEX   type of an entry's light; undefined with one light
 //   GLOSSY        entries keep their incoming direction
 
-// One work-item per entry of a map page, in both kernels; handles those whose photon is in the photon
-// page.
+// One work-item per entry of a map page, in both kernels; handles those whose photon is in the
+// photon page.
 //   entry_stride   entries of the page with padding: component c of entry i is [c * stride + i]
 
-__kernel void gather_entries(uint entry_count, uint entry_stride,
-                             __global const uint* entry_photon, uint first_photon,
-                             uint photon_count, __global const float* position,
+__kernel void gather_entries(uint entry_count, uint entry_stride, __global const uint* entry_photon,
+                             uint first_photon, uint photon_count, __global const float* position,
                              __global const float* flux, __global float* entry_position,
                              __global float* entry_flux
 #ifdef LIGHT_INDEX
@@ -42,9 +41,8 @@ __kernel void gather_entries(uint entry_count, uint entry_stride,
 
 // For pages with a map whose queries compare normals.
 //   normal   3 floats per photon: of its sided triangle
-__kernel void gather_normals(uint entry_count, uint entry_stride,
-                             __global const uint* entry_photon, uint first_photon,
-                             uint photon_count, __global const float* normal,
+__kernel void gather_normals(uint entry_count, uint entry_stride, __global const uint* entry_photon,
+                             uint first_photon, uint photon_count, __global const float* normal,
                              __global float* entry_normal) {
   for (uint i = get_global_id(0); i < entry_count; i += get_global_size(0)) {
     const uint photon = entry_photon[i] - first_photon;

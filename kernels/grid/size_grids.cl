@@ -20,7 +20,8 @@
 //   map_mixed        per map, from count_photons (PATCHES)
 //   radius           metres
 //   photons_per_cell aimed at
-// After: grids[i] is complete but for first_cell; cell_total[i] = columns * rows, 0 without photons.
+// After: grids[i] is complete but for first_cell; cell_total[i] = columns * rows, 0 without
+// photons.
 //
 // The cell size aims at photons_per_cell where photons are, on the surface grown by the radius (its
 // Minkowski sum with a disc), which is where photons of the map can be.
@@ -45,9 +46,8 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
     const float width_v = shape->width_v + 2.0f * radius;
     const float area = shape->area + shape->perimeter * radius + 3.14159265f * radius * radius;
     const float cell_area = area * photons_per_cell / ((float)count * map_crowding[map]);
-    const float cell_width =
-        fmax(sqrt(cell_area / (float)PHOTILE_CELL_ASPECT),
-             fmax(width_u, width_v) / (float)(MAX_CELLS_PER_SIDE - 1));
+    const float cell_width = fmax(sqrt(cell_area / (float)PHOTILE_CELL_ASPECT),
+                                  fmax(width_u, width_v) / (float)(MAX_CELLS_PER_SIDE - 1));
     const float cell_height = (float)PHOTILE_CELL_ASPECT * cell_width;
 
     grid.origin_x = shape->origin_x;

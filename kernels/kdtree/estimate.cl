@@ -48,8 +48,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     tree.hit_normal = hit.face_normal;
     tree.least_cosine = least_cosine;
 #endif
-    nearest_in_tree(&tree, root[map - first_map], hit.position,
-                    frames + (map - first_map), &list);
+    nearest_in_tree(&tree, root[map - first_map], hit.position, frames + (map - first_map), &list);
     if (list.size == 0) continue;
 
     Sums sums;

@@ -1,4 +1,4 @@
-// The k nearest photons of each hit by kd-tree, as a list; see kdtree/estimate.cl for the arguments.
+// The k nearest photons of each hit by kd-tree, as a list; kdtree/estimate.cl has the arguments.
 
 #include "kdtree/query.clh"
 

@@ -66,8 +66,8 @@ TEST_CASE("a group of lights is one light of the picture, and its power scales t
       run_photile({"relight", grouped, "--light", "both=x2.5", "-o", folder / "relit.exr"});
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
-  const std::string each = render(folder, "each.exr", {"--light", "left=x2.5", "--light",
-                                                       "right=x2.5"});
+  const std::string each =
+      render(folder, "each.exr", {"--light", "left=x2.5", "--light", "right=x2.5"});
   // 50 photons of each of 4 samples, in another order.
   check_same_root(folder / "relit.exr", each, 2 * (50 + 4 + 10) * std::ldexp(1.0, -24));
 }

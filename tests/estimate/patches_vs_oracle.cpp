@@ -77,8 +77,9 @@ TEST_CASE("maps of patches find the oracle's neighbours in the living room") {
   check_modes(scene, 60'000, 400, 0.4, every_structure, {50});
 }
 
-TEST_CASE("maps of patches find the oracle's neighbours in scenes of tens of thousands of triangles",
-          "[slow]") {
+TEST_CASE(
+    "maps of patches find the oracle's neighbours in scenes of tens of thousands of triangles",
+    "[slow]") {
   const char* set = std::getenv("PHOTILE_SHARED_SCENES");
   const std::filesystem::path folder =
       set != nullptr ? set : source_folder.parent_path() / "shared/scenes";

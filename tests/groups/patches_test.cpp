@@ -63,7 +63,8 @@ void check_renamed(const Scene& scene, const NeighbourGroups& of_patches) {
 
 }  // namespace
 
-TEST_CASE("every triangle is in one patch, and the groups of patches are those of their triangles") {
+TEST_CASE(
+    "every triangle is in one patch, and the groups of patches are those of their triangles") {
   const MapMode mode = GENERATE(MapMode::patch, MapMode::automatic);
   const double radius = GENERATE(0.05, 0.3);
   for (const Scene& scene : {torus(), room_corner()}) {
@@ -102,7 +103,8 @@ TEST_CASE("distant plates in one plane stay apart") {
   CHECK(find_patches(scene, 0.1, MapMode::patch).count() == 2);
 }
 
-TEST_CASE("joining the inner side of a thin plate to the outer side of the other saves references") {
+TEST_CASE(
+    "joining the inner side of a thin plate to the outer side of the other saves references") {
   const Scene scene = room_corner();
   const double radius = 0.1;
   Patches apart;  // each triangle by itself: the finest patches there are
@@ -131,14 +133,14 @@ TEST_CASE("joining the inner side of a thin plate to the outer side of the other
 }
 
 TEST_CASE("a patch joins another only where its queries would not look at most photons in vain") {
-  // The ridge of a roof, with a narrow floor above it. The slopes lean 50 degrees either way, so that
-  // photons of the floor are neighbours on both, and those of one slope none on the other.
+  // The ridge of a roof, with a narrow floor above it. The slopes lean 50 degrees either way, so
+  // that photons of the floor are neighbours on both, and those of one slope none on the other.
   const float across = 0.05f * std::cos(glm::radians(50.0f));
   const float down = 0.05f * std::sin(glm::radians(50.0f));
   Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {across, 0, -down}, {0, 0.05f, 0}, 1);                // right
-  test::add_plate(scene, {-across, 0, -down}, {across, 0, down}, {0, 0.05f, 0}, 1);       // left
-  test::add_plate(scene, {-0.01f, 0, 0.01f}, {0.02f, 0, 0}, {0, 0.05f, 0}, 1);            // floor
+  test::add_plate(scene, {0, 0, 0}, {across, 0, -down}, {0, 0.05f, 0}, 1);           // right
+  test::add_plate(scene, {-across, 0, -down}, {across, 0, down}, {0, 0.05f, 0}, 1);  // left
+  test::add_plate(scene, {-0.01f, 0, 0.01f}, {0.02f, 0, 0}, {0, 0.05f, 0}, 1);       // floor
   Patches patches;  // the right slope, and the left one with the floor
   patches.first_of = {0, 2, 6};
   for (std::uint32_t t = 0; t < 6; ++t) {
@@ -161,12 +163,12 @@ TEST_CASE("a patch joins another only where its queries would not look at most p
     }
     return merge_patches(scene, groups, sort_by_sided_triangle(photons, 12)).patches.count();
   };
-  // The patch of the left slope holds all photons of the right one's: those of both slopes agree with
-  // the floor. What it holds besides are the photons on the left slope.
+  // The patch of the left slope holds all photons of the right one's: those of both slopes agree
+  // with the floor. What it holds besides are the photons on the left slope.
   CHECK(lit(500, 10, 500) == 1);
-  CHECK(lit(500, 900, 500) == 1);     // 1000 of 1900 shared: more than half
-  CHECK(lit(500, 1100, 500) == 2);    // 1000 of 2100
-  CHECK(lit(10, 5000, 10) == 2);      // a dark slope beside one hundreds of times as bright
+  CHECK(lit(500, 900, 500) == 1);   // 1000 of 1900 shared: more than half
+  CHECK(lit(500, 1100, 500) == 2);  // 1000 of 2100
+  CHECK(lit(10, 5000, 10) == 2);    // a dark slope beside one hundreds of times as bright
 }
 
 TEST_CASE("naive and triangle maps have no patches") {

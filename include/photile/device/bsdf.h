@@ -66,7 +66,8 @@ static inline PHOTILE_REAL photile_ggx_lobe(PHOTILE_REAL n_dot_i, float n_dot_o,
   return n_dot_i > 0.0f ? lobe : behind;
 }
 
-/// One channel of f, per steradian. `schlick` = photile_schlick(i.h), `lobe` = photile_ggx_lobe(...).
+/// One channel of f, per steradian. `schlick` = photile_schlick(i.h), `lobe` is
+/// photile_ggx_lobe(...).
 static inline PHOTILE_REAL photile_opaque_bsdf(float albedo, float f0, PHOTILE_REAL schlick,
                                                PHOTILE_REAL lobe) {
   const PHOTILE_REAL fresnel = f0 + (1.0f - f0) * schlick;
