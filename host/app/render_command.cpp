@@ -21,6 +21,7 @@
 #include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
+#include "photile/path_tracer.hpp"
 
 namespace photile::app {
 namespace {
@@ -103,52 +104,79 @@ void tell_kernels(Device& device, bool profile, Progress& progress) {
   for (const auto& line : kernel_table(device.context().kernel_times())) progress.note(line);
 }
 
-void run_render(RenderOptions& options) {
+/// Opens the devices that photon maps need, and tells them.
+std::vector<Device> devices_for(const RenderOptions& options, Progress& progress) {
+  if (options.integrates == Integrator::path) return {};
+  std::vector<Device> devices = open_devices(options.device);
+  for (const Device& device : devices) tell_device(device.info(), progress);
+  return devices;
+}
+
+/// The layers by photon maps. Fills in what `record` tells of them.
+LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
+                              RenderOptions& options, RunRecord& record, Progress& progress) {
+  if (options.tuned) use_stored_tuning(options, devices, scene, progress);
+  RenderResult result = render(scene, camera, devices, options.parameters, progress);
+  record.maps = options.maps;
+  record.parameters = options.parameters;
+  for (const Device& device : devices) record.devices.push_back(device.info());
+  record.device_shares = result.device_shares;
+  record.radius = result.radius;
+  record.stored_photons = result.stored_photons;
+  record.passes = result.passes;
+  record.samples_per_pixel = result.samples_per_pixel;
+  record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
+  return std::move(result.layers);
+}
+
+/// The layers by path tracing.
+LightLayers render_by_paths(const Scene& scene, const Camera& camera, RunRecord& record,
+                            Progress& progress) {
+  if (has_unseen_caustics(scene)) {
+    progress.note(
+        "warning: paths do not find what mirrors and glass throw from point, spot and directional "
+        "lights; photon maps do");
+  }
+  PathTracerResult result = trace_paths(scene, camera, record.parameters.film, progress);
+  record.samples_per_pixel = record.parameters.film.samples_per_pixel;
+  record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
+  return std::move(result.layers);
+}
+
+void run_render(const CLI::App& command, RenderOptions& options) {
   handle_signals();
   const Stopwatch stopwatch;
   apply_words(options);
+  if (options.integrates == Integrator::path) refuse_photon_map_options(command);
   std::vector<LightChange> changes;
   for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
   const PictureOutputs outputs = check_outputs_of(options);
 
   const ThreadLimit threads(options.threads);
   TerminalProgress progress(options.quiet);
-  std::vector<Device> devices = open_devices(options.device);
-  std::vector<DeviceInfo> device_infos;
-  for (const Device& device : devices) {
-    tell_device(device_infos.emplace_back(device.info()), progress);
-  }
+  std::vector<Device> devices = devices_for(options, progress);
 
   Scene scene;
-  RunStatistics stages;
-  stages.push_back(timed_stage("load scene", progress,
-                               [&] { scene = load_scene(options.scene, options.load); }));
-  LightMix mix = LightMix::of(scene, options.lumen_per_watt);
-  photile::apply(mix, changes);  // qualified: std::apply would match better
-  tell_scene(scene, mix, progress);
+  RunRecord record;
+  record.stages.push_back(timed_stage("load scene", progress,
+                                      [&] { scene = load_scene(options.scene, options.load); }));
+  record.mix = LightMix::of(scene, options.lumen_per_watt);
+  photile::apply(record.mix, changes);  // qualified: std::apply would match better
+  tell_scene(scene, record.mix, progress);
   const Camera& camera = choose_camera(scene, options.camera);
   set_film_size(options.parameters.film, options.size, camera);
+  record.scene = scene.source.filename().string();
+  record.camera = camera.name;
+  record.integrator = options.integrator;
+  record.parameters = options.parameters;
 
-  if (options.tuned) use_stored_tuning(options, devices, scene, progress);
-
-  const RenderResult result = render(scene, camera, devices, options.parameters, progress);
-  stages.insert(stages.end(), result.statistics.begin(), result.statistics.end());
-
-  RunRecord record{.scene = scene.source.filename().string(),
-                   .camera = camera.name,
-                   .maps = options.maps,
-                   .parameters = options.parameters,
-                   .devices = device_infos,
-                   .device_shares = result.device_shares,
-                   .mix = mix,
-                   .radius = result.radius,
-                   .stored_photons = result.stored_photons,
-                   .passes = result.passes,
-                   .samples_per_pixel = result.samples_per_pixel,
-                   .stages = stages};
+  const LightLayers layers =
+      options.integrates == Integrator::path
+          ? render_by_paths(scene, camera, record, progress)
+          : render_by_photons(scene, camera, devices, options, record, progress);
   record.stages.push_back(timed_stage("write pictures", progress, [&] {
-    const std::unique_ptr<LayeredPicture> picture = mixed_picture(result.layers, mix);
-    set_camera_attributes(picture->header(), camera, result.layers.width, result.layers.height);
+    const std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, record.mix);
+    set_camera_attributes(picture->header(), camera, layers.width, layers.height);
     set_run_attributes(picture->header(), record);
     outputs.write(*picture);
   }));
@@ -168,7 +196,7 @@ void add_render_command(CLI::App& photile) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = photile.add_subcommand("render", "Render a scene to an EXR and a PNG");
   add_render_options(*command, *options);
-  command->callback([options] { run_render(*options); });
+  command->callback([command, options] { run_render(*command, *options); });
 }
 
 }  // namespace photile::app

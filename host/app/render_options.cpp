@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "app/light_group_option.hpp"
@@ -16,6 +17,8 @@
 namespace photile::app {
 namespace {
 
+constexpr std::array integrators{std::pair{"photon-map", Integrator::photon_map},
+                                 std::pair{"path", Integrator::path}};
 constexpr std::array quotas{std::pair{"balanced", PhotonQuota::balanced},
                             std::pair{"power", PhotonQuota::power},
                             std::pair{"equal", PhotonQuota::equal}};
@@ -75,6 +78,19 @@ void add_picture_group(CLI::App& command, RenderOptions& options) {
       ->type_name("NAME=POWER|xFACTOR|#RRGGBB|off")
       ->allow_extra_args(false)
       ->group("Picture");
+  command.add_option("--seed", film.seed, "the same seed gives the same picture")
+      ->type_name("N")
+      ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str()
+      ->group("Picture");
+  options.integrator = word_for(integrators, options.integrates);
+  command
+      .add_option("--integrator", options.integrator,
+                  "photon maps, or paths from the eye: unbiased, slower, without a device")
+      ->type_name("")
+      ->check(CLI::IsMember(words_of(integrators)))
+      ->capture_default_str()
+      ->group("Picture");
 }
 
 void add_photon_group(CLI::App& command, RenderOptions& options) {
@@ -94,11 +110,6 @@ void add_photon_group(CLI::App& command, RenderOptions& options) {
   command.add_option("--quota", options.quota, "how the lights share the paths")
       ->type_name("")
       ->check(CLI::IsMember(words_of(quotas)))
-      ->capture_default_str()
-      ->group("Photons");
-  command.add_option("--seed", parameters.photons.seed, "the same seed gives the same picture")
-      ->type_name("N")
-      ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str()
       ->group("Photons");
 }
@@ -163,7 +174,7 @@ void add_scene_group(CLI::App& command, RenderOptions& options) {
   add_light_group_option(command, options.load)->group("Scene");
 }
 
-void add_run_group(CLI::App& command, RenderOptions& options) {
+void add_device_group(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--device", options.device.selector,
                   "OpenCL device: platform:device, index, cpu, gpu or a part of its name; "
@@ -171,20 +182,23 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
                   "only N of its compute units; "
                   "default: the environment's PHOTILE_DEVICE, else the best")
       ->type_name("SELECTOR")
-      ->group("Run");
+      ->group("Device");
   command
       .add_option("--memory", options.device.memory_bytes,
                   "that the device's buffers may take; default: all it has")
       ->type_name("SIZE")
       ->transform(byte_size())
-      ->group("Run");
+      ->group("Device");
+  command.add_flag("--no-cache", options.no_cache, "compile the kernels anew")->group("Device");
+  command.add_flag("--profile", options.device.profile, "print the time of every kernel")
+      ->group("Device");
+}
+
+void add_run_group(CLI::App& command, RenderOptions& options) {
   command.add_option("--threads", options.threads, "of the host; 0 = all cores")
       ->type_name("N")
       ->transform(count_between(0, limits::max_threads))
       ->capture_default_str()
-      ->group("Run");
-  command.add_flag("--no-cache", options.no_cache, "compile the kernels anew")->group("Run");
-  command.add_flag("--profile", options.device.profile, "print the time of every kernel")
       ->group("Run");
   command.add_option("--stats", options.statistics, "write the summary as JSON")
       ->type_name("FILE")
@@ -203,15 +217,27 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_photon_group(command, options);
   add_estimate_group(command, options);
   add_scene_group(command, options);
+  add_device_group(command, options);
   add_run_group(command, options);
 }
 
 void apply_words(RenderOptions& options) {
+  options.integrates = value_for(integrators, options.integrator);
   options.parameters.photons.quota = value_for(quotas, options.quota);
   options.parameters.maps = value_for(map_modes, options.maps);
   options.parameters.structure = value_for(structures, options.structure);
-  options.parameters.film.seed = options.parameters.photons.seed;
+  options.parameters.photons.seed = options.parameters.film.seed;
   options.device.use_program_cache = !options.no_cache;
+}
+
+void refuse_photon_map_options(const CLI::App& command) {
+  const std::set<std::string> groups{"Photons", "Estimate", "Device"};
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0 || groups.count(option->get_group()) == 0) continue;
+    throw UsageError(fmt::format(
+        "{}: only photon maps use it; leave it out, or render without --integrator path",
+        option->get_name()));
+  }
 }
 
 const Camera& choose_camera(const Scene& scene, const std::string& selector) {

@@ -18,11 +18,16 @@ class App;
 
 namespace photile::app {
 
+/// What estimates the light that reaches a surface.
+enum class Integrator { photon_map, path };
+
 /// As typed, checked against the limits.
 struct RenderOptions {
   std::string scene;
   PictureOptions pictures;
   RenderParameters parameters;
+  std::string integrator;  ///< "photon-map" or "path"
+  Integrator integrates = Integrator::photon_map;
   std::string quota;                  ///< "balanced", "power" or "equal"
   std::string maps;                   ///< "naive", "triangle", "patch" or "auto"
   std::string structure;              ///< "uniform-grid", ...
@@ -43,9 +48,13 @@ struct RenderOptions {
 /// Adds all options to the subcommand.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-/// Sets what `options` holds as words: the quota, the maps, the structure and the cache.
-/// Errors: none, CLI11 has checked the words.
+/// Sets what `options` holds as words: the integrator, the quota, the maps, the structure and the
+/// cache. Errors: none, CLI11 has checked the words.
 void apply_words(RenderOptions& options);
+
+/// Errors: UsageError that names an option which was given to `command` although the path tracer
+/// has no use for it.
+void refuse_photon_map_options(const CLI::App& command);
 
 /// The camera named by `selector`: a name, an index, or "" for the first.
 /// Errors: UsageError listing those there are.

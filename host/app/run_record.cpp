@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -57,38 +58,48 @@ std::string devices_text(std::span<const DeviceInfo> devices) {
 
 json parameters_json(const RunRecord& record) {
   const RenderParameters& parameters = record.parameters;
-  return {{"photons_emitted", parameters.photons.emitted_photons},
-          {"seed", parameters.photons.seed},
-          {"neighbours", parameters.neighbours},
-          {"radius", record.radius},
-          {"angle_degrees", parameters.angle_degrees},
-          {"maps", record.maps},
-          {"photons_per_cell", parameters.photons_per_cell},
-          {"width", parameters.film.width},
-          {"height", parameters.film.height},
-          {"samples_per_pixel", record.samples_per_pixel},
-          {"passes", record.passes}};
+  json result{{"integrator", record.integrator},
+              {"seed", parameters.film.seed},
+              {"width", parameters.film.width},
+              {"height", parameters.film.height},
+              {"samples_per_pixel", record.samples_per_pixel}};
+  if (record.has_photons()) {
+    result.update({{"photons_emitted", parameters.photons.emitted_photons},
+                   {"neighbours", parameters.neighbours},
+                   {"radius", record.radius},
+                   {"angle_degrees", parameters.angle_degrees},
+                   {"maps", record.maps},
+                   {"photons_per_cell", parameters.photons_per_cell},
+                   {"passes", record.passes}});
+  }
+  return result;
 }
 
-}  // namespace
-
-void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
+void set_photon_attributes(std::map<std::string, std::string>& attributes,
+                           const RunRecord& record) {
   const RenderParameters& parameters = record.parameters;
-  auto& attributes = picture.attributes;
-  attributes["photile.version"] = version_number();
-  attributes["photile.scene"] = record.scene;
-  attributes["photile.camera"] = record.camera;
-  attributes["photile.seed"] = std::to_string(parameters.photons.seed);
   attributes["photile.photons_emitted"] = std::to_string(parameters.photons.emitted_photons);
   attributes["photile.photons_stored"] = std::to_string(record.stored_photons);
   attributes["photile.neighbours"] = std::to_string(parameters.neighbours);
   attributes["photile.radius"] = fmt::format("{} m", record.radius);
   attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
   attributes["photile.maps"] = record.maps;
-  attributes["photile.samples_per_pixel"] = std::to_string(record.samples_per_pixel);
   attributes["photile.passes"] = std::to_string(record.passes);
   attributes["photile.device"] = devices_text(record.devices);
+}
+
+}  // namespace
+
+void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
+  auto& attributes = picture.attributes;
+  attributes["photile.version"] = version_number();
+  attributes["photile.scene"] = record.scene;
+  attributes["photile.camera"] = record.camera;
+  attributes["photile.integrator"] = record.integrator;
+  attributes["photile.seed"] = std::to_string(record.parameters.film.seed);
+  attributes["photile.samples_per_pixel"] = std::to_string(record.samples_per_pixel);
   attributes["photile.times"] = times_text(record.stages);
+  if (record.has_photons()) set_photon_attributes(attributes, record);
 }
 
 json run_json(const RunRecord& record) {
@@ -99,10 +110,10 @@ json run_json(const RunRecord& record) {
               {"parameters", parameters_json(record)},
               {"lumen_per_watt", record.mix.lumen_per_watt},
               {"lights", json::array()},
-              {"photons_stored", record.stored_photons},
               {"stages", json::array()},
               {"total_seconds", record.total_seconds},
               {"peak_host_bytes", peak_host_bytes()}};
+  if (record.has_photons()) result["photons_stored"] = record.stored_photons;
   for (const MixedLight& light : record.mix.lights) {
     result["lights"].push_back({{"name", light.name},
                                 {"power", light.power},

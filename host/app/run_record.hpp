@@ -16,9 +16,12 @@
 namespace photile::app {
 
 struct RunRecord {
+  bool has_photons() const { return !devices.empty(); }
+
   std::string scene;  ///< the file's name, without folders: a picture should not tell them
   std::string camera;
-  std::string maps;  ///< "naive", "triangle", "patch" or "auto"
+  std::string integrator;  ///< "photon-map" or "path", which has no devices, maps and photons
+  std::string maps;        ///< "naive", "triangle", "patch" or "auto"
   RenderParameters parameters;
   std::vector<DeviceInfo> devices;
   std::vector<double> device_shares;  ///< of the hits, per device

@@ -24,12 +24,6 @@ EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& d
           {material.specular, alpha, shading_normal(scene, point, direction)}};
 }
 
-/// Whether the light of the point's triangle, if any, shines from this side.
-bool emits(const Scene& scene, const SurfacePoint& point) {
-  const std::uint32_t light = scene.triangle_light[point.where.triangle];
-  return light != none && (on_front(scene, point) || scene.lights[light].two_sided);
-}
-
 }  // namespace
 
 glm::dvec2 stratified(int index, int count, double u1, double u2) {

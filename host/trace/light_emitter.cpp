@@ -1,11 +1,9 @@
 #include "trace/light_emitter.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "photile/errors.hpp"
 #include "trace/sampling.hpp"
+#include "trace/spot_falloff.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
@@ -18,15 +16,7 @@ enum Block : std::uint32_t { place_block = 0, direction_block = 1 };
 
 LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds)
     : scene_(&scene), light_(&scene.lights[light]), bounds_(bounds) {
-  if (light_->kind != LightKind::area) return;
-  double area = 0;
-  area_up_to_.reserve(light_->triangles.size());
-  for (const std::uint32_t triangle : light_->triangles)
-    area_up_to_.push_back(area += triangle_area(scene, triangle));
-  if (!(area > 0))
-    throw InputError(scene.source.string() + ": area light '" + light_->name + "' has " +
-                     std::to_string(light_->triangles.size()) +
-                     " triangles and no area; give it a surface or remove it");
+  if (light_->kind == LightKind::area) area_.emplace(scene, *light_);
 }
 
 EmittedRay LightEmitter::emit(const RandomStream& random) const {
@@ -51,17 +41,11 @@ EmittedRay LightEmitter::emit(const RandomStream& random) const {
 }
 
 EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {
-  const RandomBlock place = random.block(Purpose::emission, place_block);
-  const double target = place.uniform_double(0) * area_up_to_.back();
-  // The last entry is larger than the target, so there always is one.
-  const auto chosen = std::upper_bound(area_up_to_.begin(), area_up_to_.end(), target);
-  const std::uint32_t triangle = light_->triangles[chosen - area_up_to_.begin()];
-
+  const TriangleHit where = area_->sample(random.block(Purpose::emission, place_block));
   const RandomBlock numbers = random.block(Purpose::emission, direction_block);
-  const glm::vec2 uv = sample_triangle(place.uniform(2), place.uniform(3));
-  const std::uint32_t front = scene_->front_side[triangle];
+  const std::uint32_t front = scene_->front_side[where.triangle];
   const std::uint32_t side = light_->two_sided && numbers.bit(2) ? 1 - front : front;
-  const SurfacePoint point = surface_point(*scene_, {triangle, uv.x, uv.y}, side);
+  const SurfacePoint point = surface_point(*scene_, where, side);
   const glm::vec3 direction =
       Frame(point.normal)
           .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
@@ -69,13 +53,11 @@ EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {
 }
 
 float LightEmitter::spot_cosine(double u) const {
-  // KHR_lights_punctual: over t = cosine - outer the intensity is (t / edge)^2 up to the edge of
-  // the inner cone, then 1. Its integral is inverted.
-  const double outer = std::cos(static_cast<double>(light_->outer_cone_angle));
-  const double inner = std::cos(static_cast<double>(light_->inner_cone_angle));
-  const double edge = inner - outer;
+  // The integral of the falloff over t = cosine - outer, inverted.
+  const SpotFalloff spot(*light_);
+  const double outer = spot.outer, edge = spot.edge;
   const double edge_share = edge / 3.0;
-  const double target = u * (edge_share + 1.0 - inner);
+  const double target = u * spot.integral();
   const double t =
       target < edge_share ? std::cbrt(3.0 * edge * edge * target) : edge + (target - edge_share);
   return static_cast<float>(outer + t);

@@ -3,9 +3,10 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <vector>
+#include <optional>
 
 #include "photile/scene.hpp"
+#include "trace/area_sampler.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile::trace {
@@ -32,7 +33,7 @@ class LightEmitter {
 
   const Scene* scene_;
   const Light* light_;
-  std::vector<double> area_up_to_;  ///< area lights: area of the triangles up to and with this one
+  std::optional<AreaSampler> area_;  ///< of area lights
   BoundingSphere bounds_;
 };
 

@@ -1,17 +1,17 @@
+#include "trace/photon_quota.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
 #include "photile/errors.hpp"
-#include "photile/photon_tracer.hpp"
 
 namespace photile {
 
-namespace {
+namespace trace {
 
-/// Share of each light, summing to 1 up to rounding.
-std::vector<double> shares(const std::vector<Light>& lights, PhotonQuota quota) {
+std::vector<double> light_shares(const std::vector<Light>& lights, PhotonQuota quota) {
   const double count = static_cast<double>(lights.size());
   double power = 0;
   for (const Light& light : lights) power += light.power;
@@ -26,6 +26,10 @@ std::vector<double> shares(const std::vector<Light>& lights, PhotonQuota quota) 
                     (1.0 - by_power) / count);
   return share;
 }
+
+}  // namespace trace
+
+namespace {
 
 /// Adds what rounding down left over, one path each, by the largest remainder first.
 void give_remainder(std::vector<std::uint64_t>& paths, const std::vector<double>& wanted,
@@ -48,7 +52,7 @@ std::vector<std::uint64_t> photons_per_light(const Scene& scene, std::uint64_t t
                      ": the scene has no lights; add a light or an emissive material");
   // Each light is given its first path, and shares decide about the paths beyond it.
   total = std::max<std::uint64_t>(total, count);
-  const std::vector<double> share = shares(scene.lights, quota);
+  const std::vector<double> share = trace::light_shares(scene.lights, quota);
   std::vector<double> wanted(count);
   std::vector<std::uint64_t> paths(count);
   for (std::size_t l = 0; l < count; ++l)

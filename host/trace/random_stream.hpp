@@ -8,7 +8,14 @@
 namespace photile::trace {
 
 /// What a number is for. Part of the counter, so that two uses never share numbers.
-enum class Purpose : std::uint32_t { emission, photon_scattering, film_position, eye_scattering };
+enum class Purpose : std::uint32_t {
+  emission,
+  photon_scattering,
+  film_position,
+  eye_scattering,
+  path_scattering,
+  path_light
+};
 
 /// Four independent random words.
 class RandomBlock {

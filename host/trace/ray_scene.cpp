@@ -5,24 +5,34 @@
 #include <limits>
 
 #include "trace/ray_scene_impl.hpp"
+#include "trace/surface.hpp"
 
 namespace photile {
 
 namespace {
 
-/// The point of `triangle` nearest to `position`, which lies on it within rounding. Weights of an
-/// instance's own triangle would not do: its corners may come in another order.
-TriangleHit hit_at(const Scene& scene, std::uint32_t triangle, const glm::dvec3& position) {
-  const auto [a, b, c] = scene.corners(triangle);
-  const glm::dvec3 along_u = glm::dvec3(b) - glm::dvec3(a), along_v = glm::dvec3(c) - glm::dvec3(a);
-  const glm::dvec3 offset = position - glm::dvec3(a);
-  const double uu = glm::dot(along_u, along_u), uv = glm::dot(along_u, along_v),
-               vv = glm::dot(along_v, along_v);
-  const double pu = glm::dot(offset, along_u), pv = glm::dot(offset, along_v);
-  const double determinant = uu * vv - uv * uv;
-  const double u = std::clamp((vv * pu - uv * pv) / determinant, 0.0, 1.0);
-  const double v = std::clamp((uu * pv - uv * pu) / determinant, 0.0, 1.0 - u);
-  return {triangle, static_cast<float>(u), static_cast<float>(v)};
+/// A ray from `origin` to `end` times `direction`, ready for Embree.
+RTCRay ray_of(const glm::vec3& origin, const glm::vec3& direction, float end) {
+  RTCRay ray;
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tnear = 0.0f;
+  ray.tfar = end;
+  ray.time = 0.0f;
+  ray.mask = ~0u;
+  ray.flags = 0;
+  return ray;
+}
+
+/// Embree would walk the whole tree for other rays.
+bool finite(const glm::vec3& origin, const glm::vec3& direction) {
+  const float sum = std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z) +
+                    std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+  return sum < std::numeric_limits<float>::infinity();  // false for NaN as well
 }
 
 Box bounds_of(const Scene& scene) {
@@ -50,23 +60,11 @@ RayScene::Impl::~Impl() { release(); }
 
 std::optional<TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
                                                      const glm::vec3& direction) const {
-  // A comparison with NaN is false, so this refuses NaN as well. Embree would walk the whole tree.
-  const float sum = std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z) +
-                    std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-  if (!(sum < std::numeric_limits<float>::infinity())) return std::nullopt;
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  if (!finite(origin, direction)) return std::nullopt;
 
   RTCRayHit query;
-  query.ray.org_x = origin.x;
-  query.ray.org_y = origin.y;
-  query.ray.org_z = origin.z;
-  query.ray.dir_x = direction.x;
-  query.ray.dir_y = direction.y;
-  query.ray.dir_z = direction.z;
-  query.ray.tnear = 0.0f;
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.time = 0.0f;
-  query.ray.mask = ~0u;
-  query.ray.flags = 0;
+  query.ray = ray_of(origin, direction, infinity);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
@@ -79,8 +77,19 @@ std::optional<TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
     return TriangleHit{triangle, query.hit.u, query.hit.v};
   }
   const std::uint32_t first = scene->instances[query.hit.instID[0]].first_triangle;
-  return hit_at(*scene, first + query.hit.primID,
-                glm::dvec3(origin) + double{query.ray.tfar} * glm::dvec3(direction));
+  // Weights of an instance's own triangle would not do: its corners may come in another order.
+  return trace::nearest_on_triangle(
+      *scene, first + query.hit.primID,
+      glm::dvec3(origin) + double{query.ray.tfar} * glm::dvec3(direction));
+}
+
+bool RayScene::Impl::occluded(const glm::vec3& from, const glm::vec3& to) const {
+  if (!finite(from, to - from)) return false;
+  RTCRay ray = ray_of(from, to - from, 1.0f);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(bvh, &context, &ray);
+  return ray.tfar < 0.0f;
 }
 
 RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}

@@ -28,6 +28,10 @@ struct RayScene::Impl {
   /// Nearest hit of the ray, or nothing. Thread-safe. A ray with a NaN or infinity hits nothing.
   std::optional<TriangleHit> intersect(const glm::vec3& origin, const glm::vec3& direction) const;
 
+  /// Whether anything lies on the straight line between two points. Thread-safe. A line with a NaN
+  /// or infinity meets nothing.
+  bool occluded(const glm::vec3& from, const glm::vec3& to) const;
+
   const Scene* scene;
   Box bounds;                          ///< encloses all triangles
   std::atomic<std::int64_t> bytes{0};  ///< outlives the device, which reports to it

@@ -25,11 +25,14 @@ enum ScatterWord : int { choice_word = 0, direction_word = 1, roulette_word = 3 
 Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
                            const glm::vec3& direction, float choice);
 
-/// A photon scattered by an opaque surface: the Lambertian or the GGX lobe, picked in proportion to
-/// estimates of their albedos and weighted by the density of both. Nothing where the photon would
-/// enter the surface. Weights count cosines to the geometric normal, as the radiance estimate does.
+/// A ray scattered by an opaque surface, as OpaqueBsdf samples it, weighted by the density of both
+/// lobes. Nothing where it would enter the surface.
 std::optional<Scattered> scatter_opaque(const Scene& scene, const SurfacePoint& point,
                                         const glm::vec3& direction, const RandomBlock& random);
+
+/// Share of light that a pane of thin glass lets through, per channel. `cosine` in [0, 1] to its
+/// normal.
+glm::vec3 pane_transmittance(const Material& material, float cosine);
 
 /// Reflectance of unpolarised light at a smooth boundary. `cos_i` in [0, 1] on the side that the
 /// ray comes from, `eta` the index there over the index beyond. 1 under total internal reflection.

@@ -49,6 +49,12 @@ float fresnel_dielectric(float cos_i, float eta) {
   return 0.5f * (perpendicular * perpendicular + parallel * parallel);
 }
 
+glm::vec3 pane_transmittance(const Material& material, float cosine) {
+  const float fresnel =
+      fresnel_dielectric(std::min(1.0f, cosine), 1.0f / material.index_of_refraction);
+  return (1.0f - pane_reflectance(fresnel)) * material.transmission;
+}
+
 Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
                            const glm::vec3& direction, float choice) {
   const Material& material = material_of(scene, point);

@@ -47,6 +47,20 @@ SurfacePoint on_side(const TriangleHit& where, const Interpolated& at, std::uint
 
 }  // namespace
 
+TriangleHit nearest_on_triangle(const Scene& scene, std::uint32_t triangle,
+                                const glm::dvec3& position) {
+  const auto [a, b, c] = scene.corners(triangle);
+  const glm::dvec3 along_u = glm::dvec3(b) - glm::dvec3(a), along_v = glm::dvec3(c) - glm::dvec3(a);
+  const glm::dvec3 offset = position - glm::dvec3(a);
+  const double uu = glm::dot(along_u, along_u), uv = glm::dot(along_u, along_v),
+               vv = glm::dot(along_v, along_v);
+  const double pu = glm::dot(offset, along_u), pv = glm::dot(offset, along_v);
+  const double determinant = uu * vv - uv * uv;
+  const double u = std::clamp((vv * pu - uv * pv) / determinant, 0.0, 1.0);
+  const double v = std::clamp((uu * pv - uv * pu) / determinant, 0.0, 1.0 - u);
+  return {triangle, static_cast<float>(u), static_cast<float>(v)};
+}
+
 SurfacePoint surface_point(const Scene& scene, const TriangleHit& where, std::uint32_t side) {
   return on_side(where, interpolate(scene, where), side);
 }

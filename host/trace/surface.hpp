@@ -25,6 +25,10 @@ struct SurfacePoint {
   }
 };
 
+/// The point of a triangle nearest to `position` (metres), which lies on it within rounding.
+TriangleHit nearest_on_triangle(const Scene& scene, std::uint32_t triangle,
+                                const glm::dvec3& position);
+
 /// The point `where` on the given side of its triangle.
 SurfacePoint surface_point(const Scene& scene, const TriangleHit& where, std::uint32_t side);
 
@@ -39,6 +43,12 @@ inline const Material& material_of(const Scene& scene, const SurfacePoint& point
 /// Whether the point lies on the side that the file calls the front.
 inline bool on_front(const Scene& scene, const SurfacePoint& point) {
   return scene.front_side[point.where.triangle] == point.side;
+}
+
+/// Whether the light of the point's triangle, if any, shines from this side.
+inline bool emits(const Scene& scene, const SurfacePoint& point) {
+  const std::uint32_t light = scene.triangle_light[point.where.triangle];
+  return light != none && (on_front(scene, point) || scene.lights[light].two_sided);
 }
 
 /// Lambertian albedo, textured. Each channel in [0, 1].

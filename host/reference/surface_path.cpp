@@ -1,0 +1,193 @@
+#include "reference/surface_path.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "photile/device/bsdf.h"
+#include "trace/opaque_bsdf.hpp"
+#include "trace/scatter.hpp"
+
+namespace photile::reference {
+namespace {
+
+using trace::LightSample;
+using trace::OpaqueBsdf;
+using trace::Purpose;
+using trace::RandomBlock;
+using trace::RandomStream;
+using trace::SurfacePoint;
+
+/// Paths between perfect mirrors end as well.
+constexpr float largest_survival = 0.99f;
+
+float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+/// Of a direction that either technique may find; a density of 0 says that the other cannot.
+float power_heuristic(float density, float other) {
+  const float ratio = other / density;
+  return 1.0f / (1.0f + ratio * ratio);
+}
+
+/// What light from a direction counts for the two results.
+struct Weights {
+  glm::vec3 irradiance{1.0f}, radiance{1.0f};
+
+  friend Weights operator*(const Weights& a, const glm::vec3& b) {
+    return {a.irradiance * b, a.radiance * b};
+  }
+};
+
+/// The point where a path starts: light from there is measured twice, by its cosine alone and as it
+/// is reflected. On a glossy surface half of the directions follow the cosine, for a narrow lobe
+/// would find next to nothing of the irradiance.
+class Receiver {
+ public:
+  Receiver(const SurfacePoint& point, const OpaqueBsdf& bsdf) : point_(point), bsdf_(bsdf) {}
+
+  float density(const glm::vec3& direction) const {
+    if (!bsdf_.glossy()) return bsdf_.density(direction);
+    return 0.5f * (bsdf_.density(direction) + cosine(direction) / PHOTILE_PI);
+  }
+
+  std::optional<glm::vec3> sample(const RandomBlock& choice, const RandomBlock& random) const {
+    if (!bsdf_.glossy() || choice.bit(0)) return bsdf_.sample(random);
+    return trace::Frame(point_.normal)
+        .to_world(trace::sample_cosine_hemisphere(random.uniform(trace::direction_word),
+                                                  random.uniform(trace::direction_word + 1)));
+  }
+
+  /// Of light from `direction`, per steradian.
+  Weights weights(const glm::vec3& direction) const {
+    return {glm::vec3(cosine(direction)), bsdf_.reflected(direction)};
+  }
+
+ private:
+  float cosine(const glm::vec3& direction) const {
+    return std::max(0.0f, glm::dot(direction, point_.normal));
+  }
+
+  const SurfacePoint& point_;
+  const OpaqueBsdf& bsdf_;
+};
+
+class SurfacePath {
+ public:
+  SurfacePath(const RayScene& rays, const trace::LightSampler& lights, const RandomStream& random,
+              std::vector<PathLight>& found)
+      : rays_(rays), scene_(rays.scene()), lights_(lights), random_(random), found_(found) {}
+
+  void trace(const SurfacePoint& start, const glm::vec3& direction) {
+    const OpaqueBsdf bsdf(scene_, start, direction);
+    const Receiver receiver(start, bsdf);
+    look_at_lamp(
+        start, [&](const glm::vec3& to) { return receiver.weights(to); },
+        [&](const glm::vec3& to) { return receiver.density(to); });
+    const RandomBlock numbers = random_.block(Purpose::path_scattering, 1);
+    const auto first = receiver.sample(random_.block(Purpose::path_scattering, 0), numbers);
+    if (!first) return;
+    density_ = receiver.density(*first);
+    if (!(density_ > 0.0f)) return;
+    weights_ = receiver.weights(*first) * glm::vec3(1.0f / density_);
+    from_ = start.position;
+    std::optional<SurfacePoint> point = start;
+    glm::vec3 way = *first;
+    while ((point = follow(*point, way))) {
+      if (!scatter(*point, way)) return;
+    }
+  }
+
+ private:
+  /// The next surface point in a direction; adds what it emits. Nothing beyond the scene.
+  std::optional<SurfacePoint> follow(const SurfacePoint& from, const glm::vec3& direction) {
+    const auto hit = trace::intersect(rays_, from.origin_towards(direction), direction);
+    if (!hit) return std::nullopt;
+    const SurfacePoint point = trace::surface_hit(scene_, *hit, direction);
+    if (trace::emits(scene_, point)) {
+      const std::uint32_t light = scene_.triangle_light[point.where.triangle];
+      // Lamps seen in mirrors or through glass are found by following alone.
+      const float weight =
+          density_ > 0.0f ? power_heuristic(density_, lights_.density(from_, point)) : 1.0f;
+      add(lights_.layer(light), weights_ * (weight * lights_.radiance(light)));
+    }
+    return point;
+  }
+
+  /// Adds a lamp as seen from the point; goes on in a new direction, written to `direction`, or
+  /// returns false.
+  bool scatter(const SurfacePoint& point, glm::vec3& direction) {
+    const RandomBlock numbers = random_.block(Purpose::path_scattering, ++bounce_);
+    if (trace::material_of(scene_, point).interaction != Interaction::opaque) {
+      const trace::Scattered scattered =
+          trace::scatter_specular(scene_, point, direction, numbers.uniform(trace::choice_word));
+      density_ = 0.0f;
+      direction = scattered.direction;
+      return survives(scattered.weight, numbers);
+    }
+    const OpaqueBsdf bsdf(scene_, point, direction);
+    look_at_lamp(
+        point, [&](const glm::vec3& to) { return weights_ * bsdf.reflected(to); },
+        [&](const glm::vec3& to) { return bsdf.density(to); });
+    const auto scattered = bsdf.sample(numbers);
+    if (!scattered) return false;
+    density_ = bsdf.density(*scattered);
+    if (!(density_ > 0.0f)) return false;
+    from_ = point.position;
+    direction = *scattered;
+    return survives(bsdf.reflected(*scattered) / density_, numbers);
+  }
+
+  /// Light of one lamp, chosen at random, at a point: `weigh` and `density` of directions there.
+  template <class Weigh, class Density>
+  void look_at_lamp(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
+    const auto lamp =
+        lights_.sample(point.position, random_.block(Purpose::path_light, 2 * bounce_),
+                       random_.block(Purpose::path_light, 2 * bounce_ + 1));
+    if (!lamp || !(glm::dot(lamp->direction, point.normal) > 0.0f)) return;
+    const glm::vec3 origin = point.origin_towards(lamp->direction);
+    glm::vec3 arrives = lamp->received;
+    if (lamp->density > 0.0f) {
+      if (trace::occluded(rays_, origin, lamp->target)) return;
+      arrives *= power_heuristic(lamp->density, density(lamp->direction));
+    } else {
+      arrives *= trace::transmittance(rays_, origin, lamp->target);
+    }
+    add(lamp->layer, weigh(lamp->direction) * arrives);
+  }
+
+  /// Roulette on what is left of the light, as photons play it.
+  bool survives(const glm::vec3& weight, const RandomBlock& numbers) {
+    const float before = largest(left_);
+    left_ *= weight;
+    const float survival = std::min(largest_survival, largest(left_) / before);
+    if (!(numbers.uniform(trace::roulette_word) < survival)) return false;
+    left_ /= survival;
+    weights_ = weights_ * (weight / survival);
+    return true;
+  }
+
+  void add(std::uint32_t layer, const Weights& light) {
+    found_.push_back({layer, light.irradiance, light.radiance});
+  }
+
+  const RayScene& rays_;
+  const Scene& scene_;
+  const trace::LightSampler& lights_;
+  const RandomStream& random_;
+  std::vector<PathLight>& found_;
+
+  Weights weights_;       ///< of the radiance that arrives along the path
+  glm::vec3 left_{1.0f};  ///< of the light since the first direction was chosen
+  glm::vec3 from_{0.0f};  ///< the last opaque point, metres
+  float density_ = 0;     ///< of the direction from there; 0 after a mirror or glass
+  std::uint32_t bounce_ = 1;
+};
+
+}  // namespace
+
+void trace_surface_path(const RayScene& rays, const trace::LightSampler& lights,
+                        const SurfacePoint& start, const glm::vec3& direction,
+                        const RandomStream& random, std::vector<PathLight>& found) {
+  SurfacePath(rays, lights, random, found).trace(start, direction);
+}
+
+}  // namespace photile::reference

@@ -1,0 +1,95 @@
+#include "photile/path_tracer.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "reference/path_estimate.hpp"
+#include "render/film.hpp"
+#include "render/render_costs.hpp"
+
+namespace photile {
+namespace {
+
+/// Paths traced at a time: little enough to stay in memory and to show progress.
+constexpr std::int64_t paths_per_batch = std::int64_t{1} << 18;
+
+/// Numbers for the paths of a batch that do not depend on how the picture is split into batches:
+/// the order of a pixel's own hits does not.
+std::vector<std::uint64_t> path_numbers(const PrimaryHits& hits, const PrimaryHitParameters& film,
+                                        int first_row, int last_row) {
+  const std::uint32_t first_pixel = static_cast<std::uint32_t>(first_row * film.width);
+  std::vector<std::uint32_t> sample(
+      static_cast<std::size_t>(last_row - first_row) * static_cast<std::size_t>(film.width),
+      static_cast<std::uint32_t>(film.pass));
+  std::vector<std::uint64_t> number;
+  number.reserve(hits.size());
+  for (const std::uint32_t pixel : hits.pixel) {
+    std::uint32_t& next = sample[pixel - first_pixel];
+    number.push_back(std::uint64_t{pixel} * static_cast<std::uint64_t>(film.samples_per_pixel) +
+                     next);
+    next += static_cast<std::uint32_t>(film.passes);
+  }
+  return number;
+}
+
+StageStatistics stage(const char* name, const StageCost& cost,
+                      std::vector<std::pair<std::string, double>> figures = {}) {
+  return {name, cost.seconds, cost.host_bytes, 0, std::move(figures)};
+}
+
+}  // namespace
+
+PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
+                             const PrimaryHitParameters& parameters, Progress& progress) {
+  StageCost structure, hits, paths, film_cost;
+  const Stopwatch structure_watch;
+  const RayScene rays(scene);
+  structure.add(structure_watch.seconds(), rays.bytes());
+  const reference::PathEstimator estimator(rays, parameters.seed);
+
+  PrimaryHitParameters film = parameters;
+  const std::int64_t row_samples = std::int64_t{film.width} * film.samples_per_pixel;
+  film.passes = static_cast<int>(
+      std::clamp<std::int64_t>(row_samples / paths_per_batch, 1, film.samples_per_pixel));
+  const int rows = static_cast<int>(std::clamp<std::int64_t>(
+      paths_per_batch / std::max<std::int64_t>(1, row_samples), 1, std::max(1, film.height)));
+  LightLayers layers(film.width, film.height, scene);
+  double rays_seen = 0, path_count = 0;
+  progress.begin("trace paths", static_cast<std::uint64_t>(film.height) * film.passes, "rows");
+  for (int first = 0; first < film.height; first += rows) {
+    const int last = std::min(first + rows, film.height);
+    for (film.pass = 0; film.pass < film.passes; ++film.pass) {
+      progress.throw_if_cancelled();
+      const Stopwatch hit_watch;
+      const PrimaryHitBatch batch = trace_primary_hits(rays, camera, film, first, last);
+      hits.add(hit_watch.seconds());
+      const Stopwatch path_watch;
+      const Estimates estimates =
+          estimator.estimate(batch.hits, path_numbers(batch.hits, film, first, last), progress);
+      paths.add(path_watch.seconds());
+      const Stopwatch film_watch;
+      add_to_film(layers, batch, estimates, 1.0f / static_cast<float>(film.samples_per_pixel));
+      film_cost.add(film_watch.seconds());
+      rays_seen += static_cast<double>(batch.rays);
+      path_count += static_cast<double>(batch.hits.size());
+      progress.advance(static_cast<std::uint64_t>(last - first));
+    }
+  }
+  progress.end();
+  film_cost.host_bytes = layers.bytes();
+  return {.layers = std::move(layers),
+          .statistics = {stage("ray tracing structure", structure),
+                         stage("primary hits", hits, {{"rays", rays_seen}}),
+                         stage("trace paths", paths,
+                               {{"paths", path_count},
+                                {"paths per second", path_count / std::max(1e-9, paths.seconds)}}),
+                         stage("film", film_cost)}};
+}
+
+bool has_unseen_caustics(const Scene& scene) {
+  return needs_of(scene).specular_paths &&
+         std::any_of(scene.lights.begin(), scene.lights.end(),
+                     [](const Light& light) { return light.kind != LightKind::area; });
+}
+
+}  // namespace photile

@@ -1,0 +1,66 @@
+// Next event estimation: a point of a lamp to look at from a surface.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "photile/light_groups.hpp"
+#include "photile/scene.hpp"
+#include "trace/area_sampler.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+
+/// Light from one place of a lamp, as long as nothing is in the way.
+struct LightSample {
+  std::uint32_t layer;  ///< into LightGroups::groups
+  glm::vec3 direction;  ///< unit, towards the lamp
+  glm::vec3 target;     ///< where the line of sight ends, metres
+  /// What a surface receives for each unit of its cosine: radiance / density, or, of lamps without
+  /// size, the illuminance of a surface that faces them. The layer's lights have power 1 together.
+  glm::vec3 received;
+  /// Of the direction, per steradian, the choice of the lamp included. 0 for lamps without size,
+  /// which no other technique can find.
+  float density;
+};
+
+/// Chooses one lamp of all, half by power and half equally as PhotonQuota::balanced does, and on an
+/// area light a point uniformly.
+class LightSampler {
+ public:
+  /// References are kept. Errors: InputError for an area light without area.
+  explicit LightSampler(const Scene& scene);
+
+  /// A lamp as seen from `position`. Nothing where it shines elsewhere.
+  ///   choice, place   blocks of their own
+  std::optional<LightSample> sample(const glm::vec3& position, const RandomBlock& choice,
+                                    const RandomBlock& place) const;
+
+  /// Density per steradian with which `sample` would have chosen a point that emits, seen from
+  /// `position`.
+  float density(const glm::vec3& position, const SurfacePoint& emitting) const;
+
+  /// Radiance of an area light towards its emitting sides, at the power 1 of its layer.
+  const glm::vec3& radiance(std::uint32_t light) const { return radiance_[light]; }
+  std::uint32_t layer(std::uint32_t light) const { return groups_.group_of[light]; }
+
+ private:
+  float chance(std::uint32_t light) const;
+  std::optional<LightSample> towards_area(std::uint32_t light, const glm::vec3& position,
+                                          const RandomBlock& place) const;
+  std::optional<LightSample> towards_point(std::uint32_t light, const glm::vec3& position) const;
+  LightSample towards_sky(std::uint32_t light, const glm::vec3& position) const;
+
+  const Scene* scene_;
+  LightGroups groups_;
+  BoundingSphere bounds_;
+  std::vector<double> chance_up_to_;    ///< of the lights up to and with this one
+  std::vector<glm::vec3> radiance_;     ///< per light; black without area
+  std::vector<std::uint32_t> area_of_;  ///< per light: its sampler, or `none`
+  std::vector<AreaSampler> areas_;
+};
+
+}  // namespace photile::trace

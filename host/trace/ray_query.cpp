@@ -1,0 +1,34 @@
+#include "trace/ray_query.hpp"
+
+#include "trace/ray_scene_impl.hpp"
+#include "trace/scatter.hpp"
+
+namespace photile::trace {
+
+std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
+                                     const glm::vec3& direction) {
+  return rays.impl().intersect(origin, direction);
+}
+
+bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {
+  return rays.impl().occluded(from, to);
+}
+
+glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {
+  const Scene& scene = rays.scene();
+  const glm::vec3 direction = glm::normalize(to - from);
+  glm::vec3 passed(1.0f), origin = from;
+  while (occluded(rays, origin, to)) {
+    const auto hit = intersect(rays, origin, direction);
+    if (!hit) return passed;  // rounding: the last surface ends where the line passes
+    const SurfacePoint point = surface_hit(scene, *hit, direction);
+    const Material& material = material_of(scene, point);
+    if (material.interaction != Interaction::glass || !material.thin) return glm::vec3(0.0f);
+    passed *= pane_transmittance(material, -glm::dot(direction, point.normal));
+    origin = point.origin_towards(direction);
+    if (glm::dot(to - origin, direction) <= 0.0f) return passed;
+  }
+  return passed;
+}
+
+}  // namespace photile::trace

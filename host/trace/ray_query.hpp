@@ -1,0 +1,24 @@
+// Questions to a RayScene, for rooms that do not know Embree. Thread-safe; the caller's thread must
+// flush denormals (flush_denormals.hpp).
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "photile/ray_scene.hpp"
+#include "trace/triangle_hit.hpp"
+
+namespace photile::trace {
+
+/// Nearest hit of the ray, or nothing. A ray with a NaN or infinity hits nothing.
+std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
+                                     const glm::vec3& direction);
+
+/// Whether a surface of any material cuts the straight line between two points.
+bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
+
+/// What the straight line between two points lets through, per channel: black behind a surface that
+/// bends or stops light, the product of their transmittances behind panes of thin glass.
+glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
+
+}  // namespace photile::trace
