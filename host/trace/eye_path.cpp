@@ -9,7 +9,16 @@
 
 namespace photile::trace {
 
-namespace {
+glm::dvec2 stratified(int index, int count, double u1, double u2) {
+  // Rows hold count / rows cells each, rounded down or up; a row is as high as its share of cells.
+  const std::int64_t n = count;
+  const auto rows = static_cast<std::int64_t>(std::sqrt(static_cast<double>(count)));
+  const auto first_of = [&](std::int64_t row) { return (row * n + rows - 1) / rows; };
+  const std::int64_t row = index * rows / n;
+  const auto first = static_cast<double>(first_of(row));
+  const auto cells = static_cast<double>(first_of(row + 1) - first_of(row));
+  return {(index - first + u1) / cells, (first + cells * u2) / count};
+}
 
 EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
                std::uint32_t pixel, const glm::vec3& throughput) {
@@ -22,19 +31,6 @@ EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& d
           diffuse_albedo(scene, point),
           -direction,
           {material.specular, alpha, shading_normal(scene, point, direction)}};
-}
-
-}  // namespace
-
-glm::dvec2 stratified(int index, int count, double u1, double u2) {
-  // Rows hold count / rows cells each, rounded down or up; a row is as high as its share of cells.
-  const std::int64_t n = count;
-  const auto rows = static_cast<std::int64_t>(std::sqrt(static_cast<double>(count)));
-  const auto first_of = [&](std::int64_t row) { return (row * n + rows - 1) / rows; };
-  const std::int64_t row = index * rows / n;
-  const auto first = static_cast<double>(first_of(row));
-  const auto cells = static_cast<double>(first_of(row + 1) - first_of(row));
-  return {(index - first + u1) / cells, (first + cells * u2) / count};
 }
 
 void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record) {

@@ -8,6 +8,7 @@
 #include "photile/camera.hpp"
 #include "photile/primary_hits.hpp"
 #include "trace/ray_scene_impl.hpp"
+#include "trace/surface.hpp"
 
 namespace photile::trace {
 
@@ -40,6 +41,10 @@ struct EyeSetup {
 /// Place of sample `index` of `count` in the unit square, given two numbers in [0, 1): one in each
 /// of `count` cells of equal area, as square as their number allows.
 glm::dvec2 stratified(int index, int count, double u1, double u2);
+
+/// What an eye ray of this direction sees at a point of an opaque surface.
+EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
+               std::uint32_t pixel, const glm::vec3& throughput);
 
 /// Traces sample `sample` of pixel (x, y) and appends what it sees to `record`.
 void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record);

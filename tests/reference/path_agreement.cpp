@@ -1,0 +1,128 @@
+// The path tracer beside the photon maps, which share no estimate with it, and beside references of
+// another renderer.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "../render/pictures.hpp"
+#include "photile/image.hpp"
+#include "photile/path_tracer.hpp"
+#include "photile/renderer.hpp"
+#include "statistical_tests.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+
+using namespace photile;
+
+namespace {
+
+/// Mean over a square of pixels of a layer's illuminance.
+double tile_mean(const LightLayers& layers, std::size_t light, int left, int top, int side) {
+  double sum = 0;
+  for (int y = top; y < top + side; ++y) {
+    for (int x = left; x < left + side; ++x) {
+      sum += layers.layers[light].illuminance[static_cast<std::size_t>(y * layers.width + x)];
+    }
+  }
+  return sum / (side * side);
+}
+
+/// Whether two means of 16 independent values agree: Welch's t test, 1e-6 two-sided. Throws when
+/// a difference of `delta` could not be seen with probability 99.9%.
+test::Verdict means_agree(const std::vector<double>& a, const std::vector<double>& b,
+                          double delta) {
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(a[i] - b[i]);
+  return test::mean_is(differences, 0.0, delta);
+}
+
+}  // namespace
+
+TEST_CASE("paths and photon maps see the same light in a closed box, away from its edges") {
+  const Scene scene = test::closed_box(test::diffuse(glm::vec3(0.6f)), 2);
+  // Looks down at the floor: the picture spans 0.6 m of it, the estimates reach 0.1 m farther.
+  const Camera camera =
+      Camera::look_at({0.5, 0.5, 0.9}, {0.5, 0.5, 0}, {0, 1, 0}, 2 * std::atan(0.3 / 0.9));
+  std::vector<double> by_photons, by_paths;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    RenderParameters parameters;
+    parameters.film.width = parameters.film.height = 16;
+    parameters.film.samples_per_pixel = 64;
+    parameters.film.seed = parameters.photons.seed = seed;
+    parameters.photons.emitted_photons = 500'000;
+    parameters.radius = 0.1;
+    by_photons.push_back(
+        tile_mean(render(scene, camera, test::device(), parameters).layers, 0, 0, 0, 16));
+    by_paths.push_back(tile_mean(trace_paths(scene, camera, parameters.film).layers, 0, 0, 0, 16));
+  }
+  CHECK_VERDICT(means_agree(by_photons, by_paths, 0.015 * by_paths[0]));
+}
+
+TEST_CASE("paths and photon maps see the same light in the living room, light by light", "[slow]") {
+  const Scene scene = load_scene(PHOTILE_SOURCE_DIR "/scenes/living-room/living-room.gltf");
+  const std::size_t lights = scene.lights.size();
+  std::vector<std::vector<double>> by_photons(lights), by_paths(lights);
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    RenderParameters parameters;
+    parameters.film.width = 48;
+    parameters.film.height = 36;
+    parameters.film.samples_per_pixel = 128;
+    parameters.film.seed = parameters.photons.seed = seed;
+    parameters.photons.emitted_photons = 400'000;
+    parameters.photons.quota = PhotonQuota::equal;
+    const LightLayers photons = render(scene, scene.cameras[0], test::device(), parameters).layers;
+    const LightLayers paths = trace_paths(scene, scene.cameras[0], parameters.film).layers;
+    for (std::size_t light = 0; light < lights; ++light) {
+      by_photons[light].push_back(tile_mean(photons, light, 0, 0, 36));
+      by_paths[light].push_back(tile_mean(paths, light, 0, 0, 36));
+    }
+  }
+  for (std::size_t light = 0; light < lights; ++light) {
+    INFO(scene.lights[light].name);
+    double mean = 0;
+    for (const double value : by_paths[light]) mean += value / 16;
+    CHECK_VERDICT(means_agree(by_photons[light], by_paths[light], 0.1 * mean));
+  }
+}
+
+TEST_CASE("paths agree with the references of another renderer", "[slow]") {
+  const char* folder = std::getenv("PHOTILE_SHARED_SCENES");
+  const std::string name = GENERATE("kitchen", "classroom");
+  const std::filesystem::path shared = folder == nullptr ? "" : folder;
+  const auto file = shared / name / (name + "-diffuse.gltf");
+  if (folder == nullptr || !std::filesystem::exists(file)) {
+    WARN("PHOTILE_SHARED_SCENES names no folder with " << name << "; skipped");
+    return;
+  }
+  const Image reference = read_image(shared / "references" / (name + "-diffuse-256x192.exr"));
+  const Scene scene = load_scene(file);
+  const std::vector<float>&r = *reference.find("R"), &g = *reference.find("G"),
+        &b = *reference.find("B");
+  // Pixels that see lamps are left out: above 20 times the median.
+  std::vector<double> bright;
+  for (std::size_t i = 0; i < r.size(); ++i) bright.push_back(luminance({r[i], g[i], b[i]}));
+  std::vector<double> sorted = bright;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(r.size() / 2),
+                   sorted.end());
+  const double lamp = 20 * sorted[r.size() / 2];
+  double truth = 0;
+  for (const double value : bright) truth += value <= lamp ? value : 0;
+  std::vector<double> sums;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    PrimaryHitParameters film;
+    film.width = 256;
+    film.height = 192;
+    film.samples_per_pixel = 4;
+    film.seed = seed;
+    const LightLayers layers = trace_paths(scene, scene.cameras[0], film).layers.dense();
+    double sum = 0;
+    for (std::size_t i = 0; i < bright.size(); ++i) {
+      if (bright[i] > lamp) continue;
+      for (std::size_t light = 0; light < layers.layers.size(); ++light) {
+        sum += scene.lights[light].power * luminance(layers.layers[light].radiance[i]);
+      }
+    }
+    sums.push_back(sum / truth);
+  }
+  CHECK_VERDICT(test::mean_is(sums, 1.0, 0.02));
+}

@@ -1,0 +1,96 @@
+// Pictures of the path tracer: what they do not depend on, and their layers.
+#include <tbb/global_control.h>
+
+#include <catch2/catch.hpp>
+#include <glm/gtc/constants.hpp>
+#include <numeric>
+
+#include "../render/pictures.hpp"
+#include "photile/path_tracer.hpp"
+#include "statistical_tests.hpp"
+#include "test_scenes.hpp"
+
+using namespace photile;
+
+namespace {
+
+PrimaryHitParameters film(int width, int height, int samples, std::uint64_t seed = 1) {
+  PrimaryHitParameters result;
+  result.width = width;
+  result.height = height;
+  result.samples_per_pixel = samples;
+  result.seed = seed;
+  return result;
+}
+
+double mean_luminance(const std::vector<glm::vec3>& plane) {
+  double sum = 0;
+  for (const glm::vec3& value : plane) sum += luminance(value);
+  return sum / static_cast<double>(plane.size());
+}
+
+}  // namespace
+
+TEST_CASE("a path-traced picture has the same bits on any number of threads") {
+  const Scene scene = test::furnished_room();
+  const auto on_threads = [&](std::size_t count) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
+    return trace_paths(scene, test::room_camera(), film(40, 30, 4)).layers;
+  };
+  const LightLayers one = on_threads(1);
+  CHECK(test::same_bits(one, on_threads(2)));
+  CHECK(mean_luminance(one.layers[0].radiance) > 0);
+}
+
+TEST_CASE("another seed gives another path-traced picture") {
+  const Scene scene = test::furnished_room();
+  const auto of = [&](std::uint64_t seed) {
+    return trace_paths(scene, test::room_camera(), film(8, 6, 1, seed)).layers;
+  };
+  CHECK_FALSE(test::same_bits(of(1), of(2)));
+}
+
+TEST_CASE("lights beyond the dense ones give the same path-traced layers, in the sparse form") {
+  Scene scene = test::furnished_room();
+  for (int i = 0; i < 7; ++i) {
+    scene.lights.push_back(test::point_light("spare " + std::to_string(i),
+                                             {0.3f + 0.4f * static_cast<float>(i), 1, 2}, 100));
+  }
+  const LightLayers sparse = trace_paths(scene, test::room_camera(), film(16, 12, 4)).layers;
+  REQUIRE(sparse.sparse());
+  // In one group the same paths give the same light together: sum of shares x layers.
+  Scene grouped = scene;
+  for (Light& light : grouped.lights) light.group = "all";
+  const LightLayers together = trace_paths(grouped, test::room_camera(), film(16, 12, 4)).layers;
+  REQUIRE(together.layers.size() == 1);
+  double power = 0, sum = 0;
+  const LightLayers dense = sparse.dense();
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    power += scene.lights[i].power;
+    sum += scene.lights[i].power * mean_luminance(dense.layers[i].radiance);
+    CHECK(mean_luminance(dense.layers[i].radiance) > 0);
+  }
+  CHECK(power * mean_luminance(together.layers[0].radiance) == Approx(sum).epsilon(1e-4));
+}
+
+TEST_CASE("a path-traced floor under a point light: mean illuminance and radiance over a square") {
+  // As in tests/render: the solid angle of the square, 4 asin(1 / 2), times 1 cd, over 4 m2.
+  constexpr float albedo = 0.6f;
+  Scene scene = test::plate(test::diffuse(glm::vec3(albedo)), 4.0f, 3);
+  scene.lights.push_back(test::point_light("lamp", {0, 0, 1}, 4.0 * glm::pi<double>()));
+  const Camera camera =
+      Camera::look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 2.0 * std::atan(1.0 / 3.0));
+  const double truth = std::asin(0.5);
+  std::vector<double> illuminance, radiance;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const auto layer = trace_paths(scene, camera, film(48, 48, 4, seed)).layers.layers[0];
+    const double power = scene.lights[0].power;
+    illuminance.push_back(power *
+                          std::accumulate(layer.illuminance.begin(), layer.illuminance.end(), 0.0) /
+                          static_cast<double>(layer.illuminance.size()));
+    radiance.push_back(power * mean_luminance(layer.radiance));
+  }
+  CHECK_VERDICT(test::mean_is(illuminance, truth, 0.001 * truth));
+  const double reflected = truth * double{albedo} / glm::pi<double>();
+  CHECK_VERDICT(test::mean_is(radiance, reflected, 0.001 * reflected));
+}
