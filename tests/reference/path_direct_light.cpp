@@ -160,7 +160,8 @@ TEST_CASE("a mirror shows the lamp's image") {
   builder.grid({-6, -6, 1}, {0, 12, 0}, {12, 0, 0}, 1, builder.add(test::mirror(glm::vec3(0.9f))));
   const std::uint32_t lamp = builder.add(test::area_light("lamp"));
   builder.grid({0.5f, -1.5f, 0.5f}, {1, 0, 0}, {0, 3, 0}, 1, floor, lamp);
-  const double truth = 0.9 / 3 * validation::rectangle_factor({0, 0, 0}, up, {0.5, -1.5, 1.5}, {1, 0, 0}, {0, 3, 0});
+  const double truth =
+      0.9 / 3 * validation::rectangle_factor({0, 0, 0}, up, {0.5, -1.5, 1.5}, {1, 0, 0}, {0, 3, 0});
   CHECK_VERDICT(test::mean_is(test::path_irradiances(builder.build(), {{{0, 0, 0}, up}}, 60'000),
                               truth, 0.03 * truth));
 }
