@@ -165,7 +165,8 @@ MapTiling tiling_of(Build& build, std::uint32_t map, const MapCounts& counts) {
 /// `tile`: cells that the page holds, where it holds a tile; else nothing.
 void fill_cells(Build& build, MapPage& page, const std::optional<Rectangle>& tile) {
   auto cell_count = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell counts");
-  page.cell_start = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell offsets");
+  page.cell_start = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell offsets",
+                                                          device::MemoryPages::large);
   build.context.fill(cell_count, 0u);
   const auto launch = [&](const char* kernel, const PhotonPage& photons, const auto&... outputs) {
     const auto run = [&](const device::KernelSet& kernels, const auto&... bounds) {
@@ -220,9 +221,10 @@ std::unique_ptr<PhotonPages> photon_pages(Context& context, const MapStore& stor
 PageLimits page_limits(const Context& context, const MapStore& store, float photons_per_cell,
                        bool normals) {
   const SceneNeeds& needs = store.needs;
-  const std::uint64_t record =
-      7 * sizeof(float) + (needs.light_count > 1 ? sizeof(std::uint16_t) : 0) +
-      (needs.glossy ? 3 * sizeof(float) : 0) + (normals ? 3 * sizeof(float) : 0);
+  const std::uint64_t record = 7 * sizeof(float) +
+                               (needs.light_count > 1 ? sizeof(std::uint16_t) : 0) +
+                               (needs.glossy ? 3 * sizeof(float) : 0) +
+                               (normals ? 3 * sizeof(float) : 0);
   // Two cells for what photons_per_cell asks of one: grids reach beyond the photons. Each is
   // counted and has a start.
   const double cells = 2.0 / photons_per_cell;
