@@ -19,6 +19,7 @@ void define(CLI::App& photile) {
   photile.require_subcommand(1);
   add_render_command(photile);
   add_relight_command(photile);
+  add_trade_command(photile);
   add_devices_command(photile);
   add_info_command(photile);
 }

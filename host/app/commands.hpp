@@ -10,6 +10,7 @@ namespace photile::app {
 
 void add_render_command(CLI::App& photile);
 void add_relight_command(CLI::App& photile);
+void add_trade_command(CLI::App& photile);
 void add_devices_command(CLI::App& photile);
 void add_info_command(CLI::App& photile);
 

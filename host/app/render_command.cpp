@@ -9,6 +9,7 @@
 #include "app/commands.hpp"
 #include "app/number_format.hpp"
 #include "app/output_files.hpp"
+#include "app/quality_options.hpp"
 #include "app/render_options.hpp"
 #include "app/run_record.hpp"
 #include "app/scene_report.hpp"
@@ -116,6 +117,10 @@ std::vector<Device> devices_for(const RenderOptions& options, Progress& progress
 LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
                               RenderOptions& options, RunRecord& record, Progress& progress) {
   if (options.tuned) use_stored_tuning(options, devices, scene, progress);
+  if (is_wanted(options.target)) {
+    record.stages.push_back(choose_quality(options.target, scene, camera, devices.front(),
+                                           record.mix, options.parameters, progress));
+  }
   RenderResult result = render(scene, camera, devices, options.parameters, progress);
   record.maps = options.maps;
   record.parameters = options.parameters;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/light_group_option.hpp"
+#include "app/quality_options.hpp"
 #include "app/validators.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -83,14 +84,6 @@ void add_picture_group(CLI::App& command, RenderOptions& options) {
       ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str()
       ->group("Picture");
-  options.integrator = word_for(integrators, options.integrates);
-  command
-      .add_option("--integrator", options.integrator,
-                  "photon maps, or paths from the eye: unbiased, slower, without a device")
-      ->type_name("")
-      ->check(CLI::IsMember(words_of(integrators)))
-      ->capture_default_str()
-      ->group("Picture");
 }
 
 void add_photon_group(CLI::App& command, RenderOptions& options) {
@@ -148,10 +141,6 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
       ->capture_default_str()
       ->each([&options](const std::string&) { options.own_photons_per_cell = true; })
       ->group("Estimate");
-  command
-      .add_flag("--tuned", options.tuned,
-                "as photile devices --tune found best; other last bits than without")
-      ->group("Estimate");
 }
 
 void add_scene_group(CLI::App& command, RenderOptions& options) {
@@ -190,8 +179,6 @@ void add_device_group(CLI::App& command, RenderOptions& options) {
       ->transform(byte_size())
       ->group("Device");
   command.add_flag("--no-cache", options.no_cache, "compile the kernels anew")->group("Device");
-  command.add_flag("--profile", options.device.profile, "print the time of every kernel")
-      ->group("Device");
 }
 
 void add_run_group(CLI::App& command, RenderOptions& options) {
@@ -200,25 +187,44 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
       ->transform(count_between(0, limits::max_threads))
       ->capture_default_str()
       ->group("Run");
-  command.add_option("--stats", options.statistics, "write the summary as JSON")
-      ->type_name("FILE")
-      ->group("Run");
   command.add_flag("-q,--quiet", options.quiet, "print errors only")->group("Run");
 }
 
 }  // namespace
 
-void add_render_options(CLI::App& command, RenderOptions& options) {
+void add_setting_options(CLI::App& command, RenderOptions& options) {
   command.add_option("SCENE", options.scene, "scene file: .obj, .gltf or .glb")
       ->required()
       ->type_name("");
-  add_picture_options(command, options.pictures);
   add_picture_group(command, options);
   add_photon_group(command, options);
   add_estimate_group(command, options);
   add_scene_group(command, options);
   add_device_group(command, options);
   add_run_group(command, options);
+}
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  add_picture_options(command, options.pictures);
+  add_setting_options(command, options);
+  options.integrator = word_for(integrators, options.integrates);
+  command
+      .add_option("--integrator", options.integrator,
+                  "photon maps, or paths from the eye: unbiased, slower, without a device")
+      ->type_name("")
+      ->check(CLI::IsMember(words_of(integrators)))
+      ->capture_default_str()
+      ->group("Picture");
+  command
+      .add_flag("--tuned", options.tuned,
+                "as photile devices --tune found best; other last bits than without")
+      ->group("Estimate");
+  command.add_flag("--profile", options.device.profile, "print the time of every kernel")
+      ->group("Device");
+  command.add_option("--stats", options.statistics, "write the summary as JSON")
+      ->type_name("FILE")
+      ->group("Run");
+  add_quality_options(command, options.target);
 }
 
 void apply_words(RenderOptions& options) {
@@ -231,7 +237,7 @@ void apply_words(RenderOptions& options) {
 }
 
 void refuse_photon_map_options(const CLI::App& command) {
-  const std::set<std::string> groups{"Photons", "Estimate", "Device"};
+  const std::set<std::string> groups{"Photons", "Estimate", "Device", "Quality"};
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || groups.count(option->get_group()) == 0) continue;
     throw UsageError(fmt::format(

@@ -9,6 +9,7 @@
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
 #include "photile/light_mix.hpp"
+#include "photile/quality_target.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 
@@ -26,11 +27,12 @@ struct RenderOptions {
   std::string scene;
   PictureOptions pictures;
   RenderParameters parameters;
-  std::string integrator;  ///< "photon-map" or "path"
+  std::string integrator = "photon-map";  ///< or "path"
   Integrator integrates = Integrator::photon_map;
   std::string quota;                  ///< "balanced", "power" or "equal"
   std::string maps;                   ///< "naive", "triangle", "patch" or "auto"
   std::string structure;              ///< "uniform-grid", ...
+  QualityTarget target;               ///< settings are chosen to meet it
   bool tuned = false;                 ///< use the tuning that `photile devices --tune` stored
   bool own_photons_per_cell = false;  ///< given by the user: a tuning does not replace it
   std::string camera;
@@ -45,8 +47,12 @@ struct RenderOptions {
   bool quiet = false;
 };
 
-/// Adds all options to the subcommand.
+/// Adds the options of `photile render` to the subcommand.
 void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// Adds those that say what is rendered and how, but not what becomes of the picture: what commands
+/// that render for another purpose take, too.
+void add_setting_options(CLI::App& command, RenderOptions& options);
 
 /// Sets what `options` holds as words: the integrator, the quota, the maps, the structure and the
 /// cache. Errors: none, CLI11 has checked the words.

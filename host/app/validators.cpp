@@ -85,6 +85,27 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text) {
   return whole(*number * factor);
 }
 
+std::optional<double> parse_share(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  const auto number = parse_finite(text);
+  if (!number || *number <= 0) return std::nullopt;
+  return percent ? *number / 100 : *number;
+}
+
+std::optional<double> parse_duration(std::string_view text) {
+  // "min" before "s" and "ms": the first that matches is taken.
+  static constexpr std::array units{std::pair{"min", 60.0}, std::pair{"ms", 1e-3},
+                                    std::pair{"s", 1.0}};
+  for (const auto& [unit, seconds] : units) {
+    if (!text.ends_with(unit)) continue;
+    const auto number = parse_finite(text.substr(0, text.size() - std::string_view(unit).size()));
+    if (!number || *number <= 0) return std::nullopt;
+    return *number * seconds;
+  }
+  return std::nullopt;
+}
+
 std::optional<PixelSize> parse_size(std::string_view text) {
   const auto separator = text.find('x');
   if (separator == std::string_view::npos) return std::nullopt;
@@ -114,6 +135,29 @@ CLI::Validator byte_size() {
     const auto bytes = parse_bytes(text);
     if (!bytes || *bytes == 0) return fmt::format("'{}' is no size such as 512MiB or 2GiB", text);
     text = std::to_string(*bytes);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator share_up_to(double highest) {
+  const auto check = [=](std::string& text) -> std::string {
+    const auto share = parse_share(text);
+    if (!share || *share > highest) {
+      return fmt::format("'{}' is not a share above 0, up to {:.0f}%, such as 2% or 0.02", text,
+                         100 * highest);
+    }
+    text = fmt::format("{}", *share);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator duration() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto seconds = parse_duration(text);
+    if (!seconds) return fmt::format("'{}' is no time such as 33ms or 2s", text);
+    text = fmt::format("{}", *seconds);
     return {};
   };
   return {check, ""};

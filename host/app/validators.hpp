@@ -17,6 +17,12 @@ std::optional<std::uint64_t> parse_count(std::string_view text);
 /// whole number of bytes, or is beyond 64 bits.
 std::optional<std::uint64_t> parse_bytes(std::string_view text);
 
+/// A part of a whole above 0: "2%", "0.02". Nothing if it is none.
+std::optional<double> parse_share(std::string_view text);
+
+/// A time above 0 in seconds: "33ms", "1.5s", "2min". Nothing if it is none or has no unit.
+std::optional<double> parse_duration(std::string_view text);
+
 struct PixelSize {
   int width = 0, height = 0;
 };
@@ -29,6 +35,12 @@ CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest);
 
 /// A number of bytes as `parse_bytes` reads it, above zero.
 CLI::Validator byte_size();
+
+/// A share as `parse_share` reads it, at most `highest`.
+CLI::Validator share_up_to(double highest);
+
+/// A time as `parse_duration` reads it.
+CLI::Validator duration();
 
 /// A finite number in [lowest, highest].
 CLI::Validator number_between(double lowest, double highest);

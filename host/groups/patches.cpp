@@ -63,6 +63,20 @@ class Collector {
 
 }  // namespace
 
+std::string_view name_of(MapMode mode) {
+  switch (mode) {
+    case MapMode::naive:
+      return "naive";
+    case MapMode::triangle:
+      return "triangle";
+    case MapMode::patch:
+      return "patch";
+    case MapMode::automatic:
+      return "auto";
+  }
+  return "unknown";
+}
+
 Patches find_patches(const Scene& scene, double radius, MapMode mode) {
   if (mode == MapMode::naive || mode == MapMode::triangle) return {};
   groups::PatchSplitter splitter(scene, radius);

@@ -34,9 +34,7 @@ void ResidentMaps::load(std::size_t page) {
   PageBuffers buffers;
   auto content = entry.copy.begin();
   for_each_buffer(buffers, [&](auto& buffer) {
-    if (!content->empty()) {
-      context_.restore(buffer, *content, "photon map page", device::MemoryPages::large);
-    }
+    if (!content->empty()) context_.restore(buffer, *content, "photon map page");
     ++content;
   });
   static_cast<PageBuffers&>(entry.page) = std::move(buffers);

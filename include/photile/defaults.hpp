@@ -37,6 +37,18 @@ inline constexpr float photons_per_cell = 4.0f;  ///< aimed at; about 4 is best 
 // Primary rays
 inline constexpr int max_specular_depth = 16;  ///< mirrors and glass followed by a primary ray
 
+// The trade between time and error
+inline constexpr int trade_width = 256;         ///< pixels
+inline constexpr int trade_height = 192;        ///< pixels
+inline constexpr int reference_samples = 1024;  ///< paths per pixel
+
+// Settings chosen for a wanted error or time, and the quick renderings that they are chosen from
+inline constexpr double least_chosen_photons = 1e4, most_chosen_photons = 1e8;
+inline constexpr double least_chosen_neighbours = 8, most_chosen_neighbours = 8192;
+inline constexpr double most_chosen_samples = 64;  ///< per pixel
+inline constexpr std::uint64_t pilot_photons = 200'000;
+inline constexpr int pilot_height = 96;  ///< pixels
+
 // Units
 /// Luminous efficacy that turns watts into lumens: 683 lm/W, as glTF and Blender do. Radiance uses
 /// 179. Written into every output.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "photile/defaults.hpp"
@@ -18,6 +19,9 @@ enum class MapMode {
   patch,     ///< one map for all triangles of a patch
   automatic  ///< patches where they save references, single triangles elsewhere
 };
+
+/// "naive", "triangle", "patch", "auto".
+std::string_view name_of(MapMode mode);
 
 /// Triangles in disjoint sets. Patch p owns two maps: map 2 p holds the photons of its members,
 /// map 2 p + 1 those of the members' other sides. Without patches each sided triangle s owns map s.

@@ -41,6 +41,24 @@ TEST_CASE("what is no size is none") {
   CHECK_FALSE(parse_size(text).has_value());
 }
 
+TEST_CASE("shares are read as percentages and as numbers") {
+  CHECK(*parse_share("2%") == Approx(0.02));
+  CHECK(*parse_share("0.02") == Approx(0.02));
+  CHECK(*parse_share("12.5%") == Approx(0.125));
+  const std::string text = GENERATE("", "%", "0", "0%", "-1%", "nan", "inf%", "2 %", "2%%");
+  INFO(text);
+  CHECK_FALSE(parse_share(text).has_value());
+}
+
+TEST_CASE("times are read with their units") {
+  CHECK(*parse_duration("33ms") == Approx(0.033));
+  CHECK(*parse_duration("1.5s") == Approx(1.5));
+  CHECK(*parse_duration("2min") == Approx(120));
+  const std::string text = GENERATE("", "s", "33", "-1s", "0ms", "nan s", "1h", "1s1");
+  INFO(text);
+  CHECK_FALSE(parse_duration(text).has_value());
+}
+
 TEST_CASE("byte sizes are read with binary and decimal units") {
   CHECK(parse_bytes("4096") == 4'096u);
   CHECK(parse_bytes("512MiB") == 536'870'912u);

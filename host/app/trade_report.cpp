@@ -1,0 +1,116 @@
+#include "app/trade_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/number_format.hpp"
+
+namespace photile::app {
+namespace {
+
+constexpr std::array wanted_errors{0.10, 0.05, 0.02, 0.01};
+
+std::string settings_text(const TradePoint& point) {
+  const RenderParameters& parameters = point.parameters;
+  std::string text =
+      fmt::format("--photons {} -k {} --samples {}", parameters.photons.emitted_photons,
+                  parameters.neighbours, parameters.film.samples_per_pixel);
+  if (point.varied == "radius") text += fmt::format(" --radius {:.4g}", parameters.radius);
+  if (point.varied == "angle") text += fmt::format(" --angle {}", parameters.angle_degrees);
+  if (point.varied == "cell") {
+    text += fmt::format(" --photons-per-cell {}", parameters.photons_per_cell);
+  }
+  if (point.varied == "maps") text += fmt::format(" --maps {}", name_of(parameters.maps));
+  if (point.varied == "structure") {
+    text += fmt::format(" --structure {}", name_of(parameters.structure));
+  }
+  return text;
+}
+
+const TradePoint* most_right(std::span<const TradePoint> points) {
+  const auto least =
+      std::min_element(points.begin(), points.end(), [](const TradePoint& a, const TradePoint& b) {
+        return a.error.relative_mse < b.error.relative_mse;
+      });
+  return least == points.end() ? nullptr : &*least;
+}
+
+std::string row(const std::string& error, const std::string& first, const std::string& frame,
+                const std::string& memory, const std::string& settings) {
+  return fmt::format("{:>6}{:>15}{:>13}{:>12}  {}", error, first, frame, memory, settings);
+}
+
+std::string point_row(const std::string& error, const TradePoint& point) {
+  return row(error, format_seconds(point.first_picture_seconds),
+             fmt::format("{:.0f} ms", 1e3 * point.frame_seconds),
+             format_bytes(point.host_bytes + point.device_bytes), settings_text(point));
+}
+
+}  // namespace
+
+std::string trade_csv(std::span<const TradePoint> points) {
+  std::string text =
+      "varied,photons,neighbours,radius_metres,angle_degrees,photons_per_cell,maps,structure,"
+      "samples,photons_stored,relative_error,relative_mse,mean_ratio,worst_region,psnr_decibel,"
+      "first_picture_seconds,frame_seconds,host_bytes,device_bytes,on_front\n";
+  for (const TradePoint& p : points) {
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.varied,
+                        p.parameters.photons.emitted_photons, p.parameters.neighbours, p.radius,
+                        p.parameters.angle_degrees, p.parameters.photons_per_cell,
+                        name_of(p.parameters.maps), name_of(p.parameters.structure),
+                        p.parameters.film.samples_per_pixel, p.stored_photons,
+                        p.error.relative_error(), p.error.relative_mse, p.error.mean_ratio,
+                        p.error.worst_region, p.error.psnr, p.first_picture_seconds,
+                        p.frame_seconds, p.host_bytes, p.device_bytes, p.on_front ? 1 : 0);
+  }
+  return text;
+}
+
+nlohmann::json trade_json(std::span<const TradePoint> points) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const TradePoint& p : points) {
+    list.push_back({{"varied", p.varied},
+                    {"photons", p.parameters.photons.emitted_photons},
+                    {"neighbours", p.parameters.neighbours},
+                    {"radius", p.radius},
+                    {"angle_degrees", p.parameters.angle_degrees},
+                    {"photons_per_cell", p.parameters.photons_per_cell},
+                    {"maps", name_of(p.parameters.maps)},
+                    {"structure", name_of(p.parameters.structure)},
+                    {"samples", p.parameters.film.samples_per_pixel},
+                    {"photons_stored", p.stored_photons},
+                    {"relative_error", p.error.relative_error()},
+                    {"relative_mse", p.error.relative_mse},
+                    {"mean_ratio", p.error.mean_ratio},
+                    {"worst_region", p.error.worst_region},
+                    {"psnr", p.error.psnr},
+                    {"first_picture_seconds", p.first_picture_seconds},
+                    {"frame_seconds", p.frame_seconds},
+                    {"host_bytes", p.host_bytes},
+                    {"device_bytes", p.device_bytes},
+                    {"on_front", p.on_front}});
+  }
+  return list;
+}
+
+std::vector<std::string> trade_table(std::span<const TradePoint> points) {
+  std::vector<std::string> lines{
+      row("error", "first picture", "each frame", "memory", "fastest settings")};
+  for (const double wanted : wanted_errors) {
+    const TradePoint* fastest = fastest_within(points, wanted);
+    const std::string error = fmt::format("{:.0f}%", 100 * wanted);
+    lines.push_back(fastest ? point_row(error, *fastest)
+                            : row(error, "-", "-", "-", "none of those tried"));
+  }
+  if (const TradePoint* best = most_right(points)) {
+    lines.push_back(point_row(fmt::format("{:.1f}%", 100 * best->error.relative_error()), *best) +
+                    "  (least error)");
+  }
+  return lines;
+}
+
+}  // namespace photile::app

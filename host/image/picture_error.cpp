@@ -1,0 +1,173 @@
+#include "photile/picture_error.hpp"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "photile/errors.hpp"
+#include "photile/scene.hpp"
+
+namespace photile {
+namespace {
+
+constexpr double lamp_level = 20;     ///< medians
+constexpr double floor_share = 0.01;  ///< of the squared mean, below the squared error
+constexpr int tiles_per_height = 16;
+constexpr double dark_tile = 0.1;  ///< of the mean
+constexpr double mid_grey = 0.18;
+
+using Planes = std::array<const std::vector<float>*, 3>;
+
+Planes planes_of(const Image& image) {
+  const Planes planes{image.find("R"), image.find("G"), image.find("B")};
+  for (const auto* plane : planes) {
+    if (!plane) throw UsageError("a picture without channels R, G and B cannot be compared");
+  }
+  return planes;
+}
+
+void check_sizes(const Image& a, const Image& b) {
+  if (a.width != b.width || a.height != b.height) {
+    throw UsageError("pictures of " + std::to_string(a.width) + "x" + std::to_string(a.height) +
+                     " and " + std::to_string(b.width) + "x" + std::to_string(b.height) +
+                     " pixels cannot be compared; render the size of the reference");
+  }
+}
+
+double luminance_of(const Planes& planes, std::size_t pixel) {
+  return luminance(glm::dvec3((*planes[0])[pixel], (*planes[1])[pixel], (*planes[2])[pixel]));
+}
+
+struct Tile {
+  double picture = 0, reference = 0;
+  std::size_t counted = 0, pixels = 0;
+};
+
+double worst_region(const Image& picture, const Image& reference,
+                    const RelativeErrorWeights& weights) {
+  const int side = std::max(1, reference.height / tiles_per_height);
+  const int columns = (reference.width + side - 1) / side;
+  const int rows = (reference.height + side - 1) / side;
+  std::vector<Tile> tiles(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const Planes a = planes_of(picture), b = planes_of(reference);
+  for (int y = 0; y < reference.height; ++y) {
+    for (int x = 0; x < reference.width; ++x) {
+      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(reference.width) +
+                         static_cast<std::size_t>(x);
+      Tile& tile = tiles[static_cast<std::size_t>((y / side) * columns + x / side)];
+      ++tile.pixels;
+      if (!weights.counts(pixel)) continue;
+      ++tile.counted;
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        tile.picture += (*a[channel])[pixel];
+        tile.reference += (*b[channel])[pixel];
+      }
+    }
+  }
+  double worst = 0;
+  for (const Tile& tile : tiles) {
+    const double mean = tile.reference / (3.0 * static_cast<double>(tile.counted));
+    if (2 * tile.counted < tile.pixels || mean < dark_tile * weights.mean()) continue;
+    worst = std::max(worst, std::abs(tile.picture / tile.reference - 1));
+  }
+  return worst;
+}
+
+/// What a screen shows of the pixels that count, black elsewhere.
+OIIO::ImageBuf displayed(const Image& image, const RelativeErrorWeights& weights) {
+  OIIO::ImageBuf buffer(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT));
+  const Planes planes = planes_of(image);
+  auto* texels = static_cast<float*>(buffer.localpixels());
+  const double factor = mid_grey / weights.mean();
+  for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const double value = weights.counts(pixel) ? factor * (*planes[channel])[pixel] : 0.0;
+      texels[3 * pixel + channel] = static_cast<float>(std::clamp(value, 0.0, 1.0));
+    }
+  }
+  return buffer;
+}
+
+double psnr(const Image& picture, const Image& reference, const RelativeErrorWeights& weights) {
+  const auto compared = OIIO::ImageBufAlgo::compare(displayed(picture, weights),
+                                                    displayed(reference, weights), 0.0f, 0.0f);
+  // White is 1: OpenImageIO's own figure takes the brightest value in the pictures.
+  return compared.rms_error > 0 ? -20.0 * std::log10(compared.rms_error)
+                                : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+RelativeErrorWeights::RelativeErrorWeights(const Image& reference) {
+  const Planes planes = planes_of(reference);
+  std::vector<double> luminances(reference.pixels());
+  for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel) {
+    luminances[pixel] = luminance_of(planes, pixel);
+  }
+  std::vector<double> sorted = luminances;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  if (middle != sorted.end()) std::nth_element(sorted.begin(), middle, sorted.end());
+  const double lamp = middle != sorted.end() ? lamp_level * *middle : 0.0;
+
+  double sum = 0;
+  counts_.resize(luminances.size());
+  for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel) {
+    counts_[pixel] = luminances[pixel] <= lamp;
+    if (!counts_[pixel]) continue;
+    ++counted_;
+    for (const auto* plane : planes) sum += (*plane)[pixel];
+  }
+  mean_ = sum / (3.0 * static_cast<double>(counted_));
+  if (!(mean_ > 0)) {
+    throw InputError("the reference is black where no lamp is seen; nothing can be compared");
+  }
+  divisor_.resize(3 * luminances.size());
+  for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel) {
+    if (!counts_[pixel]) continue;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const double value = (*planes[channel])[pixel];
+      divisor_[3 * pixel + channel] = value * value + floor_share * mean_ * mean_;
+    }
+  }
+}
+
+double RelativeErrorWeights::mean_product(const Image& minuend_x, const Image& subtrahend_x,
+                                          const Image& minuend_y, const Image& subtrahend_y) const {
+  const Planes a = planes_of(minuend_x), b = planes_of(subtrahend_x), c = planes_of(minuend_y),
+               d = planes_of(subtrahend_y);
+  double sum = 0;
+  for (std::size_t pixel = 0; pixel < counts_.size(); ++pixel) {
+    if (!counts_[pixel]) continue;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const double x = double{(*a[channel])[pixel]} - double{(*b[channel])[pixel]};
+      const double y = double{(*c[channel])[pixel]} - double{(*d[channel])[pixel]};
+      sum += x * y / divisor_[3 * pixel + channel];
+    }
+  }
+  return sum / (3.0 * static_cast<double>(counted_));
+}
+
+double PictureError::relative_error() const { return std::sqrt(relative_mse); }
+
+PictureError picture_error(const Image& picture, const Image& reference) {
+  check_sizes(picture, reference);
+  const RelativeErrorWeights weights(reference);
+  const Planes a = planes_of(picture);
+  double sum = 0;
+  for (std::size_t pixel = 0; pixel < picture.pixels(); ++pixel) {
+    if (!weights.counts(pixel)) continue;
+    for (const auto* plane : a) sum += (*plane)[pixel];
+  }
+  PictureError error;
+  error.relative_mse = weights.mean_product(picture, reference, picture, reference);
+  error.mean_ratio = sum / (3.0 * static_cast<double>(weights.counted())) / weights.mean();
+  error.worst_region = worst_region(picture, reference, weights);
+  error.psnr = psnr(picture, reference, weights);
+  return error;
+}
+
+}  // namespace photile
