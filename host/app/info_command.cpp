@@ -31,8 +31,9 @@ void print_text(const Scene& scene, const LightMix& mix) {
                              material["interaction"].get<std::string>());
   }
   for (const Camera& camera : scene.cameras) {
+    const glm::dvec3 position = in_world(scene, camera).position;
     std::cout << fmt::format("camera: {}: at ({:.4g}, {:.4g}, {:.4g}), {:.4g} degrees high\n",
-                             camera.name, camera.position.x, camera.position.y, camera.position.z,
+                             camera.name, position.x, position.y, position.z,
                              glm::degrees(camera.vertical_field_of_view));
   }
   for (const auto& line : scene_warnings(scene)) std::cout << "warning: " << line << '\n';

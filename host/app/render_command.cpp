@@ -181,7 +181,7 @@ void run_render(const CLI::App& command, RenderOptions& options) {
           : render_by_photons(scene, camera, devices, options, record, progress);
   record.stages.push_back(timed_stage("write pictures", progress, [&] {
     const std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, record.mix);
-    set_camera_attributes(picture->header(), camera, layers.width, layers.height);
+    set_camera_attributes(picture->header(), in_world(scene, camera), layers.width, layers.height);
     set_run_attributes(picture->header(), record);
     outputs.write(*picture);
   }));

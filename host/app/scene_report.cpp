@@ -113,8 +113,8 @@ Extents extents_of(const Scene& scene) {
   Extents extents{glm::dvec3(std::numeric_limits<double>::infinity()),
                   glm::dvec3(-std::numeric_limits<double>::infinity())};
   for (const glm::vec3& vertex : scene.vertices) {
-    extents.lowest = glm::min(extents.lowest, glm::dvec3(vertex));
-    extents.highest = glm::max(extents.highest, glm::dvec3(vertex));
+    extents.lowest = glm::min(extents.lowest, scene.origin + glm::dvec3(vertex));
+    extents.highest = glm::max(extents.highest, scene.origin + glm::dvec3(vertex));
   }
   return extents;
 }
@@ -180,6 +180,7 @@ json scene_json(const Scene& scene, const LightMix& mix) {
                {{"lowest", components(extents.lowest)},
                 {"highest", components(extents.highest)},
                 {"size", components(extents.size())}}},
+              {"origin", components(scene.origin)},
               {"materials", json::array()},
               {"lights", json::array()},
               {"groups", json::array()},
@@ -196,7 +197,9 @@ json scene_json(const Scene& scene, const LightMix& mix) {
   for (const MixedLight& group : mix.lights) {
     if (!group.members.empty()) result["groups"].push_back(group_json(group, mix.lumen_per_watt));
   }
-  for (const Camera& camera : scene.cameras) result["cameras"].push_back(camera_json(camera));
+  for (const Camera& camera : scene.cameras) {
+    result["cameras"].push_back(camera_json(in_world(scene, camera)));
+  }
   return result;
 }
 

@@ -11,7 +11,7 @@
 
 namespace photile::app {
 
-/// Axis-aligned box around all vertices, metres.
+/// Axis-aligned box around all vertices, metres, in the file's world.
 struct Extents {
   glm::dvec3 lowest{0.0}, highest{0.0};
   glm::dvec3 size() const { return highest - lowest; }

@@ -27,6 +27,20 @@ double perimeter_of(const Scene& scene, std::uint32_t triangle) {
   return perimeter;
 }
 
+/// Whether the kernels can compute distances from the triangle (kernels/shared/point_triangle.clh);
+/// that of its box stands for it otherwise, which for a needle is nearly the same.
+bool has_float_distance(const Scene& scene, std::uint32_t triangle) {
+  constexpr double shortest = 0x1p-24, longest = 0x1p29;  // metres
+  constexpr double most_heights = 16;
+  const auto corners = scene.corners(triangle);
+  double edge = 0;
+  for (int i = 0; i < 3; ++i) {
+    edge = std::max(edge, glm::distance(glm::dvec3(corners[i]), glm::dvec3(corners[(i + 1) % 3])));
+  }
+  return edge >= shortest && edge <= longest &&
+         edge * edge <= most_heights * 2 * triangle_area(scene, triangle);
+}
+
 /// `members`: sided triangles of the map whose side the axis points from.
 PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts,
                           std::span<const std::uint32_t> members, double angle, double margin) {
@@ -68,7 +82,8 @@ PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts
   shape.perimeter = static_cast<float>(single ? perimeter_of(scene, triangles.front())
                                               : 2 * (box.width(0) + box.width(1)));
   shape.certain_cosine = certain_angle > 0 ? static_cast<float>(std::cos(certain_angle)) : 2.0f;
-  shape.triangle = single ? triangles.front() : PHOTILE_NO_TRIANGLE;
+  const bool exact = single && has_float_distance(scene, triangles.front());
+  shape.triangle = exact ? triangles.front() : PHOTILE_NO_TRIANGLE;
   return shape;
 }
 

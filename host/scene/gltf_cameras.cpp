@@ -5,13 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/coordinate_limit.hpp"
+
 namespace photile::scene_io {
 namespace {
 
 bool has_orientation(const glm::dmat4& world) {
   const double area = glm::length(glm::cross(glm::dvec3(world[1]), glm::dvec3(world[2])));
-  const glm::dvec3 position(world[3]);
-  return std::isfinite(area) && area > 0.0 && std::isfinite(position.x + position.y + position.z);
+  return std::isfinite(area) && area > 0.0 && within_limit(glm::dvec3(world[3]));
 }
 
 void add_camera(const tinygltf::Camera& source, const std::string& name, const glm::dmat4& world,

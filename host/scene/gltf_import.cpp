@@ -7,6 +7,7 @@
 #include "scene/gltf_materials.hpp"
 #include "scene/gltf_meshes.hpp"
 #include "scene/gltf_nodes.hpp"
+#include "scene/gltf_origin.hpp"
 
 namespace photile::scene_io {
 
@@ -15,7 +16,9 @@ void import_gltf(ImportContext& context) {
   const AccessorReader accessors(model, context);
   context.scene.unit = PowerUnit::lumen;
   const std::vector<TextureCoordinates> coordinates = add_gltf_materials(model, accessors, context);
-  const std::vector<NodeVisit> visits = visit_nodes(model, context);
+  std::vector<NodeVisit> visits = visit_nodes(model, context);
+  check_triangle_count(model, accessors, visits, context);
+  move_to_origin(model, accessors, visits, context);
   add_gltf_cameras(model, visits, context);
   add_gltf_lights(model, visits, context);
   add_gltf_meshes(model, accessors, visits, coordinates, context);

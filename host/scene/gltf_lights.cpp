@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "photile/limits.hpp"
+#include "scene/coordinate_limit.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/photometry.hpp"
 
@@ -61,10 +62,9 @@ void add_light(const tinygltf::Light& source, const tinygltf::Node& node, const 
   }
   const glm::dvec3 position(world[3]), direction(-world[2]);
   const double length = glm::length(direction);
-  const bool placed =
-      std::isfinite(position.x + position.y + position.z) && std::isfinite(length) && length > 0.0;
+  const bool placed = within_limit(position) && std::isfinite(length) && length > 0.0;
   if (!coloured || !std::isfinite(light.power) || light.power <= 0.0 || !placed) {
-    context.warnings.add("light", name, "emits nothing or has no finite place; dropped");
+    context.warnings.add("light", name, "emits nothing or has no place within reach; dropped");
     return;
   }
   if (source.range > 0.0) context.warnings.add("light", name, "range is ignored");

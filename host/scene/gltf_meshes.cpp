@@ -8,39 +8,12 @@
 #include <numeric>
 
 #include "photile/limits.hpp"
+#include "scene/gltf_primitives.hpp"
 #include "scene/instance_recorder.hpp"
 #include "scene/material_needs.hpp"
 
 namespace photile::scene_io {
 namespace {
-
-/// Corner numbers of the triangles that a primitive's mode makes of its index list.
-std::vector<std::array<std::uint32_t, 3>> assemble(const std::vector<std::uint32_t>& indices,
-                                                   int mode) {
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  if (indices.size() < 3) return triangles;
-  const std::size_t count = indices.size() - 2;
-  if (mode == TINYGLTF_MODE_TRIANGLES) {
-    for (std::size_t i = 0; i < count; i += 3) {
-      triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
-    }
-  } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t odd = i % 2;  // every second triangle of a strip is wound the other way
-      triangles.push_back({indices[i], indices[i + 1 + odd], indices[i + 2 - odd]});
-    }
-  } else {
-    for (std::size_t i = 0; i < count; ++i) {
-      triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
-    }
-  }
-  return triangles;
-}
-
-bool has_triangles(int mode) {
-  return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
-         mode == TINYGLTF_MODE_TRIANGLE_FAN;
-}
 
 class MeshImporter {
  public:
@@ -67,18 +40,11 @@ class MeshImporter {
   int mesh_of(const NodeVisit& visit) const {
     return model_.nodes[static_cast<std::size_t>(visit.node)].mesh;
   }
-  LocalMesh read_local(const tinygltf::Mesh& mesh, const std::string& name) const;
   void add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
                      std::uint64_t visit_number, const std::string& mesh_name);
   std::vector<Corner> read_corners(const tinygltf::Primitive& primitive, std::uint32_t material,
                                    const glm::dmat4& world, const std::string& mesh_name);
-  std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
-                                          std::size_t corner_count, const std::string& use) const;
   std::uint32_t material_of(const tinygltf::Primitive& primitive, const std::string& use) const;
-  int attribute(const tinygltf::Primitive& primitive, const std::string& name) const {
-    const auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? -1 : found->second;
-  }
 
   const tinygltf::Model& model_;
   const AccessorReader& accessors_;
@@ -91,11 +57,6 @@ class MeshImporter {
   std::vector<bool> kept_;           ///< triangles of the visit that the scene took
 };
 
-/// Whether triangles can be made of it.
-bool is_usable(const tinygltf::Primitive& primitive) {
-  return has_triangles(primitive.mode) && primitive.attributes.count("POSITION") > 0;
-}
-
 void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
   const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
   if (node.mesh < 0) return;
@@ -104,7 +65,7 @@ void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
                                      node_name(model_, visit.node), node.mesh));
   }
   const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
-  const std::string name = mesh.name.empty() ? fmt::format("mesh {}", node.mesh) : mesh.name;
+  const std::string name = name_of_mesh(model_, node.mesh);
   if (node.skin >= 0) {
     context_.warnings.add("node", node_name(model_, visit.node), "skin is ignored: rest pose");
   }
@@ -120,27 +81,9 @@ void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
     }
   }
   if (uses_[node.mesh] > 1) {
-    instances_.record(node.mesh, visit.world, first, kept_, [&] { return read_local(mesh, name); });
+    instances_.record(node.mesh, visit.world, first, kept_,
+                      [&] { return read_local_mesh(model_, node.mesh, accessors_, context_); });
   }
-}
-
-LocalMesh MeshImporter::read_local(const tinygltf::Mesh& mesh, const std::string& name) const {
-  LocalMesh local;
-  for (const tinygltf::Primitive& primitive : mesh.primitives) {
-    if (!is_usable(primitive)) continue;
-    const auto first = static_cast<std::uint32_t>(local.positions.size());
-    const std::vector<float> positions =
-        accessors_.floats(attribute(primitive, "POSITION"), 3, "POSITION of mesh '" + name + "'");
-    for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
-      local.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
-    }
-    const std::vector<std::uint32_t> indices =
-        read_indices(primitive, positions.size() / 3, "mesh '" + name + "'");
-    for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
-      local.triangles.push_back(first + glm::uvec3(a, b, c));
-    }
-  }
-  return local;
 }
 
 void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
@@ -154,7 +97,8 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   const std::string use = fmt::format("mesh '{}'", mesh_name);
   const std::uint32_t material = material_of(primitive, use);
   const std::vector<Corner> corners = read_corners(primitive, material, visit.world, mesh_name);
-  const std::vector<std::uint32_t> indices = read_indices(primitive, corners.size(), use);
+  const std::vector<std::uint32_t> indices =
+      read_indices(primitive, corners.size(), use, accessors_, context_);
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0) {
     context_.warnings.add("mesh", mesh_name, "the corners do not fill the last triangle; ignored");
   }
@@ -220,25 +164,8 @@ std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primit
   return corners;
 }
 
-std::vector<std::uint32_t> MeshImporter::read_indices(const tinygltf::Primitive& primitive,
-                                                      std::size_t corner_count,
-                                                      const std::string& use) const {
-  if (primitive.indices < 0) {
-    std::vector<std::uint32_t> indices(corner_count);
-    std::iota(indices.begin(), indices.end(), 0u);
-    return indices;
-  }
-  std::vector<std::uint32_t> indices = accessors_.indices(primitive.indices, "indices of " + use);
-  for (const std::uint32_t index : indices) {
-    if (index >= corner_count) {
-      throw context_.error(
-          fmt::format("{}: index {} of {} vertices; export it again", use, index, corner_count));
-    }
-  }
-  return indices;
-}
+}  // namespace
 
-/// Refuses scenes whose shared meshes multiply beyond the limit before any is read.
 void check_triangle_count(const tinygltf::Model& model, const AccessorReader& accessors,
                           const std::vector<NodeVisit>& visits, const ImportContext& context) {
   std::uint64_t triangles = 0;
@@ -263,12 +190,9 @@ void check_triangle_count(const tinygltf::Model& model, const AccessorReader& ac
   }
 }
 
-}  // namespace
-
 void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accessors,
                      const std::vector<NodeVisit>& visits,
                      const std::vector<TextureCoordinates>& coordinates, ImportContext& context) {
-  check_triangle_count(model, accessors, visits, context);
   MeshImporter importer(model, accessors, visits, coordinates, context);
   for (std::size_t i = 0; i < visits.size(); ++i) importer.add(visits[i], i);
   importer.finish();

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
 #include "photile/scene.hpp"
 #include "scene/area_lights.hpp"
 #include "scene/default_camera.hpp"
@@ -40,8 +41,9 @@ void report_dropped_triangles(const ImportReport& report, Warnings& warnings) {
     warnings.add(fmt::format("{} triangles without area are dropped", report.degenerate_triangles));
   }
   if (report.non_finite_triangles > 0) {
-    warnings.add(fmt::format("{} triangles with a NaN or infinite corner are dropped",
-                             report.non_finite_triangles));
+    warnings.add(
+        fmt::format("{} triangles with a corner that is NaN, infinite or beyond {:g} m are dropped",
+                    report.non_finite_triangles, limits::max_coordinate));
   }
 }
 

@@ -10,13 +10,10 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "scene/coordinate_limit.hpp"
 
 namespace photile::scene_io {
 namespace {
-
-bool is_finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// Rounded to float, with -0 made +0 so that equal positions have equal bits.
 glm::vec3 rounded(const glm::dvec3& position) { return glm::vec3(position) + glm::vec3(0.0f); }
@@ -58,7 +55,8 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
   std::array<const Corner*, 3> sorted{&corners[0], &corners[1], &corners[2]};
   std::array<glm::vec3, 3> p{rounded(corners[0].position), rounded(corners[1].position),
                              rounded(corners[2].position)};
-  if (!is_finite(p[0]) || !is_finite(p[1]) || !is_finite(p[2])) {
+  if (!within_limit(corners[0].position) || !within_limit(corners[1].position) ||
+      !within_limit(corners[2].position)) {
     ++scene_.report.non_finite_triangles;
     return false;
   }

@@ -25,8 +25,9 @@ class MeshBuilder {
   MeshBuilder(Scene& scene, bool keep_uv, bool keep_normals);
 
   /// Adds a triangle whose front is the side from which `corners` run counter-clockwise. Triangles
-  /// with a corner that is not finite and triangles without area are counted and left out; false
-  /// then. `light` is an area light's index, or `none`. Errors: InputError beyond a limit.
+  /// with a corner that is not finite or beyond limits::max_coordinate and triangles without area
+  /// are counted and left out; false then. `light` is an area light's index, or `none`. Errors:
+  /// InputError beyond a limit.
   bool add(const std::array<Corner, 3>& corners, std::uint32_t material, std::uint32_t light);
 
   /// Drops normals when the file turned out to have none.

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "photile/limits.hpp"
+#include "scene/coordinate_limit.hpp"
 #include "scene/material_needs.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/mtl_materials.hpp"
@@ -15,6 +16,7 @@
 #include "scene/obj_text.hpp"
 #include "scene/polygon_triangulator.hpp"
 #include "scene/resource_error.hpp"
+#include "scene/scene_origin.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -70,12 +72,6 @@ Corner corner_of(const ObjFile& file, const tinyobj::index_t& index) {
   return corner;
 }
 
-bool any_corner_unbounded(const std::vector<glm::dvec3>& positions) {
-  return std::any_of(positions.begin(), positions.end(), [](const glm::dvec3& p) {
-    return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
-  });
-}
-
 void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
               MeshBuilder& builder, ImportContext& context) {
   std::vector<Corner> corners;
@@ -91,7 +87,7 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
     return;
   }
   ++context.scene.report.polygons_triangulated;
-  if (any_corner_unbounded(positions)) {
+  if (!std::all_of(positions.begin(), positions.end(), within_limit)) {
     // No plane to triangulate in: the whole polygon is lost, as many triangles as it would give.
     context.scene.report.non_finite_triangles += corners.size() - 2;
     return;
@@ -104,6 +100,23 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
   for (const auto& [a, b, c] : triangulation.triangles) {
     builder.add({corners[a], corners[b], corners[c]}, material, light);
   }
+}
+
+/// Chooses Scene::origin (scene_origin.hpp) and counts all positions from there.
+void move_to_origin(ObjFile& file, Scene& scene) {
+  SceneOrigin origin;
+  const auto position = [&](std::uint64_t corner) {
+    return file.positions[static_cast<std::size_t>(file.corners[corner].vertex_index)];
+  };
+  for (const ObjFace& face : file.faces) {
+    // A fan stands for the polygon's triangles: their sizes are all that counts.
+    for (std::uint32_t c = 2; c < face.corner_count; ++c) {
+      origin.add({position(face.first_corner), position(face.first_corner + c - 1),
+                  position(face.first_corner + c)});
+    }
+  }
+  scene.origin = origin.best();
+  for (glm::dvec3& at : file.positions) at -= scene.origin;
 }
 
 }  // namespace
@@ -124,6 +137,7 @@ void import_obj(ImportContext& context) {
       file.positions[vertex] = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
     }
   }
+  move_to_origin(file, context.scene);
   context.scene.unit = PowerUnit::watt;
   const std::vector<std::uint32_t> material_index = add_materials(file, context);
   const SceneNeeds needs = needs_of_materials(context.scene.materials);

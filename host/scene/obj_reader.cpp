@@ -134,13 +134,14 @@ struct CallbackData {
 
 tinyobj::callback_t callbacks() {
   tinyobj::callback_t result;
-  result.vertex_cb = [](void* p, float x, float y, float z, float) {
+  using tinyobj::real_t;
+  result.vertex_cb = [](void* p, real_t x, real_t y, real_t z, real_t) {
     static_cast<CallbackData*>(p)->file.positions.emplace_back(x, y, z);
   };
-  result.normal_cb = [](void* p, float x, float y, float z) {
+  result.normal_cb = [](void* p, real_t x, real_t y, real_t z) {
     static_cast<CallbackData*>(p)->file.normals.emplace_back(x, y, z);
   };
-  result.texcoord_cb = [](void* p, float u, float v, float) {
+  result.texcoord_cb = [](void* p, real_t u, real_t v, real_t) {
     static_cast<CallbackData*>(p)->file.texcoords.emplace_back(u, v);
   };
   result.index_cb = [](void* p, tinyobj::index_t* indices, int count) {

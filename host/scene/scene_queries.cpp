@@ -22,6 +22,11 @@ void add_needs(const Material& material, SceneNeeds& needs) {
 
 }  // namespace
 
+Camera in_world(const Scene& scene, Camera camera) {
+  camera.position += scene.origin;
+  return camera;
+}
+
 glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle) {
   const glm::dvec3 normal = glm::normalize(doubled_area_vector(scene, triangle_of(sided_triangle)));
   return side_of(sided_triangle) == 0 ? normal : -normal;

@@ -25,6 +25,9 @@ inline constexpr std::uint64_t max_file_bytes = 2ull << 30;      ///< the scene 
 inline constexpr std::uint64_t max_external_bytes = 8ull << 30;  ///< buffers and images together
 inline constexpr std::uint64_t max_triangles = 500'000'000ull;   ///< sided indices fit 32 bits
 inline constexpr std::uint64_t max_vertices = 0x7FFF'FFFFull;
+/// Metres from the scene's origin. Areas times photons, and squares of distances, stay within the
+/// range of a float.
+inline constexpr double max_coordinate = 1e12;
 inline constexpr std::uint64_t max_materials = 1'000'000;
 inline constexpr std::uint64_t max_lights = 10'000;
 inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulation is quadratic

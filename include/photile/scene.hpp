@@ -112,7 +112,7 @@ struct MeshInstance {
 struct ImportReport {
   std::vector<std::string> warnings;       ///< one line each: object, what was found, what was done
   std::uint64_t degenerate_triangles = 0;  ///< zero area; dropped
-  std::uint64_t non_finite_triangles = 0;  ///< NaN or infinite corner; dropped
+  std::uint64_t non_finite_triangles = 0;  ///< NaN, infinite or too far a corner; dropped
   std::uint64_t polygons_triangulated = 0;
 };
 
@@ -123,6 +123,12 @@ struct ImportReport {
 struct Scene {
   std::filesystem::path source;
   PowerUnit unit = PowerUnit::lumen;
+
+  /// Where (0, 0, 0) of this scene lies in the file's world, metres. The importers read coordinates
+  /// in double precision and take it off before they round them, so that a scene far from the
+  /// file's origin loses nothing. Every position below, and in all that is computed from them,
+  /// counts from here; reports and pictures name world positions.
+  glm::dvec3 origin{0.0};
 
   std::vector<glm::vec3> vertices;                  ///< metres
   std::vector<glm::uvec3> triangles;                ///< vertex indices, canonical order
@@ -160,6 +166,9 @@ inline constexpr std::uint32_t triangle_of(std::uint32_t sided_triangle) {
   return sided_triangle >> 1;
 }
 inline constexpr std::uint32_t side_of(std::uint32_t sided_triangle) { return sided_triangle & 1; }
+
+/// The camera in the file's world.
+Camera in_world(const Scene& scene, Camera camera);
 
 /// Unit geometric normal of a sided triangle, computed in double precision.
 glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle);

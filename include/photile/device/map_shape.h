@@ -19,7 +19,8 @@ typedef struct {
   /* A photon agrees with every member if the cosine of the angle between its normal and the axis of
      its side is at least this; above 1 where none can be sure to. */
   float certain_cosine;
-  unsigned int triangle; /* place of its corners where just one, else PHOTILE_NO_TRIANGLE */
+  unsigned int triangle; /* place of its corners where photons are compared with just one, else
+                            PHOTILE_NO_TRIANGLE */
 } PhotileMapShape;
 
 #endif

@@ -1,0 +1,268 @@
+// Whole pictures at extremes of size and place (docs/extremes.md).
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../scene/scene_files.hpp"
+#include "garbage.hpp"
+#include "instanced_scenes.hpp"
+#include "photile/errors.hpp"
+#include "photile/renderer.hpp"
+#include "pictures.hpp"
+#include "statistical_tests.hpp"
+#include "test_device.hpp"
+
+using namespace photile;
+using nlohmann::json;
+
+namespace {
+
+RenderParameters small_picture() {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = 40'000;
+  parameters.film.width = 64;
+  parameters.film.height = 48;
+  parameters.film.samples_per_pixel = 2;
+  parameters.passes = 1;
+  return parameters;
+}
+
+const std::string room_materials =
+    "newmtl lamp\nKd 0 0 0\nKe 20 20 20\nnewmtl white\nKd 0.7 0.7 0.7\nnewmtl red\nKd 0.6 0.1 "
+    "0.1\n";
+
+/// A room of 4 x 2.5 x 3 m (y is up) with a lamp below the ceiling and a block, its corner moved to
+/// `offset`.
+std::string room_text(const glm::dvec3& offset) {
+  std::string text;
+  int corners = 0;
+  const auto quad = [&](const glm::dvec3& a, const glm::dvec3& u, const glm::dvec3& v,
+                        const std::string& material) {
+    text += "usemtl " + material + "\n";
+    for (const glm::dvec3& p : {a, a + u, a + u + v, a + v}) {
+      text += fmt::format("v {:.17g} {:.17g} {:.17g}\n", p.x + offset.x, p.y + offset.y,
+                          p.z + offset.z);
+    }
+    text += fmt::format("f {} {} {} {}\n", corners + 1, corners + 2, corners + 3, corners + 4);
+    corners += 4;
+  };
+  const glm::dvec3 x(4, 0, 0), y(0, 2.5, 0), z(0, 0, 3), zero(0);
+  quad(zero, z, x, "white");
+  quad(y, x, z, "white");
+  quad(zero, y, z, "red");
+  quad(x, z, y, "white");
+  quad(zero, x, y, "white");
+  quad(z, y, x, "white");
+  quad({1.5, 2.4, 1}, {1, 0, 0}, {0, 0, 1}, "lamp");
+  const glm::dvec3 base(0.9, 0, 0.7), bx(0.8, 0, 0.3), bz(-0.3, 0, 0.8), by(0, 0.9, 0);
+  quad(base + by, bz, bx, "white");
+  quad(base, by, bx, "white");
+  quad(base + bz, bx, by, "white");
+  quad(base, bz, by, "white");
+  quad(base + bx, by, bz, "white");
+  return text;
+}
+
+/// The camera of the room, in the scene's coordinates.
+Camera camera_at(const Scene& scene, const glm::dvec3& offset) {
+  const glm::dvec3 corner = offset - scene.origin;
+  return Camera::look_at(corner + glm::dvec3(3.8, 1.6, 2.8), corner + glm::dvec3(1, 0.9, 0.8),
+                         {0, 1, 0}, 1.1);
+}
+
+/// What moving a scene may change: coordinates round otherwise, and rays start from other
+/// clearances. Distances of photons then differ by 1e-5 of them, and a photon in some thousands
+/// passes an edge on the other side.
+struct Difference {
+  double mean;   ///< relative, of the whole picture
+  double apart;  ///< share of pixels that differ by more than 1e-3
+};
+
+Difference compare(const LightLayers& a, const LightLayers& b) {
+  double sum_a = 0, sum_b = 0;
+  std::size_t apart = 0, pixels = 0;
+  for (std::size_t light = 0; light < a.layers.size(); ++light) {
+    const auto &first = a.layers[light].radiance, &second = b.layers[light].radiance;
+    for (std::size_t i = 0; i < first.size(); ++i, ++pixels) {
+      sum_a += luminance(glm::dvec3(first[i]));
+      sum_b += luminance(glm::dvec3(second[i]));
+      apart += glm::distance(first[i], second[i]) > 1e-3f * glm::length(second[i]);
+    }
+  }
+  return {std::abs(sum_a / sum_b - 1), static_cast<double>(apart) / static_cast<double>(pixels)};
+}
+
+/// Two meshes, of eight corners and of many; a node above all others.
+const std::string gltf_text = R"({
+  "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 100}]}},
+  "scene": 0, "scenes": [{"nodes": [0]}],
+  "nodes": [
+    {"children": [1, 2, 3, 4, 5]},
+    {"mesh": 0},
+    {"mesh": 1, "translation": [1, 0.6, 1]},
+    {"mesh": 1, "translation": [2.4, 0.5, 1.4], "rotation": [0, 0.6, 0, 0.8]},
+    {"mesh": 1, "translation": [1.2, 1.7, 1.6], "scale": [0.5, 0.5, 0.5]},
+    {"translation": [2, 2.1, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+  "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.7, 0.7, 0.7, 1],
+                                          "metallicFactor": 0, "roughnessFactor": 1},
+                 "extensions": {"KHR_materials_specular": {"specularFactor": 0}}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]},
+             {"primitives": [{"attributes": {"POSITION": 2}, "indices": 3, "material": 0}]}],
+  "accessors": [{"componentType": 5126, "type": "VEC3"}, {"componentType": 5125, "type": "SCALAR"},
+                {"componentType": 5126, "type": "VEC3"}, {"componentType": 5125, "type": "SCALAR"}],
+  "bufferViews": [], "buffers": [{"uri": "room.bin"}]})";
+
+/// A room of glTF with dented balls as instances, all of it below a node at `offset`.
+Scene gltf_room(const glm::dvec3& offset) {
+  const SharedMesh ball = test::dented_ball(66);
+  std::vector<float> positions;
+  std::vector<std::uint32_t> indices;
+  for (const glm::vec3& v : ball.vertices) positions.insert(positions.end(), {v.x, v.y, v.z});
+  for (const glm::uvec3& t : ball.triangles) indices.insert(indices.end(), {t.x, t.y, t.z});
+  const std::vector<float> box = {0, 0, 0, 4, 0, 0, 4, 2.5f, 0, 0, 2.5f, 0,
+                                  0, 0, 3, 4, 0, 3, 4, 2.5f, 3, 0, 2.5f, 3};
+  const std::vector<std::uint32_t> box_indices = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6,
+                                                  0, 4, 5, 0, 5, 1, 3, 2, 6, 3, 6, 7,
+                                                  0, 3, 7, 0, 7, 4, 1, 5, 6, 1, 6, 2};
+  const std::vector<std::string> parts = {tests::bytes_of(box), tests::bytes_of(box_indices),
+                                          tests::bytes_of(positions), tests::bytes_of(indices)};
+  const std::vector<std::size_t> counts = {8, box_indices.size(), ball.vertices.size(),
+                                           indices.size()};
+  json document = json::parse(gltf_text);
+  std::string buffer;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const json view = {
+        {"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", parts[i].size()}};
+    document["bufferViews"].push_back(view);
+    document["accessors"][i]["bufferView"] = i;
+    document["accessors"][i]["count"] = counts[i];
+    buffer += parts[i];
+  }
+  document["buffers"][0]["byteLength"] = buffer.size();
+  document["nodes"][0]["translation"] = {offset.x, offset.y, offset.z};
+  const tests::SceneFolderOnDisk folder;
+  folder.write("room.bin", buffer);
+  return load_scene(folder.write("room.gltf", document.dump()));
+}
+
+LightLayers picture_of(const Scene& scene, const glm::dvec3& offset) {
+  return render(scene, camera_at(scene, offset), test::device(), small_picture()).layers;
+}
+
+}  // namespace
+
+TEST_CASE("extremes: a thousand kilometres off, files give the picture of a scene at the origin") {
+  const bool is_obj = GENERATE(true, false);
+  const auto scene_at = [&](const glm::dvec3& offset) {
+    return is_obj ? tests::load_obj(room_text(offset), room_materials) : gltf_room(offset);
+  };
+  const Scene at_origin = scene_at(glm::dvec3(0));
+  REQUIRE(at_origin.instances.size() == (is_obj ? 0u : 3u));
+  const LightLayers expected = picture_of(at_origin, glm::dvec3(0));
+  const auto difference_at = [&](const glm::dvec3& offset) {
+    const Scene scene = scene_at(offset);
+    REQUIRE(scene.triangle_count() == at_origin.triangle_count());
+    REQUIRE(scene.instances.size() == at_origin.instances.size());
+    return compare(picture_of(scene, offset), expected);
+  };
+  // By a step that floats can follow: what a change of rounding does.
+  const Difference step = difference_at({1.3, -2.1, 0.7});
+  REQUIRE(step.mean < 1e-4);
+  REQUIRE(step.apart < 0.1);  // else the comparison could not see a picture that went wrong
+  for (const glm::dvec3& offset :
+       {glm::dvec3(1e6, -1e6, 123'456.7), glm::dvec3(691'607.3, 519.1, -5'334'760.7)}) {
+    const Difference difference = difference_at(offset);
+    CAPTURE(is_obj, difference.mean, difference.apart, step.apart);
+    CHECK(difference.mean < 1e-4);
+    CHECK(difference.apart < 1.5 * step.apart);
+  }
+}
+
+TEST_CASE("extremes: a room a million times larger or smaller gives the same picture, scaled") {
+  const auto scaled_room = [](float factor) {
+    Scene scene = test::furnished_room(2);
+    for (glm::vec3& vertex : scene.vertices) vertex *= factor;
+    for (Light& light : scene.lights) light.position *= factor;
+    Camera camera = test::room_camera();
+    camera.position *= factor;
+    RenderResult result = render(scene, camera, test::device(), small_picture());
+    for (auto& layer : result.layers.layers) {
+      for (glm::vec3& radiance : layer.radiance) radiance *= factor * factor;
+    }
+    result.radius /= factor;
+    return result;
+  };
+  const RenderResult expected = scaled_room(1.0f);
+  for (const float factor : {0x1p-20f, 1e-6f, 1e6f, 0x1p20f}) {
+    const RenderResult result = scaled_room(factor);
+    const Difference difference = compare(result.layers, expected.layers);
+    CAPTURE(factor, difference.mean, difference.apart);
+    CHECK(result.radius == Approx(expected.radius).epsilon(1e-4));
+    CHECK(difference.mean < 1e-4);
+    CHECK(difference.apart < 0.01);
+  }
+}
+
+TEST_CASE("extremes: a lamp of a millimetre in a hall of 1e5 m lights it as theory says") {
+  // A Lambertian lamp under the ceiling's height that faces down: half of its flux falls within 45
+  // degrees of its nadir. The walls are black, so every path ends where it lands.
+  const double side = 1e5, height = 4e4;
+  std::string text = "usemtl wall\n";
+  const auto vertex = [&](double x, double y, double z) {
+    text += fmt::format("v {:.17g} {:.17g} {:.17g}\n", x, y, z);
+  };
+  for (const double z : {0.0, side}) {
+    vertex(0, 0, z), vertex(side, 0, z), vertex(side, side, z), vertex(0, side, z);
+  }
+  text += "f 1 2 3 4\nf 8 7 6 5\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\nusemtl lamp\n";
+  const double x = 48'765.4321, y = 51'234.5678, half = 0.5e-3;
+  vertex(x - half, y - half, height), vertex(x - half, y + half, height);
+  vertex(x + half, y + half, height), vertex(x + half, y - half, height);
+  text += "f 9 10 11 12\n";
+  const Scene scene =
+      tests::load_obj(text, "newmtl lamp\nKd 0 0 0\nKe 1e6 1e6 1e6\nnewmtl wall\nKd 0 0 0\n");
+  REQUIRE(scene.triangle_count() == 14);
+  const RayScene rays(scene);
+  std::vector<double> within;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const PhotonTracerResult traced =
+        trace_photons(rays, {.emitted_photons = 20'000, .seed = seed});
+    CHECK(traced.escaped_flux_per_light[0] < 1e-3);
+    double flux = 0;
+    for (std::size_t i = 0; i < traced.photons.size(); ++i) {
+      const glm::dvec3 at = scene.origin + glm::dvec3(traced.photons.position[i]);
+      const bool near = at.z < 1 && std::hypot(at.x - x, at.y - y) < height;
+      if (near) flux += luminance(glm::dvec3(traced.photons.flux[i]));
+    }
+    within.push_back(flux);
+  }
+  CHECK_VERDICT(test::mean_is(within, 0.5, 0.02));
+}
+
+TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a line") {
+  RenderParameters parameters = small_picture();
+  parameters.photons.emitted_photons = 500;
+  parameters.film.width = 16;
+  parameters.film.height = 12;
+  int rendered = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    CAPTURE(seed);
+    try {
+      const Scene scene = tests::load_obj(test::garbage_obj(seed), tests::lamp_and_wall);
+      // Half of them with a radius that fits nothing.
+      parameters.radius = seed % 4 < 2 ? 0 : std::pow(10.0, static_cast<int>(seed % 40) - 20);
+      const LightLayers layers =
+          render(scene, scene.cameras.front(), test::device(), parameters).layers;
+      ++rendered;
+      for (const auto& layer : layers.layers) {
+        for (const glm::vec3& radiance : layer.radiance)
+          REQUIRE_FALSE(glm::any(glm::isnan(radiance)));
+      }
+    } catch (const Error& error) {
+      REQUIRE(std::string(error.what()).find('\n') == std::string::npos);
+    }
+  }
+  CHECK(rendered >= 50);
+}
