@@ -36,10 +36,10 @@ TEST_CASE("extremes: scenes of 1e-6 to 1e6 times the size of a room") {
   for (const float factor : {1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f}) {
     Scene scene = corner_with_torus();
     scale(scene.vertices, factor);
-    const Photons photons = test::uniform_photons(scene, 3000, 101);
-    const PrimaryHits hits = test::uniform_hits(scene, 100, 102);
+    const Photons photons = test::uniform_photons(scene, 1500, 101);
+    const PrimaryHits hits = test::uniform_hits(scene, 60, 102);
     CAPTURE(factor);
-    test::check_against_oracle(scene, photons, hits, 0.25 * factor, {1, 50, 3000}, true);
+    test::check_against_oracle(scene, photons, hits, 0.25 * factor, {1, 50}, true);
   }
 }
 
@@ -116,17 +116,17 @@ TEST_CASE("extremes: needles a million times as long as wide, and the plates bes
 
 TEST_CASE("extremes: fans of needles with a common tip, tilted against each other") {
   Scene scene = test::empty_scene();
-  // A flat cone of 4096 slivers around its tip, and a plate just above it: photons of the plate
+  // A flat cone of 1024 slivers around its tip, and a plate just above it: photons of the plate
   // project into faces, and reach them or not by their height alone.
-  constexpr int slivers = 4096;
+  constexpr int slivers = 1024;
   const auto rim = [](int i) {
     const double angle = 2 * glm::pi<double>() * i / slivers;
     return glm::vec3(std::cos(angle), std::sin(angle), 0.1);
   };
   for (int i = 0; i < slivers; ++i) test::add_triangle(scene, {0, 0, 0}, rim(i), rim(i + 1));
   test::add_plate(scene, {-1, -1, 0.15f}, {2, 0, 0}, {0, 2, 0}, 1);
-  const Photons photons = test::uniform_photons(scene, 20'000, 109, false);
-  const PrimaryHits hits = test::uniform_hits(scene, 100, 110, false);
+  const Photons photons = test::uniform_photons(scene, 8000, 109, false);
+  const PrimaryHits hits = test::uniform_hits(scene, 60, 110, false);
   test::check_against_oracle(scene, photons, hits, 0.1, {16, 500}, true);
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("extremes: photons and hits on corners, edges and cell borders, and on
   }
   hits.pixel.resize(hits.size());
   photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
-  for (const double radius : {0x1p-5, 0.125, 0.5}) {
+  for (const double radius : {0x1p-5, 0.5}) {
     test::check_against_oracle(scene, photons, hits, radius, {1, 2, 16, 100}, false);
   }
 }
