@@ -39,7 +39,7 @@ TEST_CASE("extremes: scenes of 1e-6 to 1e6 times the size of a room") {
     const Photons photons = test::uniform_photons(scene, 1500, 101);
     const PrimaryHits hits = test::uniform_hits(scene, 60, 102);
     CAPTURE(factor);
-    test::check_against_oracle(scene, photons, hits, 0.25 * factor, {1, 50}, true);
+    test::check_against_oracle(scene, photons, hits, 0.25 * factor, {1, 8, 50}, true);
   }
 }
 
@@ -83,16 +83,18 @@ TEST_CASE("extremes: the automatic radius follows the scale") {
 
 TEST_CASE("extremes: needles a million times as long as wide, and the plates beside them") {
   Scene scene = test::empty_scene();
-  // A strip of needles between two plates, level in one scene and askew in the other.
-  const glm::vec3 along = GENERATE(glm::vec3(1, 0, 0), glm::vec3(0.6f, 0.48f, 0.64f));
-  const glm::vec3 across =
-      along.y == 0 ? glm::vec3(0, 1, 0) : glm::normalize(glm::cross(along, glm::vec3(0, 1, 0)));
+  // A strip of needles between two plates: level, where every product is exact, and askew.
+  const glm::vec3 along = GENERATE(glm::vec3(1, 0, 0), glm::vec3(0.6f, 0.48f, 0.64f),
+                                   glm::vec3(-0.36f, 0.48f, 0.8f), glm::vec3(0.8f, -0.36f, 0.48f));
+  const glm::vec3 across = along.y == 0
+                               ? glm::vec3(0, 1, 0)
+                               : glm::normalize(glm::cross(along, glm::vec3(0.3f, 1, 0.2f)));
   constexpr int needles = 8;
   constexpr float width = 1e-6f;
   for (int i = 0; i < needles; ++i) {
     const float y = static_cast<float>(i) * width;
     test::add_triangle(scene, y * across, along + y * across, along + (y + width) * across);
-    test::add_triangle(scene, y * across, along + (y + width) * across, (y + width) * across);
+    test::add_triangle(scene, along + y * across, 0.37f * along + (y + width) * across, y * across);
   }
   test::add_plate(scene, -0.5f * across, along, 0.5f * across, 1);
   test::add_plate(scene, needles * width * across, along, 0.5f * across, 1);
@@ -101,15 +103,17 @@ TEST_CASE("extremes: needles a million times as long as wide, and the plates bes
   // By area the needles would get none.
   std::mt19937_64 random(108);
   for (std::uint32_t t = 0; t < 2 * needles; ++t) {
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 60; ++i) {
       test::add_photon(photons, scene, test::random_point(scene, t, random), sided(t, 0), random);
     }
-    hits.position.push_back(test::random_point(scene, t, random));
-    hits.sided_triangle.push_back(sided(t, 0));
+    for (int i = 0; i < 6; ++i) {
+      hits.position.push_back(test::random_point(scene, t, random));
+      hits.sided_triangle.push_back(sided(t, 0));
+    }
   }
   photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
   hits.pixel.resize(hits.position.size());
-  for (const double radius : {1e-7, 1e-3, 0.05, 0.7}) {
+  for (const double radius : {1e-7, 1e-3, 0.05}) {
     test::check_against_oracle(scene, photons, hits, radius, {1, 16, 200}, false);
   }
 }
