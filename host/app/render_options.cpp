@@ -114,6 +114,12 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
       ->transform(count_between(1, limits::max_neighbours))
       ->capture_default_str()
       ->group("Estimate");
+  command
+      .add_option("--least-neighbours", parameters.least_neighbours,
+                  "each estimate has from N to -k photons, as many as its bias allows")
+      ->type_name("N")
+      ->transform(count_between(1, limits::max_neighbours))
+      ->group("Estimate");
   command.add_option("--radius", parameters.radius, "metres; default: from the photons' density")
       ->type_name("M")
       ->transform(positive_number())

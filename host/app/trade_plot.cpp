@@ -21,6 +21,7 @@ struct Series {
 };
 constexpr std::array series{Series{"photons and neighbours", "#0072b2"},
                             Series{"nothing", "#000000"},
+                            Series{"own neighbours", "#b8a000"},
                             Series{"samples", "#e69f00"},
                             Series{"radius", "#009e73"},
                             Series{"angle", "#cc79a7"},

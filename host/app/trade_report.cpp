@@ -19,6 +19,9 @@ std::string settings_text(const TradePoint& point) {
   std::string text =
       fmt::format("--photons {} -k {} --samples {}", parameters.photons.emitted_photons,
                   parameters.neighbours, parameters.film.samples_per_pixel);
+  if (parameters.least_neighbours > 0) {
+    text += fmt::format(" --least-neighbours {}", parameters.least_neighbours);
+  }
   if (point.varied == "radius") text += fmt::format(" --radius {:.4g}", parameters.radius);
   if (point.varied == "angle") text += fmt::format(" --angle {}", parameters.angle_degrees);
   if (point.varied == "cell") {
@@ -54,18 +57,19 @@ std::string point_row(const std::string& error, const TradePoint& point) {
 
 std::string trade_csv(std::span<const TradePoint> points) {
   std::string text =
-      "varied,photons,neighbours,radius_metres,angle_degrees,photons_per_cell,maps,structure,"
+      "varied,photons,neighbours,least_neighbours,radius_metres,angle_degrees,photons_per_cell,"
+      "maps,structure,"
       "samples,photons_stored,relative_error,relative_mse,mean_ratio,worst_region,psnr_decibel,"
       "first_picture_seconds,frame_seconds,host_bytes,device_bytes,on_front\n";
   for (const TradePoint& p : points) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.varied,
-                        p.parameters.photons.emitted_photons, p.parameters.neighbours, p.radius,
-                        p.parameters.angle_degrees, p.parameters.photons_per_cell,
-                        name_of(p.parameters.maps), name_of(p.parameters.structure),
-                        p.parameters.film.samples_per_pixel, p.stored_photons,
-                        p.error.relative_error(), p.error.relative_mse, p.error.mean_ratio,
-                        p.error.worst_region, p.error.psnr, p.first_picture_seconds,
-                        p.frame_seconds, p.host_bytes, p.device_bytes, p.on_front ? 1 : 0);
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.varied,
+        p.parameters.photons.emitted_photons, p.parameters.neighbours,
+        p.parameters.least_neighbours, p.radius, p.parameters.angle_degrees,
+        p.parameters.photons_per_cell, name_of(p.parameters.maps), name_of(p.parameters.structure),
+        p.parameters.film.samples_per_pixel, p.stored_photons, p.error.relative_error(),
+        p.error.relative_mse, p.error.mean_ratio, p.error.worst_region, p.error.psnr,
+        p.first_picture_seconds, p.frame_seconds, p.host_bytes, p.device_bytes, p.on_front ? 1 : 0);
   }
   return text;
 }
@@ -76,6 +80,7 @@ nlohmann::json trade_json(std::span<const TradePoint> points) {
     list.push_back({{"varied", p.varied},
                     {"photons", p.parameters.photons.emitted_photons},
                     {"neighbours", p.parameters.neighbours},
+                    {"least_neighbours", p.parameters.least_neighbours},
                     {"radius", p.radius},
                     {"angle_degrees", p.parameters.angle_degrees},
                     {"photons_per_cell", p.parameters.photons_per_cell},

@@ -7,6 +7,7 @@
 #include "photile/renderer.hpp"
 #include "render/device_estimators.hpp"
 #include "render/film.hpp"
+#include "render/neighbour_choice.hpp"
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
 #include "render/render_costs.hpp"
@@ -41,7 +42,8 @@ class Rendering {
         progress_(progress),
         rays_(scene),
         film_(parameters.film),
-        shares_(devices.size(), 0.0) {
+        shares_(devices.size(), 0.0),
+        layer_powers_(layer_powers(scene)) {
     costs_.structure.add(stopwatch_.seconds(), rays_.bytes());
     passes_ = parameters.passes > 0 ? parameters.passes
                                     : automatic_passes(rays_, parameters.photons, progress);
@@ -76,13 +78,24 @@ class Rendering {
   void run_pass(int pass) {
     const std::vector<PhotonMaps> maps = trace_and_build(pass);
     const PassEstimate estimate = estimate_of_pass(pass, first_);
-    DeviceEstimators estimators(
-        devices_, maps, scene_,
-        {estimate.neighbours, 0, parameters_.tuning, parameters_.neighbours});
+    const std::vector<int> levels = levels_of(estimate.neighbours);
+    std::vector<DeviceEstimators> estimators;
+    for (const int neighbours : levels) {
+      estimators.emplace_back(
+          devices_, maps, scene_,
+          EstimateParameters{neighbours, 0, parameters_.tuning, parameters_.neighbours});
+    }
     film_.pass = pass;
-    add_pass(estimators, maps.front().map_of());
-    const std::vector<double> shares = estimators.shares();
+    add_pass(estimators, levels, maps.front().map_of());
+    const std::vector<double> shares = estimators.back().shares();
     for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / passes_;
+  }
+
+  /// The k that hits of a pass choose from; just one unless they are to have their own.
+  std::vector<int> levels_of(int neighbours) const {
+    const int least = parameters_.least_neighbours;
+    return least > 0 ? neighbour_levels(std::min(least, neighbours), neighbours)
+                     : std::vector{neighbours};
   }
 
   /// The maps of a pass. Its photons are gone when this returns: the maps hold copies.
@@ -145,7 +158,8 @@ class Rendering {
   }
 
   /// Adds what the camera sees by the photons of this pass.
-  void add_pass(DeviceEstimators& estimators, std::span<const std::uint32_t> map_of) {
+  void add_pass(std::span<DeviceEstimators> estimators, std::span<const int> levels,
+                std::span<const std::uint32_t> map_of) {
     const std::int64_t samples_per_row =
         std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
     const int rows = static_cast<int>(std::clamp<std::int64_t>(
@@ -154,19 +168,23 @@ class Rendering {
     for (int first = 0; first < film_.height; first += rows) {
       progress_.throw_if_cancelled();
       const int last = std::min(first + rows, film_.height);
-      add_rows(estimators, map_of, first, last);
+      add_rows(estimators, levels, map_of, first, last);
       progress_.advance(static_cast<std::uint64_t>(last - first));
     }
     progress_.end();
   }
 
-  void add_rows(DeviceEstimators& estimators, std::span<const std::uint32_t> map_of, int first,
-                int last) {
+  void add_rows(std::span<DeviceEstimators> estimators, std::span<const int> levels,
+                std::span<const std::uint32_t> map_of, int first, int last) {
     const Stopwatch hit_watch;
     const PrimaryHitBatch batch = trace_primary_hits(rays_, camera_, film_, first, last, map_of);
     costs_.hits.add(hit_watch.seconds());
     const Stopwatch estimate_watch;
-    const Estimates estimates = estimators.estimate(batch.hits);
+    std::vector<Estimates> by_level;
+    for (DeviceEstimators& one : estimators) by_level.push_back(one.estimate(batch.hits));
+    const Estimates estimates =
+        by_level.size() == 1 ? std::move(by_level.front())
+                             : estimates_of_least_error(std::move(by_level), levels, layer_powers_);
     costs_.estimate.add(estimate_watch.seconds());
     const Stopwatch film_watch;
     add_to_film(layers_, batch, estimates, 1.0f / static_cast<float>(film_.samples_per_pixel));
@@ -190,10 +208,16 @@ class Rendering {
   NeighbourGroups groups_;
   std::vector<double> shares_;
   RenderCosts costs_;
+  const std::vector<double> layer_powers_;
 };
 
 void check(std::span<const Device> devices, const RenderParameters& parameters) {
   if (devices.empty()) throw UsageError("rendering needs a device; give at least one");
+  if (parameters.least_neighbours < 0 || parameters.least_neighbours > parameters.neighbours) {
+    throw UsageError("least neighbours: " + std::to_string(parameters.least_neighbours) +
+                     " is not between 0 and the " + std::to_string(parameters.neighbours) +
+                     " neighbours");
+  }
   if (parameters.passes < 0 || parameters.passes > limits::max_passes) {
     throw UsageError("passes: " + std::to_string(parameters.passes) + " is not between 0 and " +
                      std::to_string(limits::max_passes));

@@ -85,6 +85,14 @@ class Trade {
         parameters.neighbours = k;
       });
     }
+    for (const std::uint64_t photons : axes_.photons) {
+      vary("own neighbours", axes_.least_neighbours, [&](auto& parameters, int least) {
+        parameters.photons.emitted_photons = photons;
+        parameters.least_neighbours = least;
+        parameters.neighbours =
+            axes_.neighbours.empty() ? base_.neighbours : axes_.neighbours.back();
+      });
+    }
     vary("nothing", std::array{0}, [](auto&, int) {});
     vary("samples", axes_.samples,
          [](auto& p, int samples) { p.film.samples_per_pixel = samples; });

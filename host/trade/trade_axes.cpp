@@ -27,6 +27,7 @@ TradeAxes TradeAxes::around(const RenderParameters& parameters) {
   axes.photons = scaled<std::uint64_t>(parameters.photons.emitted_photons, {1. / 16, 0.25, 1, 4},
                                        limits::min_photons, limits::max_emitted_photons);
   axes.neighbours = scaled<int>(parameters.neighbours, {0.25, 1, 4, 16}, 1, limits::max_neighbours);
+  axes.least_neighbours = scaled<int>(parameters.neighbours, {1.0}, 1, limits::max_neighbours);
   axes.radius_scales = {0.25, 0.5, 2};
   axes.angles = {30, 90};
   axes.photons_per_cell = scaled<float>(parameters.photons_per_cell, {0.25, 4}, 1e-3f, 1e6f);

@@ -26,6 +26,9 @@ struct RenderParameters {
   double radius = 0;  ///< metres; 0 = automatic_radius
   double angle_degrees = defaults::group_angle_degrees;
   int neighbours = defaults::neighbours;
+  /// > 0: each hit has a number of neighbours of its own, from about this to `neighbours`: as many
+  /// as its estimate can have before bias shows above the noise. 0 = all have `neighbours`.
+  int least_neighbours = 0;
   float photons_per_cell = defaults::photons_per_cell;
   MapStructure structure = MapStructure::uniform_grid;
   /// How uniform grids are queried; none = shipped_tuning of the device. Its photons_per_cell does

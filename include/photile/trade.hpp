@@ -21,6 +21,7 @@ namespace photile {
 struct TradeAxes {
   std::vector<std::uint64_t> photons;    ///< paths over all lights
   std::vector<int> neighbours;           ///< k
+  std::vector<int> least_neighbours;     ///< with an own k for each hit, from this on
   std::vector<double> radius_scales;     ///< of the automatic radius
   std::vector<double> angles;            ///< degrees
   std::vector<float> photons_per_cell;   ///< of uniform grids
