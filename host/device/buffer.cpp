@@ -49,7 +49,7 @@ RawBuffer::~RawBuffer() {
 }
 
 RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_bytes,
-                                     std::string_view what) {
+                                     std::string_view what, MemoryPages pages) {
   // OpenCL has no empty buffers; 16 bytes hold an element of any basic type.
   constexpr std::size_t smallest = 16;
   const auto asked = [&] {
@@ -74,7 +74,9 @@ RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_byte
     return created;
   });
   if (status != CL_SUCCESS) impl_->check(status, "clCreateBuffer", asked());
-  if (info.type == DeviceType::cpu) prefer_huge_pages(impl_->queue.get(), memory, bytes);
+  if (pages == MemoryPages::large && info.type == DeviceType::cpu) {
+    prefer_huge_pages(impl_->queue.get(), memory, bytes);
+  }
   return RawBuffer(memory, bytes, impl_->memory);
 }
 

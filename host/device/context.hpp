@@ -89,6 +89,14 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
+/// What memory a buffer of a CPU device is to be made of.
+enum class MemoryPages {
+  ordinary,
+  /// Large ones, where the operating system has them: for what is kept and read in many short
+  /// ranges. Nothing for a buffer that lives for one call: each time the system must clear them.
+  large
+};
+
 /// A local-memory argument of a kernel.
 struct LocalMemory {
   std::size_t bytes;
@@ -159,8 +167,9 @@ class Context {
   /// Allocates `size` elements. Errors: DeviceMemoryError that names `what`, the bytes and the
   /// limits when it does not fit.
   template <class T>
-  Buffer<T> allocate(std::size_t size, std::string_view what) {
-    return Buffer<T>(allocate_elements(size, sizeof(T), what), size);
+  Buffer<T> allocate(std::size_t size, std::string_view what,
+                     MemoryPages pages = MemoryPages::ordinary) {
+    return Buffer<T>(allocate_elements(size, sizeof(T), what, pages), size);
   }
   /// Allocates and fills from the host.
   template <class T>
@@ -187,14 +196,20 @@ class Context {
   }
   /// Allocates `buffer` anew, with content that was saved.
   template <class T>
-  void restore(Buffer<T>& buffer, std::span<const std::byte> content, std::string_view what) {
-    buffer = allocate<T>(content.size() / sizeof(T), what);
+  void restore(Buffer<T>& buffer, std::span<const std::byte> content, std::string_view what,
+               MemoryPages pages = MemoryPages::ordinary) {
+    buffer = allocate<T>(content.size() / sizeof(T), what, pages);
     write_bytes(buffer.raw(), content.data(), content.size(), 0);
   }
   /// Sets every element.
   template <class T>
   void fill(Buffer<T>& buffer, T value) {
-    if (buffer.size() != 0) fill_bytes(buffer.raw(), &value, sizeof(T), buffer.bytes());
+    fill(buffer, value, buffer.size());
+  }
+  /// Sets the first `count` elements.
+  template <class T>
+  void fill(Buffer<T>& buffer, T value, std::size_t count) {
+    if (count != 0) fill_bytes(buffer.raw(), &value, sizeof(T), count * sizeof(T));
   }
 
   /// The kernel `name` of the embedded kernel file `file` (path below kernels/, e.g.
@@ -230,7 +245,8 @@ class Context {
 
   Context(ListedDevice&& listed, const DeviceOptions& options);
 
-  RawBuffer allocate_elements(std::size_t count, std::size_t element_bytes, std::string_view what);
+  RawBuffer allocate_elements(std::size_t count, std::size_t element_bytes, std::string_view what,
+                              MemoryPages pages);
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);

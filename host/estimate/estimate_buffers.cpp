@@ -5,17 +5,6 @@
 #include "maps/prefix_sum.hpp"
 
 namespace photile::estimate {
-namespace {
-
-/// What the buffer holds, 3 floats an element.
-std::vector<glm::vec3> read_vectors(device::Context& context, const device::Buffer<float>& buffer) {
-  std::vector<glm::vec3> values(buffer.size() / 3);
-  if (!values.empty()) context.read(buffer, std::span(&values[0].x, buffer.size()));
-  return values;
-}
-
-}  // namespace
-
 EstimateBytes estimate_bytes_per_hit(const SceneNeeds& needs, std::uint32_t neighbours) {
   const std::uint64_t estimates = estimates_per_hit(needs, neighbours);
   const std::uint64_t largest = estimates * 3 * sizeof(float);
@@ -25,27 +14,70 @@ EstimateBytes estimate_bytes_per_hit(const SceneNeeds& needs, std::uint32_t neig
 }
 
 EstimateBuffers::EstimateBuffers(device::Context& context, const SceneNeeds& needs,
-                                 std::uint32_t neighbours, std::uint32_t hits)
-    : context_(context), needs_(needs), hits_(hits), slots_(estimates_per_hit(needs, neighbours)) {
-  const std::size_t estimates = std::size_t{hits} * slots_;
-  irradiance = context.allocate<float>(3 * estimates, "irradiance estimates");
-  radiance = context.allocate<float>(needs.glossy ? 3 * estimates : 0, "radiance estimates");
-  if (needs.many_lights()) {
-    slot_light = context.allocate<std::uint16_t>(estimates, "lights of estimates");
-    slots_taken = context.allocate<std::uint32_t>(std::size_t{hits} + 1, "lights per hit");
-    context.fill(slots_taken, 0u);
-  } else {
-    context.fill(irradiance, 0.0f);
-    context.fill(radiance, 0.0f);
+                                 std::uint32_t neighbours)
+    : context_(context),
+      needs_(needs),
+      slots_(estimates_per_hit(needs, neighbours)),
+      reclaimer_(context, *this) {}
+
+void EstimateBuffers::begin(std::uint32_t hits) {
+  // A batch that was not read has failed, most likely for want of memory. Slots of many lights are
+  // as many as their hits: they are scanned.
+  const bool fits = needs_.many_lights() ? hits == capacity_ : hits <= capacity_;
+  if (in_use_ || !fits) release();
+  in_use_ = true;
+  hits_ = hits;
+  if (capacity_ == 0) allocate();
+  if (needs_.many_lights()) {
+    context_.fill(slots_taken, 0u);
+    return;
   }
+  const std::size_t floats = 3 * std::size_t{hits} * slots_;
+  context_.fill(irradiance, 0.0f, floats);
+  if (needs_.glossy) context_.fill(radiance, 0.0f, floats);
 }
 
-Estimates EstimateBuffers::read() {
-  if (needs_.many_lights()) return read_slots();
-  Estimates estimates;
-  estimates.irradiance = read_vectors(context_, irradiance);
-  estimates.radiance = read_vectors(context_, radiance);
-  return estimates;
+void EstimateBuffers::allocate() {
+  const std::size_t estimates = std::size_t{hits_} * slots_;
+  irradiance = context_.allocate<float>(3 * estimates, "irradiance estimates");
+  radiance = context_.allocate<float>(needs_.glossy ? 3 * estimates : 0, "radiance estimates");
+  if (needs_.many_lights()) {
+    slot_light = context_.allocate<std::uint16_t>(estimates, "lights of estimates");
+    slots_taken = context_.allocate<std::uint32_t>(std::size_t{hits_} + 1, "lights per hit");
+  }
+  capacity_ = hits_;
+}
+
+void EstimateBuffers::release() {
+  irradiance = {};
+  radiance = {};
+  slot_light = {};
+  slots_taken = {};
+  capacity_ = 0;
+}
+
+bool EstimateBuffers::reclaim() {
+  if (in_use_ || capacity_ == 0) return false;
+  release();
+  return true;
+}
+
+void EstimateBuffers::read(Estimates& result, std::size_t first) {
+  if (needs_.many_lights()) {
+    result.append(read_slots());
+  } else {
+    const auto part = [&](std::vector<glm::vec3>& values) {
+      return std::span(values).subspan(first * slots_, std::size_t{hits_} * slots_);
+    };
+    read_vectors(irradiance, part(result.irradiance));
+    if (needs_.glossy) read_vectors(radiance, part(result.radiance));
+  }
+  in_use_ = false;
+}
+
+void EstimateBuffers::read_vectors(const device::Buffer<float>& buffer,
+                                   std::span<glm::vec3> values) {
+  if (!values.empty()) context_.read(buffer, std::span(&values.front().x, 3 * values.size()));
 }
 
 /// Takes the empty slots out on the device: it is fast there, and less is read.
@@ -78,8 +110,12 @@ Estimates EstimateBuffers::read_slots() {
   estimates.first.assign(offsets.begin(), offsets.end());
   estimates.light.resize(total);
   if (total > 0) context_.read(light, std::span(estimates.light));
-  estimates.irradiance = read_vectors(context_, packed_irradiance);
-  estimates.radiance = read_vectors(context_, packed_radiance);
+  estimates.irradiance.resize(total);
+  read_vectors(packed_irradiance, estimates.irradiance);
+  if (needs_.glossy) {
+    estimates.radiance.resize(total);
+    read_vectors(packed_radiance, estimates.radiance);
+  }
   return estimates;
 }
 

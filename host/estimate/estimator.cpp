@@ -27,6 +27,7 @@ struct Estimator::Impl {
   std::uint32_t neighbours;
   float radius;
   HitBatches batches;
+  estimate::EstimateBuffers estimates;
   std::unique_ptr<estimate::Query> query;
 
   Impl(const PhotonMaps& photon_maps, const EstimateParameters& parameters)
@@ -36,6 +37,7 @@ struct Estimator::Impl {
         radius(static_cast<float>(parameters.radius == 0 ? photon_maps.parameters().radius
                                                          : parameters.radius)),
         batches(context),
+        estimates(context, store.needs, neighbours),
         query(estimate::make_query(
             store, neighbours,
             std::max(neighbours, static_cast<std::uint32_t>(parameters.compiled_neighbours)),
@@ -47,16 +49,17 @@ struct Estimator::Impl {
         .bytes_per_hit = estimate::hit_bytes(store.needs.glossy, !store.normals.empty()) + outputs};
   }
 
-  Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count) {
+  /// The estimates of hits [first, first + count) become those of hits from `place` on in `result`.
+  void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, std::size_t place,
+                Estimates& result) {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers =
         estimate::upload_hits(context, hits, first, hit_maps, store.normals, store.needs.glossy);
-    estimate::EstimateBuffers estimates(context, store.needs, neighbours,
-                                        static_cast<std::uint32_t>(count));
+    estimates.begin(static_cast<std::uint32_t>(count));
     estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
       query->estimate(page_hits, estimates);
     });
-    return estimates.read();
+    estimates.read(result, place);
   }
 
   /// The neighbours of hits [first, first + count).
@@ -126,7 +129,13 @@ Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::s
   const auto [largest, together] =
       estimate::estimate_bytes_per_hit(impl_->store.needs, impl_->neighbours);
   Estimates result;
-  if (impl_->store.needs.many_lights()) result.first.push_back(0);
+  if (impl_->store.needs.many_lights()) {
+    result.first.push_back(0);
+  } else {
+    const std::size_t estimates = hit_count * impl_->store.needs.light_count;
+    result.irradiance.resize(estimates);
+    if (impl_->store.needs.glossy) result.radiance.resize(estimates);
+  }
   // Slots for many lights stay mostly empty: more of them than this at a time gain nothing.
   constexpr std::uint64_t comfortable_bytes = 128u << 20;
   constexpr std::size_t least_hits = 4096;
@@ -137,7 +146,7 @@ Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::s
   for (std::size_t part = 0; part < hit_count; part += most) {
     impl_->batches.run(std::min(most, hit_count - part), impl_->needs(largest, together),
                        [&](std::size_t first, std::size_t count) {
-                         result.append(impl_->estimate(hits, begin + part + first, count));
+                         impl_->estimate(hits, begin + part + first, count, part + first, result);
                        });
   }
   return result;

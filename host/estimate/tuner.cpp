@@ -33,7 +33,9 @@ class Bench {
         groups_(find_neighbour_groups(sample_.scene, {sample_.radius})),
         hits_(upload_hits(device.context(), sample_.hits, 0, sample_.hits.sided_triangle, {},
                           needs.glossy)),
-        estimates_(device.context(), needs, neighbours_, hits_.count) {}
+        estimates_(device.context(), needs, neighbours_) {
+    estimates_.begin(hits_.count);
+  }
 
   /// Median of 5 runs over all hits, after one that warms up.
   double microseconds_per_hit(const EstimateTuning& tuning) {

@@ -12,9 +12,10 @@ namespace {
 /// Height of a patch at most, in radii: photons of other heights are candidates in vain.
 constexpr double most_thickness = 0.5;
 
-/// Normals lean at most 45 degrees: the projection then squeezes the photons of a surface to no
-/// less than 0.7 of their distance.
-constexpr double least_cosine = 0.7071;
+/// Normals lean at most 26 degrees: what photons of other normals a map holds besides, its queries
+/// read in vain. Measured on living room, kitchen and classroom: 45 degrees has a query read up to
+/// 12% more, and 18 no less than 26.
+constexpr double least_cosine = 0.9;
 
 /// Parts this small, in radii, are not split for their normals: every map around would hold the
 /// same photons.

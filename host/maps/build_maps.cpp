@@ -165,7 +165,8 @@ MapTiling tiling_of(Build& build, std::uint32_t map, const MapCounts& counts) {
 /// `tile`: cells that the page holds, where it holds a tile; else nothing.
 void fill_cells(Build& build, MapPage& page, const std::optional<Rectangle>& tile) {
   auto cell_count = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell counts");
-  page.cell_start = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell offsets");
+  page.cell_start = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell offsets",
+                                                          device::MemoryPages::large);
   build.context.fill(cell_count, 0u);
   const auto launch = [&](const char* kernel, const PhotonPage& photons, const auto&... outputs) {
     const auto run = [&](const device::KernelSet& kernels, const auto&... bounds) {

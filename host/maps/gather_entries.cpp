@@ -10,15 +10,17 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
   page.entry_stride = entry_stride(page.entry_count);
   // Vector loads reach into the padding; what they find there is masked, but must be a number.
   const auto planes = [&](std::string_view what) {
-    auto buffer = context.allocate<float>(3 * std::size_t{page.entry_stride}, what);
+    auto buffer = context.allocate<float>(3 * std::size_t{page.entry_stride}, what,
+                                          device::MemoryPages::large);
     context.fill(buffer, 0.0f);
     return buffer;
   };
   page.entry_position = planes("photon map positions");
   page.entry_flux = planes("photon map flux");
   if (needs.light_count > 1) {
-    page.entry_light = context.allocate<std::uint8_t>(
-        std::size_t{bytes_per_light(needs)} * page.entry_stride, "photon map lights");
+    page.entry_light =
+        context.allocate<std::uint8_t>(std::size_t{bytes_per_light(needs)} * page.entry_stride,
+                                       "photon map lights", device::MemoryPages::large);
   }
   if (needs.glossy) page.entry_incoming = planes("photon map directions");
   if (normals) page.entry_normal = planes("photon map normals");

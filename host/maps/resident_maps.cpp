@@ -34,7 +34,9 @@ void ResidentMaps::load(std::size_t page) {
   PageBuffers buffers;
   auto content = entry.copy.begin();
   for_each_buffer(buffers, [&](auto& buffer) {
-    if (!content->empty()) context_.restore(buffer, *content, "photon map page");
+    if (!content->empty()) {
+      context_.restore(buffer, *content, "photon map page", device::MemoryPages::large);
+    }
     ++content;
   });
   static_cast<PageBuffers&>(entry.page) = std::move(buffers);

@@ -1,0 +1,104 @@
+// Buffers of estimates that are kept from call to call.
+#include <catch2/catch.hpp>
+
+#include "device/context.hpp"
+#include "photile/estimator.hpp"
+#include "photile/neighbour_groups.hpp"
+#include "photon_sets.hpp"
+#include "test_device.hpp"
+
+using namespace photile;
+
+namespace {
+
+constexpr double radius = 0.2;
+
+/// Two plates 10 m apart.
+Scene two_plates() {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  test::add_plate(scene, {10, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  return scene;
+}
+
+/// The photons of the first plate alone.
+Photons photons_on_one(const Scene& scene) {
+  Scene first = test::empty_scene();
+  test::add_plate(first, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  Photons photons = test::uniform_photons(first, 5'000, 7);
+  photons.first_of.resize(2 * scene.triangle_count() + 1, photons.first_of.back());
+  return photons;
+}
+
+/// Those of the hits that lie on the first plate, or on the second.
+PrimaryHits on_plate(const PrimaryHits& hits, bool second) {
+  PrimaryHits result;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if ((hits.position[i].x > 5) != second) continue;
+    result.position.push_back(hits.position[i]);
+    result.sided_triangle.push_back(hits.sided_triangle[i]);
+    result.diffuse_albedo.push_back(hits.diffuse_albedo[i]);
+  }
+  return result;
+}
+
+PhotonMaps maps_on(Device& device, const Scene& scene, const Photons& photons) {
+  return {device,
+          scene,
+          photons,
+          find_map_groups(scene, photons, MapMode::automatic, {radius}),
+          {.radius = radius}};
+}
+
+}  // namespace
+
+TEST_CASE("hits without photons are dark, whatever the hits before them were") {
+  const Scene scene = two_plates();
+  const Photons photons = photons_on_one(scene);
+  const PhotonMaps maps = maps_on(test::device(), scene, photons);
+  const PrimaryHits hits = test::uniform_hits(scene, 2'000, 8);
+  Estimator estimator(maps, scene, {});
+  const Estimates lit = estimator.estimate(on_plate(hits, false));
+  REQUIRE(lit.irradiance.size() > 900);
+  for (const glm::vec3& irradiance : lit.irradiance) REQUIRE(irradiance.x > 0);
+  const PrimaryHits far_hits = on_plate(hits, true);
+  const Estimates dark = estimator.estimate(far_hits);  // about as many
+  REQUIRE(dark.irradiance.size() == far_hits.size());
+  for (const glm::vec3& irradiance : dark.irradiance) REQUIRE(irradiance == glm::vec3(0));
+}
+
+TEST_CASE("a second call allocates nothing that the first has not") {
+  const Scene scene = two_plates();
+  const Photons photons = photons_on_one(scene);
+  Device device;
+  const PhotonMaps maps = maps_on(device, scene, photons);
+  const PrimaryHits hits = on_plate(test::uniform_hits(scene, 2'000, 8), false);
+  Estimator estimator(maps, scene, {});
+  const std::uint64_t before = device.context().allocated_bytes();
+  estimator.estimate(hits);
+  const std::uint64_t kept = device.context().allocated_bytes();
+  CHECK(kept - before == hits.size() * sizeof(glm::vec3));
+  estimator.estimate(hits, 0, hits.size() / 2);
+  CHECK(device.context().allocated_bytes() == kept);
+}
+
+TEST_CASE("kept estimates make room where memory runs out") {
+  const Scene scene = two_plates();
+  const Photons photons = photons_on_one(scene);
+  constexpr std::uint64_t memory = 32u << 20;
+  DeviceOptions options;
+  options.memory_bytes = memory;
+  Device device(options);
+  const PhotonMaps maps = maps_on(device, scene, photons);
+  const PrimaryHits hits = on_plate(test::uniform_hits(scene, 2'000, 8), false);
+  Estimator estimator(maps, scene, {});
+  const Estimates expected = estimator.estimate(hits);
+  device::Context& context = device.context();
+  {
+    // One byte more than is left. The maps are asked last, and stay.
+    const std::uint64_t left = memory - context.allocated_bytes();
+    const auto rest = context.allocate<std::uint8_t>(left + 1, "the rest");
+    CHECK(context.allocated_bytes() == memory + 1 - hits.size() * sizeof(glm::vec3));
+  }
+  CHECK(estimator.estimate(hits).irradiance == expected.irradiance);
+}
