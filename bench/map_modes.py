@@ -1,77 +1,82 @@
 #!/usr/bin/env python3
 """Maps of triangles against maps of patches on finely tessellated scenes, as a Markdown table.
 
-Renders each scene with each mode several times, modes taking turns, and keeps the median of each
-figure. Usage: bench/map_modes.py [--repeats N]
+Runs photile_bench_modes, in which modes take turns; medians. Usage: bench/map_modes.py [--repeats N]
   PHOTILE_SHARED_SCENES   folder with kitchen/ and classroom/; default: ../shared/scenes
 """
 import argparse
 import json
 import os
-import statistics
 import subprocess
 import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = Path(os.environ.get("PHOTILE_SHARED_SCENES", ROOT.parent / "shared/scenes"))
-SCENES = [
-    ("living room", ROOT / "scenes/living-room/living-room.gltf"),
-    ("kitchen", SHARED / "kitchen/kitchen-diffuse.gltf"),
-    ("classroom", SHARED / "classroom/classroom-diffuse.gltf"),
+CLASSROOM = SHARED / "classroom/classroom-diffuse.gltf"
+CASES = [  # and the paths; at 4 million, maps of the classroom's triangles would take 25 GB
+    ("living room", ROOT / "scenes/living-room/living-room.gltf", 300_000, True),
+    ("kitchen", SHARED / "kitchen/kitchen-diffuse.gltf", 300_000, True),
+    ("classroom", CLASSROOM, 300_000, True),
+    ("classroom", CLASSROOM, 1_000_000, True),
+    ("classroom", CLASSROOM, 4_000_000, False),
 ]
-MODES = ["triangle", "patch", "auto"]
 RADIUS = 0.1  # metres
 
 
-def render(scene: Path, mode: str, folder: Path) -> dict:
-    """The figures of one run, by name."""
-    stats = folder / "stats.json"
-    subprocess.run(
-        [ROOT / "build/release/photile", "render", scene, "--maps", mode, "--radius", str(RADIUS),
-         "--photons", "300k", "--size", "512x512", "--samples", "1", "--quiet",
-         "-o", folder / "picture.exr", "--stats", stats],
-        check=True)
-    stages = {stage["stage"]: stage for stage in json.loads(stats.read_text())["stages"]}
-    maps, groups = stages["build photon maps"], stages["neighbour groups"]
+def measure(scene: Path, paths: int, triangles: bool, repeats: int) -> list:
+    """The rows of photile_bench_modes."""
+    with tempfile.TemporaryDirectory() as folder:
+        output = Path(folder) / "modes.json"
+        subprocess.run(
+            [ROOT / "build/release/bench/photile_bench_modes", scene, "--photons", str(paths),
+             "--radius", str(RADIUS), "--repeats", str(repeats), "--output", output,
+             "--triangles" if triangles else "--no-triangles"],
+            check=True, stdout=subprocess.DEVNULL)
+        return json.loads(output.read_text())["results"]
+
+
+def figures(row: dict) -> dict:
+    hits, estimate = (1e3 * row[f"processor time of {stage}"]["median"]
+                      for stage in ("primary hits", "the estimate"))
     return {
-        "references a photon": maps["figures"]["references per photon"],
-        "maps": maps["figures"]["maps"],
-        "groups, MiB": groups["host_bytes"] / 2**20,
-        "maps, MiB": maps["device_bytes"] / 2**20,
-        "groups, s": groups["seconds"],
-        "build, s": maps["seconds"] - maps["figures"]["kernel compilation seconds"],
-        "frame, ms": 1e3 * (stages["primary hits"]["seconds"] +
-                            stages["radiance estimate"]["seconds"]),
-        "us a hit": stages["radiance estimate"]["figures"]["microseconds per hit"],
+        "photons": f"{row['photons'] / 1e6:.2f} M",
+        "`--maps`": row["maps"],
+        "references a photon": row["references per photon"],
+        "maps": row["number of maps"],
+        "groups, MiB": row["groups bytes"] / 2**20,
+        "maps, MiB": row["map bytes"] / 2**20,
+        "groups, s": row["groups seconds"],
+        "build, s": row["build seconds"],
+        "frame, ms": 1e3 * row["frame"]["median"],
+        "processor: hits, ms": hits,
+        "estimate, ms": estimate,
+        "estimate, ns a hit": 1e6 * estimate / row["hits"],
     }
+
+
+def cell(value) -> str:
+    if isinstance(value, str):
+        return value
+    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--repeats", type=int, default=15)
     repeats = parser.parse_args().repeats
     header = None
-    for name, scene in SCENES:
+    for name, scene, paths, triangles in CASES:
         if not scene.exists():
             print(f"(no {name}: {scene.name} is missing)")
             continue
-        runs = {mode: [] for mode in MODES}
-        with tempfile.TemporaryDirectory() as folder:
-            render(scene, MODES[0], Path(folder))  # compiles kernels, fills the disk cache
-            for _ in range(repeats):
-                for mode in MODES:
-                    runs[mode].append(render(scene, mode, Path(folder)))
-        for mode in MODES:
-            figures = {key: statistics.median(run[key] for run in runs[mode])
-                       for key in runs[mode][0]}
+        for row in measure(scene, paths, triangles, repeats):
+            values = figures(row)
             if header is None:
-                header = ["scene", "`--maps`", *figures]
+                header = ["scene", *values]
                 print("| " + " | ".join(header) + " |")
-                print("|---|---|" + "--:|" * len(figures))
-            cells = [f"{value:.0f}" if value >= 100 else f"{value:.3g}"
-                     for value in figures.values()]
-            print(f"| {name} | {mode} | " + " | ".join(cells) + " |", flush=True)
+                print("|---|--:|---|" + "--:|" * (len(values) - 2))
+            print("| " + " | ".join([name, *map(cell, values.values())]) + " |", flush=True)
 
 
 if __name__ == "__main__":

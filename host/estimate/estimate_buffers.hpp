@@ -21,7 +21,7 @@ EstimateBytes estimate_bytes_per_hit(const SceneNeeds& needs, std::uint32_t neig
 /// Kept from batch to batch and from call to call: new memory, which the operating system must
 /// clear first, takes as long as a good part of the estimates that are written to it. Released
 /// where memory runs out between two batches.
-class EstimateBuffers : private device::Reclaimer {
+class EstimateBuffers final : private device::Reclaimer {
  public:
   EstimateBuffers(device::Context& context, const SceneNeeds& needs, std::uint32_t neighbours);
   EstimateBuffers(const EstimateBuffers&) = delete;
