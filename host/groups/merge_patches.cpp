@@ -80,10 +80,10 @@ std::uint64_t key_of(std::uint32_t patch, std::uint32_t other, std::uint32_t tur
   return std::uint64_t{patch} << 33 | std::uint64_t{other} << 1 | turned;
 }
 
-/// Photons that the other patch holds around this one and this one does not: what its queries would
-/// look at in vain if the two were joined.
-std::uint32_t held_in_vain(const Sharing& sharing, const PatchShape& shape,
-                           const PhotonSample& sample, const HeldPhotons& held, double radius) {
+/// Whether more than `most` photons that the other patch holds around this one are not this one's:
+/// what its queries would look at in vain if the two were joined.
+bool holds_more_in_vain(double most, const Sharing& sharing, const PatchShape& shape,
+                        const PhotonSample& sample, const HeldPhotons& held, double radius) {
   std::uint32_t count = 0;
   for (std::uint32_t side = 0; side < 2; ++side) {
     const std::span own = held.of(2 * sharing.patch + side);
@@ -91,10 +91,11 @@ std::uint32_t held_in_vain(const Sharing& sharing, const PatchShape& shape,
     for (const std::uint32_t photon : held.of(2 * sharing.other + (side ^ sharing.turned))) {
       next = std::lower_bound(next, own.end(), photon);
       const bool is_own = next != own.end() && *next == photon;
-      if (!is_own && is_within(shape, sample.position(photon), radius)) ++count;
+      if (is_own || !is_within(shape, sample.position(photon), radius)) continue;
+      if (++count > most) return true;
     }
   }
-  return count;
+  return count > most;
 }
 
 /// For each patch that has one, the partner that holds most of its photons, if they are enough; the
@@ -128,9 +129,10 @@ std::vector<Sharing> find_partners(const PhotonSample& sample, std::span<const P
     const NormalSpread& other = spreads[found.other];
     const bool bends = other.flat() && !other.joined(spreads[found.patch], found.turned).flat();
     if (bends && photons < least_saved_by_bending * held[found.other]) continue;
-    const std::uint32_t around =
-        held[found.patch] + held_in_vain(found, shapes[found.patch], sample, lists, radius);
-    if (photons < least_shared_around * around) continue;
+    const double most_in_vain = photons / least_shared_around - held[found.patch];
+    if (holds_more_in_vain(most_in_vain, found, shapes[found.patch], sample, lists, radius)) {
+      continue;
+    }
     known = found;
   }
   std::erase_if(best, [](const Sharing& sharing) { return sharing.patch == none; });
