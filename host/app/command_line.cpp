@@ -22,6 +22,7 @@ void define(CLI::App& photile) {
   add_trade_command(photile);
   add_devices_command(photile);
   add_info_command(photile);
+  add_validate_command(photile);
 }
 
 /// The command whose --help knows more about a usage error.

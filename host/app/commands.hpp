@@ -13,5 +13,6 @@ void add_relight_command(CLI::App& photile);
 void add_trade_command(CLI::App& photile);
 void add_devices_command(CLI::App& photile);
 void add_info_command(CLI::App& photile);
+void add_validate_command(CLI::App& photile);
 
 }  // namespace photile::app

@@ -5,6 +5,7 @@
 
 #include "reference/path_estimate.hpp"
 #include "render/film.hpp"
+#include "render/hit_source.hpp"
 #include "render/render_costs.hpp"
 
 namespace photile {
@@ -39,8 +40,8 @@ StageStatistics stage(const char* name, const StageCost& cost,
 
 }  // namespace
 
-PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
-                             const PrimaryHitParameters& parameters, Progress& progress) {
+PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source,
+                                     const PrimaryHitParameters& parameters, Progress& progress) {
   StageCost structure, hits, paths, film_cost;
   const Stopwatch structure_watch;
   const RayScene rays(scene);
@@ -61,7 +62,7 @@ PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
     for (film.pass = 0; film.pass < film.passes; ++film.pass) {
       progress.throw_if_cancelled();
       const Stopwatch hit_watch;
-      const PrimaryHitBatch batch = trace_primary_hits(rays, camera, film, first, last);
+      const PrimaryHitBatch batch = source.trace(rays, film, first, last, {});
       hits.add(hit_watch.seconds());
       const Stopwatch path_watch;
       const Estimates estimates =
@@ -84,6 +85,11 @@ PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
                                {{"paths", path_count},
                                 {"paths per second", path_count / std::max(1e-9, paths.seconds)}}),
                          stage("film", film_cost)}};
+}
+
+PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
+                             const PrimaryHitParameters& film, Progress& progress) {
+  return trace_paths_of_hits(scene, CameraHits(camera), film, progress);
 }
 
 bool has_unseen_caustics(const Scene& scene) {

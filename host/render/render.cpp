@@ -7,6 +7,7 @@
 #include "photile/renderer.hpp"
 #include "render/device_estimators.hpp"
 #include "render/film.hpp"
+#include "render/hit_source.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
@@ -33,10 +34,10 @@ NeighbourGroups groups_of(const Scene& scene, const Photons& photons,
 /// One rendering: what its photon passes share.
 class Rendering {
  public:
-  Rendering(const Scene& scene, const Camera& camera, std::span<Device> devices,
+  Rendering(const Scene& scene, const HitSource& hits, std::span<Device> devices,
             const RenderParameters& parameters, Progress& progress)
       : scene_(scene),
-        camera_(camera),
+        hits_(hits),
         devices_(devices),
         parameters_(parameters),
         progress_(progress),
@@ -177,7 +178,7 @@ class Rendering {
   void add_rows(std::span<DeviceEstimators> estimators, std::span<const int> levels,
                 std::span<const std::uint32_t> map_of, int first, int last) {
     const Stopwatch hit_watch;
-    const PrimaryHitBatch batch = trace_primary_hits(rays_, camera_, film_, first, last, map_of);
+    const PrimaryHitBatch batch = hits_.trace(rays_, film_, first, last, map_of);
     costs_.hits.add(hit_watch.seconds());
     const Stopwatch estimate_watch;
     std::vector<Estimates> by_level;
@@ -195,7 +196,7 @@ class Rendering {
 
   const Stopwatch stopwatch_;  // before rays_, whose construction it times
   const Scene& scene_;
-  const Camera& camera_;
+  const HitSource& hits_;
   std::span<Device> devices_;
   const RenderParameters& parameters_;
   Progress& progress_;
@@ -226,10 +227,15 @@ void check(std::span<const Device> devices, const RenderParameters& parameters) 
 
 }  // namespace
 
+RenderResult render_hits(const Scene& scene, const HitSource& hits, std::span<Device> devices,
+                         const RenderParameters& parameters, Progress& progress) {
+  check(devices, parameters);
+  return Rendering(scene, hits, devices, parameters, progress).run();
+}
+
 RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress) {
-  check(devices, parameters);
-  return Rendering(scene, camera, devices, parameters, progress).run();
+  return render_hits(scene, CameraHits(camera), devices, parameters, progress);
 }
 
 RenderResult render(const Scene& scene, const Camera& camera, Device& device,

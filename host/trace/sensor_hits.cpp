@@ -11,7 +11,8 @@
 
 namespace photile::trace {
 
-PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors, double reach) {
+PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
+  constexpr double reach = 1e-3;  // metres
   const Scene& scene = rays.scene();
   const bool glossy = needs_of(scene).glossy;
   PrimaryHits hits;

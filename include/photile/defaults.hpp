@@ -49,6 +49,11 @@ inline constexpr double most_chosen_samples = 64;  ///< per pixel
 inline constexpr std::uint64_t pilot_photons = 200'000;
 inline constexpr int pilot_height = 96;  ///< pixels
 
+// Validation: readings whose noise leaves room for the tolerance of 1%
+inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 16 seeds
+inline constexpr int validation_neighbours = 1'000;
+inline constexpr int validation_paths = 500'000;  ///< of each seed, over the sensors of a case
+
 // Units
 /// Luminous efficacy that turns watts into lumens: 683 lm/W, as glTF and Blender do. Radiance uses
 /// 179. Written into every output.

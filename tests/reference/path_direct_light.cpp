@@ -8,7 +8,6 @@
 #include "validation/form_factors.hpp"
 
 using namespace photile;
-using trace::Sensor;
 
 namespace {
 

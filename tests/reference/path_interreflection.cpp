@@ -8,7 +8,6 @@
 #include "test_scenes.hpp"
 
 using namespace photile;
-using trace::Sensor;
 
 namespace {
 

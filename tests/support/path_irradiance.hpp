@@ -15,10 +15,10 @@ struct PathMeans {
 };
 
 /// Means over `paths` paths from every sensor together.
-inline PathMeans path_means(const Scene& scene, const std::vector<trace::Sensor>& sensors,
+inline PathMeans path_means(const Scene& scene, const std::vector<Sensor>& sensors,
                             std::uint64_t seed, std::size_t paths) {
   const RayScene rays(scene);
-  std::vector<trace::Sensor> repeated;
+  std::vector<Sensor> repeated;
   for (std::size_t i = 0; i < paths; ++i) {
     repeated.insert(repeated.end(), sensors.begin(), sensors.end());
   }
@@ -39,8 +39,7 @@ inline PathMeans path_means(const Scene& scene, const std::vector<trace::Sensor>
 }
 
 /// The irradiance of the only light for seeds 1 to 16.
-inline std::vector<double> path_irradiances(const Scene& scene,
-                                            const std::vector<trace::Sensor>& sensors,
+inline std::vector<double> path_irradiances(const Scene& scene, const std::vector<Sensor>& sensors,
                                             std::size_t paths) {
   std::vector<double> values;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {

@@ -1,0 +1,69 @@
+#include "render/hit_source.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "trace/sensor_hits.hpp"
+
+namespace photile {
+namespace {
+
+PrimaryHitParameters film_of(std::span<const Sensor> sensors, int samples, std::uint64_t seed) {
+  PrimaryHitParameters film;
+  film.width = static_cast<int>(sensors.size());
+  film.height = 1;
+  film.samples_per_pixel = samples;
+  film.seed = seed;
+  return film;
+}
+
+}  // namespace
+
+PrimaryHitBatch CameraHits::trace(const RayScene& rays, const PrimaryHitParameters& film,
+                                  int first_row, int last_row,
+                                  std::span<const std::uint32_t> map_of) const {
+  return trace_primary_hits(rays, camera_, film, first_row, last_row, map_of);
+}
+
+PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParameters& film, int, int,
+                                  std::span<const std::uint32_t> map_of) const {
+  const PrimaryHits once = trace::sensor_hits(rays, sensors_);
+  const auto map = [&](std::uint32_t hit) {
+    const std::uint32_t own = once.sided_triangle[hit];
+    return map_of.empty() ? own : map_of[own];
+  };
+  std::vector<std::uint32_t> order(once.size());
+  for (std::uint32_t hit = 0; hit < order.size(); ++hit) order[hit] = hit;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return map(a) < map(b); });
+  PrimaryHitBatch batch;
+  PrimaryHits& hits = batch.hits;
+  for (const std::uint32_t hit : order) {
+    for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
+      hits.position.push_back(once.position[hit]);
+      hits.sided_triangle.push_back(once.sided_triangle[hit]);
+      hits.pixel.push_back(once.pixel[hit]);
+      hits.throughput.push_back(once.throughput[hit] / static_cast<float>(film.samples_per_pixel));
+      hits.diffuse_albedo.push_back(once.diffuse_albedo[hit]);
+      if (once.outgoing.empty()) continue;
+      hits.outgoing.push_back(once.outgoing[hit]);
+      hits.lobe.push_back(once.lobe[hit]);
+    }
+  }
+  batch.rays = once.size();
+  return batch;
+}
+
+RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
+                     const RenderParameters& parameters, Progress& progress) {
+  RenderParameters one_row = parameters;
+  one_row.film = film_of(sensors, 1, parameters.film.seed);
+  return render_hits(scene, SensorHits(sensors), devices, one_row, progress);
+}
+
+PathTracerResult measure_by_paths(const Scene& scene, std::span<const Sensor> sensors, int paths,
+                                  std::uint64_t seed, Progress& progress) {
+  return trace_paths_of_hits(scene, SensorHits(sensors), film_of(sensors, paths, seed), progress);
+}
+
+}  // namespace photile
