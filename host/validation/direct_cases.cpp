@@ -15,13 +15,14 @@ const glm::dvec3 up(0, 0, 1);
 /// A black floor of 4 x 4 m around the origin, in z = 0.
 const Rectangle floor_plan{{-2, -2, 0}, {4, 0, 0}, {0, 4, 0}};
 
-/// Nine places in a square about a point of the floor, or as many on a circle about the origin:
-/// far enough from one another that their photons are their own.
+/// Places in a square about a point of the floor, or on a circle about the origin: far enough from
+/// one another that most of their photons are their own.
 std::vector<Sensor> places_at(double distance) {
+  constexpr int side = 5, count = side * side;
   std::vector<Sensor> sensors;
-  for (int i = 0; i < 9; ++i) {
-    const double angle = 2 * pi * i / 9;
-    sensors.push_back({distance == 0 ? glm::dvec3(0.25 * (i % 3 - 1), 0.25 * (i / 3 - 1), 0)
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * pi * i / count;
+    sensors.push_back({distance == 0 ? 0.2 * glm::dvec3(i % side - side / 2, i / side - side / 2, 0)
                                      : distance * glm::dvec3(std::cos(angle), std::sin(angle), 0),
                        up});
   }

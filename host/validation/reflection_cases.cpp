@@ -47,14 +47,15 @@ double from_strip(const Sensor& sensor, double begin, double end) {
                           {0, side, 0});
 }
 
-/// Nine sensors across the middle of the room, in a line along y.
+/// Sensors across the middle of the room, in a line along y.
 template <class F>
 Reading across(const std::string& place, const glm::dvec3& at, const glm::dvec3& normal,
                const F& illuminance) {
   Reading reading{place, {}, 0};
-  for (int i = 0; i < 9; ++i) {
-    reading.sensors.push_back({{at.x, 0.8 + 0.3 * i, at.z}, normal});
-    reading.expected += illuminance(reading.sensors.back()) / 9;
+  constexpr int count = 25;
+  for (int i = 0; i < count; ++i) {
+    reading.sensors.push_back({{at.x, 0.8 + 0.1 * i, at.z}, normal});
+    reading.expected += illuminance(reading.sensors.back()) / count;
   }
   return reading;
 }
@@ -76,6 +77,7 @@ AnalyticCase reflection() {
     result.readings.push_back(
         across(fmt::format("ceiling, {} m from the wall", x), {x, 0, height}, {0, 0, -1}, whole));
   }
+  result.photon_share = 2;  // a small part of the light is reflected here
   return result;
 }
 
@@ -98,6 +100,7 @@ AnalyticCase obstructed_reflection() {
           return light;
         }));
   }
+  result.photon_share = 2;
   return result;
 }
 

@@ -82,7 +82,9 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
                                    static_cast<double>(photons.photons.emitted_photons)));
     const auto all = over_seeds(analytic, first_seed, [&](std::uint64_t seed) {
       photons.photons.seed = photons.film.seed = seed;
-      return measure(analytic.scene, sensors, devices, photons, progress).layers;
+      RenderResult result = measure(analytic.scene, sensors, devices, photons, progress);
+      photons.radius = result.radius;  // found once
+      return std::move(result.layers);
     });
     for (std::size_t r = 0; r < rows.size(); ++r) rows[r].photons = all[r];
   }

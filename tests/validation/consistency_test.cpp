@@ -86,7 +86,7 @@ TEST_CASE("few neighbours are as unbiased as many: k for k - 1 would be seen") {
     values.push_back(mean(readings(scene, sensors, with(100'000, 10, seed))[0]));
   }
   const double truth = 1 / (2 * pi);
-  CHECK_VERDICT(test::mean_is(values, truth, 0.02 * truth));  // k for k - 1 gives 11% more
+  CHECK_VERDICT(test::mean_is(values, truth, 0.03 * truth));  // k for k - 1 gives 11% more
 }
 
 TEST_CASE(
@@ -102,9 +102,10 @@ TEST_CASE(
     double products = 0, squares = 0;
     for (const double count : photons) {
       const int k = static_cast<int>(std::lround(20 * std::pow(count / 10'000, 2.0 / 3)));
+      const auto read =
+          readings(scene, sensors, with(static_cast<std::uint64_t>(count), k, seed))[0];
       double error = 0;
-      for (const double value :
-           readings(scene, sensors, with(static_cast<std::uint64_t>(count), k, seed))[0]) {
+      for (const double value : read) {
         error += std::pow(value / truth - 1, 2) / static_cast<double>(sensors.size());
       }
       const double x = std::log(count / std::sqrt(photons.front() * photons.back()));
@@ -173,6 +174,7 @@ TEST_CASE("the dark side of a lit plate, and a dark wall beside it, read nothing
     sensors.push_back({{0.5, 0.05 * i, 0.01}, {-1, 0, 0}});
     sensors.push_back({{0.5, 0.05 * i, 0.01}, {1, 0, 0}});
   }
-  for (const double value : readings(scene, sensors, with(100'000, 50, 1))[0]) CHECK(value == 0);
+  const std::vector<double> dark = readings(scene, sensors, with(100'000, 50, 1))[0];
+  CHECK(dark == std::vector<double>(sensors.size(), 0.0));
   CHECK(readings(scene, {{{0, 0, 0}, {0, 0, 1}}}, with(100'000, 50, 1))[0][0] > 0);
 }
