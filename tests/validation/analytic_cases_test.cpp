@@ -42,7 +42,7 @@ std::vector<ValidationRow> rows_of(const std::string& name,
 
 }  // namespace
 
-TEST_CASE("paths read what closed forms say, in every analytic case") {
+TEST_CASE("paths read what closed forms say, in every analytic case", "[slow]") {
   ValidationParameters parameters;
   parameters.by_photons = false;
   parameters.paths = 150'000;
