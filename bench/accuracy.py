@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Measures photile's accuracy and writes docs/accuracy.md.
 
-    bench/accuracy.py [SCENES] [--redraw] [--only validation|consistency]
+    bench/accuracy.py [SCENES] [--redraw] [--only validation|consistency] [--photons N -k N]
 
 Runs `photile validate`, and renders three views with more and more photons beside path-traced
 references. SCENES is the folder that holds kitchen/ and references/. Takes tens of minutes. Needs
@@ -41,14 +41,16 @@ def arguments():
                         help="the command; default: %(default)s")
     parser.add_argument("--only", choices=("validation", "consistency"),
                         help="measure this alone, and take the other from docs/accuracy")
+    parser.add_argument("--photons", default="4M", help="of photile validate; default: %(default)s")
+    parser.add_argument("-k", default="1000", help="of photile validate; default: %(default)s")
     parser.add_argument("--redraw", action="store_true",
                         help="use the results in docs/accuracy instead of measuring")
     return parser.parse_args()
 
 
-def validation(photile, file):
+def validation(photile, file, photons, k):
     """Runs photile validate; a reading that is not within 1% is a result, not an error."""
-    done = subprocess.run([photile, "validate", "--json", file], check=False)
+    done = subprocess.run([photile, "validate", "--json", file, "--photons", photons, "-k", k], check=False)
     if done.returncode not in (0, 1) or not file.is_file():
         sys.exit(f"accuracy.py: error: photile validate ended with {done.returncode}")
 
@@ -239,7 +241,7 @@ def main():
     RESULTS.mkdir(parents=True, exist_ok=True)
     readings, errors = RESULTS / "validation.json", RESULTS / "consistency.json"
     if not options.redraw and options.only != "consistency":
-        validation(options.photile, readings)
+        validation(options.photile, readings, options.photons, options.k)
     if not options.redraw and options.only != "validation":
         errors.write_text(json.dumps(consistency(options.photile, options.scenes), indent=1) + "\n")
     results = json.loads(errors.read_text())

@@ -112,7 +112,7 @@ AnalyticCase rectangles(const std::string& name, const std::string& source, cons
   AnalyticCase result{name, source, room.build(flux), {}};
   result.readings.push_back(
       {"mean over the other", grid_of_sensors({receiver}, 16), flux * factor / receiver.area()});
-  result.photon_share = 0.1;
+  result.photon_share = 0.03;
   return result;
 }
 
@@ -129,7 +129,7 @@ AnalyticCase flux_in_black_box() {
                       "after CIE 171:2006, 5.4: all that is emitted arrives",
                       room.build(flux),
                       {{"mean over all walls", grid_of_sensors(walls, 8), flux / area}}};
-  result.photon_share = 0.1;
+  result.photon_share = 0.03;
   return result;
 }
 

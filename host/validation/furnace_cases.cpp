@@ -41,7 +41,7 @@ AnalyticCase empty_furnace() {
   return with_readings("furnace, diffuse walls, rho = 0.8", "pi L / (1 - rho) everywhere", furnace,
                        {{"mean over all walls", grid_of_sensors(furnace.walls, 12),
                          pi * luminance / (1 - double{reflectance})}},
-                       0.05);
+                       0.02);
 }
 
 /// A ball that loses no light changes nothing.
@@ -52,7 +52,7 @@ AnalyticCase furnace_with_ball(const std::string& name, const Material& look) {
   return with_readings("furnace with " + name, "pi L / (1 - rho), as without it", furnace,
                        {{"mean over all walls", grid_of_sensors(furnace.walls, 12),
                          pi * luminance / (1 - double{reflectance})}},
-                       0.05);
+                       0.02);
 }
 
 AnalyticCase furnace_with_plate() {

@@ -118,7 +118,7 @@ AnalyticCase closed_room(float reflectance) {
                       room.build(flux),
                       {{"mean over all walls", grid_of_sensors(walls, 6),
                         flux / (6 * edge * edge * (1 - double{reflectance}))}}};
-  result.photon_share = 0.1;
+  result.photon_share = 0.03;
   return result;
 }
 
@@ -160,7 +160,7 @@ AnalyticCase integrating_sphere() {
   }
   result.readings.push_back({"mean over the wall", spread_sensors(result.scene, 2000),
                              flux / (area * (1 - double{reflectance}))});
-  result.photon_share = 0.05;
+  result.photon_share = 0.02;
   return result;
 }
 
