@@ -218,7 +218,8 @@ bias both vanish.
 What theory gives: the noise of a density from the k-th distance is 1 / (k - 2), which falls with the
 power -2/3; where irradiance is smooth the squared bias falls with the same power; at the borders of
 shadows and surfaces the bias does not fall, only the area where it is seen, with the radius: with
-the power -1/6. Pictures are a mixture, and the worst pixels are those of borders.
+the power -1/6. Pictures are a mixture, and the worst pixels are those of borders. The references'
+own noise is in every error: it is the floor on which the curves end.
 
 {slopes(results)}
 
