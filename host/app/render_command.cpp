@@ -122,6 +122,7 @@ LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::spa
                                            record.mix, options.parameters, progress));
   }
   RenderResult result = render(scene, camera, devices, options.parameters, progress);
+  record.area = options.area;
   record.maps = options.maps;
   record.parameters = options.parameters;
   for (const Device& device : devices) record.devices.push_back(device.info());

@@ -32,6 +32,9 @@ constexpr std::array structures{std::pair{"uniform-grid", MapStructure::uniform_
                                 std::pair{"kdtree-global", MapStructure::kdtree_global},
                                 std::pair{"brute-force", MapStructure::brute_force}};
 
+constexpr std::array areas{std::pair{"disc", AreaMode::disc},
+                           std::pair{"clipped", AreaMode::clipped}};
+
 template <class Table>
 std::vector<std::string> words_of(const Table& table) {
   std::vector<std::string> words;
@@ -127,6 +130,14 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
   command.add_option("--angle", parameters.angle_degrees, "between the normals of a group")
       ->type_name("DEGREES")
       ->transform(number_between(0, 180))
+      ->capture_default_str()
+      ->group("Estimate");
+  options.area = word_for(areas, parameters.area);
+  command
+      .add_option("--area", options.area,
+                  "that photons are divided by; disc: dark borders and corners")
+      ->type_name("")
+      ->check(CLI::IsMember(words_of(areas)))
       ->capture_default_str()
       ->group("Estimate");
   options.maps = word_for(map_modes, parameters.maps);
@@ -237,6 +248,7 @@ void apply_words(RenderOptions& options) {
   options.integrates = value_for(integrators, options.integrator);
   options.parameters.photons.quota = value_for(quotas, options.quota);
   options.parameters.maps = value_for(map_modes, options.maps);
+  options.parameters.area = value_for(areas, options.area);
   options.parameters.structure = value_for(structures, options.structure);
   options.parameters.photons.seed = options.parameters.film.seed;
   options.device.use_program_cache = !options.no_cache;

@@ -31,6 +31,7 @@ struct RenderOptions {
   Integrator integrates = Integrator::photon_map;
   std::string quota;                  ///< "balanced", "power" or "equal"
   std::string maps;                   ///< "naive", "triangle", "patch" or "auto"
+  std::string area;                   ///< "disc" or "clipped"
   std::string structure;              ///< "uniform-grid", ...
   QualityTarget target;               ///< settings are chosen to meet it
   bool tuned = false;                 ///< use the tuning that `photile devices --tune` stored
@@ -54,8 +55,8 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 /// that render for another purpose take, too.
 void add_setting_options(CLI::App& command, RenderOptions& options);
 
-/// Sets what `options` holds as words: the integrator, the quota, the maps, the structure and the
-/// cache. Errors: none, CLI11 has checked the words.
+/// Sets what `options` holds as words: the integrator, the quota, the maps, the structure, the area
+/// and the cache. Errors: none, CLI11 has checked the words.
 void apply_words(RenderOptions& options);
 
 /// Errors: UsageError that names an option which was given to `command` although the path tracer

@@ -68,6 +68,7 @@ json parameters_json(const RunRecord& record) {
                    {"neighbours", parameters.neighbours},
                    {"radius", record.radius},
                    {"angle_degrees", parameters.angle_degrees},
+                   {"area", record.area},
                    {"maps", record.maps},
                    {"photons_per_cell", parameters.photons_per_cell},
                    {"passes", record.passes}});
@@ -83,6 +84,8 @@ void set_photon_attributes(std::map<std::string, std::string>& attributes,
   attributes["photile.neighbours"] = std::to_string(parameters.neighbours);
   attributes["photile.radius"] = fmt::format("{} m", record.radius);
   attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
+  attributes["photile.area"] = record.area;
+  attributes["photile.area"] = record.area;
   attributes["photile.maps"] = record.maps;
   attributes["photile.passes"] = std::to_string(record.passes);
   attributes["photile.device"] = devices_text(record.devices);

@@ -10,6 +10,7 @@
 #include "estimate/hit_buffers.hpp"
 #include "estimate/map_order.hpp"
 #include "estimate/query.hpp"
+#include "estimate/surface_buffers.hpp"
 #include "estimate/tuning.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
@@ -28,33 +29,45 @@ struct Estimator::Impl {
   float radius;
   HitBatches batches;
   estimate::EstimateBuffers estimates;
+  std::shared_ptr<const SurfaceIndex> surface;  ///< where areas are clipped
+  std::optional<estimate::SurfaceBuffers> surface_buffers;
   std::unique_ptr<estimate::Query> query;
 
-  Impl(const PhotonMaps& photon_maps, const EstimateParameters& parameters)
+  Impl(const PhotonMaps& photon_maps, const Scene& scene, const EstimateParameters& parameters)
       : store(photon_maps.store()),
         context(photon_maps.device().context()),
         neighbours(static_cast<std::uint32_t>(parameters.neighbours)),
         radius(static_cast<float>(parameters.radius == 0 ? photon_maps.parameters().radius
                                                          : parameters.radius)),
         batches(context),
-        estimates(context, store.needs, neighbours),
-        query(estimate::make_query(
-            store, neighbours,
-            std::max(neighbours, static_cast<std::uint32_t>(parameters.compiled_neighbours)),
-            radius, parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())))) {}
+        estimates(context, store.needs, neighbours) {
+    if (parameters.area == AreaMode::clipped && !store.naive) {
+      surface = parameters.surface != nullptr
+                    ? parameters.surface
+                    : std::make_shared<const SurfaceIndex>(index_surface(
+                          scene, store.landed, store.parameters.radius, store.angle_degrees));
+      surface_buffers.emplace(store, *surface);
+    }
+    query = estimate::make_query(
+        store, neighbours,
+        std::max(neighbours, static_cast<std::uint32_t>(parameters.compiled_neighbours)), radius,
+        parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
+        surface_buffers ? &*surface_buffers : nullptr);
+  }
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
-    return {
-        .largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
-        .bytes_per_hit = estimate::hit_bytes(store.needs.glossy, !store.normals.empty()) + outputs};
+    return {.largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
+            .bytes_per_hit = estimate::hit_bytes(store.needs.glossy, !store.normals.empty(),
+                                                 surface != nullptr) +
+                             outputs};
   }
 
   /// The estimates of hits [first, first + count) become those of hits from `place` on in `result`.
   void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, std::size_t place,
                 Estimates& result) {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
-    const HitBuffers buffers =
-        estimate::upload_hits(context, hits, first, hit_maps, store.normals, store.needs.glossy);
+    const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
+                                                     surface.get(), store.needs.glossy);
     estimates.begin(static_cast<std::uint32_t>(count));
     estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
       query->estimate(page_hits, estimates);
@@ -68,7 +81,7 @@ struct Estimator::Impl {
     const std::size_t k = neighbours;
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers =
-        estimate::upload_hits(context, hits, first, hit_maps, store.normals, false);
+        estimate::upload_hits(context, hits, first, hit_maps, store.normals, nullptr, false);
     auto photons = context.allocate<std::uint32_t>(count * k, "neighbour lists");
     auto squared_radius = context.allocate<float>(count, "neighbour radii");
     context.fill(photons, none);
@@ -85,7 +98,8 @@ struct Estimator::Impl {
   }
 };
 
-Estimator::Estimator(const PhotonMaps& maps, const Scene&, const EstimateParameters& parameters) {
+Estimator::Estimator(const PhotonMaps& maps, const Scene& scene,
+                     const EstimateParameters& parameters) {
   if (parameters.neighbours < 1 || parameters.neighbours > limits::max_neighbours) {
     throw UsageError(fmt::format("{} neighbours: must be between 1 and {}", parameters.neighbours,
                                  limits::max_neighbours));
@@ -98,7 +112,7 @@ Estimator::Estimator(const PhotonMaps& maps, const Scene&, const EstimateParamet
     const std::string problem = estimate::tuning_problem(*parameters.tuning);
     if (!problem.empty()) throw UsageError("tuning of the estimate: " + problem);
   }
-  impl_ = std::make_unique<Impl>(maps, parameters);
+  impl_ = std::make_unique<Impl>(maps, scene, parameters);
 }
 
 Estimator::~Estimator() = default;

@@ -9,11 +9,13 @@ namespace {
 class GridQuery : public Query {
  public:
   GridQuery(const maps::MapStore& store, std::uint32_t neighbours,
-            std::uint32_t compiled_neighbours, float radius, const EstimateTuning& tuning)
+            std::uint32_t compiled_neighbours, float radius, const EstimateTuning& tuning,
+            const SurfaceBuffers* surface)
       : store_(store),
         context_(store.device->context()),
         neighbours_(neighbours),
         radius_(radius),
+        surface_(surface),
         choice_(specialise(tuning, store.needs, static_cast<int>(compiled_neighbours))) {
     choice_.work_group_size =
         std::min<std::size_t>(choice_.work_group_size, context_.info().max_work_group_size);
@@ -21,9 +23,9 @@ class GridQuery : public Query {
 
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     const device::Kernel kernel =
-        context_.kernel(choice_.kernel_file(), "estimate", defines(hits.page));
+        context_.kernel(choice_.kernel_file(), "estimate", defines(hits.page, surface_));
     const maps::MapPage& page = hits.page;
-    with_scene_arguments(store_, hits, estimates, [&](const auto&... scene) {
+    with_scene_arguments(store_, hits, surface_, estimates, [&](const auto&... scene) {
       context_.run(kernel, choice_.work_items(hits.count), choice_.work_group_size, hits.count,
                    hits.first, hits.hits.position, hits.hits.map, page.first_map, page.grids,
                    page.cell_start, page.entry_stride, page.entry_position, page.entry_flux,
@@ -34,9 +36,9 @@ class GridQuery : public Query {
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
     const device::Kernel kernel =
-        context_.kernel("estimate/nearest.cl", "nearest", defines(hits.page));
+        context_.kernel("estimate/nearest.cl", "nearest", defines(hits.page, nullptr));
     const maps::MapPage& page = hits.page;
-    with_normal_arguments(store_, hits, [&](const auto&... normals) {
+    with_normal_arguments(store_, hits, nullptr, [&](const auto&... normals) {
       context_.run(kernel, hits.count, maps::work_group_size, hits.count, hits.first,
                    hits.hits.position, hits.hits.map, page.first_map, page.grids, page.cell_start,
                    page.entry_stride, page.entry_position, page.entry_photon, normals...,
@@ -45,8 +47,9 @@ class GridQuery : public Query {
   }
 
  private:
-  device::Defines defines(const maps::MapPage& page) const {
+  device::Defines defines(const maps::MapPage& page, const SurfaceBuffers* surface) const {
     device::Defines defines = choice_.defines();
+    if (surface != nullptr) defines.set("CLIPPED");
     if (page.entry_normal.size() > 0) defines.set("NORMALS");
     return defines;
   }
@@ -55,6 +58,7 @@ class GridQuery : public Query {
   device::Context& context_;
   std::uint32_t neighbours_;
   float radius_;
+  const SurfaceBuffers* surface_;
   Specialisation choice_;
 };
 
@@ -62,8 +66,10 @@ class GridQuery : public Query {
 
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        std::uint32_t compiled_neighbours, float radius,
-                                       const EstimateTuning& tuning) {
-  return std::make_unique<GridQuery>(store, neighbours, compiled_neighbours, radius, tuning);
+                                       const EstimateTuning& tuning,
+                                       const SurfaceBuffers* surface) {
+  return std::make_unique<GridQuery>(store, neighbours, compiled_neighbours, radius, tuning,
+                                     surface);
 }
 
 }  // namespace photile::estimate

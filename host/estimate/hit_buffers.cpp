@@ -23,22 +23,35 @@ device::Buffer<float> upload_lobes(device::Context& context, const PrimaryHits& 
 
 }  // namespace
 
-std::uint64_t hit_bytes(bool glossy, bool normals) {
+std::uint64_t hit_bytes(bool glossy, bool normals, bool clipped) {
   constexpr std::uint64_t position_and_map = 3 * sizeof(float) + sizeof(std::uint32_t);
   constexpr std::uint64_t surface = (4 * 3 + 1) * sizeof(float);
   constexpr std::uint64_t normal = 3 * sizeof(float);
-  return position_and_map + (glossy ? surface : 0) + (normals ? normal : 0);
+  constexpr std::uint64_t place = 3 * sizeof(std::uint32_t);
+  return position_and_map + (glossy ? surface : 0) + (normals || clipped ? normal : 0) +
+         (clipped ? place : 0);
 }
 
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                       bool glossy) {
+                       const SurfaceIndex* surface, bool glossy) {
   const std::size_t count = maps.size();
   HitBuffers buffers;
   buffers.count = static_cast<std::uint32_t>(count);
   if (count == 0) return buffers;
   buffers.position = context.upload(floats(hits.position, first, count), "hit positions");
   buffers.map = context.upload(maps, "maps of hits");
+  if (surface != nullptr) {
+    normals = surface->normal;
+    std::vector<std::uint32_t> places;
+    places.reserve(3 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t own = hits.sided_triangle[first + i];
+      const std::uint32_t triangle = triangle_of(surface->original[own]);
+      places.insert(places.end(), {surface->facet[triangle], triangle, surface->sheet[own]});
+    }
+    buffers.place = context.upload(std::span<const std::uint32_t>(places), "places of hits");
+  }
   if (!normals.empty()) {
     std::vector<glm::vec3> of_hits(count);
     for (std::size_t i = 0; i < count; ++i) of_hits[i] = normals[hits.sided_triangle[first + i]];

@@ -6,6 +6,7 @@
 
 #include "device/context.hpp"
 #include "photile/primary_hits.hpp"
+#include "photile/surface_index.hpp"
 
 namespace photile::estimate {
 
@@ -15,6 +16,7 @@ struct HitBuffers {
   device::Buffer<float> position;          ///< 3 per hit, metres
   device::Buffer<std::uint32_t> map;       ///< that the hit lies on
   device::Buffer<float> face_normal;       ///< 3 per hit: of its sided triangle; or empty
+  device::Buffer<std::uint32_t> place;     ///< 3 per hit: facet, triangle, sheet; or empty
   device::Buffer<float> outgoing, normal;  ///< 3 per hit, unit
   device::Buffer<float> albedo, specular;  ///< 3 per hit
   device::Buffer<float> roughness;         ///< 1 per hit
@@ -22,13 +24,15 @@ struct HitBuffers {
 
 /// Device memory that a hit takes as input.
 ///   normals   whether normals of faces are uploaded
-std::uint64_t hit_bytes(bool glossy, bool normals);
+///   clipped   whether areas are clipped
+std::uint64_t hit_bytes(bool glossy, bool normals, bool clipped);
 
 /// Hits [first, first + maps.size()).
 ///   maps      of those hits
 ///   normals   per sided triangle, if a map is mixed (maps::MapStore::normals), else empty
+///   surface   where areas are clipped, else null
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                       bool glossy);
+                       const SurfaceIndex* surface, bool glossy);
 
 }  // namespace photile::estimate

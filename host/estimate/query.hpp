@@ -9,6 +9,7 @@
 #include "device/context.hpp"
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_buffers.hpp"
+#include "estimate/surface_buffers.hpp"
 #include "maps/map_store.hpp"
 #include "photile/estimate_tuning.hpp"
 
@@ -35,14 +36,16 @@ class Query {
 };
 
 /// Kernels are compiled for k up to `compiled_neighbours`. `tuning` counts for uniform grids only.
+/// `surface`: what areas are clipped to, or null for whole discs.
 std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
                                   std::uint32_t compiled_neighbours, float radius,
-                                  const EstimateTuning& tuning);
+                                  const EstimateTuning& tuning, const SurfaceBuffers* surface);
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        std::uint32_t compiled_neighbours, float radius,
-                                       const EstimateTuning& tuning);
+                                       const EstimateTuning& tuning, const SurfaceBuffers* surface);
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       std::uint32_t compiled_neighbours, float radius);
+                                       std::uint32_t compiled_neighbours, float radius,
+                                       const SurfaceBuffers* surface);
 
 /// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs,
 /// ascending.
@@ -60,23 +63,36 @@ void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
   }
 }
 
-/// Calls launch(...) with the kernel arguments that a page with mixed maps adds. Its kernels are
-/// compiled with NORMALS.
+/// Calls launch(...) with the kernel arguments that a page with mixed maps adds, whose kernels are
+/// compiled with NORMALS, and those that clipped areas add.
 template <class Launch>
-void with_normal_arguments(const maps::MapStore& store, const PageHits& page_hits, Launch launch) {
-  if (page_hits.page.entry_normal.size() == 0) {
-    launch();
-    return;
-  }
+void with_normal_arguments(const maps::MapStore& store, const PageHits& page_hits,
+                           const SurfaceBuffers* surface, Launch launch) {
   // The slack of normals_agree, which groups are made with.
   const float least_cosine = static_cast<float>(store.cos_angle - 1e-6);
-  launch(page_hits.page.entry_normal, page_hits.hits.face_normal, least_cosine);
+  const HitBuffers& hits = page_hits.hits;
+  const auto faces = [&](const auto&... normals) {
+    if (surface != nullptr) {
+      launch(normals..., hits.face_normal, least_cosine, hits.place, surface->nodes,
+             surface->leaves);
+    } else if (sizeof...(normals) > 0) {
+      launch(normals..., hits.face_normal, least_cosine);
+    } else {
+      launch();
+    }
+  };
+  if (page_hits.page.entry_normal.size() > 0) {
+    faces(page_hits.page.entry_normal);
+  } else {
+    faces();
+  }
 }
 
 /// Calls launch(...) with SCENE_ARGUMENTS of kernels/estimate/arguments.clh, in their order.
 template <class Launch>
 void with_scene_arguments(const maps::MapStore& store, const PageHits& page_hits,
-                          const EstimateBuffers& estimates, Launch launch) {
+                          const SurfaceBuffers* surface, const EstimateBuffers& estimates,
+                          Launch launch) {
   const SceneNeeds& needs = store.needs;
   const auto& [hits, page, first, count] = page_hits;
   const auto slots = [&](const auto&... scene) {
@@ -94,7 +110,7 @@ void with_scene_arguments(const maps::MapStore& store, const PageHits& page_hits
       slots(scene...);
     }
   };
-  with_normal_arguments(store, page_hits, [&](const auto&... normals) {
+  with_normal_arguments(store, page_hits, surface, [&](const auto&... normals) {
     if (needs.light_count > 1) {
       glossy(normals..., page.entry_light);
     } else {

@@ -17,8 +17,12 @@ constexpr std::uint64_t global_list_bytes = 64u << 20;
 class TreeQuery : public Query {
  public:
   TreeQuery(const maps::MapStore& store, std::uint32_t neighbours,
-            std::uint32_t compiled_neighbours, float radius)
-      : store_(store), context_(store.device->context()), neighbours_(neighbours), radius_(radius) {
+            std::uint32_t compiled_neighbours, float radius, const SurfaceBuffers* surface)
+      : store_(store),
+        context_(store.device->context()),
+        neighbours_(neighbours),
+        radius_(radius),
+        surface_(surface) {
     if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
     if (compiled_neighbours <= private_list_limit) {
       defines_.set("LIST_CAPACITY", static_cast<long long>(compiled_neighbours));
@@ -37,10 +41,11 @@ class TreeQuery : public Query {
     device::Defines defines = page_defines(hits.page);
     maps::set_entry_defines(defines, store_.needs);
     set_sum_defines(defines, store_.needs, neighbours_);
+    if (surface_ != nullptr) defines.set("CLIPPED");
     const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
     const maps::MapPage& page = hits.page;
     with_lists([&](const auto&... lists) {
-      with_scene_arguments(store_, hits, estimates, [&](const auto&... scene) {
+      with_scene_arguments(store_, hits, surface_, estimates, [&](const auto&... scene) {
         context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
                      hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
                      page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
@@ -55,7 +60,7 @@ class TreeQuery : public Query {
     const device::Kernel kernel =
         context_.kernel("kdtree/nearest.cl", "nearest", page_defines(hits.page));
     const maps::MapPage& page = hits.page;
-    with_normal_arguments(store_, hits, [&](const auto&... normals) {
+    with_normal_arguments(store_, hits, nullptr, [&](const auto&... normals) {
       with_lists([&](const auto&... lists) {
         context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
                      hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
@@ -87,6 +92,7 @@ class TreeQuery : public Query {
   device::Context& context_;
   std::uint32_t neighbours_;
   float radius_;
+  const SurfaceBuffers* surface_;
   device::Defines defines_;
   std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();
   device::Buffer<float> list_distance_;
@@ -96,23 +102,24 @@ class TreeQuery : public Query {
 }  // namespace
 
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       std::uint32_t compiled_neighbours, float radius) {
-  return std::make_unique<TreeQuery>(store, neighbours, compiled_neighbours, radius);
+                                       std::uint32_t compiled_neighbours, float radius,
+                                       const SurfaceBuffers* surface) {
+  return std::make_unique<TreeQuery>(store, neighbours, compiled_neighbours, radius, surface);
 }
 
 std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
                                   std::uint32_t compiled_neighbours, float radius,
-                                  const EstimateTuning& tuning) {
+                                  const EstimateTuning& tuning, const SurfaceBuffers* surface) {
   switch (store.parameters.structure) {
     case MapStructure::kdtree_2d:
     case MapStructure::kdtree_3d:
     case MapStructure::kdtree_global:
-      return make_tree_query(store, neighbours, compiled_neighbours, radius);
+      return make_tree_query(store, neighbours, compiled_neighbours, radius, surface);
     case MapStructure::uniform_grid:
     case MapStructure::brute_force:
       break;
   }
-  return make_grid_query(store, neighbours, compiled_neighbours, radius, tuning);
+  return make_grid_query(store, neighbours, compiled_neighbours, radius, tuning, surface);
 }
 
 }  // namespace photile::estimate

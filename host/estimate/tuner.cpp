@@ -32,7 +32,7 @@ class Bench {
         sample_(make_tuning_sample(needs, neighbours, size)),
         groups_(find_neighbour_groups(sample_.scene, {sample_.radius})),
         hits_(upload_hits(device.context(), sample_.hits, 0, sample_.hits.sided_triangle, {},
-                          needs.glossy)),
+                          nullptr, needs.glossy)),
         estimates_(device.context(), needs, neighbours_) {
     estimates_.begin(hits_.count);
   }
@@ -41,7 +41,7 @@ class Bench {
   double microseconds_per_hit(const EstimateTuning& tuning) {
     const maps::MapStore& store = maps_of(tuning.photons_per_cell).store();
     const auto query = make_grid_query(store, neighbours_, neighbours_,
-                                       static_cast<float>(sample_.radius), tuning);
+                                       static_cast<float>(sample_.radius), tuning, nullptr);
     std::array<double, 5> seconds{};
     run(store, *query);
     for (double& measured : seconds) {

@@ -9,6 +9,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
+#include "photile/surface_index.hpp"
 
 namespace photile {
 namespace {
@@ -60,7 +61,10 @@ PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photon
   const Stopwatch stopwatch;
   progress.begin("build photon maps", 0, "references");
   store_ = std::make_unique<maps::MapStore>(device, needs_of(scene), parameters);
+  store_->angle_degrees = groups.angle_degrees;
   store_->cos_angle = std::cos(glm::radians(groups.angle_degrees));
+  store_->naive = std::isinf(groups.radius);
+  store_->landed = landed_on(scene, photons);
   store_->statistics.photons = photons.size();
   if (parameters.structure == MapStructure::kdtree_global) {
     maps::build_global_map(*store_, scene, photons);

@@ -7,6 +7,20 @@
 #include "photile/neighbour_groups.hpp"
 
 namespace photile::reference {
+namespace {
+
+/// Photons whose flux counts.
+std::size_t used_of(const OracleNeighbours& near, int k) {
+  const bool full = near.photons.size() == static_cast<std::size_t>(k);
+  return full && k > 1 ? near.photons.size() - 1 : near.photons.size();
+}
+
+/// A disc is never counted smaller than a thousandth of the radius (kernels/estimate/area.clh).
+double squared_disc(const OracleNeighbours& near, double radius) {
+  return std::max(near.squared_radius, radius * radius * 1e-6);
+}
+
+}  // namespace
 
 DensityOracle::DensityOracle(const Scene& scene, const Photons& photons, PhotonFilter filter,
                              double angle_degrees)
@@ -54,10 +68,24 @@ std::vector<glm::dvec3> DensityOracle::irradiance(const glm::dvec3& hit,
                                                   std::uint32_t sided_triangle, int k,
                                                   double radius) const {
   const OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
-  const bool full = near.photons.size() == static_cast<std::size_t>(k);
-  const std::size_t used = full && k > 1 ? near.photons.size() - 1 : near.photons.size();
-  // A disc is never counted smaller than a thousandth of the radius (kernels/estimate/area.clh).
-  const double area = glm::pi<double>() * std::max(near.squared_radius, radius * radius * 1e-6);
+  return sums(near, used_of(near, k), glm::pi<double>() * squared_disc(near, radius));
+}
+
+std::vector<glm::dvec3> DensityOracle::irradiance(const ClippedArea& surface, const glm::dvec3& hit,
+                                                  std::uint32_t sided_triangle, int k,
+                                                  double radius) const {
+  OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
+  near.photons.resize(used_of(near, k));
+  const double disc = std::sqrt(squared_disc(near, radius));
+  std::erase_if(near.photons, [&](std::uint32_t photon) {
+    const glm::dvec3 offset = glm::dvec3(photons_.position[photon]) - hit;
+    return std::abs(glm::dot(offset, normals_[sided_triangle])) > ClippedArea::slab * disc;
+  });
+  return sums(near, near.photons.size(), surface.area(hit, sided_triangle, disc));
+}
+
+std::vector<glm::dvec3> DensityOracle::sums(const OracleNeighbours& near, std::size_t used,
+                                            double area) const {
   std::vector<glm::dvec3> result(light_count_, glm::dvec3(0.0));
   for (std::size_t i = 0; i < used; ++i) {
     const std::uint32_t photon = near.photons[i];

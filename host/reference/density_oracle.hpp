@@ -8,6 +8,7 @@
 
 #include "photile/photons.hpp"
 #include "photile/scene.hpp"
+#include "reference/clipped_area.hpp"
 
 namespace photile::reference {
 
@@ -36,7 +37,13 @@ class DensityOracle {
   std::vector<glm::dvec3> irradiance(const glm::dvec3& hit, std::uint32_t sided_triangle, int k,
                                      double radius) const;
 
+  /// The same where the disc is clipped to the surface: of these photons those in the slab around
+  /// the hit's plane, over the clipped area.
+  std::vector<glm::dvec3> irradiance(const ClippedArea& surface, const glm::dvec3& hit,
+                                     std::uint32_t sided_triangle, int k, double radius) const;
+
  private:
+  std::vector<glm::dvec3> sums(const OracleNeighbours& near, std::size_t used, double area) const;
   bool counts(std::uint32_t photon_map, std::uint32_t hit_map) const;
 
   const Photons& photons_;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -84,7 +85,8 @@ class Rendering {
     for (const int neighbours : levels) {
       estimators.emplace_back(
           devices_, maps, scene_,
-          EstimateParameters{neighbours, 0, parameters_.tuning, parameters_.neighbours});
+          EstimateParameters{neighbours, 0, parameters_.tuning, parameters_.neighbours,
+                             parameters_.area, surface_});
     }
     film_.pass = pass;
     add_pass(estimators, levels, maps.front().map_of());
@@ -107,6 +109,7 @@ class Rendering {
                                        : automatic_radius(photons, parameters_.neighbours),
                 parameters_.neighbours};
       find_groups(photons);  // once: no later radius is larger
+      find_surface(photons);
     }
     const Stopwatch stopwatch;
     std::vector<PhotonMaps> maps =
@@ -158,6 +161,16 @@ class Rendering {
     costs_.patches = groups_.patches.count();
   }
 
+  void find_surface(const Photons& photons) {
+    if (parameters_.area != AreaMode::clipped || parameters_.maps == MapMode::naive) return;
+    const Stopwatch stopwatch;
+    surface_ = std::make_shared<const SurfaceIndex>(index_surface(
+        scene_, landed_on(scene_, photons), first_.radius, parameters_.angle_degrees));
+    costs_.surface.add(stopwatch.seconds(), surface_->bytes());
+    costs_.sheets = surface_->sheets;
+    costs_.surface_leaves = surface_->leaves.size();
+  }
+
   /// Adds what the camera sees by the photons of this pass.
   void add_pass(std::span<DeviceEstimators> estimators, std::span<const int> levels,
                 std::span<const std::uint32_t> map_of) {
@@ -207,6 +220,7 @@ class Rendering {
   std::vector<std::uint64_t> paths_before_;  ///< per light
   PassEstimate first_;
   NeighbourGroups groups_;
+  std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
   std::vector<double> shares_;
   RenderCosts costs_;
   const std::vector<double> layer_powers_;

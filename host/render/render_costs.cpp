@@ -35,6 +35,8 @@ RunStatistics RenderCosts::statistics() const {
             {{"members", number(group_members)},
              {"members per sided triangle", ratio(group_members, groups)},
              {"patches", number(patches)}}),
+      stage("surface index", surface,
+            {{"sheets", number(sheets)}, {"leaves", number(surface_leaves)}}),
       stage("build photon maps", build,
             {{"maps", number(maps)},
              {"mixed maps", number(mixed_maps)},
@@ -48,7 +50,7 @@ RunStatistics RenderCosts::statistics() const {
             {{"hits", number(hit_count)},
              {"microseconds per hit", 1e6 * estimate.seconds / std::max(1.0, number(hit_count))}}),
       stage("film", film)};
-  auto& figures = stages[5].figures;
+  auto& figures = stages[6].figures;
   figures.insert(figures.end(), shares.begin(), shares.end());
   return stages;
 }

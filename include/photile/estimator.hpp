@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,8 +11,15 @@
 #include "photile/estimate_tuning.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/primary_hits.hpp"
+#include "photile/surface_index.hpp"
 
 namespace photile {
+
+/// What a density estimate divides by.
+enum class AreaMode {
+  disc,    ///< the disc through the k-th photon (Jensen 2001): dark at borders and in corners
+  clipped  ///< the part of it that is surface which light reaches, near the hit's plane
+};
 
 struct EstimateParameters {
   int neighbours = defaults::neighbours;  ///< k
@@ -22,6 +30,11 @@ struct EstimateParameters {
   /// Kernels are compiled for k up to this; 0 = `neighbours`. Estimators with different k share
   /// them; what they compute does not depend on it.
   int compiled_neighbours = 0;
+  /// Naive maps, whose photons are those of one triangle, take the disc in any case.
+  AreaMode area = AreaMode::clipped;
+  /// For clipped areas: of the scene, for the radius of the maps or a larger one and the angle of
+  /// their groups. Estimators share it; none = the estimator makes its own.
+  std::shared_ptr<const SurfaceIndex> surface = nullptr;
 };
 
 /// Estimates of a batch of hits, each light at power 1. Row-major [hit][light]; with more than
@@ -50,6 +63,7 @@ struct NeighbourLists {
 /// Runs the estimate kernels over photon maps. With k photons or more within the radius the
 /// estimate is sum of the flux of the k - 1 nearest over the area of the disc through the k-th
 /// (unbiased under constant density); with fewer, all of them over the disc of the full radius.
+/// Clipped areas: see docs/density.md.
 class Estimator {
  public:
   /// Errors: UsageError when k, the radius or the tuning is out of range.

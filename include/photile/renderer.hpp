@@ -34,6 +34,8 @@ struct RenderParameters {
   /// How uniform grids are queried; none = shipped_tuning of the device. Its photons_per_cell does
   /// not count, the one above does.
   std::optional<EstimateTuning> tuning = std::nullopt;
+  /// What the density divides by. Naive maps take the disc in any case.
+  AreaMode area = AreaMode::clipped;
   PrimaryHitParameters film;
   /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
   /// their mean. 0 = as many as the host's memory asks for.

@@ -35,6 +35,10 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
   const Estimates estimates = GIVEN_ESTIMATES;
   const uint begin = get_global_id(0) * HITS_PER_ITEM;
   const uint end = first_hit + min(begin + HITS_PER_ITEM, hit_count);
+#ifdef CLIPPED
+  const Surface surface = GIVEN_SURFACE;
+  Clearance clearance = NO_CLEARANCE;
+#endif
   float expected = 0.0f;  // radius of the last hit's neighbourhood, if on the same map
   uint expected_map = 0xFFFFFFFFu;
   for (uint index = first_hit + begin; index < end; ++index) {
@@ -45,6 +49,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     expected_map = map;
     Hit hit;
     load_hit(&hits, index, &hit);
-    expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected, &estimates);
+    expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected,
+                            CLIPPED_VALUES &estimates);
   }
 }

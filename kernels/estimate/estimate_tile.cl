@@ -17,7 +17,11 @@
 // next are left in `undone`.
 bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
                    __global const uint* cell_start, const Hits* hits, uint first, uint count,
-                   uint k, float radius, float* expected, int* undone, const Estimates* estimates) {
+                   uint k, float radius, float* expected, int* undone,
+#ifdef CLIPPED
+                   const Surface* surface, Clearance* clearance,
+#endif
+                   const Estimates* estimates) {
   Tile tile;
   float coordinates[3][VECTOR_WIDTH];
   float2 low = INFINITY, high = -INFINITY;
@@ -62,11 +66,27 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
                                  *expected * *expected, bracket);
   below = select((wide_float)(as_float(as_int(squared_radius) + 1)), below, full);
 
+  float disc[VECTOR_WIDTH], area[VECTOR_WIDTH];
+#ifdef CLIPPED
+  const wide_float nearest = nearest_beyond_lanes(stored, entries_of_block, below);
+  wide_store(select((wide_float)(squared_radius), nearest, full), disc);
+  for (uint lane = 0; lane < count; ++lane) {
+    Hit hit;
+    load_hit(hits, first + lane, &hit);
+    // Photons off a hit's plane are left out hit by hit.
+    if (clip_disc_of_hit(surface, &hit, disc[lane], radius, clearance, area + lane) != INFINITY) {
+      return false;
+    }
+  }
+#endif
+
   wide_float sums[LIGHT_COUNT][3];
   for (uint light = 0; light < LIGHT_COUNT; ++light) {
     sums[light][0] = sums[light][1] = sums[light][2] = 0.0f;
   }
+#ifndef CLIPPED
   wide_float beyond = INFINITY;
+#endif
   wide_int found = 0;
   const wide_float zero = 0.0f;
   const float* next = stored;
@@ -76,7 +96,9 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
     for (uint entry = cell_start[cell]; entry < end; ++entry, next += VECTOR_WIDTH) {
       const wide_float d = wide_load(next);
       const wide_int is_near = d < below;
+#ifndef CLIPPED
       beyond = select(fmin(beyond, d), beyond, is_near);
+#endif
       found += TRUE_LANES(is_near);
       const uint light = light_of(entries, entry);
       const wide_float red = entries->flux[entry];
@@ -88,14 +110,16 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
     }
   }
 
-  float disc[VECTOR_WIDTH];
+#ifndef CLIPPED
   wide_store(select((wide_float)(squared_radius), beyond, full), disc);
+  for (uint lane = 0; lane < count; ++lane) area[lane] = estimate_area(disc[lane], radius);
+#endif
   wide_store((found < wanted) & tile.active, undone);
   for (uint light = 0; light < LIGHT_COUNT; ++light) {
     float lanes[3][VECTOR_WIDTH];
     for (uint c = 0; c < 3; ++c) wide_store(sums[light][c], lanes[c]);
     for (uint lane = 0; lane < count; ++lane) {
-      const float per_area = 1.0f / estimate_area(disc[lane], radius);
+      const float per_area = 1.0f / area[lane];
       vstore3((float3)(lanes[0][lane], lanes[1][lane], lanes[2][lane]) * per_area,
               (first + lane) * LIGHT_COUNT + light, estimates->irradiance);
     }
@@ -116,6 +140,10 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
   const Entries entries = GIVEN_ENTRIES;
   const Hits hits = GIVEN_HITS;
   const Estimates estimates = GIVEN_ESTIMATES;
+#ifdef CLIPPED
+  const Surface surface = GIVEN_SURFACE;
+  Clearance clearance = NO_CLEARANCE;
+#endif
   const uint begin = get_global_id(0) * VECTOR_WIDTH;
   const uint end = first_hit + min(begin + VECTOR_WIDTH, hit_count);
   for (uint first = first_hit + begin; first < end;) {
@@ -134,14 +162,15 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     // Hits on a mixed map differ in which candidates they may take.
     if (count >= LEAST_TILE && k > 1 && !grid->mixed) {
       one_by_one = !estimate_tile(&entries, grid, cell_start, &hits, first, count, k, radius,
-                                  &expected, undone, &estimates);
+                                  &expected, undone, CLIPPED_VALUES &estimates);
     }
 #endif
     for (uint i = 0; i < count; ++i) {
       if (!one_by_one && !undone[i]) continue;
       Hit hit;
       load_hit(&hits, first + i, &hit);
-      expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected, &estimates);
+      expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected,
+                              CLIPPED_VALUES &estimates);
     }
     first += count;
   }

@@ -26,6 +26,10 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
   const Entries entries = GIVEN_ENTRIES;
   const Hits hits = GIVEN_HITS;
   const Estimates estimates = GIVEN_ESTIMATES;
+#ifdef CLIPPED
+  const Surface surface = GIVEN_SURFACE;
+  Clearance clearance = NO_CLEARANCE;
+#endif
   for (uint h = get_global_id(0); h < hit_count; h += get_global_size(0)) {
     const uint index = first_hit + h;
     const uint map = hit_map[index];
@@ -51,13 +55,24 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     nearest_in_tree(&tree, root[map - first_map], hit.position, frames + (map - first_map), &list);
     if (list.size == 0) continue;
 
+    const float squared_radius = squared_radius_of(&list);
+#ifdef CLIPPED
+    float area;
+    const float height =
+        clip_disc_of_hit(&surface, &hit, squared_radius, radius, &clearance, &area);
+#else
+    const float area = estimate_area(squared_radius, radius);
+#endif
     Sums sums;
     begin_sums(&sums, &estimates, index);
     // A full list's farthest photon, at 0, only sets the radius (but for k = 1).
     const uint first = list.size == k && k > 1 ? 1 : 0;
     for (uint i = first; i < list.size; ++i) {
+#ifdef CLIPPED
+      if (!entry_in_slab(&entries, list.entry[i], &hit, height)) continue;
+#endif
       add_entry(&entries, list.entry[i], &hit, &sums);
     }
-    end_sums(&sums, 1.0f / estimate_area(squared_radius_of(&list), radius), &estimates, index);
+    end_sums(&sums, 1.0f / area, &estimates, index);
   }
 }

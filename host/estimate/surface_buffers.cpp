@@ -1,0 +1,22 @@
+#include "estimate/surface_buffers.hpp"
+
+#include <span>
+
+namespace photile::estimate {
+
+SurfaceBuffers::SurfaceBuffers(const maps::MapStore& store, const SurfaceIndex& surface) {
+  device::Context& context = store.device->context();
+  const std::vector<std::uint8_t> lit = lit_sheets(surface, store.landed);
+  std::vector<PhotileSurfaceLeaf> marked = surface.leaves;
+  const auto mark = [&](std::uint32_t& sheet) {
+    if ((sheet & PHOTILE_SHEET_UNLIT) == 0 && lit[sheet] == 0) sheet |= PHOTILE_SHEET_UNLIT;
+  };
+  for (PhotileSurfaceLeaf& leaf : marked) {
+    for (std::uint32_t& sheet : leaf.front_sheet) mark(sheet);
+    for (std::uint32_t& sheet : leaf.back_sheet) mark(sheet);
+  }
+  nodes = context.upload(std::span(surface.nodes), "surface tree");
+  leaves = context.upload(std::span<const PhotileSurfaceLeaf>(marked), "surface pieces");
+}
+
+}  // namespace photile::estimate

@@ -1,0 +1,43 @@
+// The truth for areas of discs clipped to the surface: every triangle of the scene, cut by polygon
+// clipping in double precision. Shares no code with the kernels.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "photile/photons.hpp"
+#include "photile/scene.hpp"
+#include "photile/surface_index.hpp"
+
+namespace photile::reference {
+
+class ClippedArea {
+ public:
+  /// Height of the slab in which surface and photons count, over the radius.
+  static constexpr double slab = 0.2;
+
+  /// References are kept. Takes from `surface` sheets and exposure, and no more.
+  ClippedArea(const Scene& scene, const Photons& photons, const SurfaceIndex& surface,
+              double angle_degrees);
+
+  /// Square metres of surface within `radius` of a hit and in the slab around its plane, of
+  /// agreeing normal, on sheets where photons landed or on the hit's own.
+  double area(const glm::dvec3& hit, std::uint32_t sided_triangle, double radius) const;
+
+  /// As area, within `distance` of the hit, in the slab of `radius`.
+  double area_within(const glm::dvec3& hit, std::uint32_t sided_triangle, double radius,
+                     double distance) const;
+
+ private:
+  double area_of_triangle(const glm::dvec3& hit, const glm::dvec3& normal, std::uint32_t s,
+                          double radius, double distance) const;
+
+  const Scene& scene_;
+  const SurfaceIndex& surface_;
+  double cos_angle_;
+  std::vector<bool> lit_;            ///< per sheet
+  std::vector<glm::dvec3> normals_;  ///< per sided triangle
+};
+
+}  // namespace photile::reference

@@ -1,0 +1,21 @@
+// How much of a triangle lies open to light, and how much under what lies on it: the wall behind
+// tiles, the desk under a book.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "surface/sheets.hpp"
+#include "surface/surface_mesh.hpp"
+
+namespace photile::surface {
+
+/// Per sided triangle: the fraction of its points above which, within a fifth of the radius, no
+/// surface faces it on which no photon landed. 1 where that is half of them or more: surface that
+/// is covered in places counts as open, so that it is right where it is.
+///   lit   per sheet
+std::vector<float> find_exposure(const SurfaceMesh& mesh, const Sheets& sheets,
+                                 const std::vector<std::uint8_t>& lit, double radius,
+                                 double angle_degrees);
+
+}  // namespace photile::surface

@@ -1,0 +1,139 @@
+#include "surface/facets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+
+#include "photile/device/surface.h"
+
+namespace photile::surface {
+namespace {
+
+/// Two triangles of a facet differ from each other by twice the angle: a cosine of 1 - 8e-7.
+constexpr double least_cosine = 1 - 2e-7;
+constexpr double largest_height = 1e-3;  ///< over the radius
+
+/// What lies beyond each edge of a triangle: the triangle that continues it, none where there is no
+/// other or where it is not clear which.
+using Beyond = std::array<std::uint32_t, 3>;
+
+/// The one edge that continues the plane of `edge`, if there is just one, seen from either side.
+const MeshEdge* continuation(const SurfaceMesh& mesh, std::span<const MeshEdge> edges,
+                             const MeshEdge& edge) {
+  const MeshEdge* found = nullptr;
+  for (const MeshEdge& other : edges) {
+    if (&other == &edge || !(fold_cosine(mesh, edge, other) >= least_cosine)) continue;
+    if (found != nullptr) return nullptr;
+    found = &other;
+  }
+  return found;
+}
+
+std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh) {
+  std::vector<Beyond> beyond(mesh.corner.size(), Beyond{none, none, none});
+  mesh.for_each_edge([&](std::span<const MeshEdge> edges) {
+    for (const MeshEdge& edge : edges) {
+      const MeshEdge* next = continuation(mesh, edges, edge);
+      if (next == nullptr || continuation(mesh, edges, *next) != &edge) continue;
+      beyond[edge.triangle][edge.index] = next->triangle;
+    }
+  });
+  return beyond;
+}
+
+class FacetGrower {
+ public:
+  FacetGrower(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, double radius,
+              std::vector<std::uint32_t>& plane)
+      : mesh_(mesh), beyond_(beyond), height_(largest_height * radius), plane_(plane) {}
+
+  /// The triangles of the seed's facet.
+  const std::vector<std::uint32_t>& grow(std::uint32_t seed) {
+    members_.assign(1, seed);
+    plane_[seed] = seed;
+    normal_ = mesh_.normal[seed];
+    point_ = glm::dvec3(mesh_.scene.corners(seed)[0]);
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      for (const std::uint32_t next : beyond_[members_[i]]) {
+        if (next == none || plane_[next] != none || !in_plane(next)) continue;
+        plane_[next] = seed;
+        members_.push_back(next);
+      }
+    }
+    return members_;
+  }
+
+ private:
+  bool in_plane(std::uint32_t triangle) const {
+    if (!(std::abs(glm::dot(mesh_.normal[triangle], normal_)) >= least_cosine)) return false;
+    for (const glm::vec3& corner : mesh_.scene.corners(triangle)) {
+      if (!(std::abs(glm::dot(glm::dvec3(corner) - point_, normal_)) <= height_)) return false;
+    }
+    return true;
+  }
+
+  const SurfaceMesh& mesh_;
+  const std::vector<Beyond>& beyond_;
+  double height_;
+  std::vector<std::uint32_t>& plane_;
+  std::vector<std::uint32_t> members_;
+  glm::dvec3 normal_{0.0}, point_{0.0};
+};
+
+double diagonal_of(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
+  glm::vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower);
+  for (const std::uint32_t triangle : triangles) {
+    for (const glm::vec3& corner : scene.corners(triangle)) {
+      lower = glm::min(lower, corner);
+      upper = glm::max(upper, corner);
+    }
+  }
+  return glm::distance(glm::dvec3(lower), glm::dvec3(upper));
+}
+
+void add_borders(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, std::uint32_t triangle,
+                 const std::vector<std::uint32_t>& plane, std::vector<BorderEdge>& borders) {
+  const auto corners = mesh.scene.corners(triangle);
+  for (int i = 0; i < 3; ++i) {
+    const std::uint32_t next = beyond[triangle][i];
+    if (next != none && plane[next] == plane[triangle]) continue;
+    const glm::dvec3 from(corners[i]), to(corners[(i + 1) % 3]);
+    borders.push_back({corners[i], corners[(i + 1) % 3],
+                       glm::vec3(glm::normalize(glm::cross(mesh.normal[triangle], to - from))),
+                       triangle});
+  }
+}
+
+}  // namespace
+
+Facets find_facets(const SurfaceMesh& mesh, double radius) {
+  const std::size_t count = mesh.corner.size();
+  std::vector<std::uint32_t> seeds;
+  std::vector<double> area(count);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    area[t] = triangle_area(mesh.scene, t);
+    if (mesh.counts(t)) seeds.push_back(t);
+  }
+  std::stable_sort(seeds.begin(), seeds.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
+  const std::vector<Beyond> beyond = triangles_beyond(mesh);
+  Facets facets;
+  facets.of_triangle.assign(count, PHOTILE_NO_FACET);
+  facets.plane.assign(count, none);
+  FacetGrower grower(mesh, beyond, radius, facets.plane);
+  std::vector<BorderEdge> borders;
+  for (const std::uint32_t seed : seeds) {
+    if (facets.plane[seed] != none) continue;
+    const std::vector<std::uint32_t>& members = grower.grow(seed);
+    borders.clear();
+    for (const std::uint32_t t : members) add_borders(mesh, beyond, t, facets.plane, borders);
+    const bool small = diagonal_of(mesh.scene, members) <= 2 * radius;
+    if (small && members.size() <= 2 * borders.size()) continue;
+    for (const std::uint32_t t : members) facets.of_triangle[t] = seed;
+    facets.borders.insert(facets.borders.end(), borders.begin(), borders.end());
+  }
+  return facets;
+}
+
+}  // namespace photile::surface

@@ -1,0 +1,109 @@
+#include "photile/surface_index.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "photile/errors.hpp"
+#include "surface/exposure.hpp"
+#include "surface/facets.hpp"
+#include "surface/sheets.hpp"
+#include "surface/surface_mesh.hpp"
+#include "surface/surface_pieces.hpp"
+#include "surface/surface_tree.hpp"
+
+namespace photile {
+namespace {
+
+static_assert(sizeof(PhotileSurfaceNode) == 7 * 4 * PHOTILE_SURFACE_WIDTH);
+static_assert(sizeof(PhotileSurfaceLeaf) == 18 * 4 * PHOTILE_SURFACE_WIDTH);
+
+/// A leaf without a piece.
+PhotileSurfaceLeaf empty_leaf() {
+  PhotileSurfaceLeaf leaf{};
+  for (int lane = 0; lane < PHOTILE_SURFACE_WIDTH; ++lane) {
+    leaf.facet[lane] = PHOTILE_NO_FACET;
+    leaf.triangle[lane] = PHOTILE_PIECE_BORDER;
+    leaf.front_sheet[lane] = leaf.back_sheet[lane] = PHOTILE_SHEET_UNLIT;
+  }
+  return leaf;
+}
+
+PhotileSurfaceLeaf leaf_of(const SurfaceIndex& index,
+                           const std::vector<surface::SurfacePiece>& pieces,
+                           const std::vector<std::uint32_t>& members) {
+  PhotileSurfaceLeaf leaf = empty_leaf();
+  for (std::size_t lane = 0; lane < members.size(); ++lane) {
+    const surface::SurfacePiece& piece = pieces[members[lane]];
+    const std::uint32_t triangle = piece.triangle & ~PHOTILE_PIECE_BORDER;
+    const glm::vec3& normal = index.normal[sided(triangle, 0)];
+    leaf.a_x[lane] = piece.a.x, leaf.a_y[lane] = piece.a.y, leaf.a_z[lane] = piece.a.z;
+    leaf.b_x[lane] = piece.b.x, leaf.b_y[lane] = piece.b.y, leaf.b_z[lane] = piece.b.z;
+    leaf.c_x[lane] = piece.c.x, leaf.c_y[lane] = piece.c.y, leaf.c_z[lane] = piece.c.z;
+    leaf.normal_x[lane] = normal.x, leaf.normal_y[lane] = normal.y, leaf.normal_z[lane] = normal.z;
+    leaf.facet[lane] = piece.facet;
+    leaf.triangle[lane] = piece.triangle;
+    leaf.front_sheet[lane] = index.sheet[sided(triangle, 0)];
+    leaf.back_sheet[lane] = index.sheet[sided(triangle, 1)];
+    leaf.front_exposure[lane] = index.exposure[sided(triangle, 0)];
+    leaf.back_exposure[lane] = index.exposure[sided(triangle, 1)];
+  }
+  return leaf;
+}
+
+}  // namespace
+
+std::uint64_t SurfaceIndex::bytes() const {
+  return (original.size() + facet.size() + sheet.size()) * sizeof(std::uint32_t) +
+         normal.size() * (sizeof(glm::vec3) + sizeof(float)) + nodes.size() * sizeof(nodes[0]) +
+         leaves.size() * sizeof(leaves[0]);
+}
+
+SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& landed,
+                           double radius, double angle_degrees) {
+  if (!(radius > 0) || !std::isfinite(radius)) {
+    throw UsageError(fmt::format("radius {} m: must be a positive number", radius));
+  }
+  SurfaceIndex index;
+  index.radius = radius;
+  index.angle_degrees = angle_degrees;
+  surface::SurfaceMesh mesh(scene);
+  const surface::Facets facets = surface::find_facets(mesh, radius);
+  const surface::Sheets sheets = surface::find_sheets(mesh, radius, angle_degrees);
+  index.sheet = sheets.of;
+  index.sheets = sheets.count;
+  index.normal.resize(2 * scene.triangle_count());
+  tbb::parallel_for(std::size_t{0}, index.normal.size(), [&](std::size_t s) {
+    index.normal[s] = glm::vec3(sided_normal(scene, static_cast<std::uint32_t>(s)));
+  });
+  index.exposure =
+      surface::find_exposure(mesh, sheets, lit_sheets(index, landed), radius, angle_degrees);
+  index.facet = facets.of_triangle;
+  const auto pieces = surface::find_pieces(mesh, facets, radius, angle_degrees);
+  index.original = std::move(mesh.original);
+  surface::SurfaceTree tree = surface::build_surface_tree(pieces);
+  index.nodes = std::move(tree.nodes);
+  index.leaves.resize(tree.leaves.size());
+  tbb::parallel_for(std::size_t{0}, tree.leaves.size(), [&](std::size_t i) {
+    index.leaves[i] = leaf_of(index, pieces, tree.leaves[i]);
+  });
+  return index;
+}
+
+std::vector<std::uint8_t> landed_on(const Scene& scene, const Photons& photons) {
+  std::vector<std::uint8_t> landed(2 * scene.triangle_count(), 0);
+  for (const std::uint32_t s : photons.sided_triangle) landed[s] = 1;
+  return landed;
+}
+
+std::vector<std::uint8_t> lit_sheets(const SurfaceIndex& surface,
+                                     const std::vector<std::uint8_t>& landed) {
+  std::vector<std::uint8_t> lit(surface.sheets, 0);
+  for (std::size_t s = 0; s < landed.size(); ++s) {
+    if (landed[s] != 0) lit[surface.sheet[s]] = 1;
+  }
+  return lit;
+}
+
+}  // namespace photile

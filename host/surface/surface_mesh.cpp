@@ -1,0 +1,98 @@
+#include "surface/surface_mesh.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace photile::surface {
+namespace {
+
+std::tuple<float, float, float> tuple_of(const glm::vec3& p) { return {p.x, p.y, p.z}; }
+
+/// Per vertex: the smallest index of those at the same place.
+std::vector<std::uint32_t> welded_vertices(const std::vector<glm::vec3>& vertices) {
+  std::vector<std::uint32_t> order(vertices.size());
+  std::iota(order.begin(), order.end(), 0u);
+  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::tuple(tuple_of(vertices[a]), a) < std::tuple(tuple_of(vertices[b]), b);
+  });
+  std::vector<std::uint32_t> welded(vertices.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
+    welded[order[i]] = same ? welded[order[i - 1]] : order[i];
+  }
+  return welded;
+}
+
+struct SortedCorners {
+  std::array<std::uint32_t, 3> corner;
+  bool odd;     ///< sorting them turned the triangle over
+  bool stores;  ///< SurfaceMesh::stores
+  std::uint32_t triangle;
+};
+
+SortedCorners sorted(std::array<std::uint32_t, 3> corner, bool stores, std::uint32_t triangle) {
+  bool odd = false;
+  const auto order = [&](int i, int j) {
+    if (corner[i] <= corner[j]) return;
+    std::swap(corner[i], corner[j]);
+    odd = !odd;
+  };
+  order(0, 1);
+  order(1, 2);
+  order(0, 1);
+  return {corner, odd, stores, triangle};
+}
+
+std::vector<std::uint32_t> originals(const SurfaceMesh& mesh) {
+  std::vector<SortedCorners> triangles;
+  std::vector<std::uint32_t> original(2 * mesh.corner.size());
+  for (std::uint32_t t = 0; t < mesh.corner.size(); ++t) {
+    triangles.push_back(sorted(mesh.corner[t], mesh.stores(t), t));
+  }
+  tbb::parallel_sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.corner, a.stores, a.triangle) < std::tie(b.corner, b.stores, b.triangle);
+  });
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (triangles[i].corner != triangles[first].corner ||
+        triangles[i].stores != triangles[first].stores) {
+      first = i;
+    }
+    const std::uint32_t flip = triangles[i].odd != triangles[first].odd ? 1 : 0;
+    for (const std::uint32_t side : {0u, 1u}) {
+      original[sided(triangles[i].triangle, side)] = sided(triangles[first].triangle, side ^ flip);
+    }
+  }
+  return original;
+}
+
+}  // namespace
+
+SurfaceMesh::SurfaceMesh(const Scene& from)
+    : scene(from), corner(from.triangle_count()), normal(from.triangle_count()) {
+  const std::vector<std::uint32_t> welded = welded_vertices(scene.vertices);
+  tbb::parallel_for(std::size_t{0}, corner.size(), [&](std::size_t t) {
+    const glm::uvec3& vertices = scene.triangles[t];
+    corner[t] = {welded[vertices.x], welded[vertices.y], welded[vertices.z]};
+    normal[t] = sided_normal(scene, sided(static_cast<std::uint32_t>(t), 0));
+  });
+  original = originals(*this);
+  for (std::uint32_t t = 0; t < corner.size(); ++t) {
+    if (!counts(t)) continue;
+    for (std::uint8_t i = 0; i < 3; ++i) {
+      const std::uint32_t from_corner = corner[t][i], to_corner = corner[t][(i + 1) % 3];
+      edges.push_back({std::min(from_corner, to_corner), std::max(from_corner, to_corner), t, i,
+                       from_corner < to_corner});
+    }
+  }
+  tbb::parallel_sort(edges.begin(), edges.end(), [](const MeshEdge& a, const MeshEdge& b) {
+    return std::tie(a.low, a.high, a.triangle, a.index) <
+           std::tie(b.low, b.high, b.triangle, b.index);
+  });
+}
+
+}  // namespace photile::surface

@@ -1,0 +1,69 @@
+// The triangles of a scene with what they share: corners, edges, places.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "photile/scene.hpp"
+
+namespace photile::surface {
+
+/// One edge of one triangle. The triangle's side 0 goes round it counter-clockwise.
+struct MeshEdge {
+  std::uint32_t low, high;  ///< welded corners, low < high
+  std::uint32_t triangle;
+  std::uint8_t index;  ///< from corner `index` to the next one
+  bool forward;        ///< that leads from `low` to `high`
+};
+
+/// Corners are welded where their positions are the same bits, triangles where their corners are.
+struct SurfaceMesh {
+  explicit SurfaceMesh(const Scene& scene);
+
+  /// Edges with the same two corners, which stand together in `edges`.
+  template <class Visit>
+  void for_each_edge(const Visit& visit) const {
+    for (std::size_t first = 0; first < edges.size();) {
+      std::size_t last = first + 1;
+      while (last < edges.size() && edges[last].low == edges[first].low &&
+             edges[last].high == edges[first].high) {
+        ++last;
+      }
+      visit(std::span(edges).subspan(first, last - first));
+      first = last;
+    }
+  }
+
+  const Scene& scene;
+  std::vector<std::array<std::uint32_t, 3>> corner;  ///< welded, per triangle
+  /// Per sided triangle: the first that coincides with it and stores photons as it does.
+  std::vector<std::uint32_t> original;
+  std::vector<glm::dvec3> normal;  ///< of side 0, per triangle
+  std::vector<MeshEdge> edges;     ///< of triangles that are their own originals
+
+  /// Whether none of the triangles before coincides with it.
+  bool counts(std::uint32_t triangle) const { return original[2 * triangle] == 2 * triangle; }
+  /// Whether photons are stored on it: not on mirrors and glass.
+  bool stores(std::uint32_t triangle) const {
+    return scene.materials[scene.triangle_material[triangle]].interaction == Interaction::opaque;
+  }
+};
+
+/// Which side of b's triangle continues a side of a's, where both have the same two corners: the
+/// same one or the other.
+inline std::uint32_t flip_between(const MeshEdge& a, const MeshEdge& b) {
+  return a.forward == b.forward ? 1 : 0;
+}
+
+/// The cosine of the angle by which the surface folds at such an edge; below all where photons are
+/// stored on one side of it alone.
+inline double fold_cosine(const SurfaceMesh& mesh, const MeshEdge& a, const MeshEdge& b) {
+  if (mesh.stores(a.triangle) != mesh.stores(b.triangle)) return -2;
+  const double cosine = glm::dot(mesh.normal[a.triangle], mesh.normal[b.triangle]);
+  return flip_between(a, b) == 0 ? cosine : -cosine;
+}
+
+}  // namespace photile::surface

@@ -1,0 +1,85 @@
+#include "surface/surface_pieces.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "photile/device/surface.h"
+
+namespace photile::surface {
+namespace {
+
+/// Tells for a triangle whether another plane of similar normal comes near it.
+class NearbyPlanes {
+ public:
+  NearbyPlanes(const SurfaceMesh& mesh, const Facets& facets, double radius, double angle_degrees)
+      : mesh_(mesh),
+        facets_(facets),
+        radius_(radius),
+        // Rather a triangle too many than one too few where the kernels round.
+        least_cosine_(std::cos(glm::radians(angle_degrees)) - 1e-5),
+        tree_(mesh.scene) {}
+
+  bool near(std::uint32_t triangle) const {
+    bool found = false;
+    tree_.for_each_leaf_within(groups::triangle_box(mesh_.scene, triangle), radius_,
+                               [&](std::size_t first, std::size_t last) {
+                                 for (std::size_t i = first; i < last && !found; ++i) {
+                                   found = sees(triangle, tree_.order()[i]);
+                                 }
+                               });
+    return found;
+  }
+
+ private:
+  bool sees(std::uint32_t triangle, std::uint32_t other) const {
+    return mesh_.counts(other) && facets_.plane[other] != facets_.plane[triangle] &&
+           !(std::abs(glm::dot(mesh_.normal[triangle], mesh_.normal[other])) < least_cosine_);
+  }
+
+  const SurfaceMesh& mesh_;
+  const Facets& facets_;
+  double radius_, least_cosine_;
+  groups::TriangleBvh tree_;
+};
+
+SurfacePiece border_piece(const BorderEdge& edge, std::uint32_t facet) {
+  SurfacePiece piece{.a = edge.from,
+                     .b = edge.to,
+                     .c = edge.inward,
+                     .facet = facet,
+                     .triangle = edge.triangle | PHOTILE_PIECE_BORDER};
+  piece.box.extend(edge.from);
+  piece.box.extend(edge.to);
+  return piece;
+}
+
+}  // namespace
+
+std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets, double radius,
+                                      double angle_degrees) {
+  const NearbyPlanes planes(mesh, facets, radius, angle_degrees);
+  std::vector<std::uint8_t> is_piece(mesh.corner.size(), 0);
+  tbb::parallel_for(std::size_t{0}, is_piece.size(), [&](std::size_t i) {
+    const auto triangle = static_cast<std::uint32_t>(i);
+    if (!mesh.counts(triangle)) return;
+    is_piece[i] = facets.of_triangle[i] == PHOTILE_NO_FACET || planes.near(triangle);
+  });
+  std::vector<SurfacePiece> pieces;
+  for (const BorderEdge& edge : facets.borders) {
+    pieces.push_back(border_piece(edge, facets.of_triangle[edge.triangle]));
+  }
+  for (std::uint32_t t = 0; t < is_piece.size(); ++t) {
+    if (is_piece[t] == 0) continue;
+    const auto [a, b, c] = mesh.scene.corners(t);
+    pieces.push_back({.box = groups::triangle_box(mesh.scene, t),
+                      .a = a,
+                      .b = b,
+                      .c = c,
+                      .facet = facets.of_triangle[t],
+                      .triangle = t});
+  }
+  return pieces;
+}
+
+}  // namespace photile::surface

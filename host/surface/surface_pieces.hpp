@@ -1,0 +1,27 @@
+// What the area of a disc is put together from: border edges of facets, and triangles.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "groups/triangle_bvh.hpp"
+#include "surface/facets.hpp"
+#include "surface/surface_mesh.hpp"
+
+namespace photile::surface {
+
+/// As PhotileSurfaceLeaf describes it, and its box.
+struct SurfacePiece {
+  groups::Box box = {};
+  glm::vec3 a{0.0f}, b{0.0f}, c{0.0f};
+  std::uint32_t facet = 0;
+  std::uint32_t triangle = 0;  ///< with PHOTILE_PIECE_BORDER where it is a border edge
+};
+
+/// All border edges, and those triangles that hits must look at: triangles of small
+/// facets, and those within the radius of a triangle in another plane whose normal agrees with
+/// theirs on one side or the other. The middle of a floor is neither.
+std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets, double radius,
+                                      double angle_degrees);
+
+}  // namespace photile::surface

@@ -1,0 +1,176 @@
+#include "surface/surface_tree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <span>
+
+namespace photile::surface {
+namespace {
+
+using groups::Box;
+
+constexpr std::size_t width = PHOTILE_SURFACE_WIDTH;
+constexpr int bin_count = 16;
+/// Below this depth splits are at the median, an eighth for each child, so that the tree is never
+/// deeper than this and log_8 of the pieces: 10 + 10 levels, for which the stack has room.
+constexpr int heuristic_depth = 10;
+static_assert((width - 1) * (heuristic_depth + 10) + 1 <= PHOTILE_SURFACE_STACK);
+
+float half_area(const Box& box) {
+  const glm::vec3 size = glm::max(box.upper - box.lower, glm::vec3(0.0f));
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+struct Range {
+  std::span<std::uint32_t> pieces;
+  Box box;
+};
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const std::vector<SurfacePiece>& pieces, SurfaceTree& tree)
+      : pieces_(pieces), tree_(tree) {}
+
+  Range range_of(std::span<std::uint32_t> pieces) const {
+    Range range{pieces, {}};
+    for (const std::uint32_t i : pieces) range.box.extend(pieces_[i].box);
+    return range;
+  }
+
+  /// The node of more than eight pieces, or any for the root.
+  std::uint32_t add_node(const Range& range, int depth) {
+    const std::vector<Range> children = children_of(range, depth);
+    const auto node = static_cast<std::uint32_t>(tree_.nodes.size());
+    tree_.nodes.emplace_back();
+    std::array<std::uint32_t, width> links;
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      links[i] = children[i].pieces.size() <= width ? add_leaf(children[i])
+                                                    : add_node(children[i], depth + 1);
+    }
+    for (std::size_t i = 0; i < width; ++i) {
+      const bool used = i < children.size();
+      const Box box = used ? children[i].box : Box{};
+      PhotileSurfaceNode& made = tree_.nodes[node];
+      made.lower_x[i] = box.lower.x, made.lower_y[i] = box.lower.y, made.lower_z[i] = box.lower.z;
+      made.upper_x[i] = box.upper.x, made.upper_y[i] = box.upper.y, made.upper_z[i] = box.upper.z;
+      made.child[i] = used ? links[i] : PHOTILE_SURFACE_NONE;
+    }
+    return node;
+  }
+
+ private:
+  std::uint32_t add_leaf(const Range& range) {
+    tree_.leaves.emplace_back(range.pieces.begin(), range.pieces.end());
+    return static_cast<std::uint32_t>(tree_.leaves.size() - 1) | PHOTILE_SURFACE_LEAF;
+  }
+
+  /// At most eight parts: again and again the one with the largest surface is split.
+  std::vector<Range> children_of(const Range& range, int depth) const {
+    std::vector<Range> children{range};
+    while (children.size() < width) {
+      std::size_t largest = children.size();
+      for (std::size_t i = 0; i < children.size(); ++i) {
+        if (children[i].pieces.size() <= width) continue;
+        if (largest == children.size() ||
+            priority(children[i], depth) > priority(children[largest], depth)) {
+          largest = i;
+        }
+      }
+      if (largest == children.size()) break;
+      const std::size_t middle = split(children[largest], depth);
+      const std::span<std::uint32_t> all = children[largest].pieces;
+      children[largest] = range_of(all.first(middle));
+      children.insert(children.begin() + static_cast<std::ptrdiff_t>(largest) + 1,
+                      range_of(all.subspan(middle)));
+    }
+    return children;
+  }
+
+  static float priority(const Range& range, int depth) {
+    return depth < heuristic_depth ? half_area(range.box) : static_cast<float>(range.pieces.size());
+  }
+
+  glm::vec3 centre(std::uint32_t piece) const {
+    return 0.5f * (pieces_[piece].box.lower + pieces_[piece].box.upper);
+  }
+
+  /// Reorders the pieces of the range; returns how many come first.
+  std::size_t split(const Range& range, int depth) const {
+    Box centres;
+    for (const std::uint32_t i : range.pieces) centres.extend(centre(i));
+    if (depth < heuristic_depth) {
+      const std::size_t middle = split_by_area(range, centres);
+      if (middle > 0) return middle;
+    }
+    const glm::vec3 extent = centres.upper - centres.lower;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0
+                     : extent.y >= extent.z                       ? 1
+                                                                  : 2;
+    std::stable_sort(
+        range.pieces.begin(), range.pieces.end(),
+        [&](std::uint32_t a, std::uint32_t b) { return centre(a)[axis] < centre(b)[axis]; });
+    return range.pieces.size() / 2;
+  }
+
+  /// 0 where all centres coincide.
+  std::size_t split_by_area(const Range& range, const Box& centres) const {
+    float best = std::numeric_limits<float>::infinity();
+    int best_axis = -1, best_bin = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(centres.upper[axis] > centres.lower[axis])) continue;
+      std::array<Box, bin_count> boxes;
+      std::array<std::size_t, bin_count> counts{};
+      for (const std::uint32_t i : range.pieces) {
+        const int bin = bin_of(i, axis, centres);
+        boxes[bin].extend(pieces_[i].box);
+        ++counts[bin];
+      }
+      std::array<float, bin_count> above{};  // cost of the bins from here on
+      Box box;
+      std::size_t count = 0;
+      for (int bin = bin_count - 1; bin > 0; --bin) {
+        box.extend(boxes[bin]);
+        count += counts[bin];
+        above[bin] = count == 0 ? 0.0f : half_area(box) * static_cast<float>(count);
+      }
+      box = {};
+      count = 0;
+      for (int bin = 0; bin + 1 < bin_count; ++bin) {
+        box.extend(boxes[bin]);
+        count += counts[bin];
+        if (count == 0 || count == range.pieces.size()) continue;
+        const float cost = half_area(box) * static_cast<float>(count) + above[bin + 1];
+        if (cost < best) best = cost, best_axis = axis, best_bin = bin;
+      }
+    }
+    if (best_axis < 0) return 0;
+    const auto middle = std::stable_partition(
+        range.pieces.begin(), range.pieces.end(),
+        [&](std::uint32_t i) { return bin_of(i, best_axis, centres) <= best_bin; });
+    return static_cast<std::size_t>(middle - range.pieces.begin());
+  }
+
+  int bin_of(std::uint32_t piece, int axis, const Box& centres) const {
+    const float place =
+        (centre(piece)[axis] - centres.lower[axis]) / (centres.upper[axis] - centres.lower[axis]);
+    return std::clamp(static_cast<int>(place * bin_count), 0, bin_count - 1);
+  }
+
+  const std::vector<SurfacePiece>& pieces_;
+  SurfaceTree& tree_;
+};
+
+}  // namespace
+
+SurfaceTree build_surface_tree(const std::vector<SurfacePiece>& pieces) {
+  SurfaceTree tree;
+  std::vector<std::uint32_t> order(pieces.size());
+  std::iota(order.begin(), order.end(), 0u);
+  TreeBuilder builder(pieces, tree);
+  builder.add_node(builder.range_of(order), 0);
+  return tree;
+}
+
+}  // namespace photile::surface

@@ -1,0 +1,45 @@
+/* The surface around a hit, as C++ and OpenCL C both see it: a tree over pieces of surface, eight
+   wide in nodes and leaves alike, so that one vector operation tests all eight. Scalar members
+   only. */
+#ifndef PHOTILE_DEVICE_SURFACE_H
+#define PHOTILE_DEVICE_SURFACE_H
+
+#define PHOTILE_SURFACE_WIDTH 8
+
+/* No path from the root to a node is longer, and no stack of a traversal deeper. */
+#define PHOTILE_SURFACE_STACK 160
+
+#define PHOTILE_SURFACE_LEAF 0x80000000u /* in `child`: the index of a leaf follows */
+#define PHOTILE_SURFACE_NONE 0xFFFFFFFFu /* in `child`: there is none; its box is empty */
+
+/* Boxes of eight children, metres. */
+typedef struct {
+  float lower_x[PHOTILE_SURFACE_WIDTH], lower_y[PHOTILE_SURFACE_WIDTH],
+      lower_z[PHOTILE_SURFACE_WIDTH];
+  float upper_x[PHOTILE_SURFACE_WIDTH], upper_y[PHOTILE_SURFACE_WIDTH],
+      upper_z[PHOTILE_SURFACE_WIDTH];
+  unsigned int child[PHOTILE_SURFACE_WIDTH];
+} PhotileSurfaceNode;
+
+#define PHOTILE_PIECE_BORDER 0x80000000u /* in `triangle`: the piece is a border edge */
+#define PHOTILE_SHEET_UNLIT 0x80000000u  /* in `front_sheet`, `back_sheet`: no photon landed on it */
+#define PHOTILE_NO_FACET 0xFFFFFFFFu     /* in `facet`: none whose border is known */
+
+/* Eight pieces. A triangle has its corners a, b, c. A border edge runs from a to b; c is the unit
+   vector in the plane of its facet, perpendicular to the edge, that points into the facet. Lanes
+   without a piece are border edges of PHOTILE_NO_FACET. */
+typedef struct {
+  float a_x[PHOTILE_SURFACE_WIDTH], a_y[PHOTILE_SURFACE_WIDTH], a_z[PHOTILE_SURFACE_WIDTH];
+  float b_x[PHOTILE_SURFACE_WIDTH], b_y[PHOTILE_SURFACE_WIDTH], b_z[PHOTILE_SURFACE_WIDTH];
+  float c_x[PHOTILE_SURFACE_WIDTH], c_y[PHOTILE_SURFACE_WIDTH], c_z[PHOTILE_SURFACE_WIDTH];
+  float normal_x[PHOTILE_SURFACE_WIDTH], normal_y[PHOTILE_SURFACE_WIDTH],
+      normal_z[PHOTILE_SURFACE_WIDTH];        /* of the triangle's side 0, unit */
+  unsigned int facet[PHOTILE_SURFACE_WIDTH];    /* of the triangle, or that the edge bounds */
+  unsigned int triangle[PHOTILE_SURFACE_WIDTH]; /* of the scene */
+  unsigned int front_sheet[PHOTILE_SURFACE_WIDTH]; /* of the triangle's side 0 */
+  unsigned int back_sheet[PHOTILE_SURFACE_WIDTH];  /* of its side 1 */
+  float front_exposure[PHOTILE_SURFACE_WIDTH];     /* that counts of its area: 1, or less where */
+  float back_exposure[PHOTILE_SURFACE_WIDTH];      /* most of it lies under other surface */
+} PhotileSurfaceLeaf;
+
+#endif

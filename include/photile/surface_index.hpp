@@ -1,0 +1,65 @@
+// The surface that a density estimate divides by: sheets, facets, and a tree over what bounds them.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "photile/device/surface.h"
+#include "photile/photons.hpp"
+#include "photile/scene.hpp"
+
+namespace photile {
+
+/// What the area of a disc clipped to the surface needs to know of a scene.
+///
+/// A *sheet* is a set of sided triangles that connect over edges which fold by no more than the
+/// angle of the neighbour groups; coplanar pieces that touch connect, too. Light reaches a sheet as
+/// a whole or not at all: the inside of a thin plate is a sheet on which no photon lands.
+///
+/// A *facet* is a set of connected triangles in one plane. A hit on a facet wider than twice the
+/// radius looks at the edges that bound it, and not at its triangles. Smaller facets, and those of
+/// curved surfaces, are looked at triangle by triangle.
+///
+/// Triangles that store no photons (mirrors, glass) have sheets and facets of their own, which stay
+/// dark. Coincident triangles count once.
+///
+/// A lit sheet may lie under others for the most part: the wall behind tiles is lit in the joints.
+/// Its triangles count with the fraction of their area that lies open, but for hits on that sheet.
+struct SurfaceIndex {
+  double radius = 0;         ///< metres: no disc is larger
+  double angle_degrees = 0;  ///< largest angle between the normals of neighbours
+
+  std::vector<std::uint32_t> original;  ///< per sided triangle: the first that coincides with it
+  /// Per triangle: its facet where hits look at the facet's border, else PHOTILE_NO_FACET.
+  std::vector<std::uint32_t> facet;
+  std::vector<std::uint32_t> sheet;  ///< per sided triangle
+  std::vector<glm::vec3> normal;     ///< per sided triangle, unit
+  std::vector<float> exposure;       ///< per sided triangle, in [0, 1]
+  std::uint32_t sheets = 0;
+
+  /// Border edges of facets, and triangles near other facets of similar normal, in a tree whose
+  /// root is node 0; no node where there are none.
+  std::vector<PhotileSurfaceNode> nodes;
+  std::vector<PhotileSurfaceLeaf> leaves;
+
+  std::uint64_t bytes() const;
+};
+
+/// Finds sheets and facets and builds the tree. The result does not depend on the number of
+/// threads.
+///   radius          metres, > 0: of the largest disc
+///   landed          per sided triangle: 1 where a photon landed, else 0; what faces lit surface
+///   unlit covers it angle_degrees   largest angle between normals of neighbours, in [0, 180]
+SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& landed,
+                           double radius, double angle_degrees);
+
+/// `landed` of the photons.
+std::vector<std::uint8_t> landed_on(const Scene& scene, const Photons& photons);
+
+/// Per sheet: 1 where a photon landed, else 0.
+///   landed   per sided triangle: 1 where a photon landed, else 0
+std::vector<std::uint8_t> lit_sheets(const SurfaceIndex& surface,
+                                     const std::vector<std::uint8_t>& landed);
+
+}  // namespace photile

@@ -1,0 +1,84 @@
+// Estimates over discs clipped to the surface against polygon clipping in double precision, on
+// plates, curved surfaces and real meshes, for every structure and strategy.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "estimates_comparison.hpp"
+#include "photon_sets.hpp"
+#include "reference/clipped_area.hpp"
+#include "test_device.hpp"
+
+using namespace photile;
+
+namespace {
+
+const std::filesystem::path source_folder = PHOTILE_SOURCE_DIR;
+
+/// Areas are compared with polygons of 4096 corners, and computed from floats: a ten-thousandth of
+/// the whole disc, where the clipped one is a tenth of that at least.
+constexpr double area_tolerance = 1e-3;
+
+test::ExpectedEstimates expected_clipped(const Scene& scene, const Photons& photons,
+                                         const PrimaryHits& hits, int k, double radius) {
+  const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), radius, 60);
+  const reference::ClippedArea area(scene, photons, surface, 60);
+  const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
+  test::ExpectedEstimates expected;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    expected.push_back(oracle.irradiance(area, hits.position[i], hits.sided_triangle[i], k,
+                                         static_cast<float>(radius)));
+  }
+  return expected;
+}
+
+void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
+                   double radius, int k, MapMode mode = MapMode::triangle) {
+  const std::size_t lights = scene.lights.size();
+  const auto expected = expected_clipped(scene, photons, hits, k, radius);
+  const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
+  for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_3d}) {
+    for (const EstimateStrategy strategy : all_estimate_strategies) {
+      if (structure != MapStructure::uniform_grid && strategy != EstimateStrategy::select) continue;
+      const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+      EstimateParameters parameters;
+      parameters.neighbours = k;
+      parameters.tuning = shipped_tuning(test::device().info());
+      parameters.tuning->strategy = strategy;
+      const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
+      const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
+      REQUIRE(irradiance.size() == hits.size() * lights);
+      CAPTURE(name_of(structure), static_cast<int>(strategy), k, radius, lights);
+      CHECK(test::worst_difference(irradiance, expected) <= area_tolerance);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's") {
+  for (const int cells : {1, 3, 40}) {
+    Scene scene = test::empty_scene();
+    test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, cells);
+    const Photons photons = test::uniform_photons(scene, 6000, 51);
+    const PrimaryHits hits = test::uniform_hits(scene, 300, 52);
+    for (const int k : {1, 16, 50, 400}) check_clipped(scene, photons, hits, 0.2, k);
+  }
+}
+
+TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode") {
+  const MapMode mode = GENERATE(MapMode::triangle, MapMode::patch);
+  for (const int rings : {24, 96}) {
+    Scene scene = test::empty_scene(2);
+    test::add_torus(scene, 1.0f, 0.4f, rings, rings / 2);
+    const Photons photons = test::uniform_photons(scene, 20'000, 53);
+    check_clipped(scene, photons, test::uniform_hits(scene, 200, 54), 0.3, 50, mode);
+  }
+}
+
+TEST_CASE("clipped irradiance in the living room equals the oracle's") {
+  Scene scene = load_scene(source_folder / "scenes/living-room/living-room.gltf");
+  for (Material& material : scene.materials) material.specular = glm::vec3(0.0f);  // no lobes
+  const Photons photons = test::uniform_photons(scene, 60'000, 51);
+  check_clipped(scene, photons, test::uniform_hits(scene, 300, 52), 0.4, 50, MapMode::automatic);
+}
