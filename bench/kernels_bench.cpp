@@ -91,7 +91,7 @@ class KernelsBench {
     const PhotonMaps maps(device_, subject.scene, subject.photons,
                           default_groups(subject.scene, subject.photons, radius),
                           {.radius = radius});
-    Estimator estimator(maps, subject.scene, {});
+    Estimator estimator(maps, subject.scene, {.area = AreaMode::disc});
     const Timing timing = measure_returned(repeats_, [&] {
       return kernel_seconds_of(device_, [&] { estimator.estimate(subject.hits); });
     });
@@ -112,7 +112,7 @@ class KernelsBench {
       return PhotonMaps(device_, subject.scene, subject.photons, groups, {.radius = radius});
     };
     const PhotonMaps maps = build();
-    Estimator estimator(maps, subject.scene, {k, 0});
+    Estimator estimator(maps, subject.scene, {.neighbours = k, .area = AreaMode::disc});
     estimator.estimate(subject.hits);  // compiles, as `build` has done
     std::map<std::string, Timing> timings;
     for (int i = 0; i < repeats_.most; ++i) {

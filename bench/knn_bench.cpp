@@ -200,7 +200,8 @@ class KnnBench {
     try {
       const PhotonMaps maps(device_, *c.workload.scene, c.photons, c.groups,
                             {.radius = c.radius, .structure = structure});
-      Estimator estimator(maps, *c.workload.scene, {c.k, c.radius});
+      Estimator estimator(maps, *c.workload.scene,
+                          {.neighbours = c.k, .radius = c.radius, .area = AreaMode::disc});
       Estimates estimates;
       const auto estimate = [&](const PrimaryHits& hits) { estimates = estimator.estimate(hits); };
       const HitSample asked = affordable_hits(c.hits, repeats_, estimate);

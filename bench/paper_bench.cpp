@@ -54,7 +54,9 @@ bool run(BenchOptions& options) {
     };
     const Timing build_time = measure(options.repeats, [&] { statistics = build().statistics(); });
     const PhotonMaps maps = build();
-    Estimator estimator(maps, *workload.scene, {defaults::neighbours, radius});
+    Estimator estimator(
+        maps, *workload.scene,
+        {.neighbours = defaults::neighbours, .radius = radius, .area = AreaMode::disc});
     const PrimaryHits hits = in_map_order(workload.hits, groups);
     // The search alone writes the neighbours that it found, which the estimate need not.
     const Timing search = measure_returned(options.repeats, [&] {

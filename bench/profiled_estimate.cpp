@@ -45,7 +45,8 @@ bool run(const Settings& settings) {
   const NeighbourGroups groups = default_groups(*workload.scene, photons, radius);
   const PhotonMaps maps(device, *workload.scene, photons, groups, {.radius = radius});
   const PrimaryHits hits = in_map_order(workload.hits, groups);
-  Estimator estimator(maps, *workload.scene, {settings.neighbours, 0});
+  Estimator estimator(maps, *workload.scene,
+                      {.neighbours = settings.neighbours, .area = AreaMode::disc});
   estimator.estimate(hits);  // compiles
   const double begin = now();
   while (now() < begin + settings.seconds) estimator.estimate(hits);

@@ -75,9 +75,13 @@ double ClippedArea::area_within(const glm::dvec3& hit, std::uint32_t own, double
     if (surface_.original[s] != s) continue;
     if (!lit_[sheet] && sheet != surface_.sheet[own]) continue;
     if (!normals_agree(normals_[s], n, cos_angle_)) continue;
-    sum +=
-        static_cast<double>(surface_.exposure[s]) * area_of_triangle(hit, n, s, radius, distance);
+    const double exposure =
+        sheet == surface_.sheet[own] ? 1.0 : static_cast<double>(surface_.exposure[s]);
+    const double part = exposure * area_of_triangle(hit, n, s, radius, distance);
+    sum += part;
+    projected += part * glm::dot(normals_[s], n);
   }
+  // Light that falls along the normal lands once, however many layers there are.
   const double disc = glm::pi<double>() * distance * distance;
   return std::max(sum * std::min(1.0, disc / projected), 1e-4 * disc);
 }

@@ -1,4 +1,5 @@
-// Irradiance and reflected radiance of every hit against brute force in double precision.
+// Irradiance and reflected radiance of every hit, over whole discs, against brute force in double
+// precision.
 #include <catch2/catch.hpp>
 
 #include "estimates_comparison.hpp"
@@ -17,7 +18,8 @@ void check_irradiance(const Scene& scene, const Photons& photons, const PrimaryH
   const auto expected = test::expected_irradiance(oracle, hits, k, radius);
   for (const MapStructure structure : all_map_structures) {
     const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
-    const Estimates estimates = Estimator(maps, scene, {k, 0}).estimate(hits);
+    const Estimates estimates =
+        Estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc}).estimate(hits);
     const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
     REQUIRE(irradiance.size() == hits.size() * lights);
     CHECK(estimates.radiance.empty());
@@ -81,7 +83,8 @@ TEST_CASE("glossy radiance equals the BSDF summed over the oracle's neighbours i
   const int k = 50;
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius, 4});
-  const Estimates estimates = Estimator(maps, scene, {k, 0}).estimate(hits);
+  const Estimates estimates =
+      Estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc}).estimate(hits);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
 
   const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius);

@@ -44,7 +44,9 @@ struct Case {
     }
     for (const EstimateTuning& tuning : tunings) {
       CAPTURE(name_of(tuning.strategy), tuning.vector_width, tuning.hits_per_item, k);
-      const Estimates estimates = Estimator(maps, scene, {k, 0, tuning}).estimate(hits);
+      const Estimates estimates =
+          Estimator(maps, scene, {.neighbours = k, .tuning = tuning, .area = AreaMode::disc})
+              .estimate(hits);
       const std::size_t lights = scene.lights.size();
       CHECK(test::worst_difference(test::by_light(estimates.irradiance, estimates, lights),
                                    irradiance) <= test::estimate_tolerance(k));

@@ -1,0 +1,274 @@
+// Uniform irradiance reads 1 on every surface that ends in the open, is thin, folds, or lies close
+// to another. Photons land where light would, uniformly; each mean is over 16 sets of photons.
+#include <catch2/catch.hpp>
+#include <functional>
+
+#include "photile/estimator.hpp"
+#include "photon_sets.hpp"
+#include "statistical_tests.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+
+using namespace photile;
+
+namespace {
+
+using Chosen = std::function<bool(const Scene&, std::uint32_t sided_triangle)>;
+
+/// Uniform points on the sided triangles chosen, together 1 lm/m2.
+Photons photons_on(const Scene& scene, const Chosen& chosen, std::size_t count,
+                   std::uint64_t seed) {
+  std::vector<std::uint32_t> sides;
+  std::vector<double> areas;
+  for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
+    if (!chosen(scene, s)) continue;
+    sides.push_back(s);
+    areas.push_back(triangle_area(scene, triangle_of(s)));
+  }
+  const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
+  std::discrete_distribution<std::size_t> pick(areas.begin(), areas.end());
+  std::mt19937_64 random(seed);
+  Photons photons;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t s = sides[pick(random)];
+    test::add_photon(photons, scene, test::random_point(scene, triangle_of(s), random), s, random);
+  }
+  photons.flux.assign(count, glm::vec3(static_cast<float>(total / static_cast<double>(count))));
+  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+}
+
+struct Reading {
+  Scene scene;
+  Chosen lit;   ///< where photons land
+  Chosen seen;  ///< where hits are
+  std::function<bool(const glm::vec3&)> where = [](const glm::vec3&) { return true; };
+  std::size_t photons = 20'000;
+  double radius = 0.06;
+  AreaMode area = AreaMode::clipped;
+};
+
+/// What landed where hits are, lm/m2: near 1, with the noise of how many photons did.
+double landed_on_seen(const Reading& reading, const Photons& photons) {
+  double landed = 0, area = 0;
+  for (std::uint32_t s = 0; s < 2 * reading.scene.triangle_count(); ++s) {
+    if (!reading.seen(reading.scene, s)) continue;
+    landed += (photons.first_of[s + 1] - photons.first_of[s]) * double{photons.flux[0].g};
+    area += triangle_area(reading.scene, triangle_of(s));
+  }
+  return landed / area;
+}
+
+/// Mean irradiance over the hits, one for each of 16 sets of photons.
+std::vector<double> readings(Reading reading) {
+  std::vector<double> means;
+  reading.scene.lights.assign(1, test::point_light("lamp", glm::vec3(0.0f)));
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const Photons photons = photons_on(reading.scene, reading.lit, reading.photons, seed);
+    const Photons points = photons_on(reading.scene, reading.seen, 6000, 100 + seed);
+    PrimaryHits hits;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!reading.where(points.position[i])) continue;
+      hits.position.push_back(points.position[i]);
+      hits.sided_triangle.push_back(points.sided_triangle[i]);
+      hits.diffuse_albedo.emplace_back(0.5f);
+    }
+    REQUIRE(hits.position.size() > 100);
+    const PhotonMaps maps(
+        test::device(), reading.scene, photons,
+        find_map_groups(reading.scene, photons, MapMode::automatic, {reading.radius, 60}),
+        {.radius = reading.radius});
+    EstimateParameters parameters;
+    parameters.area = reading.area;
+    const Estimates estimates = Estimator(maps, reading.scene, parameters).estimate(hits);
+    double sum = 0;
+    for (const glm::vec3& irradiance : estimates.irradiance) sum += irradiance.g;
+    means.push_back(sum / static_cast<double>(hits.position.size()) /
+                    landed_on_seen(reading, photons));
+  }
+  return means;
+}
+
+bool upwards(const Scene& scene, std::uint32_t s) { return sided_normal(scene, s).z > 0.9; }
+
+/// The sides of a convex body round the origin that look outwards.
+bool outwards(const Scene& scene, std::uint32_t s) {
+  const auto corners = scene.corners(triangle_of(s));
+  return glm::dot(sided_normal(scene, s), glm::dvec3(corners[0] + corners[1] + corners[2])) > 0;
+}
+
+bool top(const Scene& scene, std::uint32_t s) { return upwards(scene, s) && outwards(scene, s); }
+
+Scene box(const glm::vec3& size, int cells) {
+  test::SceneBuilder builder;
+  builder.box(-0.5f * size, 0.5f * size, builder.add(test::diffuse(glm::vec3(0.5f))), false, cells);
+  return builder.build();
+}
+
+}  // namespace
+
+TEST_CASE("a uniformly lit plate reads 1 over all of it, borders and corners, for any triangles") {
+  for (const int cells : {1, 3, 40}) {
+    const Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, cells);
+    CAPTURE(cells);
+    CHECK_VERDICT(test::mean_is(readings({scene, upwards, upwards}), 1.0, 0.01));
+    const auto border = [](const glm::vec3& p) {
+      return std::max(std::abs(p.x), std::abs(p.y)) > 0.48f;
+    };
+    CHECK_VERDICT(test::mean_is(readings({scene, upwards, upwards, border}), 1.0, 0.06));
+  }
+}
+
+TEST_CASE("whole discs read too little at the border of a plate") {
+  Reading reading{test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, 1), upwards, upwards};
+  reading.where = [](const glm::vec3& p) { return std::abs(p.x) > 0.49f; };
+  reading.area = AreaMode::disc;
+  for (const double mean : readings(reading)) CHECK(mean < 0.75);
+}
+
+TEST_CASE("thin plates of 1 to 20 mm read 1 on their faces: their insides count for nothing") {
+  for (const float thickness : {0.001f, 0.005f, 0.02f}) {
+    CAPTURE(thickness);
+    CHECK_VERDICT(
+        test::mean_is(readings({box({1.0f, 0.8f, thickness}, 4), outwards, top}), 1.0, 0.01));
+  }
+}
+
+TEST_CASE("a curved shell of 5 mm, its inner side dark, reads 1") {
+  // A cylinder of radius 20 cm and a smaller one within; on the outer one 1 lm/m2.
+  Scene scene = test::empty_scene();
+  constexpr int segments = 160;
+  for (const float radius : {0.2f, 0.195f}) {
+    const auto at = [&](int i, float z) {
+      const float angle = glm::two_pi<float>() * static_cast<float>(i % segments) / segments;
+      return glm::vec3(radius * std::cos(angle), radius * std::sin(angle), z);
+    };
+    for (int i = 0; i < segments; ++i) {
+      for (int j = -40; j < 40; ++j) {
+        const float low = 0.01f * static_cast<float>(j), high = 0.01f * static_cast<float>(j + 1);
+        test::add_triangle(scene, at(i, low), at(i + 1, low), at(i + 1, high));
+        test::add_triangle(scene, at(i, low), at(i + 1, high), at(i, high));
+      }
+    }
+  }
+  const auto outer = [](const Scene& of, std::uint32_t s) {
+    const glm::vec3 corner = of.corners(triangle_of(s))[0];
+    return outwards(of, s) && glm::length(glm::vec2(corner)) > 0.198f;
+  };
+  // What lies within the radius r on a cylinder of radius R is larger than the disc by
+  // (r / R)^2 / 16 at most: 0.3% for the radius of 4 cm here.
+  CHECK_VERDICT(test::mean_is(readings({scene, outer, outer}), 1.0, 0.015));
+}
+
+TEST_CASE("tiles on a floor read 1, in their middle and at the border of the floor") {
+  test::SceneBuilder builder;
+  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, -0.001f}, {1, 0, 0}, {0, 1, 0}, 1, white);
+  for (int i = 0; i < 10; ++i) {
+    for (int j = 0; j < 10; ++j) {
+      builder.grid({0.1f * static_cast<float>(i), 0.1f * static_cast<float>(j), 0.001f},
+                   {0.097f, 0, 0}, {0, 0.097f, 0}, 1, white);
+    }
+  }
+  builder.add(test::point_light("lamp", glm::vec3(0.0f)));
+  const Scene scene = builder.build();
+  // Photons fall from above: on tiles, and on the floor in the joints between them.
+  std::vector<double> means;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<float> place(0.0f, 1.0f);
+    std::vector<std::array<std::uint32_t, 2>> tiles(100, {none, none});
+    std::array<std::uint32_t, 2> floor{none, none};
+    for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
+      if (!upwards(scene, s)) continue;
+      const auto c = scene.corners(triangle_of(s));
+      const glm::vec3 middle = (c[0] + c[1] + c[2]) / 3.0f;
+      const int index = static_cast<int>(middle.x * 10) * 10 + static_cast<int>(middle.y * 10);
+      auto& pair = c[0].z < 0 ? floor : tiles[static_cast<std::size_t>(index)];
+      (pair[0] == none ? pair[0] : pair[1]) = s;
+    }
+    const auto lands = [&](const std::array<std::uint32_t, 2>& pair, const glm::vec3& p) {
+      const auto c = scene.corners(triangle_of(pair[0]));
+      bool inside = true;
+      const glm::vec3 n(sided_normal(scene, sided(triangle_of(pair[0]), 0)));
+      for (int i = 0; i < 3; ++i) {
+        inside &= glm::dot(glm::cross(n, c[(i + 1) % 3] - c[i]), p - c[i]) >= 0;
+      }
+      return inside ? pair[0] : pair[1];
+    };
+    Photons photons;
+    PrimaryHits hits;
+    constexpr int count = 20'000;
+    for (int i = 0; i < count + 4000; ++i) {
+      const float x = place(random), y = place(random);
+      const bool joint = std::fmod(x, 0.1f) > 0.097f || std::fmod(y, 0.1f) > 0.097f;
+      const auto index =
+          static_cast<std::size_t>(static_cast<int>(x * 10) * 10 + static_cast<int>(y * 10));
+      const glm::vec3 p(x, y, joint ? -0.001f : 0.001f);
+      const std::uint32_t s = lands(joint ? floor : tiles[index], p);
+      if (i < count) {
+        test::add_photon(photons, scene, p, s, random);
+      } else if (!joint) {
+        hits.position.push_back(p);
+        hits.sided_triangle.push_back(s);
+        hits.diffuse_albedo.emplace_back(0.5f);
+      }
+    }
+    photons.flux.assign(count, glm::vec3(1.0f / count));
+    photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+    const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.06, 60}),
+                          {.radius = 0.06});
+    const Estimates estimates = Estimator(maps, scene, {}).estimate(hits);
+    double sum = 0;
+    for (const glm::vec3& irradiance : estimates.irradiance) sum += irradiance.g;
+    means.push_back(sum / static_cast<double>(hits.position.size()));
+  }
+  // Without the exposure of the floor below, and the bound by the whole disc, they read 0.5. Of the
+  // floor 64 points say how much lies in the joints: 3% of its area at most.
+  CHECK_VERDICT(test::mean_is(means, 1.0, 0.04));
+}
+
+TEST_CASE("layers that coincide count once") {
+  Scene scene = test::empty_scene();
+  for (int layer = 0; layer < 3; ++layer) {
+    test::add_plate(scene, {-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  }
+  // Photons land on any of the layers: together 3 lm/m2 where each has 1.
+  CHECK_VERDICT(test::mean_is(readings({scene, upwards, upwards}), 3.0, 0.03));
+}
+
+TEST_CASE("overlapping layers of which one catches the light read what they catch") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  test::add_plate(scene, {-0.4f, -0.5f, 0}, {0.8f, 0, 0}, {0, 1, 0}, 3);
+  const auto first = [](const Scene& of, std::uint32_t s) {
+    return upwards(of, s) && triangle_of(s) < 2;
+  };
+  CHECK_VERDICT(test::mean_is(readings({scene, first, first}), 1.0, 0.01));
+}
+
+TEST_CASE("inconsistent winding changes no reading") {
+  Scene scene = box({1.0f, 0.8f, 0.01f}, 5);
+  for (std::size_t t = 0; t < scene.triangle_count(); t += 2) {
+    std::swap(scene.triangles[t].y, scene.triangles[t].z);
+  }
+  CHECK_VERDICT(test::mean_is(readings({scene, outwards, top}), 1.0, 0.01));
+}
+
+TEST_CASE("a bright table top does not bleed into a dark floor below, nor the floor into it") {
+  // 5 cm apart, with a radius of 6 cm: the floor has half the irradiance of the table.
+  test::SceneBuilder builder;
+  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  builder.grid({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
+  builder.grid({-0.2f, -0.2f, 0.05f}, {0.4f, 0, 0}, {0, 0.4f, 0}, 2, white);
+  Reading reading{builder.build(), upwards, upwards};
+  reading.seen = [](const Scene& of, std::uint32_t s) {
+    return upwards(of, s) && of.corners(triangle_of(s))[0].z > 0.04f;
+  };
+  reading.where = [](const glm::vec3& p) {
+    return std::max(std::abs(p.x), std::abs(p.y)) > 0.18f;  // the table's border
+  };
+  reading.lit = [](const Scene& of, std::uint32_t s) {
+    return upwards(of, s) && of.corners(triangle_of(s))[0].z > 0.04f;
+  };
+  CHECK_VERDICT(test::mean_is(readings(reading), 1.0, 0.04));
+}

@@ -1,0 +1,73 @@
+// The tree over pieces of surface: complete, within its boxes, and no deeper than its stack.
+#include "surface/surface_tree.hpp"
+
+#include <catch2/catch.hpp>
+#include <functional>
+#include <random>
+
+using namespace photile;
+
+namespace {
+
+surface::SurfacePiece piece_at(const glm::vec3& centre, const glm::vec3& size) {
+  surface::SurfacePiece piece;
+  piece.box.extend(centre - size);
+  piece.box.extend(centre + size);
+  return piece;
+}
+
+/// Checks the boxes and counts each piece; returns the most entries a traversal's stack may hold.
+int check_tree(const surface::SurfaceTree& tree, const std::vector<surface::SurfacePiece>& pieces) {
+  std::vector<int> seen(pieces.size(), 0);
+  int deepest = 0, outside = 0;
+  const std::function<void(std::uint32_t, int)> visit = [&](std::uint32_t index, int depth) {
+    deepest = std::max(deepest, depth);
+    const PhotileSurfaceNode& node = tree.nodes.at(index);
+    for (int i = 0; i < PHOTILE_SURFACE_WIDTH; ++i) {
+      if (node.child[i] == PHOTILE_SURFACE_NONE) continue;
+      if ((node.child[i] & PHOTILE_SURFACE_LEAF) == 0) {
+        visit(node.child[i], depth + 1);
+        continue;
+      }
+      for (const std::uint32_t p : tree.leaves.at(node.child[i] & ~PHOTILE_SURFACE_LEAF)) {
+        ++seen.at(p);
+        const groups::Box& box = pieces[p].box;
+        outside += box.lower.x < node.lower_x[i] || box.lower.y < node.lower_y[i] ||
+                   box.lower.z < node.lower_z[i] || box.upper.x > node.upper_x[i] ||
+                   box.upper.y > node.upper_y[i] || box.upper.z > node.upper_z[i];
+      }
+    }
+  };
+  visit(0, 1);
+  CHECK(outside == 0);
+  CHECK(std::all_of(seen.begin(), seen.end(), [](int count) { return count == 1; }));
+  for (const auto& leaf : tree.leaves) CHECK(leaf.size() <= PHOTILE_SURFACE_WIDTH);
+  return 7 * deepest + 1;
+}
+
+}  // namespace
+
+TEST_CASE("every piece is in one leaf, within the boxes above it") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-3.0f, 3.0f);
+  std::exponential_distribution<float> size(20.0f);
+  for (const int count : {0, 1, 8, 9, 1000, 20'000}) {
+    std::vector<surface::SurfacePiece> pieces;
+    for (int i = 0; i < count; ++i) {
+      pieces.push_back(piece_at({place(random), place(random), place(random)},
+                                {size(random), size(random), size(random)}));
+    }
+    CAPTURE(count);
+    CHECK(check_tree(surface::build_surface_tree(pieces), pieces) <= PHOTILE_SURFACE_STACK);
+  }
+}
+
+TEST_CASE("pieces in one point, or ever farther apart, do not make the tree deep") {
+  std::vector<surface::SurfacePiece> same(5000, piece_at(glm::vec3(1.0f), glm::vec3(0.1f)));
+  CHECK(check_tree(surface::build_surface_tree(same), same) <= PHOTILE_SURFACE_STACK);
+  std::vector<surface::SurfacePiece> apart;
+  for (int i = 0; i < 5000; ++i) {
+    apart.push_back(piece_at(glm::vec3(std::ldexp(1.0f, i % 200 - 100), 0, 0), glm::vec3(0.0f)));
+  }
+  CHECK(check_tree(surface::build_surface_tree(apart), apart) <= PHOTILE_SURFACE_STACK);
+}
