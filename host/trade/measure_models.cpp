@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "photile/layered_picture.hpp"
 #include "photile/photon_tracer.hpp"
@@ -60,6 +61,10 @@ class Pilot {
     const PhotonMaps maps(device_, scene_, photons, groups,
                           {.radius = radius, .photons_per_cell = parameters_.photons_per_cell});
     result.photon_seconds += maps.statistics().seconds;
+    if (parameters_.area == AreaMode::clipped && surface_ == nullptr) {
+      surface_ = std::make_shared<const SurfaceIndex>(
+          index_surface(scene_, landed_on(scene_, photons), radius, parameters_.angle_degrees));
+    }
 
     const Stopwatch hit_watch;
     const PrimaryHitBatch batch = trace_primary_hits(rays, camera_, parameters_.film, 0,
@@ -78,7 +83,9 @@ class Pilot {
                    const PrimaryHitBatch& batch, SeedPictures& result) {
     const int k = pilot_neighbours[i];
     const double radius = std::min(automatic_radius(photons, k), maps.parameters().radius);
-    Estimator estimator(maps, scene_, {.neighbours = k, .radius = radius});
+    Estimator estimator(
+        maps, scene_,
+        {.neighbours = k, .radius = radius, .area = parameters_.area, .surface = surface_});
     const Stopwatch estimate_watch;
     const Estimates estimates = estimator.estimate(batch.hits);
     result.estimate_seconds[i] = estimate_watch.seconds();
@@ -94,6 +101,7 @@ class Pilot {
   Device& device_;
   const LightMix& mix_;
   RenderParameters parameters_;
+  std::shared_ptr<const SurfaceIndex> surface_;  ///< of the first photons, where areas are clipped
 };
 
 Image mean_of(const Image& a, const Image& b) {
