@@ -28,7 +28,7 @@ inline void check_against_oracle(const Scene& scene, const Photons& photons,
       const PhotonMaps maps(device(), scene, photons, groups, {radius, 4, structure});
       for (const int k : neighbour_counts) {
         CAPTURE(name_of(structure), static_cast<int>(mode), k, radius, photons.size());
-        Estimator estimator(maps, scene, {k, 0});
+        Estimator estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc});
         CHECK(count_differences(hits, estimator.nearest(hits), oracle, photons,
                                 static_cast<float>(radius)) == 0);
         if (!irradiance) continue;
