@@ -162,7 +162,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     // Hits on a mixed map differ in which candidates they may take.
     if (count >= LEAST_TILE && k > 1 && !grid->mixed) {
       one_by_one = !estimate_tile(&entries, grid, cell_start, &hits, first, count, k, radius,
-                                  &expected, undone, CLIPPED_VALUES &estimates);
+                                  &expected, undone, CLIPPED_VALUES & estimates);
     }
 #endif
     for (uint i = 0; i < count; ++i) {
@@ -170,7 +170,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
       Hit hit;
       load_hit(&hits, first + i, &hit);
       expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected,
-                              CLIPPED_VALUES &estimates);
+                              CLIPPED_VALUES & estimates);
     }
     first += count;
   }

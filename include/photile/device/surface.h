@@ -22,7 +22,8 @@ typedef struct {
 } PhotileSurfaceNode;
 
 #define PHOTILE_PIECE_BORDER 0x80000000u /* in `triangle`: the piece is a border edge */
-#define PHOTILE_SHEET_UNLIT 0x80000000u  /* in `front_sheet`, `back_sheet`: no photon landed on it */
+#define PHOTILE_SHEET_UNLIT 0x80000000u  /* in `front_sheet`, `back_sheet`: no photon landed on it \
+                                          */
 #define PHOTILE_NO_FACET 0xFFFFFFFFu     /* in `facet`: none whose border is known */
 
 /* Eight pieces. A triangle has its corners a, b, c. A border edge runs from a to b; c is the unit
@@ -33,9 +34,9 @@ typedef struct {
   float b_x[PHOTILE_SURFACE_WIDTH], b_y[PHOTILE_SURFACE_WIDTH], b_z[PHOTILE_SURFACE_WIDTH];
   float c_x[PHOTILE_SURFACE_WIDTH], c_y[PHOTILE_SURFACE_WIDTH], c_z[PHOTILE_SURFACE_WIDTH];
   float normal_x[PHOTILE_SURFACE_WIDTH], normal_y[PHOTILE_SURFACE_WIDTH],
-      normal_z[PHOTILE_SURFACE_WIDTH];        /* of the triangle's side 0, unit */
-  unsigned int facet[PHOTILE_SURFACE_WIDTH];    /* of the triangle, or that the edge bounds */
-  unsigned int triangle[PHOTILE_SURFACE_WIDTH]; /* of the scene */
+      normal_z[PHOTILE_SURFACE_WIDTH];             /* of the triangle's side 0, unit */
+  unsigned int facet[PHOTILE_SURFACE_WIDTH];       /* of the triangle, or that the edge bounds */
+  unsigned int triangle[PHOTILE_SURFACE_WIDTH];    /* of the scene */
   unsigned int front_sheet[PHOTILE_SURFACE_WIDTH]; /* of the triangle's side 0 */
   unsigned int back_sheet[PHOTILE_SURFACE_WIDTH];  /* of its side 1 */
   float front_exposure[PHOTILE_SURFACE_WIDTH];     /* that counts of its area: 1, or less where */
