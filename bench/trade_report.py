@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""Measures the trade of three views and writes the tables of docs/trade.md and docs/trade/*.svg.
+
+    bench/trade_report.py [--scenes FOLDER] [--redraw]
+
+FOLDER holds classroom/classroom-diffuse.gltf and references/; without it, only the bundled scenes
+are measured. Needs the built command.
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs/trade.md"
+BEGIN, END = "<!-- begin: bench/trade_report.py -->\n", "<!-- end -->\n"
+WANTED = (0.10, 0.05, 0.02, 0.01)
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scenes", type=pathlib.Path, metavar="FOLDER",
+                        default=os.environ.get("PHOTILE_SHARED_SCENES", ROOT / "../shared/scenes"),
+                        help="default: PHOTILE_SHARED_SCENES, else ../shared/scenes")
+    parser.add_argument("--photile", type=pathlib.Path, metavar="COMMAND",
+                        default=ROOT / "build/release/photile",
+                        help="the command; default: %(default)s")
+    parser.add_argument("--redraw", action="store_true", help="use the results in out/trade")
+    return parser.parse_args()
+
+
+def subjects(scenes):
+    """Name, scene file and further options of each view."""
+    views = [("cornell-box", ROOT / "scenes/cornell-box/cornell-box.obj", []),
+             ("living-room", ROOT / "scenes/living-room/living-room.gltf", ["--quota", "power"])]
+    classroom = pathlib.Path(scenes) / "classroom/classroom-diffuse.gltf"
+    if classroom.is_file():
+        reference = pathlib.Path(scenes) / "references/classroom-diffuse-512x384.exr"
+        views.append(("classroom", classroom, ["--quota", "power", "--size", "512x384",
+                                               "--reference", str(reference)]))
+    return views
+
+
+def settings(point):
+    text = f"`--photons {point['photons']} -k {point['neighbours']} --samples {point['samples']}"
+    if point["least_neighbours"]:
+        text += f" --least-neighbours {point['least_neighbours']}"
+    varied = {"radius": f" --radius {point['radius']:.3g}",
+              "angle": f" --angle {point['angle_degrees']:g}",
+              "maps": f" --maps {point['maps']}",
+              "structure": f" --structure {point['structure']}",
+              "cell": f" --photons-per-cell {point['photons_per_cell']:g}",
+              "area": f" --area {point.get('area')}",
+              "kernel": f" --kernel {point.get('kernel')}"}
+    return text + varied.get(point["varied"], "") + "`"
+
+
+def row(label, point):
+    memory = (point["host_bytes"] + point["device_bytes"]) / 1e6
+    return (f"| {label} | {point['first_picture_seconds']:.2f} s "
+            f"| {1e3 * point['frame_seconds']:.0f} ms | {memory:.0f} MB | {settings(point)} |")
+
+
+def table(record):
+    points = record["renderings"]
+    lines = ["| error | first picture | each frame | memory | fastest settings |",
+             "|--:|--:|--:|--:|---|"]
+    for wanted in WANTED:
+        within = [p for p in points if p["relative_error"] <= wanted]
+        label = f"{100 * wanted:.0f}%"
+        if within:
+            lines.append(row(label, min(within, key=lambda p: p["first_picture_seconds"])))
+        else:
+            lines.append(f"| {label} | - | - | - | none of those tried |")
+    best = min(points, key=lambda p: p["relative_error"])
+    lines.append(row(f"{100 * best['relative_error']:.1f}% (least)", best))
+    return "\n".join(lines)
+
+
+def section(name, record):
+    size = f"{record['width']}x{record['height']}"
+    noise = ""
+    if "reference_relative_mse" in record:
+        own = math.sqrt(record["reference_relative_mse"])
+        noise = (f" The reference has {record['reference_samples']} paths a pixel and itself an "
+                 f"error of {100 * own:.1f}%, which is in all figures.")
+    return (f"### {name}\n\n{size} pixels.{noise}\n\n![Error against time](trade/{name}.svg)\n\n"
+            f"{table(record)}\n\n")
+
+
+def main():
+    options = arguments()
+    if not options.photile.is_file():
+        sys.exit(f"trade_report.py: error: {options.photile} is missing; "
+                 "build it with cmake/build.sh")
+    folder = ROOT / "docs/trade"
+    folder.mkdir(exist_ok=True)
+    text = ""
+    for name, scene, more in subjects(options.scenes):
+        out = ROOT / "out/trade" / name
+        if not options.redraw:
+            subprocess.run([options.photile, "trade", scene, "-o", out, *more], check=True)
+        record = json.loads((out / "trade.json").read_text())
+        (folder / f"{name}.svg").write_text((out / "trade.svg").read_text())
+        text += section(name, record)
+        device = record["devices"][0]
+    text += (f"{os.cpu_count()} cores, {device}; load average at the end "
+             f"{os.getloadavg()[0]:.1f}.\n\n")
+    page = PAGE.read_text()
+    before, rest = page.split(BEGIN)
+    after = rest.split(END)[1]
+    PAGE.write_text(before + BEGIN + "\n" + text + END + after)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (OSError, subprocess.CalledProcessError) as error:
+        sys.exit(f"trade_report.py: error: {error}")
