@@ -100,12 +100,13 @@ void warn_of_noise(const Reference& reference, std::span<const TradePoint> point
 
 void write_files(const TradeFiles& files, const TradeOptions& options, const Reference& reference,
                  std::span<const TradePoint> points, std::span<const Device> devices) {
-  nlohmann::json record{{"photile", version_text()},
-                        {"scene", std::filesystem::path(options.render.scene).filename().string()},
-                        {"width", reference.picture.width},
-                        {"height", reference.picture.height},
-                        {"devices", nlohmann::json::array()},
-                        {"renderings", trade_json(points)}};
+  nlohmann::ordered_json record{
+      {"photile", version_text()},
+      {"scene", std::filesystem::path(options.render.scene).filename().string()},
+      {"width", reference.picture.width},
+      {"height", reference.picture.height},
+      {"devices", nlohmann::json::array()},
+      {"renderings", trade_json(points)}};
   for (const Device& device : devices) record["devices"].push_back(device.info().name);
   if (reference.relative_mse >= 0) {
     record["reference_samples"] = options.reference_samples;

@@ -27,6 +27,7 @@ std::string settings_text(const TradePoint& point) {
   if (point.varied == "cell") {
     text += fmt::format(" --photons-per-cell {}", parameters.photons_per_cell);
   }
+  if (point.varied == "area") text += fmt::format(" --area {}", name_of(parameters.area));
   if (point.varied == "maps") text += fmt::format(" --maps {}", name_of(parameters.maps));
   if (point.varied == "structure") {
     text += fmt::format(" --structure {}", name_of(parameters.structure));
@@ -55,27 +56,8 @@ std::string point_row(const std::string& error, const TradePoint& point) {
 
 }  // namespace
 
-std::string trade_csv(std::span<const TradePoint> points) {
-  std::string text =
-      "varied,photons,neighbours,least_neighbours,radius_metres,angle_degrees,photons_per_cell,"
-      "maps,structure,"
-      "samples,photons_stored,relative_error,relative_mse,mean_ratio,worst_region,psnr_decibel,"
-      "first_picture_seconds,frame_seconds,host_bytes,device_bytes,on_front\n";
-  for (const TradePoint& p : points) {
-    text += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.varied,
-        p.parameters.photons.emitted_photons, p.parameters.neighbours,
-        p.parameters.least_neighbours, p.radius, p.parameters.angle_degrees,
-        p.parameters.photons_per_cell, name_of(p.parameters.maps), name_of(p.parameters.structure),
-        p.parameters.film.samples_per_pixel, p.stored_photons, p.error.relative_error(),
-        p.error.relative_mse, p.error.mean_ratio, p.error.worst_region, p.error.psnr,
-        p.first_picture_seconds, p.frame_seconds, p.host_bytes, p.device_bytes, p.on_front ? 1 : 0);
-  }
-  return text;
-}
-
-nlohmann::json trade_json(std::span<const TradePoint> points) {
-  nlohmann::json list = nlohmann::json::array();
+nlohmann::ordered_json trade_json(std::span<const TradePoint> points) {
+  auto list = nlohmann::ordered_json::array();
   for (const TradePoint& p : points) {
     list.push_back({{"varied", p.varied},
                     {"photons", p.parameters.photons.emitted_photons},
@@ -84,6 +66,7 @@ nlohmann::json trade_json(std::span<const TradePoint> points) {
                     {"radius", p.radius},
                     {"angle_degrees", p.parameters.angle_degrees},
                     {"photons_per_cell", p.parameters.photons_per_cell},
+                    {"area", name_of(p.parameters.area)},
                     {"maps", name_of(p.parameters.maps)},
                     {"structure", name_of(p.parameters.structure)},
                     {"samples", p.parameters.film.samples_per_pixel},
@@ -100,6 +83,22 @@ nlohmann::json trade_json(std::span<const TradePoint> points) {
                     {"on_front", p.on_front}});
   }
   return list;
+}
+
+std::string trade_csv(std::span<const TradePoint> points) {
+  std::string header, rows;
+  for (const auto& point : trade_json(points)) {
+    std::string row;
+    header.clear();
+    for (const auto& [name, value] : point.items()) {
+      const char* comma = header.empty() ? "" : ",";
+      header += fmt::format("{}{}", comma, name);
+      row +=
+          fmt::format("{}{}", comma, value.is_string() ? value.get<std::string>() : value.dump());
+    }
+    rows += row + "\n";
+  }
+  return header + "\n" + rows;
 }
 
 std::vector<std::string> trade_table(std::span<const TradePoint> points) {

@@ -98,6 +98,16 @@ struct Estimator::Impl {
   }
 };
 
+std::string_view name_of(AreaMode area) {
+  switch (area) {
+    case AreaMode::disc:
+      return "disc";
+    case AreaMode::clipped:
+      return "clipped";
+  }
+  return "unknown";
+}
+
 Estimator::Estimator(const PhotonMaps& maps, const Scene& scene,
                      const EstimateParameters& parameters) {
   if (parameters.neighbours < 1 || parameters.neighbours > limits::max_neighbours) {

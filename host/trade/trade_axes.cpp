@@ -33,6 +33,7 @@ TradeAxes TradeAxes::around(const RenderParameters& parameters) {
   axes.photons_per_cell = scaled<float>(parameters.photons_per_cell, {0.25, 4}, 1e-3f, 1e6f);
   axes.samples =
       scaled<int>(parameters.film.samples_per_pixel, {0.25, 4}, 1, limits::max_samples_per_pixel);
+  axes.areas = {AreaMode::disc};
   axes.maps = {MapMode::naive, MapMode::triangle, MapMode::patch};
   for (const MapStructure structure : all_map_structures) {
     if (structure != MapStructure::brute_force) axes.structures.push_back(structure);

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "photile/defaults.hpp"
@@ -20,6 +21,9 @@ enum class AreaMode {
   disc,    ///< the disc through the k-th photon (Jensen 2001): dark at borders and in corners
   clipped  ///< the part of it that is surface which light reaches, near the hit's plane
 };
+
+/// "disc", "clipped".
+std::string_view name_of(AreaMode area);
 
 struct EstimateParameters {
   int neighbours = defaults::neighbours;  ///< k

@@ -26,6 +26,7 @@ struct TradeAxes {
   std::vector<double> angles;            ///< degrees
   std::vector<float> photons_per_cell;   ///< of uniform grids
   std::vector<int> samples;              ///< per pixel
+  std::vector<AreaMode> areas;           ///< disc has dark borders
   std::vector<MapMode> maps;             ///< naive has dark edges
   std::vector<MapStructure> structures;  ///< same picture, other time
 
