@@ -131,9 +131,8 @@ page is written by `bench/compare_with_references.py`.
 the median) are left out.
   About 0.004 of it is the noise of the references.
 
-Borders and corners are too dark: the density is that of a whole disc, also where a part of the disc
-hangs over the edge of the surface. Thin things suffer most. A later version measures the part that
-lies on the surface.
+What is left is the noise of k = 50, and light that falls through gaps onto what lies behind them; see
+[density](density.md).
 
 **Settings**: `--size {WIDTH}x{HEIGHT} {' '.join(SETTINGS)}`,
 the rest as it is by default.
