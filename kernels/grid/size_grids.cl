@@ -45,7 +45,10 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
     const float width_u = shape->width_u + 2.0f * radius;
     const float width_v = shape->width_v + 2.0f * radius;
     const float area = shape->area + shape->perimeter * radius + 3.14159265f * radius * radius;
-    const float cell_area = area * photons_per_cell / ((float)count * map_crowding[map]);
+    // Infinite where the radius is near the root of what a float holds; a map of photons must not
+    // be without cells.
+    const float cell_area =
+        fmin(area * photons_per_cell / ((float)count * map_crowding[map]), FLT_MAX);
     const float cell_width = fmax(sqrt(cell_area / (float)PHOTILE_CELL_ASPECT),
                                   fmax(width_u, width_v) / (float)(MAX_CELLS_PER_SIDE - 1));
     const float cell_height = (float)PHOTILE_CELL_ASPECT * cell_width;
