@@ -30,7 +30,7 @@ done
   echo "bench/run_all.sh: error: no matplotlib; install the Debian package python3-matplotlib" >&2
   exit 1
 }
-programs=(knn paper build frame relight lights kernels startup scale)
+programs=(knn paper build frame relight lights kernels startup scale borders)
 if [[ -z $benches ]]; then
   benches=build/release/bench
   cmake --preset release >/dev/null
@@ -43,4 +43,5 @@ for bench in "${programs[@]}"; do
   "$benches/photile_bench_$bench" --output "$results/$bench.json" "${options[@]}" "${extra[@]}"
 done
 bench/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
+[[ $results != docs/benchmarks ]] || bench/report_borders.py
 exec /usr/bin/python3 bench/report.py --results "$results" --page "$results.md"

@@ -15,9 +15,10 @@ import pathlib
 import subprocess
 import sys
 
+from report_section import replace_section
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/trade.md"
-BEGIN, END = "<!-- begin: bench/trade_report.py -->\n", "<!-- end -->\n"
 WANTED = (0.10, 0.05, 0.02, 0.01)
 
 
@@ -109,11 +110,8 @@ def main():
         text += section(name, record)
         device = record["devices"][0]
     text += (f"{os.cpu_count()} cores, {device}; load average at the end "
-             f"{os.getloadavg()[0]:.1f}.\n\n")
-    page = PAGE.read_text()
-    before, rest = page.split(BEGIN)
-    after = rest.split(END)[1]
-    PAGE.write_text(before + BEGIN + "\n" + text + END + after)
+             f"{os.getloadavg()[0]:.1f}.\n")
+    replace_section(PAGE, "trade_report.py", text)
 
 
 if __name__ == "__main__":
