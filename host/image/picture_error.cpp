@@ -42,6 +42,26 @@ double luminance_of(const Planes& planes, std::size_t pixel) {
   return luminance(glm::dvec3((*planes[0])[pixel], (*planes[1])[pixel], (*planes[2])[pixel]));
 }
 
+/// The pixels of a mask and the eight around each.
+std::vector<bool> grown(const std::vector<bool>& mask, int width, int height) {
+  std::vector<bool> result(mask.size());
+  const auto index = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (!mask[index(x, y)]) continue;
+      for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v) {
+        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+          result[index(u, v)] = true;
+        }
+      }
+    }
+  }
+  return result;
+}
+
 struct Tile {
   double picture = 0, reference = 0;
   std::size_t counted = 0, pixels = 0;
@@ -113,10 +133,14 @@ RelativeErrorWeights::RelativeErrorWeights(const Image& reference) {
   if (middle != sorted.end()) std::nth_element(sorted.begin(), middle, sorted.end());
   const double lamp = middle != sorted.end() ? lamp_level * *middle : 0.0;
 
+  std::vector<bool> lamps(luminances.size());
+  for (std::size_t pixel = 0; pixel < lamps.size(); ++pixel) {
+    lamps[pixel] = !(luminances[pixel] <= lamp);
+  }
+  counts_ = grown(lamps, reference.width, reference.height);
+  counts_.flip();
   double sum = 0;
-  counts_.resize(luminances.size());
   for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel) {
-    counts_[pixel] = luminances[pixel] <= lamp;
     if (!counts_[pixel]) continue;
     ++counted_;
     for (const auto* plane : planes) sum += (*plane)[pixel];

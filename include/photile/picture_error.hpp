@@ -9,7 +9,8 @@
 namespace photile {
 
 /// Errors of a picture. Pixels that see a lamp, more than 20 times as bright as the reference's
-/// median, are left out of all of them: their share of a mean would hide the room's.
+/// median, are left out of all of them, and so are those next to them: their share of a mean would
+/// hide the room's, and one sample more or less on the border of a lamp that of all other pixels.
 struct PictureError {
   /// Mean over pixels and channels of (a - b)^2 / (b^2 + 0.01 m^2): a the picture, b the reference,
   /// m the mean of b. Its root is the error relative to what is seen, in a pixel.
@@ -31,7 +32,7 @@ struct PictureError {
 PictureError picture_error(const Image& picture, const Image& reference);
 
 /// The pixels that count, and what a squared difference of their channels is divided by: 3 x
-/// pixels values, 0 where the pixel sees a lamp. Errors: as above.
+/// pixels values, 0 where the pixel sees a lamp or is next to one that does. Errors: as above.
 class RelativeErrorWeights {
  public:
   explicit RelativeErrorWeights(const Image& reference);

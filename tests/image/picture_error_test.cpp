@@ -72,12 +72,15 @@ TEST_CASE("one wrong region is the worst region") {
   CHECK(picture_error(picture, reference).worst_region == Approx(0.5).epsilon(1e-6));
 }
 
-TEST_CASE("pixels that see a lamp in the reference do not count") {
+TEST_CASE("pixels that see a lamp in the reference do not count, nor do those next to them") {
   Image reference = grey(1.0f), picture = grey(1.0f);
-  for (auto& plane : reference.channels) plane[5] = 1000.0f;
-  const PictureError error = picture_error(picture, reference);
-  CHECK(error.relative_mse == 0);
-  CHECK(error.mean_ratio == 1);
+  const auto at = [](int x, int y) { return static_cast<std::size_t>(y * side + x); };
+  for (auto& plane : reference.channels) plane[at(5, 7)] = 1000.0f;
+  for (auto& plane : picture.channels) plane[at(6, 8)] = 30.0f;  // the lamp's border
+  CHECK(picture_error(picture, reference).relative_mse == 0);
+  CHECK(picture_error(picture, reference).mean_ratio == 1);
+  for (auto& plane : picture.channels) plane[at(7, 8)] = 30.0f;  // beyond
+  CHECK(picture_error(picture, reference).relative_mse > 0.5);
 }
 
 TEST_CASE("pictures that cannot be compared are refused") {
