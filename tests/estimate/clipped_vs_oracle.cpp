@@ -56,7 +56,7 @@ void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits
 
 }  // namespace
 
-TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's") {
+TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's", "[long]") {
   for (const int cells : {1, 3, 40}) {
     Scene scene = test::empty_scene();
     test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, cells);

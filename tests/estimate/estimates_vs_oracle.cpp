@@ -38,7 +38,7 @@ TEST_CASE("irradiance equals the oracle's for one light") {
   for (const int k : {1, 2, 16, 50, 400}) check_irradiance(scene, photons, hits, 0.2, k);
 }
 
-TEST_CASE("irradiance equals the oracle's per light, for few and for many lights") {
+TEST_CASE("irradiance equals the oracle's per light, for few and for many lights", "[long]") {
   // One more than fit registers, a hash table with places to spare and one without, two-byte
   // lights.
   for (const std::size_t lights : {2u, 8u, 9u, 40u, 200u, 300u}) {

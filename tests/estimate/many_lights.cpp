@@ -64,7 +64,7 @@ std::vector<glm::vec3> layer(const std::vector<glm::vec3>& dense, std::size_t li
 
 }  // namespace
 
-TEST_CASE("each light's estimates are those of its photons alone") {
+TEST_CASE("each light's estimates are those of its photons alone", "[long]") {
   const std::size_t lights = GENERATE(5u, 64u);
   const bool glossy = GENERATE(false, true);
   // More than kernels list before they add, too.

@@ -63,7 +63,7 @@ TEST_CASE("maps of patches find the oracle's neighbours on a fine torus") {
   check_modes(scene, 20'000, 300, 0.3, every_structure, {1, 50, 400});
 }
 
-TEST_CASE("maps of patches find the oracle's neighbours on a fine sphere") {
+TEST_CASE("maps of patches find the oracle's neighbours on a fine sphere", "[long]") {
   check_modes(sphere(), 20'000, 300, 0.25, every_structure, {16, 50});
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("maps of patches find the oracle's neighbours in the Cornell box") {
   check_modes(scene, 20'000, 300, 0.08, every_structure, {1, 50, 300});
 }
 
-TEST_CASE("maps of patches find the oracle's neighbours in the living room") {
+TEST_CASE("maps of patches find the oracle's neighbours in the living room", "[long]") {
   const Scene scene = load_scene(source_folder / "scenes/living-room/living-room.gltf");
   check_modes(scene, 60'000, 400, 0.4, every_structure, {50});
 }
