@@ -22,8 +22,7 @@ typedef struct {
 } PhotileSurfaceNode;
 
 #define PHOTILE_PIECE_BORDER 0x80000000u /* in `triangle`: the piece is a border edge */
-#define PHOTILE_SHEET_UNLIT 0x80000000u  /* in `front_sheet`, `back_sheet`: no photon landed on it \
-                                          */
+#define PHOTILE_SHEET_UNLIT 0x80000000u  /* in `front_sheet`, `back_sheet`: without photons */
 #define PHOTILE_NO_FACET 0xFFFFFFFFu     /* in `facet`: none whose border is known */
 
 /* Eight pieces. A triangle has its corners a, b, c. A border edge runs from a to b; c is the unit
