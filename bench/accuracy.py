@@ -8,12 +8,11 @@ references. SCENES is the folder that holds kitchen/ and references/. Takes tens
 the built command and the Debian packages python3-matplotlib, python3-numpy and python3-openimageio.
 """
 
-import argparse
 import json
-import os
-import pathlib
 import subprocess
 import sys
+
+import scene_arguments
 
 try:
     import numpy as np
@@ -24,7 +23,7 @@ except ImportError as missing:
     sys.exit(f"accuracy.py: error: {missing}; install the Debian packages python3-matplotlib, "
              "python3-numpy and python3-openimageio, and run it with /usr/bin/python3")
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = scene_arguments.ROOT
 RESULTS = ROOT / "docs/accuracy"
 PHOTONS = [10_000 * 4**i for i in range(5)]
 LEAST_NEIGHBOURS = 12
@@ -32,13 +31,7 @@ REFERENCE_SAMPLES = 512
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", nargs="?", type=pathlib.Path, metavar="SCENES",
-                        default=os.environ.get("PHOTILE_SHARED_SCENES", ROOT / "../shared/scenes"),
-                        help="default: PHOTILE_SHARED_SCENES, else ../shared/scenes")
-    parser.add_argument("--photile", type=pathlib.Path, metavar="COMMAND",
-                        default=ROOT / "build/release/photile",
-                        help="the command; default: %(default)s")
+    parser = scene_arguments.parser(__doc__.splitlines()[0])
     parser.add_argument("--only", choices=("validation", "consistency"),
                         help="measure this alone, and take the other from docs/accuracy")
     parser.add_argument("--photons", default="4M", help="of photile validate; default: %(default)s")

@@ -7,13 +7,13 @@ SCENES is the folder that holds kitchen/, classroom/ and references/. Prints a M
 the built command and the Debian packages python3-numpy and python3-openimageio.
 """
 
-import argparse
-import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
+
+import scene_arguments
 
 try:
     import picture_error
@@ -21,19 +21,12 @@ except ImportError as missing:
     sys.exit(f"compare_areas.py: error: {missing}; install the Debian packages python3-numpy and "
              "python3-openimageio, and run it with /usr/bin/python3")
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 SIZE = "512x384"
 AREAS = ("disc", "clipped")
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", nargs="?", type=pathlib.Path, metavar="SCENES",
-                        default=os.environ.get("PHOTILE_SHARED_SCENES", ROOT / "../shared/scenes"),
-                        help="default: PHOTILE_SHARED_SCENES, else ../shared/scenes")
-    parser.add_argument("--photile", type=pathlib.Path, metavar="COMMAND",
-                        default=ROOT / "build/release/photile",
-                        help="the command; default: %(default)s")
+    parser = scene_arguments.parser(__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=3,
                         help="of each area in turn; the fastest counts; default: %(default)s")
     return parser.parse_args()

@@ -7,7 +7,6 @@ SCENES is the folder that holds kitchen/, classroom/ and references/. Needs the 
 the Debian packages python3-numpy and python3-openimageio.
 """
 
-import argparse
 import json
 import os
 import pathlib
@@ -15,26 +14,22 @@ import resource
 import subprocess
 import sys
 
+import scene_arguments
+
 try:
     import picture_error
 except ImportError as missing:
     sys.exit(f"compare_with_references.py: error: {missing}; install the Debian packages "
              "python3-numpy and python3-openimageio, and run it with /usr/bin/python3")
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = scene_arguments.ROOT
 SCENES = ("kitchen", "classroom")
 WIDTH, HEIGHT = 512, 384
 SETTINGS = ("--photons", "1M", "--neighbours", "50", "--quota", "power", "--samples", "16")
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", nargs="?", type=pathlib.Path, metavar="SCENES",
-                        default=os.environ.get("PHOTILE_SHARED_SCENES", ROOT / "../shared/scenes"),
-                        help="default: PHOTILE_SHARED_SCENES, else ../shared/scenes")
-    parser.add_argument("--photile", type=pathlib.Path, metavar="COMMAND",
-                        default=ROOT / "build/release/photile",
-                        help="the command; default: %(default)s")
+    parser = scene_arguments.parser(__doc__.splitlines()[0])
     parser.add_argument("--redraw", action="store_true",
                         help="use the pictures in out/references instead of rendering")
     return parser.parse_args()

@@ -1,13 +1,12 @@
 #!/usr/bin/python3
 """Measures the trade of three views and writes the tables of docs/trade.md and docs/trade/*.svg.
 
-    bench/trade_report.py [--scenes FOLDER] [--redraw]
+    bench/trade_report.py [SCENES] [--redraw]
 
-FOLDER holds classroom/classroom-diffuse.gltf and references/; without it, only the bundled scenes
-are measured. Needs the built command.
+SCENES is a folder with classroom/classroom-diffuse.gltf and references/; without it, only the
+bundled scenes are measured. Needs the built command.
 """
 
-import argparse
 import json
 import math
 import os
@@ -15,21 +14,16 @@ import pathlib
 import subprocess
 import sys
 
+import scene_arguments
 from report_section import replace_section
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = scene_arguments.ROOT
 PAGE = ROOT / "docs/trade.md"
 WANTED = (0.10, 0.05, 0.02, 0.01)
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--scenes", type=pathlib.Path, metavar="FOLDER",
-                        default=os.environ.get("PHOTILE_SHARED_SCENES", ROOT / "../shared/scenes"),
-                        help="default: PHOTILE_SHARED_SCENES, else ../shared/scenes")
-    parser.add_argument("--photile", type=pathlib.Path, metavar="COMMAND",
-                        default=ROOT / "build/release/photile",
-                        help="the command; default: %(default)s")
+    parser = scene_arguments.parser(__doc__.splitlines()[0])
     parser.add_argument("--redraw", action="store_true", help="use the results in out/trade")
     return parser.parse_args()
 

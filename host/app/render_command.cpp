@@ -122,8 +122,6 @@ LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::spa
                                            record.mix, options.parameters, progress));
   }
   RenderResult result = render(scene, camera, devices, options.parameters, progress);
-  record.area = options.area;
-  record.maps = options.maps;
   record.parameters = options.parameters;
   for (const Device& device : devices) record.devices.push_back(device.info());
   record.device_shares = result.device_shares;

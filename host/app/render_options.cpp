@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "app/light_group_option.hpp"
@@ -23,17 +24,17 @@ constexpr std::array integrators{std::pair{"photon-map", Integrator::photon_map}
 constexpr std::array quotas{std::pair{"balanced", PhotonQuota::balanced},
                             std::pair{"power", PhotonQuota::power},
                             std::pair{"equal", PhotonQuota::equal}};
-constexpr std::array map_modes{
-    std::pair{"naive", MapMode::naive}, std::pair{"triangle", MapMode::triangle},
-    std::pair{"patch", MapMode::patch}, std::pair{"auto", MapMode::automatic}};
-constexpr std::array structures{std::pair{"uniform-grid", MapStructure::uniform_grid},
-                                std::pair{"kdtree-2d", MapStructure::kdtree_2d},
-                                std::pair{"kdtree-3d", MapStructure::kdtree_3d},
-                                std::pair{"kdtree-global", MapStructure::kdtree_global},
-                                std::pair{"brute-force", MapStructure::brute_force}};
+/// Values with the names that the library gives them.
+template <class Value, std::size_t count>
+auto named(const std::array<Value, count>& values) {
+  std::array<std::pair<std::string_view, Value>, count> table;
+  for (std::size_t i = 0; i < count; ++i) table[i] = {name_of(values[i]), values[i]};
+  return table;
+}
 
-constexpr std::array areas{std::pair{"disc", AreaMode::disc},
-                           std::pair{"clipped", AreaMode::clipped}};
+const auto map_modes = named(all_map_modes);
+const auto structures = named(all_map_structures);
+const auto areas = named(all_area_modes);
 
 template <class Table>
 std::vector<std::string> words_of(const Table& table) {
@@ -45,7 +46,7 @@ std::vector<std::string> words_of(const Table& table) {
 template <class Table, class Value>
 std::string word_for(const Table& table, Value wanted) {
   for (const auto& [word, value] : table) {
-    if (value == wanted) return word;
+    if (value == wanted) return std::string(word);
   }
   return {};
 }

@@ -66,10 +66,11 @@ json parameters_json(const RunRecord& record) {
   if (record.has_photons()) {
     result.update({{"photons_emitted", parameters.photons.emitted_photons},
                    {"neighbours", parameters.neighbours},
+                   {"least_neighbours", parameters.least_neighbours},
                    {"radius", record.radius},
                    {"angle_degrees", parameters.angle_degrees},
-                   {"area", record.area},
-                   {"maps", record.maps},
+                   {"area", name_of(parameters.area_used())},
+                   {"maps", name_of(parameters.maps)},
                    {"photons_per_cell", parameters.photons_per_cell},
                    {"passes", record.passes}});
   }
@@ -82,11 +83,11 @@ void set_photon_attributes(std::map<std::string, std::string>& attributes,
   attributes["photile.photons_emitted"] = std::to_string(parameters.photons.emitted_photons);
   attributes["photile.photons_stored"] = std::to_string(record.stored_photons);
   attributes["photile.neighbours"] = std::to_string(parameters.neighbours);
+  attributes["photile.least_neighbours"] = std::to_string(parameters.least_neighbours);
   attributes["photile.radius"] = fmt::format("{} m", record.radius);
   attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
-  attributes["photile.area"] = record.area;
-  attributes["photile.area"] = record.area;
-  attributes["photile.maps"] = record.maps;
+  attributes["photile.area"] = name_of(parameters.area_used());
+  attributes["photile.maps"] = name_of(parameters.maps);
   attributes["photile.passes"] = std::to_string(record.passes);
   attributes["photile.device"] = devices_text(record.devices);
 }

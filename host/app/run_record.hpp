@@ -21,8 +21,6 @@ struct RunRecord {
   std::string scene;  ///< the file's name, without folders: a picture should not tell them
   std::string camera;
   std::string integrator;  ///< "photon-map" or "path", which has no devices, maps and photons
-  std::string area;        ///< "disc" or "clipped"
-  std::string maps;        ///< "naive", "triangle", "patch" or "auto"
   RenderParameters parameters;
   std::vector<DeviceInfo> devices;
   std::vector<double> device_shares;  ///< of the hits, per device

@@ -66,7 +66,7 @@ nlohmann::ordered_json trade_json(std::span<const TradePoint> points) {
                     {"radius", p.radius},
                     {"angle_degrees", p.parameters.angle_degrees},
                     {"photons_per_cell", p.parameters.photons_per_cell},
-                    {"area", name_of(p.parameters.area)},
+                    {"area", name_of(p.parameters.area_used())},
                     {"maps", name_of(p.parameters.maps)},
                     {"structure", name_of(p.parameters.structure)},
                     {"samples", p.parameters.film.samples_per_pixel},

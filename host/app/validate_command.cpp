@@ -19,6 +19,7 @@
 #include "app/validators.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/quiet_progress.hpp"
 #include "validation/validate.hpp"
 
 namespace photile::app {
@@ -32,16 +33,6 @@ struct ValidateOptions {
   int threads = 0;
   std::string json;  ///< file, "" = none
   bool quiet = false;
-};
-
-/// Passes the wish to stop on, and nothing else: a case has hundreds of stages.
-class Silent : public Progress {
- public:
-  explicit Silent(const Progress& outer) : outer_(outer) {}
-  bool cancelled() const override { return outer_.cancelled(); }
-
- private:
-  const Progress& outer_;
 };
 
 std::vector<validation::AnalyticCase> chosen_cases(const std::string& only) {
@@ -74,8 +65,8 @@ void run_validate(ValidateOptions& options) {
   std::vector<validation::ValidationRow> rows;
   progress.begin("validate", cases.size(), "cases");
   for (const auto& each : cases) {
-    Silent silent(progress);
-    const auto of_case = validation::validate(each, devices, parameters, silent);
+    QuietProgress quiet(progress);
+    const auto of_case = validation::validate(each, devices, parameters, quiet);
     rows.insert(rows.end(), of_case.begin(), of_case.end());
     progress.advance(1);
   }

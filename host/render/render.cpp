@@ -162,7 +162,7 @@ class Rendering {
   }
 
   void find_surface(const Photons& photons) {
-    if (parameters_.area != AreaMode::clipped || parameters_.maps == MapMode::naive) return;
+    if (parameters_.area_used() != AreaMode::clipped) return;
     const Stopwatch stopwatch;
     surface_ = std::make_shared<const SurfaceIndex>(index_surface(
         scene_, landed_on(scene_, photons), first_.radius, parameters_.angle_degrees));

@@ -4,6 +4,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
+#include "photile/quiet_progress.hpp"
 #include "photile/trade.hpp"
 
 namespace photile {
@@ -19,16 +20,6 @@ std::uint64_t programs_built(std::span<const Device> devices) {
   for (const Device& device : devices) count += device.programs_built();
   return count;
 }
-
-/// Passes the wish to stop on; the stages of the renderings stay untold.
-class Unheard : public Progress {
- public:
-  explicit Unheard(const Progress& listener) : listener_(listener) {}
-  bool cancelled() const override { return listener_.cancelled(); }
-
- private:
-  const Progress& listener_;
-};
 
 class Trade {
  public:
@@ -58,12 +49,12 @@ class Trade {
 
   /// Without the compilation of kernels, which a user pays once: where there was any, again.
   Timed timed_render(const RenderParameters& parameters) const {
-    Unheard unheard(progress_);
+    QuietProgress quiet(progress_);
     for (bool again = true;; again = false) {
       const std::uint64_t built = programs_built(subject_.devices);
       const Stopwatch stopwatch;
       RenderResult result =
-          render(subject_.scene, subject_.camera, subject_.devices, parameters, unheard);
+          render(subject_.scene, subject_.camera, subject_.devices, parameters, quiet);
       const double seconds = stopwatch.seconds();
       if (!again || programs_built(subject_.devices) == built) return {std::move(result), seconds};
     }

@@ -1,6 +1,7 @@
 // The radiance estimate: k nearest photons of each primary hit, on the device.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -24,6 +25,7 @@ enum class AreaMode {
 
 /// "disc", "clipped".
 std::string_view name_of(AreaMode area);
+inline constexpr std::array all_area_modes = {AreaMode::disc, AreaMode::clipped};
 
 struct EstimateParameters {
   int neighbours = defaults::neighbours;  ///< k

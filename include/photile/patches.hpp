@@ -2,6 +2,7 @@
 // enter each photon in dozens of maps.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -22,6 +23,8 @@ enum class MapMode {
 
 /// "naive", "triangle", "patch", "auto".
 std::string_view name_of(MapMode mode);
+inline constexpr std::array all_map_modes = {MapMode::naive, MapMode::triangle, MapMode::patch,
+                                             MapMode::automatic};
 
 /// Triangles in disjoint sets. Patch p owns two maps: map 2 p holds the photons of its members,
 /// map 2 p + 1 those of the members' other sides. Without patches each sided triangle s owns map s.

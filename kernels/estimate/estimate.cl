@@ -50,6 +50,6 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     Hit hit;
     load_hit(&hits, index, &hit);
     expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected,
-                            CLIPPED_VALUES & estimates);
+                            &estimates CLIPPED_VALUES);
   }
 }

@@ -5,8 +5,7 @@
 // Symbols the host defines: those of estimate/arguments.clh and estimate/sums.clh, and
 //   LIST_CAPACITY   k
 
-#include "estimate/accumulate.clh"
-#include "estimate/area.clh"
+#include "estimate/estimate_list.clh"
 #include "estimate/rings.clh"
 
 // One work-item per hit; arguments as in estimate/estimate.cl.
@@ -43,23 +42,6 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     search.filter = filter;
 #endif
     nearest_in_rings(&list, &search, grid, cell_start);
-    const float squared_radius = squared_radius_of(&list);
-#ifdef CLIPPED
-    float area;
-    const float height =
-        clip_disc_of_hit(&surface, &hit, squared_radius, radius, &clearance, &area);
-#else
-    const float area = estimate_area(squared_radius, radius);
-#endif
-    Sums sums;
-    begin_sums(&sums, &estimates, index);
-    // A full list's farthest photon, at 0, only sets the radius (but for k = 1).
-    for (uint i = list.size == k && k > 1 ? 1 : 0; i < list.size; ++i) {
-#ifdef CLIPPED
-      if (!entry_in_slab(&entries, list.entry[i], &hit, height)) continue;
-#endif
-      add_entry(&entries, list.entry[i], &hit, &sums);
-    }
-    end_sums(&sums, 1.0f / area, &estimates, index);
+    estimate_list(&entries, &list, &hit, k, radius, &estimates CLIPPED_VALUES);
   }
 }

@@ -18,10 +18,7 @@
 bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
                    __global const uint* cell_start, const Hits* hits, uint first, uint count,
                    uint k, float radius, float* expected, int* undone,
-#ifdef CLIPPED
-                   const Surface* surface, Clearance* clearance,
-#endif
-                   const Estimates* estimates) {
+                   const Estimates* estimates CLIPPED_PARAMETERS) {
   Tile tile;
   float coordinates[3][VECTOR_WIDTH];
   float2 low = INFINITY, high = -INFINITY;
@@ -162,7 +159,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     // Hits on a mixed map differ in which candidates they may take.
     if (count >= LEAST_TILE && k > 1 && !grid->mixed) {
       one_by_one = !estimate_tile(&entries, grid, cell_start, &hits, first, count, k, radius,
-                                  &expected, undone, CLIPPED_VALUES & estimates);
+                                  &expected, undone, &estimates CLIPPED_VALUES);
     }
 #endif
     for (uint i = 0; i < count; ++i) {
@@ -170,7 +167,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
       Hit hit;
       load_hit(&hits, first + i, &hit);
       expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected,
-                              CLIPPED_VALUES & estimates);
+                              &estimates CLIPPED_VALUES);
     }
     first += count;
   }

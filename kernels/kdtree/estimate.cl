@@ -5,8 +5,7 @@
 // kdtree/traverse.clh, and
 //   LIST_CAPACITY   k, where the list is in private memory; else LIST_IN_GLOBAL_MEMORY
 
-#include "estimate/accumulate.clh"
-#include "estimate/area.clh"
+#include "estimate/estimate_list.clh"
 #include "kdtree/query.clh"
 
 // Work-items stride over the hits [first_hit, first_hit + hit_count) of one page.
@@ -55,24 +54,6 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     nearest_in_tree(&tree, root[map - first_map], hit.position, frames + (map - first_map), &list);
     if (list.size == 0) continue;
 
-    const float squared_radius = squared_radius_of(&list);
-#ifdef CLIPPED
-    float area;
-    const float height =
-        clip_disc_of_hit(&surface, &hit, squared_radius, radius, &clearance, &area);
-#else
-    const float area = estimate_area(squared_radius, radius);
-#endif
-    Sums sums;
-    begin_sums(&sums, &estimates, index);
-    // A full list's farthest photon, at 0, only sets the radius (but for k = 1).
-    const uint first = list.size == k && k > 1 ? 1 : 0;
-    for (uint i = first; i < list.size; ++i) {
-#ifdef CLIPPED
-      if (!entry_in_slab(&entries, list.entry[i], &hit, height)) continue;
-#endif
-      add_entry(&entries, list.entry[i], &hit, &sums);
-    }
-    end_sums(&sums, 1.0f / area, &estimates, index);
+    estimate_list(&entries, &list, &hit, k, radius, &estimates CLIPPED_VALUES);
   }
 }

@@ -76,6 +76,14 @@ TEST_CASE("the layers of an EXR sum to the picture") {
   CHECK(mean(picture, "A") == 1);
 }
 
+TEST_CASE("naive maps take whole discs, and the EXR says so") {
+  const FileFolder folder;
+  render(folder, {"--size", "16x12", "--maps", "naive", "-o", folder / "out.exr"});
+  const Image picture = read_image(folder / "out.exr");
+  CHECK(picture.attributes.at("photile.maps") == "naive");
+  CHECK(picture.attributes.at("photile.area") == "disc");
+}
+
 TEST_CASE("an EXR tells how it was made") {
   const FileFolder folder;
   render(folder, {"--size", "16x12", "--seed", "9", "-k", "30", "--radius", "0.25", "--angle", "45",
@@ -88,6 +96,8 @@ TEST_CASE("an EXR tells how it was made") {
   CHECK(attribute("photile.neighbours") == "30");
   CHECK(attribute("photile.radius") == "0.25 m");
   CHECK(attribute("photile.angle") == "45 degrees");
+  CHECK(attribute("photile.least_neighbours") == "0");
+  CHECK(attribute("photile.area") == "clipped");
   CHECK(attribute("photile.maps") == "auto");
   CHECK(attribute("photile.efficacy") == "179");
   CHECK(attribute("photile.units") == "W/(m2 sr)");
