@@ -178,8 +178,9 @@ Readings beside closed forms, and errors that fall as photons grow. This page is
 ## Closed forms
 
 `photile validate` measures light that is known, through the code that renders: {record['seeds']} seeds of
-{record['photons'] / 1e6:.3g}M photon paths with k = {record['neighbours']} (some cases take a share of them), and
-{record['paths'] / 1e3:.0f}k paths from the sensors. Error and noise are relative; the noise is half the 99%
+{record['photons'] / 1e6:.3g}M photon paths with k = {record['neighbours']}, and
+{record['paths'] / 1e3:.0f}k paths from the sensors. Means over whole rooms take a share of the photons and of k: many
+sensors make them quiet, and small discs see no curvature of the irradiance. Error and noise are relative; the noise is half the 99%
 confidence interval of the mean over the seeds. Bold errors are beyond 1%.
 
 Photon maps: {counts(record, 'photon_map')}. Paths: {counts(record, 'path')}.

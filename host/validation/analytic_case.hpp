@@ -30,6 +30,9 @@ struct AnalyticCase {
   /// Of the photons asked for, what this case needs: those whose readings are means over whole
   /// rooms need few.
   double photon_share = 1;
+  /// Of the neighbours asked for, what an estimate takes: the mean over many sensors is quiet with
+  /// few, whose small discs see no curvature of the irradiance.
+  double neighbour_share = 1;
 };
 
 /// All cases, in the order of the documentation. Expected values are computed from form factors,

@@ -113,6 +113,7 @@ AnalyticCase rectangles(const std::string& name, const std::string& source, cons
   result.readings.push_back(
       {"mean over the other", grid_of_sensors({receiver}, 16), flux * factor / receiver.area()});
   result.photon_share = 0.03;
+  result.neighbour_share = 0.05;
   return result;
 }
 
@@ -130,6 +131,7 @@ AnalyticCase flux_in_black_box() {
                       room.build(flux),
                       {{"mean over all walls", grid_of_sensors(walls, 8), flux / area}}};
   result.photon_share = 0.03;
+  result.neighbour_share = 0.05;
   return result;
 }
 

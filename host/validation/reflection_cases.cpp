@@ -52,9 +52,9 @@ template <class F>
 Reading across(const std::string& place, const glm::dvec3& at, const glm::dvec3& normal,
                const F& illuminance) {
   Reading reading{place, {}, 0};
-  constexpr int count = 25;
+  constexpr int count = 35;
   for (int i = 0; i < count; ++i) {
-    reading.sensors.push_back({{at.x, 0.8 + 0.1 * i, at.z}, normal});
+    reading.sensors.push_back({{at.x, 0.3 + 0.1 * i, at.z}, normal});
     reading.expected += illuminance(reading.sensors.back()) / count;
   }
   return reading;
@@ -119,6 +119,7 @@ AnalyticCase closed_room(float reflectance) {
                       {{"mean over all walls", grid_of_sensors(walls, 6),
                         flux / (6 * edge * edge * (1 - double{reflectance}))}}};
   result.photon_share = 0.03;
+  result.neighbour_share = 0.05;
   return result;
 }
 
@@ -161,6 +162,7 @@ AnalyticCase integrating_sphere() {
   result.readings.push_back({"mean over the wall", spread_sensors(result.scene, 2000),
                              flux / (area * (1 - double{reflectance}))});
   result.photon_share = 0.02;
+  result.neighbour_share = 0.05;
   return result;
 }
 

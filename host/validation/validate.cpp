@@ -80,6 +80,8 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
         limits::min_photons,
         static_cast<std::uint64_t>(analytic.photon_share *
                                    static_cast<double>(photons.photons.emitted_photons)));
+    photons.neighbours =
+        std::max(1, static_cast<int>(std::lround(analytic.neighbour_share * photons.neighbours)));
     const auto all = over_seeds(analytic, first_seed, [&](std::uint64_t seed) {
       photons.photons.seed = photons.film.seed = seed;
       RenderResult result = measure(analytic.scene, sensors, devices, photons, progress);
