@@ -35,6 +35,7 @@ auto named(const std::array<Value, count>& values) {
 const auto map_modes = named(all_map_modes);
 const auto structures = named(all_map_structures);
 const auto areas = named(all_area_modes);
+const auto kernels = named(all_density_kernels);
 
 template <class Table>
 std::vector<std::string> words_of(const Table& table) {
@@ -139,6 +140,14 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
                   "that photons are divided by; disc: dark borders and corners")
       ->type_name("")
       ->check(CLI::IsMember(words_of(areas)))
+      ->capture_default_str()
+      ->group("Estimate");
+  options.kernel = word_for(kernels, parameters.kernel);
+  command
+      .add_option("--kernel", options.kernel,
+                  "that photons are weighted by; cone, epanechnikov: less blur, more noise")
+      ->type_name("")
+      ->check(CLI::IsMember(words_of(kernels)))
       ->capture_default_str()
       ->group("Estimate");
   options.maps = word_for(map_modes, parameters.maps);
@@ -250,6 +259,7 @@ void apply_words(RenderOptions& options) {
   options.parameters.photons.quota = value_for(quotas, options.quota);
   options.parameters.maps = value_for(map_modes, options.maps);
   options.parameters.area = value_for(areas, options.area);
+  options.parameters.kernel = value_for(kernels, options.kernel);
   options.parameters.structure = value_for(structures, options.structure);
   options.parameters.photons.seed = options.parameters.film.seed;
   options.device.use_program_cache = !options.no_cache;

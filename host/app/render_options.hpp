@@ -32,6 +32,7 @@ struct RenderOptions {
   std::string quota;                  ///< "balanced", "power" or "equal"
   std::string maps;                   ///< "naive", "triangle", "patch" or "auto"
   std::string area;                   ///< "disc" or "clipped"
+  std::string kernel;                 ///< "constant", "cone" or "epanechnikov"
   std::string structure;              ///< "uniform-grid", ...
   QualityTarget target;               ///< settings are chosen to meet it
   bool tuned = false;                 ///< use the tuning that `photile devices --tune` stored

@@ -70,6 +70,7 @@ json parameters_json(const RunRecord& record) {
                    {"radius", record.radius},
                    {"angle_degrees", parameters.angle_degrees},
                    {"area", name_of(parameters.area_used())},
+                   {"kernel", name_of(parameters.kernel)},
                    {"maps", name_of(parameters.maps)},
                    {"photons_per_cell", parameters.photons_per_cell},
                    {"passes", record.passes}});
@@ -87,6 +88,7 @@ void set_photon_attributes(std::map<std::string, std::string>& attributes,
   attributes["photile.radius"] = fmt::format("{} m", record.radius);
   attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
   attributes["photile.area"] = name_of(parameters.area_used());
+  attributes["photile.kernel"] = name_of(parameters.kernel);
   attributes["photile.maps"] = name_of(parameters.maps);
   attributes["photile.passes"] = std::to_string(record.passes);
   attributes["photile.device"] = devices_text(record.devices);

@@ -27,6 +27,7 @@ constexpr std::array series{Series{"photons and neighbours", "#0072b2"},
                             Series{"angle", "#cc79a7"},
                             Series{"cell", "#56b4e9"},
                             Series{"area", "#882255"},
+                            Series{"kernel", "#332288"},
                             Series{"maps", "#d55e00"},
                             Series{"structure", "#999999"}};
 

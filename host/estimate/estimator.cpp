@@ -52,7 +52,8 @@ struct Estimator::Impl {
         store, neighbours,
         std::max(neighbours, static_cast<std::uint32_t>(parameters.compiled_neighbours)), radius,
         parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
-        surface_buffers ? &*surface_buffers : nullptr);
+        surface_buffers ? &*surface_buffers : nullptr,
+        kernel_used(parameters.kernel, parameters.neighbours));
   }
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {

@@ -10,20 +10,23 @@ class GridQuery : public Query {
  public:
   GridQuery(const maps::MapStore& store, std::uint32_t neighbours,
             std::uint32_t compiled_neighbours, float radius, const EstimateTuning& tuning,
-            const SurfaceBuffers* surface)
+            const SurfaceBuffers* surface, DensityKernel kernel)
       : store_(store),
         context_(store.device->context()),
         neighbours_(neighbours),
         radius_(radius),
         surface_(surface),
+        kernel_(kernel),
         choice_(specialise(tuning, store.needs, static_cast<int>(compiled_neighbours))) {
     choice_.work_group_size =
         std::min<std::size_t>(choice_.work_group_size, context_.info().max_work_group_size);
   }
 
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
+    device::Defines estimate_defines = defines(hits.page);
+    set_density_defines(estimate_defines, surface_, kernel_);
     const device::Kernel kernel =
-        context_.kernel(choice_.kernel_file(), "estimate", defines(hits.page, surface_));
+        context_.kernel(choice_.kernel_file(), "estimate", estimate_defines);
     const maps::MapPage& page = hits.page;
     with_scene_arguments(store_, hits, surface_, estimates, [&](const auto&... scene) {
       context_.run(kernel, choice_.work_items(hits.count), choice_.work_group_size, hits.count,
@@ -36,7 +39,7 @@ class GridQuery : public Query {
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
     const device::Kernel kernel =
-        context_.kernel("estimate/nearest.cl", "nearest", defines(hits.page, nullptr));
+        context_.kernel("estimate/nearest.cl", "nearest", defines(hits.page));
     const maps::MapPage& page = hits.page;
     with_normal_arguments(store_, hits, nullptr, [&](const auto&... normals) {
       context_.run(kernel, hits.count, maps::work_group_size, hits.count, hits.first,
@@ -47,9 +50,8 @@ class GridQuery : public Query {
   }
 
  private:
-  device::Defines defines(const maps::MapPage& page, const SurfaceBuffers* surface) const {
+  device::Defines defines(const maps::MapPage& page) const {
     device::Defines defines = choice_.defines();
-    if (surface != nullptr) defines.set("CLIPPED");
     if (page.entry_normal.size() > 0) defines.set("NORMALS");
     return defines;
   }
@@ -59,6 +61,7 @@ class GridQuery : public Query {
   std::uint32_t neighbours_;
   float radius_;
   const SurfaceBuffers* surface_;
+  DensityKernel kernel_;
   Specialisation choice_;
 };
 
@@ -66,10 +69,10 @@ class GridQuery : public Query {
 
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        std::uint32_t compiled_neighbours, float radius,
-                                       const EstimateTuning& tuning,
-                                       const SurfaceBuffers* surface) {
+                                       const EstimateTuning& tuning, const SurfaceBuffers* surface,
+                                       DensityKernel kernel) {
   return std::make_unique<GridQuery>(store, neighbours, compiled_neighbours, radius, tuning,
-                                     surface);
+                                     surface, kernel);
 }
 
 }  // namespace photile::estimate

@@ -11,6 +11,7 @@
 #include "estimate/hit_buffers.hpp"
 #include "estimate/surface_buffers.hpp"
 #include "maps/map_store.hpp"
+#include "photile/density_kernel.hpp"
 #include "photile/estimate_tuning.hpp"
 
 namespace photile::estimate {
@@ -36,16 +37,26 @@ class Query {
 };
 
 /// Kernels are compiled for k up to `compiled_neighbours`. `tuning` counts for uniform grids only.
-/// `surface`: what areas are clipped to, or null for whole discs.
+/// `surface`: what areas are clipped to, or null for whole discs. `kernel`: what photons count.
 std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
                                   std::uint32_t compiled_neighbours, float radius,
-                                  const EstimateTuning& tuning, const SurfaceBuffers* surface);
+                                  const EstimateTuning& tuning, const SurfaceBuffers* surface,
+                                  DensityKernel kernel);
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        std::uint32_t compiled_neighbours, float radius,
-                                       const EstimateTuning& tuning, const SurfaceBuffers* surface);
+                                       const EstimateTuning& tuning, const SurfaceBuffers* surface,
+                                       DensityKernel kernel);
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        std::uint32_t compiled_neighbours, float radius,
-                                       const SurfaceBuffers* surface);
+                                       const SurfaceBuffers* surface, DensityKernel kernel);
+
+/// Sets the symbols that kernels/estimate/area.clh and kernels/shared/density_kernel.clh ask for.
+inline void set_density_defines(device::Defines& defines, const SurfaceBuffers* surface,
+                                DensityKernel kernel) {
+  if (surface != nullptr) defines.set("CLIPPED");
+  if (kernel == DensityKernel::cone) defines.set("CONE");
+  if (kernel == DensityKernel::epanechnikov) defines.set("EPANECHNIKOV");
+}
 
 /// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs,
 /// ascending.

@@ -17,12 +17,14 @@ constexpr std::uint64_t global_list_bytes = 64u << 20;
 class TreeQuery : public Query {
  public:
   TreeQuery(const maps::MapStore& store, std::uint32_t neighbours,
-            std::uint32_t compiled_neighbours, float radius, const SurfaceBuffers* surface)
+            std::uint32_t compiled_neighbours, float radius, const SurfaceBuffers* surface,
+            DensityKernel kernel)
       : store_(store),
         context_(store.device->context()),
         neighbours_(neighbours),
         radius_(radius),
-        surface_(surface) {
+        surface_(surface),
+        kernel_(kernel) {
     if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
     if (compiled_neighbours <= private_list_limit) {
       defines_.set("LIST_CAPACITY", static_cast<long long>(compiled_neighbours));
@@ -41,7 +43,7 @@ class TreeQuery : public Query {
     device::Defines defines = page_defines(hits.page);
     maps::set_entry_defines(defines, store_.needs);
     set_sum_defines(defines, store_.needs, neighbours_);
-    if (surface_ != nullptr) defines.set("CLIPPED");
+    set_density_defines(defines, surface_, kernel_);
     const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
     const maps::MapPage& page = hits.page;
     with_lists([&](const auto&... lists) {
@@ -93,6 +95,7 @@ class TreeQuery : public Query {
   std::uint32_t neighbours_;
   float radius_;
   const SurfaceBuffers* surface_;
+  DensityKernel kernel_;
   device::Defines defines_;
   std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();
   device::Buffer<float> list_distance_;
@@ -103,23 +106,25 @@ class TreeQuery : public Query {
 
 std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
                                        std::uint32_t compiled_neighbours, float radius,
-                                       const SurfaceBuffers* surface) {
-  return std::make_unique<TreeQuery>(store, neighbours, compiled_neighbours, radius, surface);
+                                       const SurfaceBuffers* surface, DensityKernel kernel) {
+  return std::make_unique<TreeQuery>(store, neighbours, compiled_neighbours, radius, surface,
+                                     kernel);
 }
 
 std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
                                   std::uint32_t compiled_neighbours, float radius,
-                                  const EstimateTuning& tuning, const SurfaceBuffers* surface) {
+                                  const EstimateTuning& tuning, const SurfaceBuffers* surface,
+                                  DensityKernel kernel) {
   switch (store.parameters.structure) {
     case MapStructure::kdtree_2d:
     case MapStructure::kdtree_3d:
     case MapStructure::kdtree_global:
-      return make_tree_query(store, neighbours, compiled_neighbours, radius, surface);
+      return make_tree_query(store, neighbours, compiled_neighbours, radius, surface, kernel);
     case MapStructure::uniform_grid:
     case MapStructure::brute_force:
       break;
   }
-  return make_grid_query(store, neighbours, compiled_neighbours, radius, tuning, surface);
+  return make_grid_query(store, neighbours, compiled_neighbours, radius, tuning, surface, kernel);
 }
 
 }  // namespace photile::estimate

@@ -41,7 +41,8 @@ class Bench {
   double microseconds_per_hit(const EstimateTuning& tuning) {
     const maps::MapStore& store = maps_of(tuning.photons_per_cell).store();
     const auto query = make_grid_query(store, neighbours_, neighbours_,
-                                       static_cast<float>(sample_.radius), tuning, nullptr);
+                                       static_cast<float>(sample_.radius), tuning, nullptr,
+                                       DensityKernel::constant);
     std::array<double, 5> seconds{};
     run(store, *query);
     for (double& measured : seconds) {

@@ -1,11 +1,12 @@
 // The truth for areas of discs clipped to the surface: every triangle of the scene, cut by polygon
-// clipping in double precision. Shares no code with the kernels.
+// clipping in double precision, kernels integrated numerically. Shares no code with the kernels.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "photile/density_kernel.hpp"
 #include "photile/photons.hpp"
 #include "photile/scene.hpp"
 #include "photile/surface_index.hpp"
@@ -21,17 +22,15 @@ class ClippedArea {
   ClippedArea(const Scene& scene, const Photons& photons, const SurfaceIndex& surface,
               double angle_degrees);
 
-  /// Square metres of surface within `radius` of a hit and in the slab around its plane, of
-  /// agreeing normal, on sheets where photons landed or on the hit's own.
-  double area(const glm::dvec3& hit, std::uint32_t sided_triangle, double radius) const;
-
-  /// As area, within `distance` of the hit, in the slab of `radius`.
-  double area_within(const glm::dvec3& hit, std::uint32_t sided_triangle, double radius,
-                     double distance) const;
+  /// The integral of the kernel, square metres, over the surface within `radius` of a hit and in
+  /// the slab around its plane, of agreeing normal, on sheets where photons landed or on the hit's
+  /// own.
+  double area(const glm::dvec3& hit, std::uint32_t sided_triangle, double radius,
+              DensityKernel kernel = DensityKernel::constant) const;
 
  private:
   double area_of_triangle(const glm::dvec3& hit, const glm::dvec3& normal, std::uint32_t s,
-                          double radius, double distance) const;
+                          double radius, DensityKernel kernel) const;
 
   const Scene& scene_;
   const SurfaceIndex& surface_;

@@ -5,14 +5,16 @@
 #include <glm/gtc/constants.hpp>
 
 #include "photile/neighbour_groups.hpp"
+#include "reference/kernel_weights.hpp"
 
 namespace photile::reference {
 namespace {
 
-/// Photons whose flux counts.
-std::size_t used_of(const OracleNeighbours& near, int k) {
-  const bool full = near.photons.size() == static_cast<std::size_t>(k);
-  return full && k > 1 ? near.photons.size() - 1 : near.photons.size();
+/// Leaves the photons whose flux counts.
+void leave_out_last(OracleNeighbours& near, int k) {
+  if (k == 1 || near.photons.size() < static_cast<std::size_t>(k)) return;
+  near.photons.pop_back();
+  near.squared_distance.pop_back();
 }
 
 /// A disc is never counted smaller than a thousandth of the radius (kernels/estimate/area.clh).
@@ -66,31 +68,39 @@ OracleNeighbours DensityOracle::nearest(const glm::dvec3& hit, std::uint32_t sid
 
 std::vector<glm::dvec3> DensityOracle::irradiance(const glm::dvec3& hit,
                                                   std::uint32_t sided_triangle, int k,
-                                                  double radius) const {
-  const OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
-  return sums(near, used_of(near, k), glm::pi<double>() * squared_disc(near, radius));
+                                                  double radius, DensityKernel kernel) const {
+  if (k == 1) kernel = DensityKernel::constant;
+  OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
+  leave_out_last(near, k);
+  const double squared = squared_disc(near, radius);
+  return sums(near, std::sqrt(squared), kernel, glm::pi<double>() * squared * mean_weight(kernel));
 }
 
 std::vector<glm::dvec3> DensityOracle::irradiance(const ClippedArea& surface, const glm::dvec3& hit,
                                                   std::uint32_t sided_triangle, int k,
-                                                  double radius) const {
+                                                  double radius, DensityKernel kernel) const {
+  if (k == 1) kernel = DensityKernel::constant;
   OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
-  near.photons.resize(used_of(near, k));
+  leave_out_last(near, k);
   const double disc = std::sqrt(squared_disc(near, radius));
-  std::erase_if(near.photons, [&](std::uint32_t photon) {
-    const glm::dvec3 offset = glm::dvec3(photons_.position[photon]) - hit;
-    return std::abs(glm::dot(offset, normals_[sided_triangle])) > ClippedArea::slab * disc;
-  });
-  return sums(near, near.photons.size(), surface.area(hit, sided_triangle, disc));
+  OracleNeighbours in_slab;
+  for (std::size_t i = 0; i < near.photons.size(); ++i) {
+    const glm::dvec3 offset = glm::dvec3(photons_.position[near.photons[i]]) - hit;
+    if (std::abs(glm::dot(offset, normals_[sided_triangle])) > ClippedArea::slab * disc) continue;
+    in_slab.photons.push_back(near.photons[i]);
+    in_slab.squared_distance.push_back(near.squared_distance[i]);
+  }
+  return sums(in_slab, disc, kernel, surface.area(hit, sided_triangle, disc, kernel));
 }
 
-std::vector<glm::dvec3> DensityOracle::sums(const OracleNeighbours& near, std::size_t used,
-                                            double area) const {
+std::vector<glm::dvec3> DensityOracle::sums(const OracleNeighbours& near, double radius,
+                                            DensityKernel kernel, double area) const {
   std::vector<glm::dvec3> result(light_count_, glm::dvec3(0.0));
-  for (std::size_t i = 0; i < used; ++i) {
+  for (std::size_t i = 0; i < near.photons.size(); ++i) {
     const std::uint32_t photon = near.photons[i];
     const std::size_t light = photons_.light.empty() ? 0 : photons_.light[photon];
-    result[light] += glm::dvec3(photons_.flux[photon]) / area;
+    const double weight = weight_at(kernel, std::sqrt(near.squared_distance[i]) / radius);
+    result[light] += glm::dvec3(photons_.flux[photon]) * (weight / area);
   }
   return result;
 }

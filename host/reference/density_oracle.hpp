@@ -33,17 +33,21 @@ class DensityOracle {
                            double radius) const;
 
   /// Irradiance per light at power 1: flux of the k - 1 nearest (all, where fewer than k lie within
-  /// the radius; the nearest for k = 1) over the area of the disc.
+  /// the radius; the nearest for k = 1) over the area of the disc. With a kernel and k > 1 each is
+  /// weighted, and the area is the kernel's integral.
   std::vector<glm::dvec3> irradiance(const glm::dvec3& hit, std::uint32_t sided_triangle, int k,
-                                     double radius) const;
+                                     double radius,
+                                     DensityKernel kernel = DensityKernel::constant) const;
 
   /// The same where the disc is clipped to the surface: of these photons those in the slab around
   /// the hit's plane, over the clipped area.
   std::vector<glm::dvec3> irradiance(const ClippedArea& surface, const glm::dvec3& hit,
-                                     std::uint32_t sided_triangle, int k, double radius) const;
+                                     std::uint32_t sided_triangle, int k, double radius,
+                                     DensityKernel kernel = DensityKernel::constant) const;
 
  private:
-  std::vector<glm::dvec3> sums(const OracleNeighbours& near, std::size_t used, double area) const;
+  std::vector<glm::dvec3> sums(const OracleNeighbours& near, double radius, DensityKernel kernel,
+                               double area) const;
   bool counts(std::uint32_t photon_map, std::uint32_t hit_map) const;
 
   const Photons& photons_;

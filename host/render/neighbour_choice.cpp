@@ -56,7 +56,8 @@ std::size_t least_error_level(std::span<const double> values, std::span<const in
   // An estimate is in proportion to 1 / r_k^2, whose logarithm has the variance 1 / (k - 1) and,
   // unlike itself, hardly any skew: choices by noise would else prefer what is too bright. The
   // photons of a smaller k are among those of a larger one, so the variance of a difference is the
-  // difference of the variances.
+  // difference of the variances. The cone and Epanechnikov's kernel have more noise, and levels
+  // that hang together more: between neighbouring levels the difference has the same variance.
   const auto variance = [&](std::size_t level) { return 1.0 / std::max(neighbours[level] - 1, 1); };
   for (std::size_t level = 1; level < values.size(); ++level) {
     for (std::size_t before = 0; before < level; ++before) {

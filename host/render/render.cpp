@@ -86,7 +86,7 @@ class Rendering {
       estimators.emplace_back(
           devices_, maps, scene_,
           EstimateParameters{neighbours, 0, parameters_.tuning, parameters_.neighbours,
-                             parameters_.area, surface_});
+                             parameters_.area, parameters_.kernel, surface_});
     }
     film_.pass = pass;
     add_pass(estimators, levels, maps.front().map_of());

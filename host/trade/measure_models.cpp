@@ -83,9 +83,12 @@ class Pilot {
                    const PrimaryHitBatch& batch, SeedPictures& result) {
     const int k = pilot_neighbours[i];
     const double radius = std::min(automatic_radius(photons, k), maps.parameters().radius);
-    Estimator estimator(
-        maps, scene_,
-        {.neighbours = k, .radius = radius, .area = parameters_.area, .surface = surface_});
+    Estimator estimator(maps, scene_,
+                        {.neighbours = k,
+                         .radius = radius,
+                         .area = parameters_.area,
+                         .kernel = parameters_.kernel,
+                         .surface = surface_});
     const Stopwatch estimate_watch;
     const Estimates estimates = estimator.estimate(batch.hits);
     result.estimate_seconds[i] = estimate_watch.seconds();

@@ -34,6 +34,9 @@ TradeAxes TradeAxes::around(const RenderParameters& parameters) {
   axes.samples =
       scaled<int>(parameters.film.samples_per_pixel, {0.25, 4}, 1, limits::max_samples_per_pixel);
   axes.areas = {AreaMode::disc};
+  for (const DensityKernel kernel : all_density_kernels) {
+    if (kernel != parameters.kernel) axes.kernels.push_back(kernel);
+  }
   axes.maps = {MapMode::naive, MapMode::triangle, MapMode::patch};
   for (const MapStructure structure : all_map_structures) {
     if (structure != MapStructure::brute_force) axes.structures.push_back(structure);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "photile/defaults.hpp"
+#include "photile/density_kernel.hpp"
 #include "photile/estimate_tuning.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/primary_hits.hpp"
@@ -38,6 +39,8 @@ struct EstimateParameters {
   int compiled_neighbours = 0;
   /// Naive maps, whose photons are those of one triangle, take the disc in any case.
   AreaMode area = AreaMode::clipped;
+  /// What each photon counts; with one neighbour, 1.
+  DensityKernel kernel = DensityKernel::constant;
   /// For clipped areas: of the scene, for the radius of the maps or a larger one and the angle of
   /// their groups. Estimators share it; none = the estimator makes its own.
   std::shared_ptr<const SurfaceIndex> surface = nullptr;
@@ -69,6 +72,7 @@ struct NeighbourLists {
 /// Runs the estimate kernels over photon maps. With k photons or more within the radius the
 /// estimate is sum of the flux of the k - 1 nearest over the area of the disc through the k-th
 /// (unbiased under constant density); with fewer, all of them over the disc of the full radius.
+/// With a kernel each photon is weighted, and the area is the integral of the kernel over the disc.
 /// Clipped areas: see docs/density.md.
 class Estimator {
  public:

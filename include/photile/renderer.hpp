@@ -37,6 +37,7 @@ struct RenderParameters {
   /// What the density divides by. Naive maps take the disc in any case.
   AreaMode area = AreaMode::clipped;
   AreaMode area_used() const { return maps == MapMode::naive ? AreaMode::disc : area; }
+  DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
   PrimaryHitParameters film;
   /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
   /// their mean. 0 = as many as the host's memory asks for.

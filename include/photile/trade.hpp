@@ -27,6 +27,7 @@ struct TradeAxes {
   std::vector<float> photons_per_cell;   ///< of uniform grids
   std::vector<int> samples;              ///< per pixel
   std::vector<AreaMode> areas;           ///< disc has dark borders
+  std::vector<DensityKernel> kernels;    ///< other noise and blur at the same k
   std::vector<MapMode> maps;             ///< naive has dark edges
   std::vector<MapStructure> structures;  ///< same picture, other time
 

@@ -64,9 +64,15 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
   below = select((wide_float)(as_float(as_int(squared_radius) + 1)), below, full);
 
   float disc[VECTOR_WIDTH], area[VECTOR_WIDTH];
-#ifdef CLIPPED
+#ifdef RADIUS_FIRST
   const wide_float nearest = nearest_beyond_lanes(stored, entries_of_block, below);
-  wide_store(select((wide_float)(squared_radius), nearest, full), disc);
+  const wide_float squared_disc = select((wide_float)(squared_radius), nearest, full);
+  wide_store(squared_disc, disc);
+#endif
+#ifdef WEIGHTED
+  const wide_float per_squared_radius = 1.0f / fmax(squared_disc, least_squared_radius(radius));
+#endif
+#ifdef CLIPPED
   for (uint lane = 0; lane < count; ++lane) {
     Hit hit;
     load_hit(hits, first + lane, &hit);
@@ -81,7 +87,7 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
   for (uint light = 0; light < LIGHT_COUNT; ++light) {
     sums[light][0] = sums[light][1] = sums[light][2] = 0.0f;
   }
-#ifndef CLIPPED
+#ifndef RADIUS_FIRST
   wide_float beyond = INFINITY;
 #endif
   wide_int found = 0;
@@ -93,22 +99,31 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
     for (uint entry = cell_start[cell]; entry < end; ++entry, next += VECTOR_WIDTH) {
       const wide_float d = wide_load(next);
       const wide_int is_near = d < below;
-#ifndef CLIPPED
+#ifndef RADIUS_FIRST
       beyond = select(fmin(beyond, d), beyond, is_near);
 #endif
       found += TRUE_LANES(is_near);
       const uint light = light_of(entries, entry);
+#ifdef WEIGHTED
+      const wide_float weight = KERNEL_AT(d * per_squared_radius);
+      const wide_float red = weight * entries->flux[entry];
+      const wide_float green = weight * entries->flux[entries->stride + entry];
+      const wide_float blue = weight * entries->flux[2 * entries->stride + entry];
+#else
       const wide_float red = entries->flux[entry];
       const wide_float green = entries->flux[entries->stride + entry];
       const wide_float blue = entries->flux[2 * entries->stride + entry];
+#endif
       sums[light][0] += select(zero, red, is_near);
       sums[light][1] += select(zero, green, is_near);
       sums[light][2] += select(zero, blue, is_near);
     }
   }
 
-#ifndef CLIPPED
+#ifndef RADIUS_FIRST
   wide_store(select((wide_float)(squared_radius), beyond, full), disc);
+#endif
+#ifndef CLIPPED
   for (uint lane = 0; lane < count; ++lane) area[lane] = estimate_area(disc[lane], radius);
 #endif
   wide_store((found < wanted) & tile.active, undone);

@@ -98,6 +98,7 @@ TEST_CASE("an EXR tells how it was made") {
   CHECK(attribute("photile.angle") == "45 degrees");
   CHECK(attribute("photile.least_neighbours") == "0");
   CHECK(attribute("photile.area") == "clipped");
+  CHECK(attribute("photile.kernel") == "constant");
   CHECK(attribute("photile.maps") == "auto");
   CHECK(attribute("photile.efficacy") == "179");
   CHECK(attribute("photile.units") == "W/(m2 sr)");

@@ -20,22 +20,23 @@ const std::filesystem::path source_folder = PHOTILE_SOURCE_DIR;
 constexpr double area_tolerance = 1e-3;
 
 test::ExpectedEstimates expected_clipped(const Scene& scene, const Photons& photons,
-                                         const PrimaryHits& hits, int k, double radius) {
+                                         const PrimaryHits& hits, int k, double radius,
+                                         DensityKernel kernel) {
   const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), radius, 60);
   const reference::ClippedArea area(scene, photons, surface, 60);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   test::ExpectedEstimates expected;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     expected.push_back(oracle.irradiance(area, hits.position[i], hits.sided_triangle[i], k,
-                                         static_cast<float>(radius)));
+                                         static_cast<float>(radius), kernel));
   }
   return expected;
 }
 
 void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
-                   double radius, int k, MapMode mode = MapMode::triangle) {
+                   double radius, int k, DensityKernel kernel, MapMode mode = MapMode::triangle) {
   const std::size_t lights = scene.lights.size();
-  const auto expected = expected_clipped(scene, photons, hits, k, radius);
+  const auto expected = expected_clipped(scene, photons, hits, k, radius, kernel);
   const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
   for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_3d}) {
     for (const EstimateStrategy strategy : all_estimate_strategies) {
@@ -43,12 +44,13 @@ void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits
       const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
       EstimateParameters parameters;
       parameters.neighbours = k;
+      parameters.kernel = kernel;
       parameters.tuning = shipped_tuning(test::device().info());
       parameters.tuning->strategy = strategy;
       const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
       const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
       REQUIRE(irradiance.size() == hits.size() * lights);
-      CAPTURE(name_of(structure), static_cast<int>(strategy), k, radius, lights);
+      CAPTURE(name_of(structure), static_cast<int>(strategy), name_of(kernel), k, radius, lights);
       CHECK(test::worst_difference(irradiance, expected) <= area_tolerance);
     }
   }
@@ -62,17 +64,26 @@ TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's
     test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, cells);
     const Photons photons = test::uniform_photons(scene, 6000, 51);
     const PrimaryHits hits = test::uniform_hits(scene, 300, 52);
-    for (const int k : {1, 16, 50, 400}) check_clipped(scene, photons, hits, 0.2, k);
+    for (const int k : {1, 16, 50, 400}) {
+      check_clipped(scene, photons, hits, 0.2, k, DensityKernel::constant);
+    }
+    if (cells != 3) continue;
+    check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::cone);
+    check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::epanechnikov);
   }
 }
 
 TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode") {
-  const MapMode mode = GENERATE(MapMode::triangle, MapMode::patch);
+  const auto [mode, kernel] =
+      GENERATE(table<MapMode, DensityKernel>({{MapMode::triangle, DensityKernel::constant},
+                                              {MapMode::patch, DensityKernel::constant},
+                                              {MapMode::triangle, DensityKernel::cone},
+                                              {MapMode::patch, DensityKernel::epanechnikov}}));
   for (const int rings : {24, 96}) {
     Scene scene = test::empty_scene(2);
     test::add_torus(scene, 1.0f, 0.4f, rings, rings / 2);
     const Photons photons = test::uniform_photons(scene, 20'000, 53);
-    check_clipped(scene, photons, test::uniform_hits(scene, 200, 54), 0.3, 50, mode);
+    check_clipped(scene, photons, test::uniform_hits(scene, 200, 54), 0.3, 50, kernel, mode);
   }
 }
 
@@ -80,5 +91,7 @@ TEST_CASE("clipped irradiance in the living room equals the oracle's") {
   Scene scene = load_scene(source_folder / "scenes/living-room/living-room.gltf");
   for (Material& material : scene.materials) material.specular = glm::vec3(0.0f);  // no lobes
   const Photons photons = test::uniform_photons(scene, 60'000, 51);
-  check_clipped(scene, photons, test::uniform_hits(scene, 300, 52), 0.4, 50, MapMode::automatic);
+  const DensityKernel kernel = GENERATE(from_range(all_density_kernels));
+  check_clipped(scene, photons, test::uniform_hits(scene, 300, 52), 0.4, 50, kernel,
+                MapMode::automatic);
 }

@@ -1,6 +1,7 @@
 // The exact law of the estimate: of N uniform photons on a surface of area A, the part of the
 // surface within the distance of the k-th from a point is A times a Beta(k, N - k + 1) variable,
-// wherever the point lies. So the k - 1 nearest over the clipped area have the mean N / A.
+// wherever the point lies. So the k - 1 nearest over the clipped area have the mean N / A, and so
+// do their weights by a kernel over its integral: given the k-th the others are independent.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -12,11 +13,11 @@ using namespace photile;
 
 namespace {
 
-constexpr int k = 40;
-constexpr int photons_per_plate = 200;
+constexpr int k = 50;
+constexpr int photons_per_plate = 250;
 constexpr std::size_t plates = 20'000;
 /// Where fewer than k photons lie within it the law does not hold; in the corner of a square of
-/// 1 m that has a probability of 3e-8.
+/// 1 m that has a probability of 3e-9.
 constexpr double radius = 0.7;
 /// From edges: a hit in a corner to the last bit is on no side of its edges.
 constexpr float near = 1e-4f;
@@ -97,21 +98,48 @@ Plates make_plates(float s, float t, bool half) {
   return made;
 }
 
+/// Moments of readings over the truth.
+struct Moments {
+  double mean = 0, variance = 0;
+
+  explicit Moments(const std::vector<double>& readings) {
+    for (const double reading : readings) mean += reading / plates;
+    for (const double reading : readings) variance += (reading - mean) * (reading - mean) / plates;
+  }
+
+  void check_mean() const {
+    const double error = std::sqrt(variance / plates);
+    CAPTURE(mean, error);
+    REQUIRE((4.89 + 3.1) * error < 0.01);  // else too noisy to see 1%
+    CHECK(std::abs(mean - 1) < 4.89 * error);
+  }
+};
+
+/// The variance over whole discs: the photons but the k-th are independent, each with a squared
+/// coefficient of variation of its weight of `of_weight`.
+double expected_variance(double of_weight) {
+  const double of_areas = (k - 1.0) * (photons_per_plate - 1.0) / ((k - 2.0) * photons_per_plate);
+  return of_areas * (1 + of_weight / (k - 1)) - 1;
+}
+
 void check_law(float s, float t, bool half) {
   const Plates data = make_plates(s, t, half);
   const double area = half ? 0.5 : 1.0;
   const NeighbourGroups groups =
       find_map_groups(data.scene, data.photons, MapMode::patch, {radius, 60});
   const PhotonMaps maps(test::device(), data.scene, data.photons, groups, {.radius = radius});
-  const Estimates estimates = Estimator(maps, data.scene, {.neighbours = k}).estimate(data.hits);
+  const auto readings = [&](DensityKernel kernel) {
+    std::vector<double> values;
+    EstimateParameters parameters{.neighbours = k, .kernel = kernel};
+    for (const auto& irradiance :
+         Estimator(maps, data.scene, parameters).estimate(data.hits).irradiance) {
+      values.push_back(irradiance.g * area / photons_per_plate);
+    }
+    return values;
+  };
+  const std::vector<double> constant = readings(DensityKernel::constant);
   std::vector<double> part;
-  double sum = 0, squares = 0;
-  for (const glm::vec3& irradiance : estimates.irradiance) {
-    const double reading = irradiance.g * area / photons_per_plate;  // over the truth
-    sum += reading;
-    squares += reading * reading;
-    part.push_back((k - 1) / (irradiance.g * area));
-  }
+  for (const double reading : constant) part.push_back((k - 1) / (reading * photons_per_plate));
   std::sort(part.begin(), part.end());
   double distance = 0;
   for (std::size_t i = 0; i < part.size(); ++i) {
@@ -122,11 +150,18 @@ void check_law(float s, float t, bool half) {
   CAPTURE(s, t, half, distance);
   // Kolmogorov's distribution at 1 - 1e-6: 2 exp(-2 x^2) = 1e-6.
   CHECK(distance * std::sqrt(static_cast<double>(plates)) < 2.693);
-  const double mean = sum / plates;
-  const double error = std::sqrt((squares / plates - mean * mean) / plates);
-  CAPTURE(mean, error);
-  REQUIRE((4.89 + 3.1) * error < 0.01);  // else too noisy to see 1%
-  CHECK(std::abs(mean - 1) < 4.89 * error);
+  Moments(constant).check_mean();
+
+  const Moments cone(readings(DensityKernel::cone));
+  const Moments epanechnikov(readings(DensityKernel::epanechnikov));
+  cone.check_mean();
+  epanechnikov.check_mean();
+  const bool whole = s > 0.3f && s < 0.7f && t > 0.3f && t < 0.7f;
+  if (!whole) return;
+  // Of the square of the weight and of the weight over the disc, 1/6 and 1/3, 1/3 and 1/2. Four
+  // standard deviations of the variance of 20,000 are 4%.
+  CHECK(cone.variance == Approx(expected_variance(0.5)).epsilon(0.05));
+  CHECK(epanechnikov.variance == Approx(expected_variance(1.0 / 3)).epsilon(0.05));
 }
 
 }  // namespace

@@ -34,6 +34,11 @@ struct Case {
   std::optional<EstimateTuning> tuning = std::nullopt;
   /// Bytes that device memory is bounded by, so that maps are cut into tiles; 0 = no bound.
   std::uint64_t memory_per_photon = 0;
+  DensityKernel kernel = DensityKernel::constant;
+
+  EstimateParameters parameters() const {
+    return {.neighbours = neighbours, .tuning = tuning, .kernel = kernel};
+  }
 };
 
 struct Sizes {
@@ -130,11 +135,11 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
     print_hash(test, "entry_position", context, page.entry_position);
     print_hash(test, "entry_flux", context, page.entry_flux);
   }
-  Estimator estimator(maps, test.scene, {test.neighbours, 0, test.tuning});
+  Estimator estimator(maps, test.scene, test.parameters());
   const NeighbourLists lists = estimator.nearest(hits);
   print_hash(test, "neighbours", std::span(lists.photons));
   print_hash(test, "squared_radius", std::span(lists.squared_radius));
-  DeviceEstimators estimators(devices, all_maps, test.scene, {test.neighbours, 0, test.tuning});
+  DeviceEstimators estimators(devices, all_maps, test.scene, test.parameters());
   const Estimates estimates = estimators.estimate(hits);
   print_hash(test, "irradiance", estimates.irradiance);
   if (needs_of(test.scene).glossy) print_hash(test, "radiance", estimates.radiance);
@@ -149,7 +154,15 @@ std::vector<Case> cases(bool every_kernel) {
                          {"three-lights", torus_and_plate(3, false)},
                          {"many-lights", torus_and_plate(300, false)},
                          {"tiles", plate(), MapStructure::uniform_grid, 10, std::nullopt, 50}};
+  const auto add_weighted = [&](DensityKernel kernel, std::size_t lights, bool glossy) {
+    list.push_back({fmt::format("{}-{}-lights", name_of(kernel), lights),
+                    torus_and_plate(lights, glossy), MapStructure::uniform_grid, 50, std::nullopt,
+                    0, kernel});
+  };
+  add_weighted(DensityKernel::cone, 1, false);
+  add_weighted(DensityKernel::epanechnikov, 3, false);
   if (!every_kernel) return list;
+  add_weighted(DensityKernel::cone, 20, true);
   list.push_back({"glossy", torus_and_plate(1, true)});
   list.push_back({"glossy-three-lights", torus_and_plate(3, true)});
   list.push_back({"glossy-many-lights", torus_and_plate(20, true)});

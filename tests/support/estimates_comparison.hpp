@@ -9,6 +9,7 @@
 
 #include "photile/estimator.hpp"
 #include "reference/density_oracle.hpp"
+#include "reference/kernel_weights.hpp"
 
 namespace photile::test {
 
@@ -23,11 +24,12 @@ inline double glossy_tolerance(int k) { return estimate_tolerance(k) * 12.0; }
 using ExpectedEstimates = std::vector<std::vector<glm::dvec3>>;
 
 inline ExpectedEstimates expected_irradiance(const reference::DensityOracle& oracle,
-                                             const PrimaryHits& hits, int k, double radius) {
+                                             const PrimaryHits& hits, int k, double radius,
+                                             DensityKernel kernel = DensityKernel::constant) {
   ExpectedEstimates expected;
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     expected.push_back(oracle.irradiance(hits.position[hit], hits.sided_triangle[hit], k,
-                                         static_cast<float>(radius)));
+                                         static_cast<float>(radius), kernel));
   }
   return expected;
 }
@@ -52,7 +54,8 @@ inline double gltf_bsdf(glm::dvec3 i, glm::dvec3 o, glm::dvec3 n, double albedo,
 /// Radiance of glossy hits: the BSDF summed over the oracle's neighbours.
 inline ExpectedEstimates expected_radiance(const reference::DensityOracle& oracle,
                                            const Photons& photons, const PrimaryHits& hits,
-                                           std::size_t lights, int k, double radius) {
+                                           std::size_t lights, int k, double radius,
+                                           DensityKernel kernel = DensityKernel::constant) {
   ExpectedEstimates expected;
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     const auto near =
@@ -62,9 +65,12 @@ inline ExpectedEstimates expected_radiance(const reference::DensityOracle& oracl
     std::vector<glm::dvec3>& sums = expected.emplace_back(lights, glm::dvec3(0.0));
     for (std::size_t n = 0; n < used; ++n) {
       const std::uint32_t photon = near.photons[n];
+      const double weight =
+          reference::weight_at(kernel, std::sqrt(near.squared_distance[n] / near.squared_radius)) /
+          reference::mean_weight(kernel);
       for (int c = 0; c < 3; ++c) {
         sums[lights > 1 ? photons.light[photon] : 0][c] +=
-            double{photons.flux[photon][c]} *
+            weight * double{photons.flux[photon][c]} *
             gltf_bsdf(photons.incoming[photon], hits.outgoing[hit], hits.lobe[hit].normal,
                       hits.diffuse_albedo[hit][c], hits.lobe[hit].specular[c],
                       hits.lobe[hit].roughness) /

@@ -1,0 +1,17 @@
+#include "photile/density_kernel.hpp"
+
+namespace photile {
+
+std::string_view name_of(DensityKernel kernel) {
+  switch (kernel) {
+    case DensityKernel::constant:
+      return "constant";
+    case DensityKernel::cone:
+      return "cone";
+    case DensityKernel::epanechnikov:
+      return "epanechnikov";
+  }
+  return "unknown";
+}
+
+}  // namespace photile

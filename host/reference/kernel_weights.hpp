@@ -1,0 +1,22 @@
+// The kernels of the density estimate, written down afresh in double precision.
+#pragma once
+
+#include "photile/density_kernel.hpp"
+
+namespace photile::reference {
+
+/// What a photon counts at `distance`, over the radius, in [0, 1].
+inline double weight_at(DensityKernel kernel, double distance) {
+  if (kernel == DensityKernel::cone) return 1 - distance;
+  if (kernel == DensityKernel::epanechnikov) return 1 - distance * distance;
+  return 1;
+}
+
+/// The mean of the weights over the whole disc.
+inline double mean_weight(DensityKernel kernel) {
+  if (kernel == DensityKernel::cone) return 1.0 / 3;
+  if (kernel == DensityKernel::epanechnikov) return 1.0 / 2;
+  return 1;
+}
+
+}  // namespace photile::reference

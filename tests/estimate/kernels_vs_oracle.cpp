@@ -1,0 +1,121 @@
+// The kernels of the density estimate over whole discs against brute force in double precision, for
+// every structure and strategy, few lights and many, diffuse and glossy.
+#include <catch2/catch.hpp>
+
+#include "estimates_comparison.hpp"
+#include "photon_sets.hpp"
+#include "test_device.hpp"
+
+using namespace photile;
+
+namespace {
+
+constexpr double radius = 0.3;
+constexpr std::array weighting{DensityKernel::cone, DensityKernel::epanechnikov};
+
+struct Subject {
+  Scene scene;
+  Photons photons;
+  PrimaryHits hits;
+
+  explicit Subject(std::size_t lights, std::size_t photon_count = 20'000)
+      : scene(test::empty_scene(lights)) {
+    test::add_torus(scene, 1.0f, 0.4f, 24, 12);
+    photons = test::uniform_photons(scene, photon_count, 53);
+    hits = test::uniform_hits(scene, 200, 54);
+  }
+
+  Estimates estimate(DensityKernel kernel, int k, MapStructure structure = {},
+                     EstimateStrategy strategy = EstimateStrategy::select) const {
+    const PhotonMaps maps(test::device(), scene, photons,
+                          find_neighbour_groups(scene, {radius, 60}), {radius, 4, structure});
+    EstimateParameters parameters{.neighbours = k, .area = AreaMode::disc, .kernel = kernel};
+    parameters.tuning = shipped_tuning(test::device().info());
+    parameters.tuning->strategy = strategy;
+    return Estimator(maps, scene, parameters).estimate(hits);
+  }
+};
+
+/// Largest difference from the truth over what the photons would read at a weight of 1: a weight is
+/// right to a few units of 2^-24, however small it is.
+double worst_difference(const Subject& subject, const Estimates& estimates, DensityKernel kernel,
+                        int k) {
+  const reference::DensityOracle oracle(subject.scene, subject.photons,
+                                        reference::PhotonFilter::grouped, 60);
+  const auto truth = test::expected_irradiance(oracle, subject.hits, k, radius, kernel);
+  const auto scale = test::expected_irradiance(oracle, subject.hits, k, radius);
+  const std::size_t lights = subject.scene.lights.size();
+  const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
+  REQUIRE(irradiance.size() == subject.hits.size() * lights);
+  double worst = 0;
+  for (std::size_t i = 0; i < irradiance.size(); ++i) {
+    const glm::dvec3 of_truth = truth[i / lights][i % lights];
+    const double difference = std::abs(irradiance[i].g - of_truth.g);
+    if (difference > 0) worst = std::max(worst, difference / scale[i / lights][i % lights].g);
+  }
+  return worst;
+}
+
+/// Over the mean weight of a third.
+double tolerance(int k) { return 3 * test::estimate_tolerance(k); }
+
+}  // namespace
+
+TEST_CASE("weighted irradiance equals the oracle's for every structure and strategy") {
+  const Subject subject(3);
+  const DensityKernel kernel = GENERATE(from_range(weighting));
+  constexpr int k = 50;
+  CAPTURE(name_of(kernel));
+  for (const MapStructure structure : all_map_structures) {
+    CAPTURE(name_of(structure));
+    const Estimates estimates = subject.estimate(kernel, k, structure);
+    CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
+  }
+  for (const EstimateStrategy strategy : all_estimate_strategies) {
+    CAPTURE(static_cast<int>(strategy));
+    const Estimates estimates = subject.estimate(kernel, k, MapStructure::uniform_grid, strategy);
+    CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
+  }
+}
+
+TEST_CASE("weighted irradiance equals the oracle's for one light and for many, for any k") {
+  const std::size_t lights = GENERATE(1u, 40u);
+  const DensityKernel kernel = GENERATE(from_range(weighting));
+  const Subject subject(lights);
+  for (const int k : {1, 2, 16, 400}) {
+    CAPTURE(lights, name_of(kernel), k);
+    CHECK(worst_difference(subject, subject.estimate(kernel, k), kernel, k) <= tolerance(k));
+  }
+}
+
+TEST_CASE("with fewer than k photons within the radius weights go by the full radius") {
+  const Subject subject(1, 400);
+  const DensityKernel kernel = GENERATE(from_range(weighting));
+  constexpr int k = 50;
+  for (const EstimateStrategy strategy : all_estimate_strategies) {
+    CAPTURE(name_of(kernel), static_cast<int>(strategy));
+    const Estimates estimates = subject.estimate(kernel, k, MapStructure::uniform_grid, strategy);
+    CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
+  }
+}
+
+TEST_CASE("weighted glossy radiance equals the BSDF summed over the oracle's neighbours") {
+  Scene scene = test::empty_scene(2);
+  scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
+  scene.materials[0].roughness = 0.3f;
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  const Photons photons = test::uniform_photons(scene, 5000, 59);
+  PrimaryHits hits = test::uniform_hits(scene, 100, 60);
+  test::add_lobes(hits, scene, 61);
+  constexpr int k = 50;
+  const DensityKernel kernel = GENERATE(from_range(weighting));
+  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+                        {radius, 4});
+  const Estimates estimates =
+      Estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc, .kernel = kernel})
+          .estimate(hits);
+  const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
+  const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius, kernel);
+  CAPTURE(name_of(kernel));
+  CHECK(test::worst_difference(estimates.radiance, expected) <= 3 * test::glossy_tolerance(k));
+}
