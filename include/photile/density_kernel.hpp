@@ -12,7 +12,7 @@ namespace photile {
 enum class DensityKernel {
   constant,     ///< 1: least noise
   cone,         ///< 1 - d / r: least blur
-  epanechnikov  ///< 1 - (d / r)^2: least error of both together, at its best k
+  epanechnikov  ///< 1 - (d / r)^2: between the two
 };
 
 /// "constant", "cone", "epanechnikov".
