@@ -56,6 +56,35 @@ void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits
   }
 }
 
+/// Triangles round `centre` whose outer corners lie far off it and near it in turn: corners of
+/// the border of less and of more than half a turn.
+void add_star(Scene& scene, const glm::vec3& centre, const glm::vec3& u, const glm::vec3& v,
+              int corners) {
+  const auto corner = [&](int i) {
+    const float turn =
+        glm::two_pi<float>() * static_cast<float>(i % corners) / static_cast<float>(corners);
+    return centre + (i % 2 == 0 ? 1.0f : 0.5f) * (std::cos(turn) * u + std::sin(turn) * v);
+  };
+  for (int i = 0; i < corners; ++i) test::add_triangle(scene, centre, corner(i), corner(i + 1));
+}
+
+/// Each corner of each triangle, and the middle of each edge, as hits on that triangle.
+PrimaryHits hits_on_vertices_and_edges(const Scene& scene) {
+  PrimaryHits hits;
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    const auto corners = scene.corners(t);
+    for (int i = 0; i < 3; ++i) {
+      const glm::vec3& corner = corners[i];
+      for (const glm::vec3& position : {corner, 0.5f * (corner + corners[(i + 1) % 3])}) {
+        hits.position.push_back(position);
+        hits.sided_triangle.push_back(sided(t, 0));
+        hits.diffuse_albedo.emplace_back(0.5f);
+      }
+    }
+  }
+  return hits;
+}
+
 }  // namespace
 
 TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's", "[long]") {
@@ -71,6 +100,16 @@ TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's
     check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::cone);
     check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::epanechnikov);
   }
+}
+
+TEST_CASE("clipped irradiance on vertices and edges to the last bit equals the oracle's") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, 1);
+  test::add_plate(scene, {3, 0, 1}, {0.8f, 0.1f, 0.3f}, {-0.2f, 0.9f, 0.1f}, 3);
+  add_star(scene, {10, 20, 5}, {0.6f, 0.2f, 0.4f}, {0.1f, -0.7f, 0.3f}, 12);
+  const Photons photons = test::uniform_photons(scene, 12'000, 51);
+  const DensityKernel kernel = GENERATE(DensityKernel::constant, DensityKernel::cone);
+  check_clipped(scene, photons, hits_on_vertices_and_edges(scene), 0.2, 50, kernel);
 }
 
 TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode") {
