@@ -262,6 +262,55 @@ TEST_CASE("extremes: photons within a rounding of the borders of cells") {
   }
 }
 
+TEST_CASE("extremes: photons within the radius by less than rounding moves them across cells") {
+  // Single precision places points of a triangle of a kilometre to a tenth of a millimetre. Pairs
+  // of a photon on a border of cells and a hit just within the radius from it: the cells that the
+  // hit looks at have to reach across the border.
+  const glm::dvec3 x = glm::normalize(glm::dvec3(0.6, 0.48, 0.64));
+  const glm::dvec3 y = glm::normalize(glm::cross(x, glm::dvec3(0.3, 1, 0.2)));
+  const double length = 1000, height = 60, radius = 1;
+  Scene scene = test::empty_scene();
+  test::add_triangle(scene, {0, 0, 0}, glm::vec3(length * x),
+                     glm::vec3(0.5 * length * x + height * y));
+  const auto maps_of = [&](const Photons& photons) {
+    // So few photons for a cell that the bound on cells decides their size.
+    return PhotonMaps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+                      {radius, 1e-8f});
+  };
+  const auto grid_of = [](const PhotonMaps& maps) {
+    PhotileGrid grid{};
+    test::device().context().read(maps.store().pages.use(0).grids, std::span(&grid, 1));
+    return grid;
+  };
+  const PhotileGrid grid = grid_of(maps_of(photons_at(scene, {glm::vec3(0.5 * length * x)}, 127)));
+  const glm::dvec3 origin(grid.origin_x, grid.origin_y, grid.origin_z);
+  const glm::dvec3 u(grid.u_axis_x, grid.u_axis_y, grid.u_axis_z);
+  const glm::dvec3 v(grid.v_axis_x, grid.v_axis_y, grid.v_axis_z);
+  std::vector<glm::vec3> places;
+  PrimaryHits hits;
+  for (double along = 50; along < length - 50; along += 3) {
+    for (double up = 2; up < 0.8 * height * (1 - std::abs(2 * along / length - 1)); up += 3) {
+      const double column = std::round((along - grid.minimum_u) / grid.cell_width);
+      const double border = grid.minimum_u + column * grid.cell_width;
+      const glm::vec3 photon(origin + border * u + up * v);
+      const double side = places.size() % 2 == 0 ? 1 : -1;
+      const glm::vec3 hit(glm::dvec3(photon) + side * (radius - 1e-5) * u);
+      if (!(glm::distance(glm::dvec3(photon), glm::dvec3(hit)) < radius * (1 - 1e-6))) continue;
+      places.push_back(photon);
+      hits.position.push_back(hit);
+    }
+  }
+  REQUIRE(hits.size() > 1000);
+  hits.sided_triangle.assign(hits.size(), 0);
+  hits.pixel.resize(hits.size());
+  const Photons photons = photons_at(scene, places, 128);
+  const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
+  const PhotonMaps maps = maps_of(photons);
+  REQUIRE(grid_of(maps).cell_width == grid.cell_width);
+  CHECK(test::count_differences(hits, Estimator(maps, scene, {4, 0}).nearest(hits), oracle, photons,
+                                radius) == 0);
+}
+
 TEST_CASE("extremes: photons of 1e-12 to 1e12 units of flux in one map") {
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);

@@ -67,6 +67,23 @@ TEST_CASE("maps of patches find the oracle's neighbours on a fine sphere", "[lon
   check_modes(sphere(), 20'000, 300, 0.25, every_structure, {16, 50});
 }
 
+TEST_CASE("a patch has the photons that are nearly the radius away") {
+  // From another patch straight above: no hit but those right below them are as near.
+  constexpr double radius = 0.2;
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  test::add_plate(scene, {0, 0, static_cast<float>(0.995 * radius)}, {1, 0, 0}, {0, 1, 0}, 4);
+  const Patches patches = find_patches(scene, radius, MapMode::patch);
+  REQUIRE(patches.count() == 2);
+  const NeighbourGroups groups = find_patch_groups(scene, patches, {radius, 60});
+  const Photons photons = test::uniform_photons(scene, 20'000, 55, false);
+  const PrimaryHits hits = test::uniform_hits(scene, 300, 56, false);
+  const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
+  const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4});
+  CHECK(test::count_differences(hits, Estimator(maps, scene, {5000, 0}).nearest(hits), oracle,
+                                photons, radius) == 0);
+}
+
 TEST_CASE("maps of patches find the oracle's neighbours in the Cornell box") {
   const Scene scene = load_scene(source_folder / "scenes/cornell-box/cornell-box.obj");
   check_modes(scene, 20'000, 300, 0.08, every_structure, {1, 50, 300});

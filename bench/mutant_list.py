@@ -1,0 +1,114 @@
+"""The faults that mutants.py builds in, each with the tests that have to notice.
+
+A mutant replaces a text that its file has exactly once. Tests are programs of tests/ with Catch2's
+test specifications; those named are the ones to run, not all that may fail.
+"""
+
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Mutant:
+    name: str
+    file: str  # of the repository; the tests of kernels/ need no build
+    find: str
+    replace: str
+    tests: tuple  # (room of tests/, specification)
+
+    @property
+    def in_kernels(self):
+        return self.file.startswith("kernels/")
+
+
+ORACLE = (("estimate", "neighbours equal the oracle's on a plate*,irradiance equals the oracle's for one*"),)
+EVEN_LIGHT = ("validation", "even light is read without bias*")
+EXACT_LAW = ("estimate", "the exact law of the estimate in the middle*")
+PATCHES = ("estimate", "*neighbours in the Cornell box,*neighbours on a fine torus")
+INTERREFLECTION = ("validation", "interreflected light is read without bias*")
+EXTREMES = ("estimate", "extremes: photons within*")
+PATHS = (("reference", "~[slow]"),)
+
+MUTANTS = (
+    # Physics of photons
+    Mutant("k for k - 1", "kernels/estimate/estimate_hit.clh",
+           "if (k > 1) return smallest_lane(beyond);", "",
+           (("validation", "few neighbours are as unbiased as many*"), EXACT_LAW)),
+    Mutant("area 1% off", "kernels/estimate/area.clh",
+           "*area = disc.area;", "*area = 1.01f * disc.area;", (EVEN_LIGHT, EXACT_LAW)),
+    Mutant("whole disc for the clipped one", "kernels/estimate/area.clh",
+           "*area = disc.area;", "*area = 3.14159265f * squared;",
+           (("estimate", "the exact law of the estimate at an edge"),)),
+    Mutant("all heights in the slab", "kernels/estimate/estimate_hit.clh",
+           "return fabs((x + y) + z) <= height;", "return fabs((x + y) + z) <= INFINITY;",
+           (("estimate", "clipped irradiance on a torus*"),)),
+    Mutant("cosine of lamps dropped", "host/trace/light_emitter.cpp",
+           "sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1))",
+           "direction_at(numbers.uniform(0), numbers.uniform(1))",
+           (INTERREFLECTION, ("trace", "A square lamp*,An area light emits*"))),
+    Mutant("back side counted", "host/trace/photon_path.cpp",
+           "record.sided_triangle.push_back(point.sided_triangle());",
+           "record.sided_triangle.push_back(point.sided_triangle() ^ 1u);",
+           (("validation", "the dark side of a lit plate*"),)),
+    Mutant("photons' roulette uncompensated", "host/trace/photon_path.cpp",
+           "u < survival ? after / survival", "u < survival ? after",
+           (INTERREFLECTION, ("trace", "In a closed diffuse box*"))),
+    Mutant("one light 2% brighter", "host/trace/photon_tracer.cpp",
+           "static_cast<double>(paths_per_light[chunk.light])),",
+           "(chunk.light == 1 ? 0.98 : 1.0) / static_cast<double>(paths_per_light[chunk.light])),",
+           (("validation", "each light of two is read at its own power"),)),
+    Mutant("one light's random numbers for all", "host/trace/photon_path.cpp",
+           "random(setup.parameters->seed, path, setup.light)",
+           "random(setup.parameters->seed, path, 0)",
+           (("trace", "Another seed*"),)),
+    Mutant("wrong unit: 683 lm/W for those asked for", "host/image/mixed_picture.cpp",
+           "? 1.0 : lumen_per_watt", "? 1.0 : 683.0", (("image", "~[slow]"),)),
+    # Where photons are
+    Mutant("normal filter off", "kernels/estimate/normal_filter.clh",
+           "return select((wide_float)(INFINITY), squared, (x + y) + z >= filter->least_cosine);",
+           "return squared;", (PATCHES,)),
+    Mutant("last photon of each row of cells dropped", "kernels/estimate/candidates.clh",
+           "place < (wide_uint)(end - start));", "place < (wide_uint)(end - start - 1u));", ORACLE),
+    Mutant("last photon of each range of cells dropped, in rings", "kernels/estimate/rings.clh",
+           "for (; entry < end; ++entry) {", "for (; entry + 1u < end; ++entry) {",
+           (("estimate", "*irradiance for one light"),)),
+    Mutant("photons of one light count for the other", "kernels/estimate/near_entries.clh",
+           "const wide_int adds = is_near & (light_of_lane == (wide_int)((int)light));",
+           "const wide_int adds = is_near & (light_of_lane >= (wide_int)((int)light));",
+           (("estimate", "*irradiance for several lights"),)),
+    Mutant("all that tie count", "kernels/estimate/estimate_hit.clh",
+           "if (entries->photon[entry] > last) continue;", "", (("estimate", "photons in one point: ties*,extremes: photons*"),)),
+    Mutant("slack of cells 0", "kernels/grid/size_grids.cl",
+           "grid.slack = 16.0f * FLT_EPSILON * (width_u + width_v);", "grid.slack = 0.0f;",
+           (EXTREMES,)),
+    Mutant("photons beyond 0.98 of the squared reach of a triangle left out",
+           "kernels/grid/entry.clh",
+           "squared_distance_to_triangle(photon, a, b, c, gap_h * gap_h) <= squared_reach;",
+           "squared_distance_to_triangle(photon, a, b, c, gap_h * gap_h) <= 0.98f * squared_reach;",
+           (("maps", "grid contents equal*"),)),
+    Mutant("photons beyond 0.98 of the squared reach of a patch left out",
+           "kernels/grid/entry.clh",
+           "if ((gap_u * gap_u + gap_v * gap_v) + gap_h * gap_h > squared_reach) return false;",
+           "if ((gap_u * gap_u + gap_v * gap_v) + gap_h * gap_h > 0.98f * squared_reach) "
+           "return false;", (("estimate", "a patch has the photons*"),)),
+    Mutant("distances from needles in floats", "host/maps/map_shapes.cpp",
+           "constexpr double most_heights = 16;", "constexpr double most_heights = 1e30;",
+           (("estimate", "extremes: needles*"),)),
+    Mutant("border of tiles 10% too narrow", "host/maps/map_tiling.cpp",
+           "const double rows = (radius + 3", "const double rows = (0.9 * radius + 3",
+           (("maps", "the page of a place*"),)),
+    Mutant("a row of each tile dropped", "kernels/grid/tile.clh",
+           "(uint)cell.y >= first_row &&\n         (uint)cell.y < last_row;",
+           "(uint)cell.y >= first_row &&\n         (uint)cell.y < last_row && "
+           "(uint)cell.y != (first_row + last_row) / 2u;", (("estimate", "tiles find*"),)),
+    # Paths
+    Mutant("density of looking at lamps 2% off", "host/trace/light_sampler.cpp",
+           "return cosine > 0.0f ? chance(light) *", "return cosine > 0.0f ? 1.02f * chance(light) *",
+           PATHS),
+    Mutant("weight of looking at lamps dropped", "host/reference/surface_path.cpp",
+           "arrives *= power_heuristic(lamp->density, density(lamp->direction));", "", PATHS),
+    Mutant("paths' roulette uncompensated", "host/reference/surface_path.cpp",
+           "weights_ = weights_ * (weight / survival);", "weights_ = weights_ * weight;", PATHS),
+    Mutant("Fresnel's share swapped", "host/trace/scatter_specular.cpp",
+           "if (choice < (material.thin", "if (choice >= (material.thin",
+           (("trace", "Glass*,Thin glass*"),)),
+)

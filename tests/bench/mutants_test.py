@@ -1,0 +1,63 @@
+#!/usr/bin/python3
+"""Tests of bench/mutants.py and of its list, which has to follow the files that it changes.
+
+    tests/bench/mutants_test.py
+"""
+
+import pathlib
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench"))
+import mutants
+from mutant_list import MUTANTS, Mutant
+
+
+class Texts(unittest.TestCase):
+    def test_every_mutant_changes_what_its_file_has_exactly_once(self):
+        for mutant in MUTANTS:
+            text = (ROOT / mutant.file).read_text(encoding="utf-8")
+            self.assertEqual((mutant.name, text.count(mutant.find)), (mutant.name, 1))
+            self.assertNotEqual(mutant.find, mutant.replace)
+            self.assertTrue(mutant.tests)
+
+    def test_names_are_unique_and_rooms_exist(self):
+        self.assertEqual(len({mutant.name for mutant in MUTANTS}), len(MUTANTS))
+        for mutant in MUTANTS:
+            for room, _ in mutant.tests:
+                self.assertTrue((ROOT / "tests" / room / "CMakeLists.txt").is_file(), room)
+
+
+class Changes(unittest.TestCase):
+    def test_a_file_is_changed_in_the_folder_alone_and_its_text_is_given_back(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "a.cl").write_text("one two", encoding="utf-8")
+            mutant = Mutant("m", "a.cl", "two", "three", ())
+            self.assertEqual(mutants.mutate(folder, mutant), "one two")
+            self.assertEqual((folder / "a.cl").read_text(encoding="utf-8"), "one three")
+
+    def test_a_text_that_is_missing_or_there_twice_is_an_error(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "a.cl").write_text("two two", encoding="utf-8")
+            for find in ("two", "four"):
+                with self.assertRaises(mutants.CannotRun):
+                    mutants.mutate(folder, Mutant("m", "a.cl", find, "x", ()))
+
+
+class Table(unittest.TestCase):
+    def test_what_no_test_noticed_survives_and_what_did_not_run_says_so(self):
+        first, second, third = (mutant.name for mutant in MUTANTS[:3])
+        text = mutants.table({first: [], second: ["a/b", "c/d", "e/f"]}).splitlines()
+        self.assertIn(f"| {first} |", text[2])
+        self.assertIn("**survives**", text[2])
+        self.assertIn("a/b; c/d; 1 more", text[3])
+        self.assertIn(f"| {third} |", text[4])
+        self.assertIn("not run", text[4])
+
+
+if __name__ == "__main__":
+    unittest.main()
