@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Measures the trade of three views and writes the tables of docs/trade.md and docs/trade/*.svg.
 
-    bench/trade_report.py [SCENES] [--redraw]
+    bench/trade_report.py [SCENES] [--redraw] [--only VIEW]...
 
 SCENES is a folder with classroom/classroom-diffuse.gltf and references/; without it, only the
 bundled scenes are measured. Needs the built command.
@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 import scene_arguments
-from report_section import replace_section
+from report_section import read_section, replace_section
 
 ROOT = scene_arguments.ROOT
 PAGE = ROOT / "docs/trade.md"
@@ -25,6 +25,8 @@ WANTED = (0.10, 0.05, 0.02, 0.01)
 def arguments():
     parser = scene_arguments.parser(__doc__.splitlines()[0])
     parser.add_argument("--redraw", action="store_true", help="use the results in out/trade")
+    parser.add_argument("--only", action="append", metavar="VIEW",
+                        help="measure this alone, the page keeps the others; repeatable")
     return parser.parse_args()
 
 
@@ -84,7 +86,14 @@ def section(name, record):
         noise = (f" The reference has {record['reference_samples']} paths a pixel and itself an "
                  f"error of {100 * own:.1f}%, which is in all figures.")
     return (f"### {name}\n\n{size} pixels.{noise}\n\n![Error against time](trade/{name}.svg)\n\n"
-            f"{table(record)}\n\n")
+            f"{table(record)}\n\n{os.cpu_count()} cores, {record['devices'][0]}; load average at the "
+            f"end {os.getloadavg()[0]:.1f}.\n\n")
+
+
+def sections_by_name(text):
+    """Those that a page has, by the name of the view."""
+    parts = text.split("### ")[1:]
+    return {part.split("\n", 1)[0]: "### " + part.rstrip() + "\n\n" for part in parts}
 
 
 def main():
@@ -94,18 +103,17 @@ def main():
                  "build it with cmake/build.sh")
     folder = ROOT / "docs/trade"
     folder.mkdir(exist_ok=True)
-    text = ""
+    texts = sections_by_name(read_section(PAGE, "trade_report.py"))
     for name, scene, more in subjects(options.scenes):
+        if options.only and name not in options.only:
+            continue
         out = ROOT / "out/trade" / name
         if not options.redraw:
             subprocess.run([options.photile, "trade", scene, "-o", out, *more], check=True)
         record = json.loads((out / "trade.json").read_text())
         (folder / f"{name}.svg").write_text((out / "trade.svg").read_text())
-        text += section(name, record)
-        device = record["devices"][0]
-    text += (f"{os.cpu_count()} cores, {device}; load average at the end "
-             f"{os.getloadavg()[0]:.1f}.\n")
-    replace_section(PAGE, "trade_report.py", text)
+        texts[name] = section(name, record)
+    replace_section(PAGE, "trade_report.py", "".join(texts.values()).rstrip() + "\n")
 
 
 if __name__ == "__main__":
