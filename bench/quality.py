@@ -1,0 +1,248 @@
+#!/usr/bin/python3
+"""Error against time of photile beside what a user would pick instead; writes docs/quality.md.
+
+    bench/quality.py [SCENES] [--only VIEW] [--redraw] [--quick] [--results FOLDER]
+
+Renders the two diffuse interiors of SCENES with photile, in one pass and in many, and with Mitsuba 3's
+path tracer with and without Open Image Denoise; compares with the path-traced references of SCENES by
+relMSE and FLIP. Needs the built command, and numpy, matplotlib and OpenImageIO. The rivals are those
+that the interpreter finds: the packages mitsuba, pyoidn and flip-evaluator of PyPI, for example in an
+environment made with `/usr/bin/python3 -m venv --system-site-packages`. Mitsuba wants LLVM, which
+DRJIT_LIBLLVM_PATH names. What is not there becomes a row that says so.
+"""
+
+import importlib.metadata
+import importlib.util
+import json
+import os
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+
+import scene_arguments
+
+try:
+    import numpy as np
+
+    import picture_error
+    import quality_report
+except ImportError as missing:
+    sys.exit(f"quality.py: error: {missing}; install the Debian packages python3-matplotlib, "
+             "python3-numpy and python3-openimageio, and run it with Debian's Python")
+
+ROOT = scene_arguments.ROOT
+INTERIORS = ("kitchen", "classroom")
+SIZE = "256x192"
+PHOTONS = (62_500, 250_000, 1_000_000)
+PASSES = (1, 2, 4)
+PHOTONS_PER_PASS = 500_000
+LEAST_NEIGHBOURS = "12"
+PATHS = (1, 4, 16, 64, 128)  # of a pixel
+MOST_PATHS_OF_FRAMES = 16  # beyond, a further frame takes what the first takes
+
+
+def arguments():
+    parser = scene_arguments.parser(__doc__.splitlines()[0])
+    parser.add_argument("--only", choices=INTERIORS,
+                        help="measure this alone, the results keep the other")
+    parser.add_argument("--redraw", action="store_true",
+                        help="use the results in the folder instead of measuring")
+    parser.add_argument("--quick", action="store_true",
+                        help="few photons and paths in the bundled Cornell box: a smoke test")
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/quality",
+                        help="where JSON and plots go; default: %(default)s")
+    return parser.parse_args()
+
+
+def neighbours(photons):
+    """k, growing as the photons to the power 2/3, so that noise and bias fall alike."""
+    return max(12, round(12 * (photons / 10_000) ** (2 / 3)))
+
+
+def installed(package):
+    return importlib.util.find_spec(package) is not None
+
+
+def processor_seconds(process):
+    """Of all threads of a running process, from proc(5)."""
+    fields = pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(") ")[2].split()
+    return sum(int(field) for field in fields[11:13]) / os.sysconf("SC_CLK_TCK")
+
+
+def run_photile(command):
+    """Runs it; returns the costs of the process and of its last stage, that of a further frame.
+
+    The processor seconds of the frame are those between the lines that the command prints when the
+    photon maps and the picture are ready; None where it has several passes.
+    """
+    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    built, frames, said = 0.0, [], ""
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        for line in process.stderr:
+            said = line
+            if "%, " in line:  # how far a stage is
+                continue
+            if line.startswith("build photon maps:"):
+                built = processor_seconds(process.pid)
+            elif line.startswith("estimate radiance:"):
+                frames.append(processor_seconds(process.pid) - built)
+    if process.returncode != 0:
+        raise OSError(f"photile ended with {process.returncode}: {said.strip()}")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    first = {"seconds": time.monotonic() - begin,
+             "processor": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}
+    return first, frames[0] if len(frames) == 1 else None
+
+
+def compile_kernels(command, scene, folder, options):
+    """Fills the cache with the kernels of these options, which depend on k."""
+    neighbours_used = options[options.index("-k") + 1]
+    subprocess.run([command, "render", scene, "--size", "8x8", "--photons", "10k", "--quiet",
+                    "-o", folder / "compiled.exr", "-k", neighbours_used,
+                    "--least-neighbours", LEAST_NEIGHBOURS], check=True)
+
+
+def photile(command, scene, size, folder, options):
+    """A picture and its costs."""
+    compile_kernels(command, scene, folder, options)
+    picture, stats = folder / "photile.exr", folder / "photile.json"
+    first, frame_processor = run_photile(
+        [command, "render", scene, "--size", size, "--quota", "power", "-o", picture,
+         "--stats", stats, *options])
+    stages = {stage["stage"]: stage["seconds"] for stage in json.loads(stats.read_text())["stages"]}
+    costs = {"first": first}
+    if frame_processor is not None:
+        costs["frame"] = {"processor": frame_processor,
+                          "seconds": sum(stages[stage] for stage in
+                                         ("primary hits", "radiance estimate", "film"))}
+    return picture_error.read_picture(picture), costs
+
+
+class NoRival(Exception):
+    """Why a rival renders nothing here."""
+
+
+def mitsuba(scene, size, folder, options):
+    picture = folder / "mitsuba.npy"
+    done = subprocess.run(
+        [sys.executable, ROOT / "bench/quality_mitsuba.py", scene, "--size", size, "-o", picture,
+         "--begin", str(time.monotonic()), *options], stdout=subprocess.PIPE, text=True, check=False)
+    if done.returncode != 0:
+        raise NoRival(f"ended with {done.returncode}; DRJIT_LIBLLVM_PATH should name LLVM 19")
+    return np.load(picture).astype(np.float64), json.loads(done.stdout)
+
+
+def photon_settings(photons, passes=1):
+    """Options of passes of so many photons."""
+    return ["--photons", str(photons * passes), "--passes", str(passes),
+            "-k", str(neighbours(photons)), "--least-neighbours", LEAST_NEIGHBOURS]
+
+
+def path_settings(paths):
+    return ["--samples", str(paths), *(["--next"] if paths <= MOST_PATHS_OF_FRAMES else [])]
+
+
+def series(quick):
+    """Name of the tool, package that it needs, settings of each point in words and as options."""
+    photons, passes, paths = ((20_000,), (2,), (1,)) if quick else (PHOTONS, PASSES, PATHS)
+    per_pass = 10_000 if quick else PHOTONS_PER_PASS
+    return (
+        ("photile", None, [(f"{n:,} photons", photon_settings(n)) for n in photons]),
+        ("photile, in passes", None,
+         [(f"{n} x {per_pass:,} photons", photon_settings(per_pass, n)) for n in passes]),
+        ("Mitsuba", "mitsuba", [(f"{n} spp", path_settings(n)) for n in paths]),
+        ("Mitsuba, denoised", "pyoidn",
+         [(f"{n} spp", [*path_settings(n), "--denoise"]) for n in paths]))
+
+
+def flip(picture, reference):
+    """Mean HDR-FLIP (Andersson et al. 2021), 0 to 1; None where it is not installed."""
+    if not installed("flip_evaluator"):
+        return None
+    import flip_evaluator  # pylint: disable=import-outside-toplevel; not everywhere
+    return float(flip_evaluator.evaluate(reference.astype(np.float32),
+                                         np.maximum(picture, 0).astype(np.float32), "HDR")[1])
+
+
+def subjects(options, folder):
+    """Name, scene file, size and reference of each view."""
+    if not options.quick:
+        return [(name, options.scenes / name / f"{name}-diffuse.gltf", SIZE,
+                 options.scenes / "references" / f"{name}-diffuse-{SIZE}.exr")
+                for name in INTERIORS if options.only in (None, name)]
+    scene, reference = ROOT / "scenes/cornell-box/cornell-box.gltf", folder / "reference.exr"
+    subprocess.run([options.photile, "render", scene, "--size", "32x32", "--integrator", "path",
+                    "--samples", "64", "--quiet", "-o", reference], check=True)
+    return [("cornell-box", scene, "32x32", reference)]
+
+
+def measure_series(render, points, view, tool, reference):
+    """Rows of one tool in one view."""
+    rows = []
+    for setting, options in points:
+        picture, costs = render(options)
+        rows.append({"view": view, "tool": tool, "setting": setting, **costs,
+                     **picture_error.measure(picture, reference),
+                     "flip": flip(picture, reference)})
+        print(json.dumps(rows[-1]), flush=True)
+    return rows
+
+
+def measure(options, folder):
+    rows = []
+    for view, scene, size, reference_file in subjects(options, folder):
+        reference = picture_error.read_picture(reference_file)
+
+        def by_photile(more, scene=scene, size=size):
+            return photile(options.photile, scene, size, folder, more)
+
+        def by_mitsuba(more, scene=scene, size=size):
+            return mitsuba(scene, size, folder, more)
+
+        for tool, package, points in series(options.quick):
+            try:
+                if package and not (installed("mitsuba") and installed(package)):
+                    raise NoRival("not installed")
+                if package:
+                    by_mitsuba(points[0][1])  # fills its cache of kernels
+                rows += measure_series(by_mitsuba if package else by_photile, points, view, tool,
+                                       reference)
+            except NoRival as reason:
+                rows.append({"view": view, "tool": tool, "missing": str(reason)})
+    return rows
+
+
+def version(package):
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return None
+
+
+def main():
+    options = arguments()
+    options.results.mkdir(parents=True, exist_ok=True)
+    file = options.results / "quality.json"
+    if not options.redraw:
+        with tempfile.TemporaryDirectory() as folder:
+            rows = measure(options, pathlib.Path(folder))
+        if options.only:
+            known = json.loads(file.read_text())["results"] if file.is_file() else []
+            rows = [row for row in known if row["view"] != options.only] + rows
+        packages = ("mitsuba", "pyoidn", "flip-evaluator")
+        record = {"bench": "quality", "cores": os.cpu_count(), "processor": quality_report.processor(),
+                  "load_average": os.getloadavg()[1],
+                  "versions": {package: version(package) for package in packages}, "results": rows}
+        file.write_text(json.dumps(record, indent=1) + "\n")
+    quality_report.write(json.loads(file.read_text()), options.results,
+                         None if options.quick else ROOT / "docs/quality.md")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (OSError, ValueError, subprocess.CalledProcessError) as error:
+        sys.exit(f"quality.py: error: {error}")

@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""Tests of bench/quality*.py and bench/gltf_meshes.py. Exits with 77 (skipped) where Debian's numpy,
+matplotlib or OpenImageIO is not installed.
+
+    tests/bench/quality_test.py
+"""
+
+import math
+import pathlib
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench"))
+try:
+    import gltf_meshes
+    import numpy as np
+    import quality
+    import quality_report
+except (ImportError, SystemExit) as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+
+def row(tool, processor, rel_mse, frame=None):
+    made = {"tool": tool, "first": {"processor": processor, "seconds": processor},
+            "rel_mse": rel_mse, "flip": None}
+    if frame is not None:
+        made["frame"] = {"processor": frame, "seconds": frame}
+    return made
+
+
+class Curves(unittest.TestCase):
+    def test_times_and_errors_between_points_are_those_of_powers(self):
+        times, errors = [1, 100], [0.1, 0.001]  # error = 0.1 / time
+        self.assertAlmostEqual(quality_report.time_to(0.01, times, errors), 10)
+        self.assertAlmostEqual(quality_report.error_at(10, times, errors), 0.01)
+
+    def test_beyond_the_last_point_nothing_is_made_up(self):
+        times, errors = [1, 100], [0.1, 0.001]
+        self.assertIsNone(quality_report.time_to(0.0001, times, errors))
+        self.assertAlmostEqual(quality_report.error_at(1000, times, errors), 0.001)
+        self.assertIsNone(quality_report.error_at(0.5, times, errors))
+        self.assertEqual(quality_report.time_to(0.5, times, errors), 1)
+
+    def test_a_curve_is_of_one_tool_and_one_cost_by_time(self):
+        rows = [row("a", 9, 0.1, 3), row("a", 4, 0.2, 1), row("b", 1, 0.3), row("a", 5, 0.15)]
+        self.assertEqual(quality_report.curve(rows, "a", "frame", "rel_mse"), ([1, 3], [0.2, 0.1]))
+        self.assertEqual(quality_report.curve(rows, "a", "first", "flip"), ([], []))
+
+
+class Tables(unittest.TestCase):
+    def test_ten_seconds_are_those_of_all_cores(self):
+        rows = [row("a", 2, 0.2), row("a", 200, 0.002)]
+        text = quality_report.summary(rows, cores=2).splitlines()[-1]
+        self.assertEqual(text, "| a | 20 s | - | 0.02 | - |")
+
+    def test_what_is_not_installed_keeps_its_rows(self):
+        rows = [{"tool": "Mitsuba", "missing": "not installed"}]
+        self.assertIn("| Mitsuba | not installed |", quality_report.summary(rows, 2))
+        self.assertIn("| Mitsuba | not installed |", quality_report.table(rows))
+
+
+class Settings(unittest.TestCase):
+    def test_k_grows_as_the_photons_to_the_power_two_thirds(self):
+        self.assertEqual(quality.neighbours(10_000), 12)
+        self.assertEqual(quality.neighbours(640_000), 12 * 16)
+        self.assertEqual(quality.neighbours(100), 12)  # k cannot shrink for ever
+
+
+class Meshes(unittest.TestCase):
+    def test_the_cornell_box_has_its_triangles_colours_lamp_and_camera(self):
+        meshes, view = gltf_meshes.read_gltf(ROOT / "scenes/cornell-box/cornell-box.gltf")
+        by_name = {mesh.name: mesh for mesh in meshes}
+        self.assertEqual(len(meshes), 8)
+        self.assertEqual(len(by_name["floor"].triangles), 2)
+        self.assertEqual(len(by_name["tall block"].triangles), 10)
+        self.assertEqual(by_name["left wall"].reflectance, [0.448925, 0.038887, 0.010255])
+        self.assertAlmostEqual(by_name["lamp"].radiance[0], 38888.632)
+        self.assertEqual(by_name["floor"].radiance, [0, 0, 0])
+        self.assertTrue(np.all(by_name["floor"].positions[:, 1] == 0))
+        # From in front of the box, into it.
+        self.assertTrue(np.allclose(view.to_world[:3, 3], [0.278, 0.273, -0.8]))
+        self.assertTrue(np.allclose(view.to_world[:3, 2], [0, 0, -1]))
+        self.assertTrue(0 < view.vertical_field_of_view < math.pi)
+
+    def test_what_is_not_diffuse_is_refused(self):
+        with self.assertRaises(ValueError):
+            gltf_meshes.read_gltf(ROOT / "scenes/living-room/living-room.gltf")
+
+
+if __name__ == "__main__":
+    unittest.main()
