@@ -5,6 +5,7 @@
 
 #include "photile/device/bsdf.h"
 #include "trace/opaque_bsdf.hpp"
+#include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 
 namespace photile::reference {
@@ -12,6 +13,7 @@ namespace {
 
 using trace::LightSample;
 using trace::OpaqueBsdf;
+using trace::power_heuristic;
 using trace::Purpose;
 using trace::RandomBlock;
 using trace::RandomStream;
@@ -21,12 +23,6 @@ using trace::SurfacePoint;
 constexpr float largest_survival = 0.99f;
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
-
-/// Of a direction that either technique may find; a density of 0 says that the other cannot.
-float power_heuristic(float density, float other) {
-  const float ratio = other / density;
-  return 1.0f / (1.0f + ratio * ratio);
-}
 
 /// What light from a direction counts for the two results.
 struct Weights {

@@ -8,6 +8,7 @@
 #include "photile/primary_hits.hpp"
 #include "photile/renderer.hpp"
 #include "photile/sensors.hpp"
+#include "trace/light_sampler.hpp"
 
 namespace photile {
 
@@ -39,6 +40,20 @@ class SensorHits : public HitSource {
 
  private:
   std::span<const Sensor> sensors_;
+};
+
+/// What sensors in the air look at. Sensor i is row i of a film that is one pixel wide.
+class GatherHits : public HitSource {
+ public:
+  GatherHits(const Scene& scene, std::span<const Sensor> sensors, SensorResponse response)
+      : sensors_(sensors), response_(response), lamps_(scene) {}
+  PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
+                        int last_row, std::span<const std::uint32_t> map_of) const override;
+
+ private:
+  std::span<const Sensor> sensors_;
+  SensorResponse response_;
+  trace::LightSampler lamps_;
 };
 
 /// `render` and `trace_paths` for any hits.

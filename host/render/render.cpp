@@ -6,6 +6,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/renderer.hpp"
+#include "photile/scene_renderer.hpp"
 #include "render/device_estimators.hpp"
 #include "render/film.hpp"
 #include "render/hit_source.hpp"
@@ -35,31 +36,67 @@ NeighbourGroups groups_of(const Scene& scene, const Photons& photons,
 /// One rendering: what its photon passes share.
 class Rendering {
  public:
-  Rendering(const Scene& scene, const HitSource& hits, std::span<Device> devices,
-            const RenderParameters& parameters, Progress& progress)
+  Rendering(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
+            Progress& progress)
       : scene_(scene),
-        hits_(hits),
         devices_(devices),
         parameters_(parameters),
-        progress_(progress),
+        progress_(&progress),
         rays_(scene),
-        film_(parameters.film),
-        shares_(devices.size(), 0.0),
         layer_powers_(layer_powers(scene)) {
     costs_.structure.add(stopwatch_.seconds(), rays_.bytes());
     passes_ = parameters.passes > 0 ? parameters.passes
                                     : automatic_passes(rays_, parameters.photons, progress);
-    // Passes share the samples of a pixel: photons of one pass make the errors of neighbouring
-    // samples alike, those of another do not.
-    film_.passes = passes_;
-    film_.samples_per_pixel = passes_ * ((parameters.film.samples_per_pixel - 1) / passes_ + 1);
-    layers_ = LightLayers(film_.width, film_.height, scene);
     paths_before_.assign(scene.lights.size(), 0);
   }
 
-  RenderResult run() {
-    for (int pass = 0; pass < passes_; ++pass) run_pass(pass);
+  int passes() const { return passes_; }
+
+  /// From now on.
+  void report_to(Progress& progress) { progress_ = &progress; }
+
+  /// Begins a picture.
+  void start(const PrimaryHitParameters& film) {
+    // Passes share the samples of a pixel: photons of one pass make the errors of neighbouring
+    // samples alike, those of another do not.
+    film_ = film;
+    film_.passes = passes_;
+    film_.samples_per_pixel = passes_ * ((film.samples_per_pixel - 1) / passes_ + 1);
+    layers_ = LightLayers(film_.width, film_.height, scene_);
+    shares_.assign(devices_.size(), 0.0);
+    costs_.start_picture();
+  }
+
+  /// Traces the photons of a pass and builds their maps. Those of the pass before are gone.
+  ///   prepared   photons and groups in place of traced ones, or null; taken
+  ///   keep       is given those of the first pass, or null
+  void prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {
+    estimators_.clear();
+    maps_.clear();
+    maps_ = trace_and_build(pass, prepared, keep);
+    const PassEstimate estimate = estimate_of_pass(pass, first_);
+    levels_ = levels_of(estimate.neighbours);
+    for (const int neighbours : levels_) {
+      estimators_.emplace_back(
+          devices_, maps_, scene_,
+          EstimateParameters{neighbours, 0, parameters_.tuning, parameters_.neighbours,
+                             parameters_.area, parameters_.kernel, surface_});
+    }
+    pass_ = pass;
+  }
+
+  /// Adds what is seen by the photons of the prepared pass.
+  void add_pass(const HitSource& source) {
+    film_.pass = pass_;
+    add_pass_rows(source);
+    const std::vector<double> shares = estimators_.back().shares();
+    for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / passes_;
+  }
+
+  /// The picture since `start`.
+  RenderResult finish() {
     costs_.film.host_bytes = layers_.bytes();
+    costs_.shares.clear();
     for (const Device& device : devices_) {  // devices compile at the same time
       costs_.compile_seconds = std::max(costs_.compile_seconds, device.compile_seconds());
     }
@@ -77,23 +114,6 @@ class Rendering {
   }
 
  private:
-  void run_pass(int pass) {
-    const std::vector<PhotonMaps> maps = trace_and_build(pass);
-    const PassEstimate estimate = estimate_of_pass(pass, first_);
-    const std::vector<int> levels = levels_of(estimate.neighbours);
-    std::vector<DeviceEstimators> estimators;
-    for (const int neighbours : levels) {
-      estimators.emplace_back(
-          devices_, maps, scene_,
-          EstimateParameters{neighbours, 0, parameters_.tuning, parameters_.neighbours,
-                             parameters_.area, parameters_.kernel, surface_});
-    }
-    film_.pass = pass;
-    add_pass(estimators, levels, maps.front().map_of());
-    const std::vector<double> shares = estimators.back().shares();
-    for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / passes_;
-  }
-
   /// The k that hits of a pass choose from; just one unless they are to have their own.
   std::vector<int> levels_of(int neighbours) const {
     const int least = parameters_.least_neighbours;
@@ -102,21 +122,31 @@ class Rendering {
   }
 
   /// The maps of a pass. Its photons are gone when this returns: the maps hold copies.
-  std::vector<PhotonMaps> trace_and_build(int pass) {
-    const Photons photons = trace(pass);
+  std::vector<PhotonMaps> trace_and_build(int pass, PreparedPhotons* prepared,
+                                          const KeepPhotons* keep) {
+    PreparedPhotons own;
+    own.photons = prepared ? take(*prepared) : trace(pass);
+    const Photons& photons = own.photons;
     if (pass == 0) {
-      first_ = {parameters_.radius > 0 ? parameters_.radius
-                                       : automatic_radius(photons, parameters_.neighbours),
+      first_ = {prepared                 ? prepared->radius
+                : parameters_.radius > 0 ? parameters_.radius
+                                         : automatic_radius(photons, parameters_.neighbours),
                 parameters_.neighbours};
-      find_groups(photons);  // once: no later radius is larger
+      find_groups(photons, prepared);  // once: no later radius is larger
       find_surface(photons);
+    }
+    if (keep) {
+      own.radius = first_.radius;
+      std::swap(own.groups, groups_);
+      (*keep)(own);
+      std::swap(own.groups, groups_);
     }
     const Stopwatch stopwatch;
     std::vector<PhotonMaps> maps =
         build_maps_on_each(devices_, scene_, photons, groups_,
                            {estimate_of_pass(pass, first_).radius, parameters_.photons_per_cell,
                             parameters_.structure},
-                           progress_);
+                           *progress_);
     std::uint64_t device_bytes = 0, spilled_bytes = 0;
     for (const PhotonMaps& one : maps) {
       device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
@@ -141,20 +171,30 @@ class Rendering {
       parameters.emitted_photons = std::max<std::uint64_t>(1, until(pass + 1) - until(pass));
       parameters.paths_before = paths_before_;
     }
-    PhotonTracerResult traced = trace_photons(rays_, parameters, progress_);
-    for (std::size_t light = 0; light < paths_before_.size(); ++light) {
-      const std::uint64_t paths = traced.photons.emitted_per_light[light];
-      paths_before_[light] += paths;
-      costs_.emitted_photons += paths;
-    }
-    costs_.stored_photons += traced.photons.size();
-    costs_.trace.add(traced.seconds, traced.photons.bytes());
+    PhotonTracerResult traced = trace_photons(rays_, parameters, *progress_);
+    count(traced.photons, traced.seconds);
     return std::move(traced.photons);
   }
 
-  void find_groups(const Photons& photons) {
+  Photons take(PreparedPhotons& prepared) {
+    count(prepared.photons, 0);
+    return std::move(prepared.photons);
+  }
+
+  void count(const Photons& photons, double seconds) {
+    for (std::size_t light = 0; light < paths_before_.size(); ++light) {
+      const std::uint64_t paths = photons.emitted_per_light[light];
+      paths_before_[light] += paths;
+      costs_.emitted_photons += paths;
+    }
+    costs_.stored_photons += photons.size();
+    costs_.trace.add(seconds, photons.bytes());
+  }
+
+  void find_groups(const Photons& photons, PreparedPhotons* prepared) {
     const Stopwatch stopwatch;
-    groups_ = groups_of(scene_, photons, parameters_, first_.radius, progress_);
+    groups_ = prepared ? std::move(prepared->groups)
+                       : groups_of(scene_, photons, parameters_, first_.radius, *progress_);
     costs_.group.add(stopwatch.seconds(), groups_.bytes());
     costs_.group_members = groups_.members.size();
     costs_.groups = groups_.offsets.size() - 1;
@@ -171,34 +211,32 @@ class Rendering {
     costs_.surface_leaves = surface_->leaves.size();
   }
 
-  /// Adds what the camera sees by the photons of this pass.
-  void add_pass(std::span<DeviceEstimators> estimators, std::span<const int> levels,
-                std::span<const std::uint32_t> map_of) {
+  void add_pass_rows(const HitSource& source) {
     const std::int64_t samples_per_row =
         std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
     const int rows = static_cast<int>(std::clamp<std::int64_t>(
         hits_per_batch(parameters_.neighbours) / samples_per_row, 1, film_.height));
-    progress_.begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
+    progress_->begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
     for (int first = 0; first < film_.height; first += rows) {
-      progress_.throw_if_cancelled();
+      progress_->throw_if_cancelled();
       const int last = std::min(first + rows, film_.height);
-      add_rows(estimators, levels, map_of, first, last);
-      progress_.advance(static_cast<std::uint64_t>(last - first));
+      add_rows(source, first, last);
+      progress_->advance(static_cast<std::uint64_t>(last - first));
     }
-    progress_.end();
+    progress_->end();
   }
 
-  void add_rows(std::span<DeviceEstimators> estimators, std::span<const int> levels,
-                std::span<const std::uint32_t> map_of, int first, int last) {
+  void add_rows(const HitSource& source, int first, int last) {
     const Stopwatch hit_watch;
-    const PrimaryHitBatch batch = hits_.trace(rays_, film_, first, last, map_of);
+    const PrimaryHitBatch batch = source.trace(rays_, film_, first, last, maps_.front().map_of());
     costs_.hits.add(hit_watch.seconds());
     const Stopwatch estimate_watch;
     std::vector<Estimates> by_level;
-    for (DeviceEstimators& one : estimators) by_level.push_back(one.estimate(batch.hits));
+    for (DeviceEstimators& one : estimators_) by_level.push_back(one.estimate(batch.hits));
     const Estimates estimates =
-        by_level.size() == 1 ? std::move(by_level.front())
-                             : estimates_of_least_error(std::move(by_level), levels, layer_powers_);
+        by_level.size() == 1
+            ? std::move(by_level.front())
+            : estimates_of_least_error(std::move(by_level), levels_, layer_powers_);
     costs_.estimate.add(estimate_watch.seconds());
     const Stopwatch film_watch;
     add_to_film(layers_, batch, estimates, 1.0f / static_cast<float>(film_.samples_per_pixel));
@@ -209,10 +247,9 @@ class Rendering {
 
   const Stopwatch stopwatch_;  // before rays_, whose construction it times
   const Scene& scene_;
-  const HitSource& hits_;
   std::span<Device> devices_;
-  const RenderParameters& parameters_;
-  Progress& progress_;
+  const RenderParameters parameters_;
+  Progress* progress_;
   const RayScene rays_;
   int passes_ = 1;
   PrimaryHitParameters film_;
@@ -221,6 +258,10 @@ class Rendering {
   PassEstimate first_;
   NeighbourGroups groups_;
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
+  std::vector<PhotonMaps> maps_;                 ///< of the pass, on each device
+  std::vector<int> levels_;                      ///< of k
+  std::vector<DeviceEstimators> estimators_;  ///< of each level; they keep references to the maps
+  int pass_ = 0;
   std::vector<double> shares_;
   RenderCosts costs_;
   const std::vector<double> layer_powers_;
@@ -244,12 +285,45 @@ void check(std::span<const Device> devices, const RenderParameters& parameters) 
 RenderResult render_hits(const Scene& scene, const HitSource& hits, std::span<Device> devices,
                          const RenderParameters& parameters, Progress& progress) {
   check(devices, parameters);
-  return Rendering(scene, hits, devices, parameters, progress).run();
+  Rendering rendering(scene, devices, parameters, progress);
+  rendering.start(parameters.film);
+  for (int pass = 0; pass < rendering.passes(); ++pass) {
+    rendering.prepare(pass, nullptr, nullptr);
+    rendering.add_pass(hits);
+  }
+  return rendering.finish();
 }
 
 RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress) {
   return render_hits(scene, CameraHits(camera), devices, parameters, progress);
+}
+
+struct SceneRenderer::Impl : Rendering {
+  using Rendering::Rendering;
+};
+
+SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
+                             const RenderParameters& parameters, PreparedPhotons* prepared,
+                             const KeepPhotons& keep, Progress& progress) {
+  check(devices, parameters);
+  impl_ = std::make_unique<Impl>(scene, devices, parameters, progress);
+  if (impl_->passes() > 1) {
+    throw UsageError(
+        "photon maps that are kept have to fit in memory at once: use fewer photons, or --passes 1 "
+        "where more memory may be taken");
+  }
+  impl_->prepare(0, prepared, keep ? &keep : nullptr);
+}
+
+SceneRenderer::~SceneRenderer() = default;
+
+RenderResult SceneRenderer::render(const Camera& camera, const PrimaryHitParameters& film,
+                                   Progress& progress) {
+  impl_->report_to(progress);
+  impl_->start(film);
+  impl_->add_pass(CameraHits(camera));
+  return impl_->finish();
 }
 
 RenderResult render(const Scene& scene, const Camera& camera, Device& device,

@@ -23,6 +23,11 @@ void StageCost::add(double more_seconds, std::uint64_t more_host_bytes,
   device_bytes = std::max(device_bytes, more_device_bytes);
 }
 
+void RenderCosts::start_picture() {
+  hits = estimate = film = {};
+  rays = hit_count = 0;
+}
+
 RunStatistics RenderCosts::statistics() const {
   const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
   RunStatistics stages{

@@ -31,6 +31,9 @@ struct RenderCosts {
   double compile_seconds = 0;
   std::vector<std::pair<std::string, double>> shares;  ///< of several devices
 
+  /// Forgets what the picture before has cost, and not the maps.
+  void start_picture();
+
   /// The stages in their order, with figures.
   RunStatistics statistics() const;
 };

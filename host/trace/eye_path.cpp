@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "photile/device/bsdf.h"
+#include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/surface.hpp"
 
@@ -33,39 +34,50 @@ EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& d
           {material.specular, alpha, shading_normal(scene, point, direction)}};
 }
 
-void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record) {
+void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
+                    EyeRecord& record, const LampTechnique* other) {
   const Scene& scene = *setup.rays->scene;
+  for (int depth = 0;; ++depth) {
+    ++record.rays;
+    const auto hit = setup.rays->intersect(ray.origin, ray.direction);
+    if (!hit) return;
+    const SurfacePoint point = surface_hit(scene, *hit, ray.direction);
+    if (emits(scene, point)) {
+      const std::uint32_t light = scene.triangle_light[point.where.triangle];
+      // Lamps seen in mirrors or through glass are found by following alone.
+      const float weight =
+          other && depth == 0
+              ? power_heuristic(other->density, other->lamps.density(ray.origin, point))
+              : 1.0f;
+      record.emission.push_back(
+          {ray.pixel, light, weight * ray.throughput * (*setup.emitted_radiance)[light]});
+    }
+    if (material_of(scene, point).interaction == Interaction::opaque) {
+      record.hits.push_back(eye_hit(scene, point, ray.direction, ray.pixel, ray.throughput));
+      return;
+    }
+    if (depth >= setup.parameters->max_specular_depth) return;
+    const RandomBlock numbers = random.block(Purpose::eye_scattering, depth);
+    const Scattered scattered =
+        scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word));
+    ray.throughput *= scattered.weight;
+    ray.direction = scattered.direction;
+    ray.origin = point.origin_towards(ray.direction);
+  }
+}
+
+void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record) {
   const PrimaryHitParameters& film = *setup.parameters;
   const auto pixel = static_cast<std::uint32_t>(y) * film.width + x;
   const RandomStream random(film.seed, std::uint64_t{pixel} * film.samples_per_pixel + sample, 0);
   const RandomBlock place = random.block(Purpose::film_position, 0);
   const glm::dvec2 offset =
       stratified(sample, film.samples_per_pixel, place.uniform_double(0), place.uniform_double(2));
-
-  glm::vec3 origin(setup.camera->position);
-  glm::vec3 direction(setup.camera->direction(x + offset.x, y + offset.y, film.width, film.height));
-  glm::vec3 throughput(1.0f / static_cast<float>(film.samples_per_pixel));
-  for (int depth = 0;; ++depth) {
-    ++record.rays;
-    const auto hit = setup.rays->intersect(origin, direction);
-    if (!hit) return;
-    const SurfacePoint point = surface_hit(scene, *hit, direction);
-    if (emits(scene, point)) {
-      const std::uint32_t light = scene.triangle_light[point.where.triangle];
-      record.emission.push_back({pixel, light, throughput * (*setup.emitted_radiance)[light]});
-    }
-    if (material_of(scene, point).interaction == Interaction::opaque) {
-      record.hits.push_back(eye_hit(scene, point, direction, pixel, throughput));
-      return;
-    }
-    if (depth >= film.max_specular_depth) return;
-    const RandomBlock numbers = random.block(Purpose::eye_scattering, depth);
-    const Scattered scattered =
-        scatter_specular(scene, point, direction, numbers.uniform(choice_word));
-    throughput *= scattered.weight;
-    direction = scattered.direction;
-    origin = point.origin_towards(direction);
-  }
+  const EyeRay ray{
+      glm::vec3(setup.camera->position),
+      glm::vec3(setup.camera->direction(x + offset.x, y + offset.y, film.width, film.height)),
+      glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), pixel};
+  follow_eye_ray(setup, ray, random, record);
 }
 
 }  // namespace photile::trace

@@ -7,6 +7,8 @@
 
 #include "photile/camera.hpp"
 #include "photile/primary_hits.hpp"
+#include "trace/light_sampler.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/ray_scene_impl.hpp"
 #include "trace/surface.hpp"
 
@@ -33,7 +35,7 @@ struct EyeRecord {
 /// What all samples of a picture share.
 struct EyeSetup {
   const RayScene::Impl* rays;
-  const Camera* camera;
+  const Camera* camera;  ///< null where rays do not start at one
   const PrimaryHitParameters* parameters;
   const std::vector<glm::vec3>* emitted_radiance;  ///< per light, at unit power
 };
@@ -45,6 +47,25 @@ glm::dvec2 stratified(int index, int count, double u1, double u2);
 /// What an eye ray of this direction sees at a point of an opaque surface.
 EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
                std::uint32_t pixel, const glm::vec3& throughput);
+
+/// A ray on its way to the eye's first opaque surface.
+struct EyeRay {
+  glm::vec3 origin;     ///< metres
+  glm::vec3 direction;  ///< unit
+  glm::vec3 throughput;
+  std::uint32_t pixel;
+};
+
+/// Looking at lamps, as another technique that finds those which a ray meets at once.
+struct LampTechnique {
+  const LightSampler& lamps;
+  float density;  ///< of the ray's direction, per steradian
+};
+
+/// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to
+/// `record`. Lamps that `other` would find as well are weighed by the power heuristic.
+void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
+                    EyeRecord& record, const LampTechnique* other = nullptr);
 
 /// Traces sample `sample` of pixel (x, y) and appends what it sees to `record`.
 void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record);

@@ -4,19 +4,19 @@
 
 #include <glm/gtc/constants.hpp>
 #include <string>
+#include <utility>
 
 #include "photile/errors.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
-#include "trace/hit_order.hpp"
+#include "trace/hit_batch.hpp"
 
 namespace photile {
 
 namespace {
 
-using trace::EyeHit;
 using trace::EyeRecord;
 
 void check_range(const char* what, std::int64_t value, std::int64_t low, std::int64_t high) {
@@ -39,50 +39,6 @@ void check(const PrimaryHitParameters& film, int first_row, int last_row) {
               static_cast<std::int64_t>(limits::max_stored_photons));
 }
 
-/// One record of all rows, in their order.
-EyeRecord concatenate(std::vector<EyeRecord>& rows) {
-  EyeRecord all;
-  std::size_t hits = 0, emission = 0;
-  for (const EyeRecord& row : rows) {
-    hits += row.hits.size();
-    emission += row.emission.size();
-    all.rays += row.rays;
-  }
-  all.hits.reserve(hits);
-  all.emission.reserve(emission);
-  for (EyeRecord& row : rows) {
-    all.hits.insert(all.hits.end(), row.hits.begin(), row.hits.end());
-    all.emission.insert(all.emission.end(), row.emission.begin(), row.emission.end());
-    row = {};
-  }
-  return all;
-}
-
-template <class T>
-std::vector<T> gather(const std::vector<EyeHit>& hits, const std::vector<std::uint32_t>& order,
-                      T EyeHit::*member) {
-  std::vector<T> values(order.size());
-  tbb::parallel_for(std::size_t{0}, order.size(),
-                    [&](std::size_t i) { values[i] = hits[order[i]].*member; });
-  return values;
-}
-
-PrimaryHits sorted(const std::vector<EyeHit>& hits, const Box& box, bool glossy,
-                   std::span<const std::uint32_t> map_of) {
-  const std::vector<std::uint32_t> order = trace::sorted_order(hits, box, map_of);
-  PrimaryHits result;
-  result.position = gather(hits, order, &EyeHit::position);
-  result.sided_triangle = gather(hits, order, &EyeHit::sided_triangle);
-  result.pixel = gather(hits, order, &EyeHit::pixel);
-  result.throughput = gather(hits, order, &EyeHit::throughput);
-  result.diffuse_albedo = gather(hits, order, &EyeHit::diffuse_albedo);
-  if (glossy) {
-    result.outgoing = gather(hits, order, &EyeHit::outgoing);
-    result.lobe = gather(hits, order, &EyeHit::lobe);
-  }
-  return result;
-}
-
 }  // namespace
 
 PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& camera,
@@ -101,17 +57,7 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
         trace::trace_eye_path(setup, x, y, sample, row);
   });
 
-  EyeRecord all = concatenate(rows);
-  PrimaryHitBatch batch;
-  batch.rays = all.rays;
-  batch.emission = std::move(all.emission);
-  const std::vector<std::uint32_t> layer_of = light_groups_of(ray_scene.scene()).group_of;
-  for (SeenEmission& seen : batch.emission) seen.light = layer_of[seen.light];
-  // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
-  // renderer rounds, must not depend on how rows are split into batches.
-  batch.hits =
-      sorted(all.hits, ray_scene.impl().bounds, needs_of(ray_scene.scene()).glossy, map_of);
-  return batch;
+  return trace::batch_of(ray_scene, std::move(rows), map_of);
 }
 
 std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene) {

@@ -14,7 +14,9 @@ enum class Purpose : std::uint32_t {
   film_position,
   eye_scattering,
   path_scattering,
-  path_light
+  path_light,
+  sensor_direction,
+  sensor_light
 };
 
 /// Four independent random words.

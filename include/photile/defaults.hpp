@@ -54,6 +54,18 @@ inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 
 inline constexpr int validation_neighbours = 1'000;
 inline constexpr int validation_paths = 500'000;  ///< of each seed, over the sensors of a case
 
+// Measuring: a mean of repeats with photons of their own, whose scatter tells the standard error
+inline constexpr int measuring_rays = 1'024;  ///< of each sensor and repeat
+inline constexpr int measuring_repeats = 8;
+inline constexpr double wall_band = 0.5;           ///< metres that EN 12464-1 lets grids leave out
+inline constexpr double maintenance_factor = 1.0;  ///< none: the light of a new installation
+
+// False colour, as Radiance's falsecolor has them
+inline constexpr int legend_steps = 8;
+
+// Contact sheets of walks
+inline constexpr int contact_sheet_width = 256;  ///< pixels, of a frame
+
 // Units
 /// Luminous efficacy that turns watts into lumens: 683 lm/W, as glTF and Blender do. Radiance uses
 /// 179. Written into every output.

@@ -9,13 +9,14 @@
 
 namespace photile {
 
-/// A point of an opaque surface that faces `normal`, within a millimetre.
+/// A place where light is measured.
 struct Sensor {
   glm::dvec3 position{0.0};          ///< metres
   glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; also where radiance is seen from
 };
 
-/// The light at sensors, by `render`: the result's layers are one row high, sensor i is pixel i.
+/// The light at sensors on opaque surfaces that face their normals, within a millimetre, by
+/// `render`: the result's layers are one row high, sensor i is pixel i.
 /// `parameters.film` gives the seed only. Errors: those of `render`; InputError that names a sensor
 /// without an opaque surface.
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
@@ -24,5 +25,34 @@ RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::s
 /// The same by `trace_paths`, from `paths` paths of each sensor.
 PathTracerResult measure_by_paths(const Scene& scene, std::span<const Sensor> sensors, int paths,
                                   std::uint64_t seed, Progress& progress = Progress::none());
+
+/// How a sensor in the air weighs light by where it comes from.
+enum class SensorResponse {
+  planar,      ///< cosine to the normal: illuminance of a plane
+  cylindrical  ///< sine to the normal over pi: illuminance of a small upright cylinder, the mean
+               ///< of all planes that contain the normal (EN 12464-1)
+};
+
+struct GatherParameters {
+  SensorResponse response = SensorResponse::planar;
+  int rays = defaults::measuring_rays;  ///< of each sensor
+};
+
+/// The light at sensors anywhere, on a surface or in the air: lamps by rays to them, reflected
+/// light by rays to the surfaces around, whose radiance `render` estimates (final gather: Jensen,
+/// "Realistic image synthesis using photon mapping", 2001, chapter 9). The result's layers are one
+/// pixel wide, sensor i is row i: `radiance` is irradiance / pi, W/(m2 sr) or cd/m2 of a white
+/// plate there, and `illuminance` the luminance of irradiance. What mirrors and refracting glass
+/// throw onto a sensor from point, spot and directional lights is missing, see has_unseen_caustics.
+/// `parameters.film` gives the seed only. Errors: those of `render`; UsageError for rays out of
+/// limits.hpp.
+RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
+                    const GatherParameters& gathering, std::span<Device> devices,
+                    const RenderParameters& parameters, Progress& progress = Progress::none());
+
+/// The same by `trace_paths`: unbiased, a path from where each ray ends.
+PathTracerResult gather_by_paths(const Scene& scene, std::span<const Sensor> sensors,
+                                 const GatherParameters& gathering, std::uint64_t seed,
+                                 Progress& progress = Progress::none());
 
 }  // namespace photile

@@ -1,0 +1,163 @@
+#include "trace/gather_rays.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <utility>
+#include <vector>
+
+#include "trace/eye_path.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/hit_batch.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/sampling.hpp"
+
+namespace photile::trace {
+namespace {
+
+/// A plane sensor may lie on a surface: its rays start a little above, as far as surface.cpp keeps
+/// them from the triangles that they leave.
+constexpr double clearance_per_coordinate = 0x1p-19;
+
+glm::vec3 origin_of(const Sensor& sensor, SensorResponse response) {
+  if (response == SensorResponse::cylindrical) return glm::vec3(sensor.position);
+  const glm::dvec3 size = glm::abs(sensor.position);
+  const double clearance = clearance_per_coordinate * std::max({size.x, size.y, size.z, 1e-3});
+  return glm::vec3(sensor.position + clearance * sensor.normal);
+}
+
+/// One sensor: what weighs light, and where rays go.
+class Photometer {
+ public:
+  Photometer(const Sensor& sensor, SensorResponse response)
+      : origin_(origin_of(sensor, response)),
+        normal_(sensor.normal),
+        response_(response),
+        frame_(normal_) {}
+
+  const glm::vec3& origin() const { return origin_; }
+
+  /// Density of `sample`, per steradian: the response over pi.
+  float density(const glm::vec3& direction) const {
+    const float cosine = glm::dot(direction, normal_);
+    if (response_ == SensorResponse::planar) {
+      return glm::one_over_pi<float>() * std::max(0.0f, cosine);
+    }
+    const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+    return glm::one_over_pi<float>() * glm::one_over_pi<float>() * sine;
+  }
+
+  /// A direction for two numbers that are spread over the unit square and one of its own.
+  glm::vec3 sample(const glm::dvec2& spread, float own) const {
+    const glm::vec3 local =
+        sample_cosine_hemisphere(static_cast<float>(spread.x), static_cast<float>(spread.y));
+    if (response_ == SensorResponse::planar) return frame_.to_world(local);
+    // Round the axis all vertical planes are alike: one at random, then as on a plane.
+    return Frame(frame_.to_world(direction_at(0.0f, own))).to_world(local);
+  }
+
+ private:
+  glm::vec3 origin_, normal_;
+  SensorResponse response_;
+  Frame frame_;
+};
+
+/// Words of a number in [0, 1), as RandomBlock::uniform_double(0) reads them.
+RandomBlock block_of(double uniform) {
+  const auto bits = static_cast<std::uint64_t>(uniform * 0x1p53) << 11;
+  return RandomBlock(
+      {static_cast<std::uint32_t>(bits >> 32), static_cast<std::uint32_t>(bits), 0, 0});
+}
+
+/// All rays of a row's sensor.
+class Gatherer {
+ public:
+  Gatherer(const RayScene& rays, const LightSampler& lamps, const EyeSetup& setup,
+           const Photometer& photometer, std::uint32_t pixel)
+      : rays_(rays), lamps_(lamps), setup_(setup), photometer_(photometer), pixel_(pixel) {}
+
+  void trace(EyeRecord& record, std::vector<SeenEmission>& lamps) {
+    const PrimaryHitParameters& film = *setup_.parameters;
+    const auto number = [&](int sample) {
+      return std::uint64_t{pixel_} * static_cast<std::uint64_t>(film.samples_per_pixel) +
+             static_cast<std::uint64_t>(sample);
+    };
+    // One number for all choices of lamps: each is looked at as often as its chance says.
+    const double shift =
+        RandomStream(film.seed, number(0), 0).block(Purpose::sensor_light, 2).uniform_double(0);
+    for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
+      const RandomStream random(film.seed, number(sample), 0);
+      follow(random, sample, record);
+      look_at_lamp(random, (sample + shift) / film.samples_per_pixel, lamps);
+    }
+  }
+
+ private:
+  glm::vec3 weight() const {
+    return glm::vec3(1.0f / static_cast<float>(setup_.parameters->samples_per_pixel));
+  }
+
+  void follow(const RandomStream& random, int sample, EyeRecord& record) const {
+    const RandomBlock place = random.block(Purpose::sensor_direction, 0);
+    const glm::dvec2 spread = stratified(sample, setup_.parameters->samples_per_pixel,
+                                         place.uniform_double(0), place.uniform_double(2));
+    const glm::vec3 direction =
+        photometer_.sample(spread, random.block(Purpose::sensor_direction, 1).uniform(0));
+    const float density = photometer_.density(direction);
+    if (!(density > 0.0f)) return;
+    const LampTechnique looking{lamps_, density};
+    follow_eye_ray(setup_, {photometer_.origin(), direction, weight(), pixel_}, random, record,
+                   &looking);
+  }
+
+  void look_at_lamp(const RandomStream& random, double choice,
+                    std::vector<SeenEmission>& lamps) const {
+    const auto lamp = lamps_.sample(photometer_.origin(), block_of(choice),
+                                    random.block(Purpose::sensor_light, 1));
+    if (!lamp) return;
+    const float density = photometer_.density(lamp->direction);
+    if (!(density > 0.0f)) return;
+    glm::vec3 arrives = density * weight() * lamp->received;
+    if (lamp->density > 0.0f) {
+      if (occluded(rays_, photometer_.origin(), lamp->target)) return;
+      arrives *= power_heuristic(lamp->density, density);
+    } else {
+      arrives *= transmittance(rays_, photometer_.origin(), lamp->target);
+    }
+    lamps.push_back({pixel_, lamp->layer, arrives});
+  }
+
+  const RayScene& rays_;
+  const LightSampler& lamps_;
+  const EyeSetup& setup_;
+  const Photometer& photometer_;
+  std::uint32_t pixel_;
+};
+
+}  // namespace
+
+PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensors,
+                            SensorResponse response, const LightSampler& lamps,
+                            const PrimaryHitParameters& film, int first_row, int last_row,
+                            std::span<const std::uint32_t> map_of) {
+  const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
+  const EyeSetup setup{&rays.impl(), nullptr, &film, &radiance};
+  const auto count = static_cast<std::size_t>(last_row - first_row);
+  std::vector<EyeRecord> rows(count);
+  std::vector<std::vector<SeenEmission>> seen(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const FlushDenormals flush_denormals;
+    const auto pixel = static_cast<std::uint32_t>(first_row) + static_cast<std::uint32_t>(i);
+    const Photometer photometer(sensors[pixel], response);
+    Gatherer(rays, lamps, setup, photometer, pixel).trace(rows[i], seen[i]);
+  });
+  PrimaryHitBatch batch = batch_of(rays, std::move(rows), map_of);
+  for (const auto& row : seen) {
+    batch.emission.insert(batch.emission.end(), row.begin(), row.end());
+  }
+  return batch;
+}
+
+}  // namespace photile::trace

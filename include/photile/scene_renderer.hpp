@@ -1,0 +1,44 @@
+// One set of photon maps for many pictures.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "photile/neighbour_groups.hpp"
+#include "photile/photons.hpp"
+#include "photile/renderer.hpp"
+
+namespace photile {
+
+/// What photon maps are built from: all that depends on random numbers or takes long on the host.
+struct PreparedPhotons {
+  Photons photons;
+  NeighbourGroups groups;
+  double radius = 0;  ///< metres: of the maps
+};
+using KeepPhotons = std::function<void(const PreparedPhotons&)>;
+
+/// The photon maps of a scene, kept on the devices while pictures are rendered from them.
+class SceneRenderer {
+ public:
+  /// Traces the photons and builds the maps. The scene and the devices must outlive it.
+  ///   prepared   in place of tracing, of the same scene and parameters; left empty. Null: none
+  ///   keep       is called with what the maps are built from, before they are. Empty: nothing
+  /// Errors: those of `render`, and of `keep`; UsageError where the photons need several passes.
+  SceneRenderer(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
+                PreparedPhotons* prepared = nullptr, const KeepPhotons& keep = {},
+                Progress& progress = Progress::none());
+  ~SceneRenderer();
+
+  /// The picture that `render` gives with this film, bit for bit. Statistics contain the costs of
+  /// the maps each time.
+  RenderResult render(const Camera& camera, const PrimaryHitParameters& film,
+                      Progress& progress = Progress::none());
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace photile
