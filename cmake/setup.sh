@@ -26,6 +26,7 @@ nlohmann-json3-dev     | JSON
 libfmt-dev             | text output
 libcli11-dev           | command line
 libxxhash-dev          | checksums of the program cache
+fonts-dejavu-core      | the letters of photile compare's pictures
 catch2                 | tests
 libfcl-dev             | tests: an independent triangle distance
 libnanoflann-dev       | tests and benches: an independent nearest-neighbour search

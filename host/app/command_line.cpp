@@ -19,10 +19,13 @@ void define(CLI::App& photile) {
   photile.require_subcommand(1);
   add_render_command(photile);
   add_relight_command(photile);
+  add_compare_command(photile);
+  add_measure_command(photile);
   add_trade_command(photile);
   add_devices_command(photile);
   add_info_command(photile);
   add_validate_command(photile);
+  add_walk_command(photile);
 }
 
 /// The command whose --help knows more about a usage error.

@@ -10,9 +10,12 @@ namespace photile::app {
 
 void add_render_command(CLI::App& photile);
 void add_relight_command(CLI::App& photile);
+void add_compare_command(CLI::App& photile);
+void add_measure_command(CLI::App& photile);
 void add_trade_command(CLI::App& photile);
 void add_devices_command(CLI::App& photile);
 void add_info_command(CLI::App& photile);
 void add_validate_command(CLI::App& photile);
+void add_walk_command(CLI::App& photile);
 
 }  // namespace photile::app

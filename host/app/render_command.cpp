@@ -11,8 +11,9 @@
 #include "app/output_files.hpp"
 #include "app/quality_options.hpp"
 #include "app/render_options.hpp"
+#include "app/run_notes.hpp"
 #include "app/run_record.hpp"
-#include "app/scene_report.hpp"
+#include "app/saved_maps_option.hpp"
 #include "app/signals.hpp"
 #include "app/summary.hpp"
 #include "app/terminal_progress.hpp"
@@ -27,33 +28,14 @@
 namespace photile::app {
 namespace {
 
-constexpr std::size_t shown_warnings = 20;  // a broken file may have thousands
-
 PictureOutputs check_outputs_of(const RenderOptions& options) {
   PictureOutputs outputs(options.pictures);
   if (outputs.empty()) throw UsageError("no output; give -o FILE.exr or -o FILE.png");
   auto files = outputs.files();
   if (!options.statistics.empty()) files.emplace_back(options.statistics);
+  if (!options.save_maps.empty()) files.emplace_back(options.save_maps);
   check_outputs(files, options.scene);
   return outputs;
-}
-
-void tell_device(const DeviceInfo& device, Progress& progress) {
-  progress.note(fmt::format("device: {} {} ({}, {}), {} compute units, {}", device.id, device.name,
-                            device.platform, device.driver_version, device.compute_units,
-                            format_bytes(device.global_memory_bytes)));
-}
-
-void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress) {
-  for (const auto& line : scene_summary(scene, mix)) progress.note(line);
-  const auto warnings = scene_warnings(scene);
-  for (std::size_t i = 0; i < std::min(warnings.size(), shown_warnings); ++i) {
-    progress.note("warning: " + warnings[i]);
-  }
-  if (warnings.size() > shown_warnings) {
-    progress.note(
-        fmt::format("warning: {} more; photile info shows all", warnings.size() - shown_warnings));
-  }
 }
 
 /// What `photile devices --tune` found for these devices and such scenes. A tuning is of one kind
@@ -105,14 +87,6 @@ void tell_kernels(Device& device, bool profile, Progress& progress) {
   for (const auto& line : kernel_table(device.context().kernel_times())) progress.note(line);
 }
 
-/// Opens the devices that photon maps need, and tells them.
-std::vector<Device> devices_for(const RenderOptions& options, Progress& progress) {
-  if (options.integrates == Integrator::path) return {};
-  std::vector<Device> devices = open_devices(options.device);
-  for (const Device& device : devices) tell_device(device.info(), progress);
-  return devices;
-}
-
 /// The layers by photon maps. Fills in what `record` tells of them.
 LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
                               RenderOptions& options, RunRecord& record, Progress& progress) {
@@ -121,7 +95,9 @@ LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::spa
     record.stages.push_back(choose_quality(options.target, scene, camera, devices.front(),
                                            record.mix, options.parameters, progress));
   }
-  RenderResult result = render(scene, camera, devices, options.parameters, progress);
+  RenderResult result = options.save_maps.empty() && options.load_maps.empty()
+                            ? render(scene, camera, devices, options.parameters, progress)
+                            : render_with_saved_maps(scene, camera, devices, options, progress);
   record.parameters = options.parameters;
   for (const Device& device : devices) record.devices.push_back(device.info());
   record.device_shares = result.device_shares;

@@ -60,7 +60,7 @@ auto value_for(const Table& table, const std::string& wanted) {
   throw UsageError(fmt::format("'{}' is not known; see photile render --help", wanted));
 }
 
-void add_picture_group(CLI::App& command, RenderOptions& options) {
+void add_view_group(CLI::App& command, RenderOptions& options) {
   PrimaryHitParameters& film = options.parameters.film;
   command.add_option("--camera", options.camera, "name or index; default: the first")
       ->type_name("NAME|INDEX")
@@ -78,13 +78,17 @@ void add_picture_group(CLI::App& command, RenderOptions& options) {
       ->transform(count_between(1, limits::max_samples_per_pixel))
       ->capture_default_str()
       ->group("Picture");
+}
+
+void add_light_group(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--light", options.lights,
                   "power of a light in its unit, a factor (x2), a colour or off; repeatable")
       ->type_name("NAME=POWER|xFACTOR|#RRGGBB|off")
       ->allow_extra_args(false)
       ->group("Picture");
-  command.add_option("--seed", film.seed, "the same seed gives the same picture")
+  command
+      .add_option("--seed", options.parameters.film.seed, "the same seed gives the same picture")
       ->type_name("N")
       ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str()
@@ -219,11 +223,11 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
 
 }  // namespace
 
-void add_setting_options(CLI::App& command, RenderOptions& options) {
+void add_light_setting_options(CLI::App& command, RenderOptions& options) {
   command.add_option("SCENE", options.scene, "scene file: .obj, .gltf or .glb")
       ->required()
       ->type_name("");
-  add_picture_group(command, options);
+  add_light_group(command, options);
   add_photon_group(command, options);
   add_estimate_group(command, options);
   add_scene_group(command, options);
@@ -231,9 +235,12 @@ void add_setting_options(CLI::App& command, RenderOptions& options) {
   add_run_group(command, options);
 }
 
-void add_render_options(CLI::App& command, RenderOptions& options) {
-  add_picture_options(command, options.pictures);
-  add_setting_options(command, options);
+void add_setting_options(CLI::App& command, RenderOptions& options) {
+  add_light_setting_options(command, options);
+  add_view_group(command, options);
+}
+
+void add_integrator_option(CLI::App& command, RenderOptions& options) {
   options.integrator = word_for(integrators, options.integrates);
   command
       .add_option("--integrator", options.integrator,
@@ -242,6 +249,12 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->check(CLI::IsMember(words_of(integrators)))
       ->capture_default_str()
       ->group("Picture");
+}
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  add_picture_options(command, options.pictures);
+  add_setting_options(command, options);
+  add_integrator_option(command, options);
   command
       .add_flag("--tuned", options.tuned,
                 "as photile devices --tune found best; other last bits than without")
@@ -251,6 +264,16 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--stats", options.statistics, "write the summary as JSON")
       ->type_name("FILE")
       ->group("Run");
+  CLI::Option* save =
+      command.add_option("--save-maps", options.save_maps, "keep the photons for --load-maps")
+          ->type_name("FILE")
+          ->group("Photons");
+  command
+      .add_option("--load-maps", options.load_maps,
+                  "photons that --save-maps kept, of the same scene and options")
+      ->type_name("FILE")
+      ->excludes(save)
+      ->group("Photons");
   add_quality_options(command, options.target);
 }
 
@@ -269,9 +292,8 @@ void refuse_photon_map_options(const CLI::App& command) {
   const std::set<std::string> groups{"Photons", "Estimate", "Device", "Quality"};
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || groups.count(option->get_group()) == 0) continue;
-    throw UsageError(fmt::format(
-        "{}: only photon maps use it; leave it out, or render without --integrator path",
-        option->get_name()));
+    throw UsageError(fmt::format("{}: only photon maps use it; leave it out, or --integrator path",
+                                 option->get_name()));
   }
 }
 

@@ -45,7 +45,8 @@ struct RenderOptions {
   SceneLoadOptions load;
   double lumen_per_watt = defaults::lumen_per_watt;
   int threads = 0;
-  std::string statistics;  ///< file, "" = none
+  std::string statistics;            ///< file, "" = none
+  std::string save_maps, load_maps;  ///< files, "" = none
   bool quiet = false;
 };
 
@@ -55,6 +56,12 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 /// Adds those that say what is rendered and how, but not what becomes of the picture: what commands
 /// that render for another purpose take, too.
 void add_setting_options(CLI::App& command, RenderOptions& options);
+
+/// Adds those of them that say how light is found, but not what a camera makes of it.
+void add_light_setting_options(CLI::App& command, RenderOptions& options);
+
+/// Adds --integrator.
+void add_integrator_option(CLI::App& command, RenderOptions& options);
 
 /// Sets what `options` holds as words: the integrator, the quota, the maps, the structure, the area
 /// and the cache. Errors: none, CLI11 has checked the words.

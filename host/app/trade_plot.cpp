@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "xml_text.hpp"
+
 namespace photile::app {
 namespace {
 
@@ -36,23 +38,6 @@ const char* colour_of(const std::string& varied) {
     if (varied == entry.varied) return entry.colour;
   }
   return "#000000";
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 /// A logarithmic axis of whole decades around its values, on [begin, end] pixels.
@@ -84,7 +69,7 @@ class Axis {
 
 std::string text(double x, double y, const std::string& content, const char* anchor = "middle") {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
-                     escaped(content));
+                     escaped_xml(content));
 }
 
 std::string line(double x1, double y1, double x2, double y2, const char* colour) {
@@ -156,10 +141,10 @@ std::string panel_svg(std::span<const TradePoint> points, const Panel& panel, do
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}</title></circle>\n",
         time.at(point.*panel.seconds), error.at(point.error.relative_error()),
         point.on_front ? 5 : 3.5, colour_of(point.varied),
-        escaped(fmt::format("{}: {} photons, k {}, {} samples: {:.2f}%", point.varied,
-                            point.parameters.photons.emitted_photons, point.parameters.neighbours,
-                            point.parameters.film.samples_per_pixel,
-                            100 * point.error.relative_error())));
+        escaped_xml(fmt::format(
+            "{}: {} photons, k {}, {} samples: {:.2f}%", point.varied,
+            point.parameters.photons.emitted_photons, point.parameters.neighbours,
+            point.parameters.film.samples_per_pixel, 100 * point.error.relative_error())));
   }
   return svg;
 }

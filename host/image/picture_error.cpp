@@ -67,8 +67,9 @@ struct Tile {
   std::size_t counted = 0, pixels = 0;
 };
 
-double worst_region(const Image& picture, const Image& reference,
-                    const RelativeErrorWeights& weights) {
+/// Fills in the worst tile and its place.
+void find_worst_region(const Image& picture, const Image& reference,
+                       const RelativeErrorWeights& weights, PictureError& error) {
   const int side = std::max(1, reference.height / tiles_per_height);
   const int columns = (reference.width + side - 1) / side;
   const int rows = (reference.height + side - 1) / side;
@@ -88,13 +89,18 @@ double worst_region(const Image& picture, const Image& reference,
       }
     }
   }
-  double worst = 0;
-  for (const Tile& tile : tiles) {
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const Tile& tile = tiles[i];
     const double mean = tile.reference / (3.0 * static_cast<double>(tile.counted));
     if (2 * tile.counted < tile.pixels || mean < dark_tile * weights.mean()) continue;
-    worst = std::max(worst, std::abs(tile.picture / tile.reference - 1));
+    const double deviation = std::abs(tile.picture / tile.reference - 1);
+    if (!(deviation > error.worst_region)) continue;
+    const int x = side * (static_cast<int>(i) % columns),
+              y = side * (static_cast<int>(i) / columns);
+    error.worst_region = deviation;
+    error.worst_place = {x, y, std::min(side, reference.width - x),
+                         std::min(side, reference.height - y)};
   }
-  return worst;
 }
 
 /// What a screen shows of the pixels that count, black elsewhere.
@@ -189,7 +195,7 @@ PictureError picture_error(const Image& picture, const Image& reference) {
   PictureError error;
   error.relative_mse = weights.mean_product(picture, reference, picture, reference);
   error.mean_ratio = sum / (3.0 * static_cast<double>(weights.counted())) / weights.mean();
-  error.worst_region = worst_region(picture, reference, weights);
+  find_worst_region(picture, reference, weights, error);
   error.psnr = psnr(picture, reference, weights);
   return error;
 }

@@ -28,10 +28,25 @@ RootPlanes root_of(const Image& image) {
   return {*r, *g, *b};
 }
 
-/// Factor that brings the log-average luminance to mid grey, over pixels of finite positive
-/// luminance within `outlier_factor` of their median (Reinhard et al. 2002, without the outliers).
-/// 1 where no pixel has any.
-double automatic_exposure(const RootPlanes& root) {
+/// Into [0,1]: NaN and negative values to 0, and colours brighter than white scaled as a whole, so
+/// that they keep their hue.
+glm::dvec3 into_display_range(glm::dvec3 rgb) {
+  for (int channel = 0; channel < 3; ++channel) {
+    double& value = rgb[channel];
+    if (!(value > 0.0)) value = 0.0;  // NaN too
+  }
+  const double largest = std::max({rgb.r, rgb.g, rgb.b});
+  if (std::isinf(largest)) {
+    for (int channel = 0; channel < 3; ++channel) rgb[channel] = std::isinf(rgb[channel]) ? 1 : 0;
+    return rgb;
+  }
+  return largest > 1.0 ? rgb / largest : rgb;
+}
+
+}  // namespace
+
+double automatic_exposure(const Image& scene_referred) {
+  const RootPlanes root = root_of(scene_referred);
   std::vector<double> luminances;
   for (std::size_t pixel = 0; pixel < root.r.size(); ++pixel) {
     const double value = luminance(root[pixel]);
@@ -52,30 +67,13 @@ double automatic_exposure(const RootPlanes& root) {
   return mid_grey / std::exp(sum_of_logs / static_cast<double>(count));
 }
 
-/// Into [0,1]: NaN and negative values to 0, and colours brighter than white scaled as a whole, so
-/// that they keep their hue.
-glm::dvec3 into_display_range(glm::dvec3 rgb) {
-  for (int channel = 0; channel < 3; ++channel) {
-    double& value = rgb[channel];
-    if (!(value > 0.0)) value = 0.0;  // NaN too
-  }
-  const double largest = std::max({rgb.r, rgb.g, rgb.b});
-  if (std::isinf(largest)) {
-    for (int channel = 0; channel < 3; ++channel) rgb[channel] = std::isinf(rgb[channel]) ? 1 : 0;
-    return rgb;
-  }
-  return largest > 1.0 ? rgb / largest : rgb;
-}
-
-}  // namespace
-
 Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
   if (!std::isfinite(parameters.exposure)) {
     throw UsageError("exposure must be a finite number of stops");
   }
   const RootPlanes root = root_of(scene_referred);
   const double scale = std::exp2(parameters.exposure) *
-                       (parameters.automatic_exposure ? automatic_exposure(root) : 1.0);
+                       (parameters.automatic_exposure ? automatic_exposure(scene_referred) : 1.0);
 
   Image display;
   display.width = scene_referred.width;

@@ -130,8 +130,9 @@ std::vector<float> AccessorReader::floats(int accessor_index, int components,
                                           const std::string& use) const {
   const tinygltf::Accessor& accessor = at(accessor_index, use);
   const std::uint64_t size = component_size(accessor.componentType);
-  // glTF numbers its vector types by their component count.
-  if (accessor.type != components || size == 0) {
+  // tinygltf numbers vector types by their component count.
+  const int type = components == 1 ? TINYGLTF_TYPE_SCALAR : components;
+  if (accessor.type != type || size == 0) {
     throw context_.error(
         fmt::format("{}: accessor {} is of the wrong type (not {} numbers of at "
                     "most 32 bits); export it again",

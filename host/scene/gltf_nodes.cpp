@@ -13,23 +13,6 @@
 namespace photile::scene_io {
 namespace {
 
-glm::dmat4 local_transform(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
-  glm::dmat4 transform(1.0);
-  if (node.translation.size() == 3) {
-    transform = glm::translate(transform, glm::make_vec3(node.translation.data()));
-  }
-  if (node.rotation.size() == 4) {
-    const auto& r = node.rotation;
-    const glm::dquat rotation(r[3], r[0], r[1], r[2]);  // glTF puts w last, GLM first
-    if (glm::length(rotation) > 0.0) transform *= glm::mat4_cast(glm::normalize(rotation));
-  }
-  if (node.scale.size() == 3) {
-    transform = glm::scale(transform, glm::make_vec3(node.scale.data()));
-  }
-  return transform;
-}
-
 std::vector<int> root_nodes(const tinygltf::Model& model, ImportContext& context) {
   if (!model.scenes.empty()) {
     const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
@@ -140,6 +123,23 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
 }
 
 }  // namespace
+
+glm::dmat4 local_transform(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
+  glm::dmat4 transform(1.0);
+  if (node.translation.size() == 3) {
+    transform = glm::translate(transform, glm::make_vec3(node.translation.data()));
+  }
+  if (node.rotation.size() == 4) {
+    const auto& r = node.rotation;
+    const glm::dquat rotation(r[3], r[0], r[1], r[2]);  // glTF puts w last, GLM first
+    if (glm::length(rotation) > 0.0) transform *= glm::mat4_cast(glm::normalize(rotation));
+  }
+  if (node.scale.size() == 3) {
+    transform = glm::scale(transform, glm::make_vec3(node.scale.data()));
+  }
+  return transform;
+}
 
 std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& context) {
   std::vector<NodeVisit> visits;

@@ -21,6 +21,9 @@ struct NodeVisit {
 /// warning. Errors: InputError for cycles, wrong node numbers and trees beyond the limits.
 std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& context);
 
+/// Node to parent space: its matrix, or its translation, rotation and scale.
+glm::dmat4 local_transform(const tinygltf::Node& node);
+
 /// A node's name, or "node <number>".
 std::string node_name(const tinygltf::Model& model, int node);
 

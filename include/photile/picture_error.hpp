@@ -20,6 +20,10 @@ struct PictureError {
   /// many pixels share, where a pixel's noise has averaged out. Tiles darker than a tenth of m, or
   /// that mostly see lamps, do not count.
   double worst_region = 0;
+  /// Where that is: its upper left corner and size, pixels; empty where no tile counts.
+  struct Region {
+    int x = 0, y = 0, width = 0, height = 0;
+  } worst_place;
   /// Peak signal-to-noise ratio of the displayed pictures, decibel: both exposed so that m becomes
   /// mid grey, and clipped at white. Infinite where they are equal.
   double psnr = 0;

@@ -1,0 +1,167 @@
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "image/palette.hpp"
+#include "image/picture_comparison.hpp"
+#include "image/srgb.hpp"
+#include "photile/errors.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::image {
+namespace {
+
+// Sizes in pixels.
+constexpr int gap = 12, title_height = 24, bar_width = 20, legend_width = 90, font_size = 14;
+constexpr int legend_numbers = 5;
+constexpr double percentile = 0.99;
+
+const std::vector<float>& plane_of(const Image& image, const char* name) {
+  const auto* plane = image.find(name);
+  if (!plane) throw UsageError("a picture without channels R, G and B cannot be compared");
+  return *plane;
+}
+
+double luminance_at(const Image& image, std::size_t pixel) {
+  return luminance(
+      {plane_of(image, "R")[pixel], plane_of(image, "G")[pixel], plane_of(image, "B")[pixel]});
+}
+
+/// At least `value`: 1, 2 or 5 times a power of ten; 1 for 0.
+double rounded_up(double value) {
+  if (!(value > 0) || !std::isfinite(value)) return 1;
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= value) return factor * power;
+  }
+  return 10 * power;
+}
+
+double automatic_scale(std::vector<double> differences) {
+  for (double& difference : differences) difference = std::abs(difference);
+  std::erase_if(differences, [](double value) { return !std::isfinite(value); });
+  if (differences.empty()) return 1;
+  const auto at =
+      differences.begin() +
+      static_cast<std::ptrdiff_t>(percentile * static_cast<double>(differences.size() - 1));
+  std::nth_element(differences.begin(), at, differences.end());
+  return rounded_up(*at);
+}
+
+/// Both pictures under one exposure: a above b.
+Image tone_mapped(const Image& a, const Image& b, double exposure) {
+  Image both;
+  both.width = a.width;
+  both.height = a.height + b.height;
+  for (const char* channel : {"R", "G", "B"}) {
+    std::vector<float> plane = plane_of(a, channel);
+    const std::vector<float>& other = plane_of(b, channel);
+    plane.insert(plane.end(), other.begin(), other.end());
+    both.add(channel) = std::move(plane);
+  }
+  return tone_map(both, {true, exposure});
+}
+
+/// The sheet under way: white, display-referred linear values.
+class Sheet {
+ public:
+  Sheet(int width, int height) {
+    image_.width = width;
+    image_.height = height;
+    for (const char* channel : {"R", "G", "B"}) {
+      image_.add(channel).assign(image_.pixels(), 1.0f);
+    }
+  }
+
+  void set(int x, int y, const std::array<float, 3>& rgb) {
+    for (std::size_t c = 0; c < 3; ++c) image_.channels[c][index(x, y)] = rgb[c];
+  }
+  void set(int x, int y, const std::array<std::uint8_t, 3>& srgb) {
+    std::array<float, 3> linear{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      linear[c] = static_cast<float>(linear_from_srgb(srgb[c] / 255.0));
+    }
+    set(x, y, linear);
+  }
+
+  /// Black text that ends at `end`, its baseline at y. Nothing without the font.
+  void write(int x, int y, int end, const std::string& text) {
+    OIIO::ImageBuf ink(OIIO::ImageSpec(image_.width, image_.height, 1, OIIO::TypeDesc::FLOAT));
+    if (!OIIO::ImageBufAlgo::render_text(ink, x, y, text, font_size, "DejaVuSans", 1.0f)) {
+      ink.geterror();  // fetched, or OpenImageIO prints it
+      return;
+    }
+    for (int v = std::max(0, y - 2 * font_size); v < std::min(image_.height, y + font_size); ++v) {
+      for (int u = x; u < std::min(image_.width, end); ++u) {
+        const float black = std::clamp(ink.getchannel(u, v, 0, 0), 0.0f, 1.0f);
+        for (auto& channel : image_.channels) channel[index(u, v)] *= 1 - black;
+      }
+    }
+  }
+
+  Image take() { return std::move(image_); }
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
+           static_cast<std::size_t>(x);
+  }
+  Image image_;
+};
+
+void draw_legend(Sheet& sheet, int x, int height, double scale, const Palette& palette) {
+  for (int y = 0; y < height; ++y) {
+    const double share = 1 - (y + 0.5) / height;
+    for (int u = 0; u < bar_width; ++u) sheet.set(x + u, title_height + y, palette.at(share));
+  }
+  for (int i = 0; i < legend_numbers; ++i) {
+    const double share = static_cast<double>(i) / (legend_numbers - 1);
+    const double value = (2 * share - 1) * scale;
+    const int middle = title_height + static_cast<int>((1 - share) * height);
+    const int y =
+        std::clamp(middle + font_size / 3, title_height + font_size, title_height + height);
+    sheet.write(x + bar_width + 6, y, x + legend_width, fmt::format("{:+.3g}", value));
+  }
+}
+
+}  // namespace
+
+Image draw_comparison(const Image& a, const Image& b, const ComparisonDrawing& options) {
+  if (a.width != b.width || a.height != b.height) {
+    throw UsageError("pictures of different sizes cannot be compared");
+  }
+  std::vector<double> differences(a.pixels());
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    differences[i] = luminance_at(a, i) - luminance_at(b, i);
+  }
+  const double scale = options.scale > 0 ? options.scale : automatic_scale(differences);
+  const Palette palette("blue-red");
+  const Image both = tone_mapped(a, b, options.exposure);
+
+  const int step = a.width + gap;
+  Sheet sheet(3 * step + legend_width, title_height + a.height + gap);
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
+                         static_cast<std::size_t>(x);
+      for (int panel = 0; panel < 2; ++panel) {
+        const std::size_t at = pixel + (panel == 0 ? 0 : a.pixels());
+        sheet.set(panel * step + x, title_height + y,
+                  std::array{both.channels[0][at], both.channels[1][at], both.channels[2][at]});
+      }
+      sheet.set(2 * step + x, title_height + y, palette.at(0.5 + 0.5 * differences[pixel] / scale));
+    }
+  }
+  constexpr int baseline = title_height - 7;
+  sheet.write(2, baseline, step, options.name_a);
+  sheet.write(step + 2, baseline, 2 * step, options.name_b);
+  sheet.write(2 * step + 2, baseline, 3 * step + legend_width, "first - second, " + options.unit);
+  draw_legend(sheet, 3 * step, a.height, scale, palette);
+  return sheet.take();
+}
+
+}  // namespace photile::image

@@ -1,0 +1,46 @@
+// Two pictures, beside one another and layer by layer.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "photile/image.hpp"
+#include "photile/picture_error.hpp"
+
+namespace photile::image {
+
+/// One picture against another, or one layer of both.
+struct ComparedPart {
+  std::string light;  ///< "" for the whole picture
+  /// Of a against b; none where b is black.
+  std::optional<PictureError> error;
+};
+
+struct PictureComparison {
+  std::vector<ComparedPart> parts;  ///< the whole picture first
+  std::vector<std::string> only_a;  ///< lights whose layer the other lacks
+  std::vector<std::string> only_b;
+};
+
+/// Compares R, G, B and the layers that both have, each light at its power there. Errors:
+/// UsageError where sizes differ or a picture lacks R, G, B; InputError where b is black as a
+/// whole.
+PictureComparison compare_pictures(const Image& a, const Image& b);
+
+/// How a comparison is drawn.
+struct ComparisonDrawing {
+  std::string name_a, name_b;
+  std::string unit;     ///< of the difference
+  double scale = 0;     ///< largest difference of the legend; 0 = the 99th percentile of them,
+                        ///< rounded up to 1, 2 or 5 times a power of ten
+  double exposure = 0;  ///< stops on top of the automatic exposure of both together
+};
+
+/// Both pictures with one exposure, and the difference of their luminances in false colour with its
+/// legend, side by side; display-referred as write_png takes it. Names are drawn where the font
+/// DejaVu Sans is installed. Errors: as above.
+Image draw_comparison(const Image& a, const Image& b, const ComparisonDrawing& options);
+
+}  // namespace photile::image

@@ -1,0 +1,38 @@
+// What standards ask of a grid's illuminances, with what the noise of a measurement leaves open.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace photile::measuring {
+
+/// A value and the standard deviation that it would have over measurements like this one.
+struct Measured {
+  double value = 0;
+  double standard_error = 0;
+};
+
+/// Mean and standard error at each sensor.
+///   repeats   per repeat the values of all sensors; at least 2
+std::vector<Measured> means_of(std::span<const std::vector<float>> repeats);
+
+/// Of the sensors first .. first + count - 1. Standard errors are those of the jackknife over
+/// repeats (Tukey, "Bias and confidence in not-quite large samples", 1958), which knows that
+/// sensors share photons.
+struct GridStatistics {
+  Measured mean;        ///< Em
+  Measured minimum;     ///< Emin: the least of the sensors' means
+  Measured maximum;     ///< Emax
+  Measured uniformity;  ///< Uo = Emin / Em
+  Measured diversity;   ///< Ud = Emin / Emax
+  /// The minimum of noisy values is low and their maximum high. These are what the sensors that
+  /// look darkest (brightest) to all repeats but one read in that one: high (low) if anything. The
+  /// truth lies between minimum and minimum_at_most, maximum_at_least and maximum, up to their
+  /// standard errors.
+  double minimum_at_most = 0;
+  double maximum_at_least = 0;
+};
+GridStatistics statistics_of(std::span<const std::vector<float>> repeats, std::size_t first,
+                             std::size_t count);
+
+}  // namespace photile::measuring

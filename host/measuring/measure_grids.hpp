@@ -1,0 +1,31 @@
+// Measures all grids of a run, several times.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "measuring/readings.hpp"
+#include "measuring/sensor_grid.hpp"
+#include "photile/device.hpp"
+#include "photile/sensors.hpp"
+
+namespace photile::measuring {
+
+struct MeasuringParameters {
+  GatherParameters gathering;
+  int repeats = defaults::measuring_repeats;          ///< >= 2, each with its own seed
+  bool by_paths = false;                              ///< and not by photon maps
+  RenderParameters photons;                           ///< of each repeat; its seed is the first
+  double maintenance = defaults::maintenance_factor;  ///< factor of all values
+};
+
+/// The readings of all grids' sensors, one grid after the other. Errors: those of `gather`.
+Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,
+                       std::span<Device> devices, const MeasuringParameters& parameters,
+                       Progress& progress);
+
+/// Sensors with a surface less than a centimetre in front of them: most are in furniture, or just
+/// below a top.
+std::size_t covered_sensors(const Scene& scene, std::span<const SensorGrid> grids);
+
+}  // namespace photile::measuring

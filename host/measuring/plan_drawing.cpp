@@ -1,0 +1,153 @@
+#include "measuring/plan_drawing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <vector>
+
+#include "measuring/isolines.hpp"
+#include "xml_text.hpp"
+
+namespace photile::measuring {
+namespace {
+
+// Sizes in pixels.
+constexpr double longer_side = 560, margin = 20, title_height = 30, foot_height = 40,
+                 legend_width = 130, bar_width = 22, least_height = 200;
+constexpr std::size_t most_numbered_cells = 400;
+
+/// One drawing under way.
+class Plan {
+ public:
+  Plan(const GridValues& values, const LightValues& light, const FalseColour& options)
+      : layout_(*values.grid.layout),
+        options_(options),
+        values_(static_cast<std::size_t>(layout_.columns) * static_cast<std::size_t>(layout_.rows),
+                std::numeric_limits<double>::quiet_NaN()),
+        scale_(options, light.statistics.maximum.value) {
+    for (std::size_t i = 0; i < layout_.cells.size(); ++i) {
+      values_[layout_.cells[i]] = light.sensors[i].value;
+    }
+    const double u = glm::length(layout_.u), v = glm::length(layout_.v);
+    per_metre_ = longer_side / std::max(u, v);
+    width_ = u * per_metre_;
+    height_ = v * per_metre_;
+    title_ = values.grid.name + (light.light.empty() ? "" : ": " + light.light);
+  }
+
+  std::string draw() {
+    const double legend_height = std::max(height_, least_height);
+    const double width = margin + width_ + margin + legend_width;
+    const double height = title_height + legend_height + foot_height;
+    add("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
+        "width=\"{0:.0f}\" "
+        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
+        "<text x=\"{2}\" y=\"20\" font-size=\"14\">{3}</text>\n",
+        width, height, margin, escaped_xml(title_));
+    add_cells();
+    add_isolines();
+    add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"none\" "
+        "stroke=\"#000000\"/>\n",
+        margin, title_height, width_, height_);
+    add_ruler();
+    add_legend(margin + width_ + margin, legend_height);
+    add("</svg>\n");
+    return std::move(text_);
+  }
+
+ private:
+  template <class... T>
+  void add(fmt::format_string<T...> format, T&&... values) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<T>(values)...);
+  }
+
+  /// Pixels of a place in cells.
+  glm::dvec2 at(const glm::dvec2& cells) const {
+    return {margin + cells.x / layout_.columns * width_,
+            title_height + (1 - cells.y / layout_.rows) * height_};
+  }
+
+  void add_cells() {
+    const double w = width_ / layout_.columns, h = height_ / layout_.rows;
+    const bool numbered = values_.size() <= most_numbered_cells;
+    for (std::size_t cell = 0; cell < values_.size(); ++cell) {
+      if (std::isnan(values_[cell])) continue;
+      const auto column = static_cast<double>(cell % static_cast<std::size_t>(layout_.columns));
+      const auto row = static_cast<double>(cell / static_cast<std::size_t>(layout_.columns));
+      const glm::dvec2 corner = at({column, row + 1});
+      if (!options_.lines_only) {
+        add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\" "
+            "shape-rendering=\"crispEdges\"/>\n",
+            corner.x, corner.y, w, h, scale_.hex(values_[cell]));
+      }
+      if (numbered) add_label(at({column + 0.5, row + 0.5}), values_[cell], 9, "normal");
+    }
+  }
+
+  /// A number that is legible on any colour.
+  void add_label(const glm::dvec2& middle, double value, int size, const char* weight) {
+    add("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{}\" font-weight=\"{}\" "
+        "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"2\" stroke-opacity=\"0.7\" "
+        "paint-order=\"stroke\">{:.3g}</text>\n",
+        middle.x, middle.y + 0.35 * size, size, weight, value);
+  }
+
+  void add_isolines() {
+    for (const double level : scale_.levels()) {
+      const auto segments = isoline(values_, layout_.columns, layout_.rows, level);
+      if (segments.empty()) continue;
+      add("<path fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" d=\"",
+          options_.lines_only ? scale_.hex(level) : "#000000");
+      for (const Segment& segment : segments) {
+        const glm::dvec2 a = at(segment[0]), b = at(segment[1]);
+        add("M{:.2f} {:.2f}L{:.2f} {:.2f}", a.x, a.y, b.x, b.y);
+      }
+      add("\"/>\n");
+      const Segment& labelled = segments[segments.size() / 2];
+      add_label(at(0.5 * (labelled[0] + labelled[1])), level, 11, "bold");
+    }
+  }
+
+  /// 1, 2 or 5 times a power of ten, a quarter of the plan's width at most.
+  void add_ruler() {
+    const double most = width_ / per_metre_ / 4;
+    const double power = std::pow(10, std::floor(std::log10(most)));
+    const double metres = most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
+    const double y = title_height + height_ + 14, end = margin + metres * per_metre_;
+    add("<path stroke=\"#000000\" stroke-width=\"2\" d=\"M{0:.2f} {2:.2f}H{1:.2f}\"/>\n"
+        "<text x=\"{3:.2f}\" y=\"{4:.2f}\">{5:g} m</text>\n",
+        margin, end, y, end + 6, y + 4, metres);
+  }
+
+  void add_legend(double x, double height) {
+    add("<text x=\"{:.2f}\" y=\"20\">{}</text>\n", x, escaped_xml(options_.label));
+    const double step = height / options_.steps;
+    for (int i = 0; i < options_.steps; ++i) {
+      const double value = scale_.value_at((i + 0.5) / options_.steps);
+      const double y = title_height + height - (i + 1) * step;
+      add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{}\" height=\"{:.2f}\" fill=\"{}\"/>\n"
+          "<text x=\"{:.2f}\" y=\"{:.2f}\">{:.4g}</text>\n",
+          x, y, bar_width, step, scale_.hex(value), x + bar_width + 6, y + 0.5 * step + 4, value);
+    }
+  }
+
+  const PlaneLayout& layout_;
+  const FalseColour& options_;
+  std::vector<double> values_;  ///< per cell; NaN without a sensor
+  ColourScale scale_;
+  std::string title_, text_;
+  double per_metre_ = 0, width_ = 0, height_ = 0;  ///< pixels
+};
+
+}  // namespace
+
+std::string plan_svg(const GridValues& values, const LightValues& light,
+                     const FalseColour& options) {
+  return Plan(values, light, options).draw();
+}
+
+}  // namespace photile::measuring

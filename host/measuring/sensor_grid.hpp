@@ -1,0 +1,49 @@
+// Sensors that are read together: those of a plane, or of a file of points.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "photile/sensors.hpp"
+
+namespace photile::measuring {
+
+/// A rectangle of equal cells. Cell c is in column c % columns, counted along `u`, and in row
+/// c / columns, along `v`.
+struct PlaneLayout {
+  glm::dvec3 origin{0.0};  ///< its corner, in the scene file's world, metres
+  glm::dvec3 u{0.0};       ///< its whole sides, at a right angle; it faces u x v
+  glm::dvec3 v{0.0};
+  int columns = 0, rows = 0;
+  std::vector<std::uint32_t> cells;  ///< of each sensor, ascending: some cells may have none
+
+  glm::dvec3 normal() const { return glm::normalize(glm::cross(u, v)); }
+  glm::dvec3 middle_of(std::uint32_t cell) const;
+  double spacing() const { return glm::length(u) / columns; }  ///< metres, along u
+};
+
+struct SensorGrid {
+  std::string name;
+  std::vector<Sensor> sensors;        ///< in the scene file's world
+  std::optional<PlaneLayout> layout;  ///< of a plane
+};
+
+/// Sensors in the middles of the layout's cells.
+SensorGrid grid_on_plane(const std::string& name, PlaneLayout layout);
+
+/// Number of equal cells along the sides of a calculation area, as EN 12464-1 (4.4) has it: spacing
+/// p = 0.2 x 5^log10(d), at most 10 m, where d is the longer side, or the shorter one where the
+/// longer is twice as long or more. Along d there are d / p points, rounded to a whole number; the
+/// spacing that results sets the number along the other side.
+///   u, v   metres, > 0
+struct PointCounts {
+  int columns = 1;  ///< along u
+  int rows = 1;     ///< along v
+};
+PointCounts points_of_en12464(double u, double v);
+
+}  // namespace photile::measuring

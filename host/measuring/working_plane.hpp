@@ -1,0 +1,32 @@
+// The grid of EN 12464-1 over the floor of a room.
+#pragma once
+
+#include <string>
+
+#include "measuring/sensor_grid.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::measuring {
+
+struct WorkingPlane {
+  bool above_floor = true;  ///< whether `height` counts from the floor, or from the file's origin
+  double height = 0;        ///< metres
+  double wall_band = 0;     ///< metres that are left out along the floor's border
+  double spacing = 0;       ///< metres; 0 = that of EN 12464-1
+  int up = 1;               ///< axis that points up: 0, 1 or 2
+};
+
+/// "floor+0.75", "floor", or "1.2": a height in the file's world. Errors: UsageError.
+WorkingPlane parse_working_plane(const std::string& text);
+
+/// Sensors that face up, in the middles of equal cells over the floor's bounding rectangle less the
+/// wall band; cells whose middle is nearer to the floor's border than the band are left out.
+///
+/// The floor is the lowest level of horizontal surface, up to 2 cm thick, that has at least half as
+/// much room above it as the widest level has: 1.2 m to whatever is above, which is less than 20 m
+/// up. Where nothing is covered, levels under the open sky count.
+///
+/// Errors: InputError naming the scene where there is no floor, or none left within the band.
+SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane);
+
+}  // namespace photile::measuring

@@ -1,0 +1,69 @@
+#include "scene/scene_hash.hpp"
+
+namespace photile {
+namespace {
+
+/// Each function names all members, so that it does not compile once there is another.
+void add_material(const Material& material, ContentHash& hash) {
+  const auto& [name, interaction, diffuse, diffuse_texture, specular, roughness, transmission,
+               index_of_refraction, thin] = material;
+  hash.add(interaction);
+  hash.add(diffuse);
+  hash.add(diffuse_texture);
+  hash.add(specular);
+  hash.add(roughness);
+  hash.add(transmission);
+  hash.add(index_of_refraction);
+  hash.add(thin);
+}
+
+void add_light(const Light& light, ContentHash& hash) {
+  const auto& [name, group, kind, color, power, triangles, two_sided, position, direction,
+               inner_cone_angle, outer_cone_angle] = light;
+  hash.add(name);
+  hash.add(group);
+  hash.add(kind);
+  hash.add(color);
+  hash.add(power);  // quotas and shares of groups follow it
+  hash.add(triangles);
+  hash.add(two_sided);
+  hash.add(position);
+  hash.add(direction);
+  hash.add(inner_cone_angle);
+  hash.add(outer_cone_angle);
+}
+
+}  // namespace
+
+void add_scene(const Scene& scene, ContentHash& hash) {
+  const auto& [source, unit, origin, vertices, triangles, front_side, triangle_material,
+               triangle_light, corner_uv, corner_normal, shared_meshes, instances, materials,
+               textures, lights, cameras, report] = scene;
+  hash.add(unit);
+  hash.add(origin);
+  hash.add(vertices);
+  hash.add(triangles);
+  hash.add(front_side);
+  hash.add(triangle_material);
+  hash.add(triangle_light);
+  hash.add(corner_uv);
+  hash.add(corner_normal);
+  hash.add(std::uint64_t{materials.size()});
+  for (const Material& material : materials) add_material(material, hash);
+  hash.add(std::uint64_t{textures.size()});
+  for (const Texture& texture : textures) {
+    hash.add(texture.width());
+    hash.add(texture.height());
+    const glm::vec2 size(texture.width(), texture.height());
+    for (int y = 0; y < texture.height(); ++y) {
+      for (int x = 0; x < texture.width(); ++x) {
+        hash.add(
+            texture.sample((glm::vec2(x, y) + 0.5f) / size));  // in its middle: the texel itself
+      }
+    }
+  }
+  hash.add(std::uint64_t{lights.size()});
+  for (const Light& light : lights) add_light(light, hash);
+}
+
+}  // namespace photile

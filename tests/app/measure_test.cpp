@@ -1,0 +1,135 @@
+// `photile measure`: tables, files and refusals.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "box_scene.hpp"
+#include "child_process.hpp"
+#include "file_folder.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+/// Few photons and rays: seconds, not accuracy.
+std::vector<std::string> measure(const std::string& scene, std::vector<std::string> more) {
+  std::vector<std::string> arguments{"measure", scene,       "--photons", "20k",    "--rays",
+                                     "64",      "--repeats", "3",         "--quiet"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+double ratio_of(const std::string& a, const std::string& b) {
+  const auto first = nlohmann::json::parse(a), second = nlohmann::json::parse(b);
+  return first["grids"][0]["statistics"]["Em"]["value"].get<double>() /
+         second["grids"][0]["statistics"]["Em"]["value"].get<double>();
+}
+
+}  // namespace
+
+TEST_CASE("measure writes the same values to all of its files") {
+  const FileFolder folder;
+  const Outcome outcome = run_photile(measure(
+      write_box(folder), {"--plane", "floor+0.75", "--wall-band", "0.2", "-o", folder / "a.csv",
+                          "-o", folder / "a.json", "-o", folder / "a.svg", "-o", folder / "a.html",
+                          "--honeybee", folder / "bee", "--pal", "viridis", "-s", "auto"}));
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("working plane") && Contains("Uo") && Contains("left"));
+
+  const auto record = nlohmann::json::parse(folder.read("a.json"));
+  CHECK(record["unit"] == "lux");
+  CHECK(record["repeats"] == 3);
+  const auto& grid = record["grids"][0];
+  const std::size_t points = grid["points"];
+  REQUIRE(points > 4);
+  REQUIRE(grid["sensors"].size() == points);
+  CHECK(grid["statistics"]["Uo"]["value"].get<double>() ==
+        Approx(grid["statistics"]["Emin"]["value"].get<double>() /
+               grid["statistics"]["Em"]["value"].get<double>()));
+
+  std::istringstream csv(folder.read("a.csv"));
+  std::istringstream res(folder.read("bee/working_plane.res"));
+  std::string line, value;
+  std::getline(csv, line);
+  CHECK(line ==
+        "grid,point,x,y,z,dx,dy,dz,lux,standard_error,lux left,standard_error left,"
+        "lux right,standard_error right");
+  for (const auto& sensor : grid["sensors"]) {
+    REQUIRE(std::getline(res, value));
+    REQUIRE(std::getline(csv, line));
+    const double lux = sensor["lux"];
+    CHECK(std::stod(value) == Approx(lux).epsilon(1e-5));
+    CHECK_THAT(line, Contains("," + value + ","));
+    CHECK(sensor["lights"]["left"]["lux"].get<double>() +
+              sensor["lights"]["right"]["lux"].get<double>() ==
+          Approx(lux).epsilon(1e-5));
+    CHECK(sensor["standard_error"].get<double>() > 0);
+    CHECK(sensor["position"][1].get<double>() == Approx(-0.25));
+  }
+  CHECK_FALSE(std::getline(res, value));
+  CHECK_THAT(folder.read("a.svg"), Contains("<svg") && Contains("lux") && Contains("</svg>"));
+  CHECK_THAT(folder.read("a.html"),
+             Contains("E<sub>m</sub>") && Contains("</svg>") && Contains("</html>"));
+}
+
+TEST_CASE("points of Radiance are measured in their order, with paths or photons alike") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const std::string points = folder.write("two.pts", "0 -0.5 0  0 1 0\n0 -0.5 0  0 -1 0\n");
+  std::vector<std::string> files;
+  for (const std::string integrator : {"photon-map", "path"}) {
+    files.push_back(folder / (integrator + ".json"));
+    std::vector<std::string> arguments{"measure", scene,          "--points", points, "--rays",
+                                       "2k",      "--integrator", integrator, "-o",   files.back()};
+    if (integrator == "photon-map") arguments.insert(arguments.end(), {"--photons", "200k"});
+    const Outcome outcome = run_photile(arguments);
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    const auto grid = nlohmann::json::parse(folder.read(integrator + ".json"))["grids"][0];
+    CHECK(grid["name"] == "two");
+    CHECK(grid["sensors"][0]["lux"].get<double>() > 2 * grid["sensors"][1]["lux"].get<double>());
+  }
+  CHECK(ratio_of(folder.read("photon-map.json"), folder.read("path.json")) ==
+        Approx(1).epsilon(0.03));
+}
+
+TEST_CASE("the maintenance factor and --light scale what is measured") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const auto run = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.end(), {"--plane", "floor+0.5", "-o", folder / name});
+    const Outcome outcome = run_photile(measure(scene, more));
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    return folder.read(name);
+  };
+  const std::string plain = run("plain.json", {});
+  CHECK(ratio_of(run("old.json", {"--maintenance", "0.8"}), plain) == Approx(0.8));
+  CHECK(ratio_of(run("same.json", {"--light", "left=x2", "--light", "right=x2"}), plain) ==
+        Approx(2).epsilon(1e-5));
+  CHECK(run("again.json", {}) == plain);
+  CHECK(run("threads.json", {"--threads", "1"}) == plain);
+}
+
+TEST_CASE("measure refuses what it cannot do with one line and the right exit code") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const auto error = [&](std::vector<std::string> more, int code) {
+    return only_error(run_photile(measure(scene, std::move(more))), code);
+  };
+  CHECK_THAT(error({}, 2), Contains("--plane"));
+  CHECK_THAT(error({"--plane", "ceiling"}, 2), Contains("floor+0.75"));
+  CHECK_THAT(error({"--points", folder / "none.pts"}, 3), Contains("none.pts"));
+  CHECK_THAT(error({"--points", folder.write("a.pts", "1 2 3\n")}, 3), Contains("line 1"));
+  CHECK_THAT(error({"--grid", folder.write("a.json", "{}")}, 3), Contains("plane 1"));
+  CHECK_THAT(error({"--plane", "floor", "-o", folder / "a.txt"}, 2), Contains(".csv"));
+  CHECK_THAT(error({"--plane", "floor", "-o", scene}, 2), Contains("box.obj"));
+  CHECK_THAT(error({"--plane", "floor", "--wall-band", "5"}, 3), Contains("band"));
+  CHECK_THAT(error({"--plane", "floor", "--light", "sun=off"}, 2), Contains("sun"));
+  CHECK_THAT(error({"--plane", "floor", "--repeats", "1"}, 2), Contains("--repeats"));
+  CHECK_THAT(error({"--plane", "floor", "--integrator", "path"}, 2), Contains("--photons"));
+}
+
+}  // namespace photile::test

@@ -1,0 +1,115 @@
+// `photile walk`: frames, their names, and what a second run leaves alone.
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "box_scene.hpp"
+#include "child_process.hpp"
+#include "file_folder.hpp"
+#include "photile/image.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+constexpr const char* path = R"([
+    {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
+    {"time": 1, "position": [0.5, 0, 0.9], "look_at": [0, 0, -1], "fov": 60}])";
+
+std::vector<std::string> walk(const FileFolder& folder, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{"walk",
+                                     write_box(folder),
+                                     "-o",
+                                     folder / "f.##.exr",
+                                     "--fps",
+                                     "3",
+                                     "--photons",
+                                     "20k",
+                                     "--size",
+                                     "16x12",
+                                     "--camera-path",
+                                     folder.write("path.json", path)};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+Outcome done(const std::vector<std::string>& arguments) {
+  Outcome outcome = run_photile(arguments);
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  return outcome;
+}
+
+std::filesystem::file_time_type written(const std::string& file) {
+  return std::filesystem::last_write_time(file);
+}
+
+}  // namespace
+
+TEST_CASE("a walk writes its frames, PNGs and a contact sheet, and again only those that lack") {
+  const FileFolder folder;
+  const std::vector<std::string> arguments =
+      walk(folder, {"--png", folder / "f.##.png", "--contact-sheet", folder / "sheet.png"});
+  done(arguments);
+  for (const char* name : {"f.01.exr", "f.02.exr", "f.03.exr", "f.04.exr", "f.04.png"}) {
+    CHECK(std::filesystem::exists(folder / name));
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "f.05.exr"));
+  CHECK(folder.read("f.01.exr") != folder.read("f.04.exr"));
+  const Image sheet = read_image(folder / "sheet.png");
+  CHECK(sheet.width == 2 * 16 + 3 * 4);
+  CHECK(sheet.height == 2 * 12 + 3 * 4);
+
+  const std::string third = folder.read("f.03.exr"), sheet_bytes = folder.read("sheet.png");
+  const auto first_written = written(folder / "f.01.exr");
+  std::filesystem::remove(folder / "f.03.exr");
+  folder.write("f.04.exr", "no picture");
+  const Outcome again = done(arguments);
+  CHECK_THAT(again.errors, Contains("2 of 4 frames are finished"));
+  CHECK(written(folder / "f.01.exr") == first_written);
+  CHECK(folder.read("sheet.png") == sheet_bytes);
+  const Image now = read_image(folder / "f.03.exr");
+  folder.write("before.exr", third);
+  CHECK(*now.find("G") == *read_image(folder / "before.exr").find("G"));
+  CHECK_THAT(done(arguments).errors, Contains("4 of 4 frames are finished"));
+}
+
+TEST_CASE("frames of other settings are not taken for finished") {
+  const FileFolder folder;
+  done(walk(folder));
+  const std::string change = GENERATE("--seed=2", "--neighbours=40", "--light=left=x2",
+                                      "--radius=0.3", "--samples=2", "--quota=equal");
+  INFO(change);
+  CHECK_THAT(done(walk(folder, {change})).errors, !Contains("finished"));
+}
+
+TEST_CASE("a frame has the layers and the attributes of any picture, and its own camera") {
+  const FileFolder folder;
+  done(walk(folder));
+  const Image first = read_image(folder / "f.01.exr"), last = read_image(folder / "f.04.exr");
+  CHECK(first.find("Combined_left.R") != nullptr);
+  CHECK(first.find("Illuminance_right.Y") != nullptr);
+  CHECK(first.attributes.at("photile.scene") == "box.obj");
+  CHECK(first.attributes.at("photile.settings") != last.attributes.at("photile.settings"));
+  CHECK(first.matrices.at("worldToCamera") != last.matrices.at("worldToCamera"));
+}
+
+TEST_CASE("walk refuses what it cannot do with one line and the right exit code") {
+  const FileFolder folder;
+  const auto error = [&](const std::vector<std::string>& arguments, int code) {
+    return only_error(run_photile(arguments), code);
+  };
+  const std::string box = write_box(folder);
+  CHECK_THAT(error({"walk", box, "-o", folder / "a.exr"}, 2), Contains("####"));
+  CHECK_THAT(error({"walk", box, "-o", folder / "a##.png"}, 2), Contains(".exr"));
+  CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quiet"}, 3),
+             Contains("--camera-path"));
+  CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quiet", "--camera-path",
+                    folder.write("b.json", "{}")},
+                   3),
+             Contains("b.json"));
+  CHECK_THAT(error({"walk", box, "-o", folder / "none/a##.exr", "--camera-path", "x"}, 1),
+             Contains("none"));
+}
+
+}  // namespace photile::test

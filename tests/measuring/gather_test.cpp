@@ -1,0 +1,190 @@
+// Light at sensors in the air, against closed forms and against paths from surfaces.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <glm/gtc/constants.hpp>
+
+#include "photile/sensors.hpp"
+#include "statistical_tests.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+#include "validation/form_factors.hpp"
+
+using namespace photile;
+
+namespace {
+
+constexpr double pi = glm::pi<double>();
+const glm::dvec3 up(0, 0, 1);
+
+RenderParameters photons(std::uint64_t count, std::uint64_t seed) {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = count;
+  parameters.photons.seed = parameters.film.seed = seed;
+  return parameters;
+}
+
+double luminous(const LightLayers& layers, std::size_t light, std::size_t sensor) {
+  return static_cast<double>(layers.dense().layers.at(light).illuminance.at(sensor));
+}
+
+/// A black floor far below: light straight from lamps alone.
+test::SceneBuilder dark_scene() {
+  test::SceneBuilder builder("dark");
+  builder.grid({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, 1, builder.add(test::diffuse(glm::vec3(0))));
+  return builder;
+}
+
+/// The mean over 16 seeds of paths at one sensor, against the truth.
+test::Verdict paths_give(const Scene& scene, const Sensor& sensor,
+                         const GatherParameters& gathering, double truth, double delta) {
+  std::vector<double> values;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    values.push_back(
+        luminous(gather_by_paths(scene, std::span(&sensor, 1), gathering, seed).layers, 0, 0));
+  }
+  return test::mean_is(values, truth, delta);
+}
+
+}  // namespace
+
+TEST_CASE("a point light gives I cos / d^2 in the air, on planes of any tilt") {
+  test::SceneBuilder builder = dark_scene();
+  const glm::dvec3 lamp(0.3, -0.2, 2.5);
+  builder.add(test::point_light("lamp", glm::vec3(lamp)));
+  const Scene scene = builder.build();
+  std::vector<Sensor> sensors;
+  for (const double tilt : {0.0, 0.4, 1.1, 2.0}) {
+    sensors.push_back({{0.7, 0.4, 0.75}, {std::sin(tilt), 0, std::cos(tilt)}});
+  }
+  const auto layers = gather_by_paths(scene, sensors, {.rays = 4}, 1).layers;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const glm::dvec3 way = lamp - sensors[i].position;
+    const double distance = glm::length(way);
+    const double cosine = std::max(0.0, glm::dot(way, sensors[i].normal) / distance);
+    CHECK(luminous(layers, 0, i) ==
+          Approx(cosine / (4 * pi * distance * distance)).epsilon(1e-5).margin(1e-9));
+  }
+}
+
+TEST_CASE("cylindrical illuminance of a point light is I sin / (pi d^2)") {
+  test::SceneBuilder builder = dark_scene();
+  const glm::dvec3 lamp(1.5, 0.5, 2.0);
+  builder.add(test::point_light("lamp", glm::vec3(lamp)));
+  const Sensor sensor{{0, 0, 1.2}, up};
+  const auto layers =
+      gather_by_paths(builder.build(), std::span(&sensor, 1), {SensorResponse::cylindrical, 4}, 1)
+          .layers;
+  const glm::dvec3 way = lamp - sensor.position;
+  const double d2 = glm::dot(way, way);
+  const double sine = std::sqrt(1 - way.z * way.z / d2);
+  CHECK(luminous(layers, 0, 0) == Approx(sine / (pi * 4 * pi * d2)).epsilon(1e-5));
+}
+
+TEST_CASE("each of several lamps is read alone, and sensors face away from what is behind") {
+  test::SceneBuilder builder = dark_scene();
+  builder.add(test::point_light("near", {0, 0, 1}));
+  builder.add(test::point_light("far", {0, 0, 3}));
+  builder.add(test::point_light("below", {0, 0, -1}));
+  const Sensor sensor{{0, 0, 0}, up};
+  // Equal lamps: each is looked at by a third of the rays exactly.
+  const auto layers =
+      gather_by_paths(builder.build(), std::span(&sensor, 1), {.rays = 300}, 5).layers;
+  CHECK(luminous(layers, 0, 0) == Approx(1 / (4 * pi)).epsilon(1e-4));
+  CHECK(luminous(layers, 1, 0) == Approx(1 / (36 * pi)).epsilon(1e-4));
+  CHECK(luminous(layers, 2, 0) == 0);
+}
+
+TEST_CASE("an area light gives pi L times its form factor: a deviation of 1% would be seen") {
+  test::SceneBuilder builder = dark_scene();
+  const auto lamp = builder.add(test::area_light("lamp"));
+  const glm::dvec3 corner(-0.5, -0.5, 1.5), u(0, 1, 0), v(1, 0, 0);  // faces down
+  builder.grid(glm::vec3(corner), glm::vec3(u), glm::vec3(v), 1, 0, lamp);
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, 0.1, 1));
+  const Sensor sensor{{0.4, 0.2, 0.6}, normal};
+  const double truth =
+      validation::rectangle_factor(sensor.position, normal, corner, u, v);  // 1 lm over 1 m2
+  CHECK_VERDICT(paths_give(builder.build(), sensor, {.rays = 32768}, truth, 0.01 * truth));
+}
+
+TEST_CASE("in a furnace every sensor reads pi L / (1 - rho), planar and cylindrical") {
+  constexpr double reflectance = 0.5;
+  test::SceneBuilder builder("furnace");
+  const auto wall = builder.add(test::diffuse(glm::vec3(static_cast<float>(reflectance))));
+  const auto lamp = builder.add(test::area_light("walls"));
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::vec3 u(0.0f), v(0.0f), across(0.0f);
+    u[(axis + 1) % 3] = v[(axis + 2) % 3] = across[axis] = 1.0f;
+    builder.grid(glm::vec3(0.0f), u, v, 1, wall, lamp);
+    builder.grid(across, v, u, 1, wall, lamp);
+  }
+  const Scene scene = builder.build();
+  const double truth = 1.0 / 6 / (1 - reflectance);  // 1 lm from 6 m2
+  const Sensor sensor{{0.3, 0.6, 0.4}, glm::normalize(glm::dvec3(1, 2, -1))};
+  const SensorResponse response = GENERATE(SensorResponse::planar, SensorResponse::cylindrical);
+  SECTION("by photon maps") {
+    std::vector<double> values;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+      values.push_back(luminous(gather(scene, std::span(&sensor, 1), {response, 512},
+                                       std::span(&test::device(), 1), photons(80'000, seed))
+                                    .layers,
+                                0, 0));
+    }
+    CHECK_VERDICT(test::mean_is(values, truth, 0.03 * truth));
+  }
+  SECTION("by paths") {
+    CHECK_VERDICT(paths_give(scene, sensor, {response, 1024}, truth, 0.04 * truth));
+  }
+}
+
+TEST_CASE("a sensor that lies on a surface reads what paths find there") {
+  const Scene scene = test::furnished_room();
+  const std::vector<Sensor> sensors{{{1.0, 1.0, 0}, up}, {{3.5, 0.4, 0}, up}};
+  std::vector<std::vector<double>> differences(2);
+  std::vector<double> levels(2);
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const auto maps =
+        gather(scene, sensors, {.rays = 512}, std::span(&test::device(), 1), photons(100'000, seed))
+            .layers;
+    const auto paths = measure_by_paths(scene, sensors, 4096, seed).layers;
+    for (std::size_t light = 0; light < 2; ++light) {
+      double found = 0, gathered = 0;
+      for (std::size_t i = 0; i < sensors.size(); ++i) {
+        found += static_cast<double>(paths.layers[light].illuminance[i]);
+        gathered += luminous(maps, light, i);
+      }
+      differences[light].push_back(gathered - found);
+      levels[light] += found / 16;
+    }
+  }
+  for (std::size_t light = 0; light < 2; ++light) {
+    INFO("light " << light);
+    CHECK_VERDICT(test::mean_is(differences[light], 0, 0.05 * levels[light]));
+  }
+}
+
+TEST_CASE("a table keeps a lamp's light from a sensor below it") {
+  test::SceneBuilder builder = dark_scene();
+  builder.add(test::point_light("lamp", {0, 0, 2}));
+  builder.grid({-0.5f, -0.5f, 1}, {1, 0, 0}, {0, 1, 0}, 1, 0);
+  const std::vector<Sensor> sensors{{{0, 0, 0.9}, up}, {{0, 0, 1.1}, up}};
+  const auto layers = gather_by_paths(builder.build(), sensors, {.rays = 16}, 1).layers;
+  CHECK(luminous(layers, 0, 0) == 0);
+  CHECK(luminous(layers, 0, 1) == Approx(1 / (4 * pi * 0.81)).epsilon(1e-4));
+}
+
+TEST_CASE("a sensor reads the same with others beside it") {
+  const Scene scene = test::furnished_room();
+  const std::vector<Sensor> both{{{1.0, 1.0, 0.75}, up}, {{3.5, 0.4, 0.75}, up}};
+  const auto together = gather_by_paths(scene, both, {.rays = 64}, 3).layers;
+  const auto alone = gather_by_paths(scene, std::span(both).first(1), {.rays = 64}, 3).layers;
+  CHECK(luminous(together, 0, 0) == luminous(alone, 0, 0));
+}
+
+TEST_CASE("numbers of rays and sensors out of range are refused") {
+  const Scene scene = test::furnished_room();
+  const Sensor sensor{{1, 1, 1}, up};
+  CHECK_THROWS_WITH(gather_by_paths(scene, std::span(&sensor, 1), {.rays = 0}, 1),
+                    Catch::Contains("rays: 0"));
+  CHECK_THROWS_WITH(gather_by_paths(scene, {}, {.rays = 1}, 1), Catch::Contains("sensors: 0"));
+}

@@ -1,0 +1,124 @@
+// The grid of EN 12464-1: its spacing, and where a room's floor is.
+#include "measuring/working_plane.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "photile/errors.hpp"
+#include "test_scenes.hpp"
+
+using namespace photile;
+using namespace photile::measuring;
+using Catch::Contains;
+
+namespace {
+
+WorkingPlane plane_of(const std::string& text, double wall_band, int up) {
+  WorkingPlane plane = parse_working_plane(text);
+  plane.wall_band = wall_band;
+  plane.up = up;
+  return plane;
+}
+
+/// A room of 4 x 6 m, 2.5 m high, whose floor slab is 0.2 m thick and carries a table; y is up.
+Scene room_on_a_slab() {
+  test::SceneBuilder builder("room");
+  const auto white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  builder.box({0, -0.2f, 0}, {4, 0, 6}, white, false);
+  builder.box({0, 0, 0}, {4, 2.5f, 6}, white, true);
+  builder.box({1, 0.7f, 1}, {3, 0.75f, 2}, white, false);
+  builder.add(test::point_light("lamp", {2, 2, 3}));
+  return builder.build();
+}
+
+/// An L: 4 x 4 m without the quarter x > 2, y > 2; z is up.
+Scene room_like_an_l() {
+  test::SceneBuilder builder("L");
+  const auto white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, 0}, {4, 0, 0}, {0, 2, 0}, 1, white);
+  builder.grid({0, 2, 0}, {2, 0, 0}, {0, 2, 0}, 1, white);
+  builder.add(test::point_light("lamp", {1, 1, 2}));
+  return builder.build();
+}
+
+}  // namespace
+
+TEST_CASE("the number of points is that of EN 12464-1, table A.1") {
+  const auto [side, points] =
+      GENERATE(table<double, int>({{1, 5}, {2, 6}, {5, 8}, {10, 10}, {100, 20}}));
+  CHECK(points_of_en12464(side, side).columns == points);
+  CHECK(points_of_en12464(side, side).rows == points);
+}
+
+TEST_CASE("the other side has cells as nearly square as whole numbers allow") {
+  const PointCounts nearly = points_of_en12464(5, 3);  // d = 5: 8 points, 0.625 m
+  CHECK(nearly.columns == 8);
+  CHECK(nearly.rows == 5);
+  const PointCounts corridor = points_of_en12464(2, 20);  // d = 2, for 20 >= 2 x 2
+  CHECK(corridor.columns == 6);
+  CHECK(corridor.rows == 60);
+}
+
+TEST_CASE("a height is floor+METRES or metres in the world") {
+  CHECK(parse_working_plane("floor+0.75").above_floor);
+  CHECK(parse_working_plane("floor+0.75").height == 0.75);
+  CHECK(parse_working_plane("floor").height == 0);
+  CHECK_FALSE(parse_working_plane("1.2").above_floor);
+  CHECK(parse_working_plane("-1.2").height == -1.2);
+  const std::string wrong = GENERATE("", "floor0.75", "floor+", "ceiling", "0.75m", "nan", "inf");
+  INFO(wrong);
+  CHECK_THROWS_AS(parse_working_plane(wrong), UsageError);
+}
+
+TEST_CASE("the floor is the room's, not the slab's underside, the table or the ceiling") {
+  const SensorGrid grid = working_plane_grid(room_on_a_slab(), plane_of("floor+0.8", 0.5, 1));
+  REQUIRE(grid.layout);
+  // 3 x 5 m within the band: d = 5 m, 8 points there, 0.625 m, so 5 points along 3 m.
+  CHECK(grid.layout->columns == 5);
+  CHECK(grid.layout->rows == 8);
+  REQUIRE(grid.sensors.size() == 40);
+  glm::dvec3 low(1e9), high(-1e9);
+  for (const Sensor& sensor : grid.sensors) {
+    CHECK(sensor.position.y == Approx(0.8));
+    CHECK(sensor.normal == glm::dvec3(0, 1, 0));
+    low = glm::min(low, sensor.position);
+    high = glm::max(high, sensor.position);
+  }
+  CHECK(low.x == Approx(0.8));
+  CHECK(high.x == Approx(3.2));
+  CHECK(low.z == Approx(0.5 + 0.3125));
+  CHECK(high.z == Approx(5.5 - 0.3125));
+}
+
+TEST_CASE("a plane at a height of the world counts from the file's origin") {
+  Scene scene = room_on_a_slab();
+  scene.origin = {100, 10, 0};
+  const SensorGrid grid = working_plane_grid(scene, plane_of("11", 0.5, 1));
+  CHECK(grid.sensors.front().position.y == Approx(11));
+  CHECK(grid.sensors.front().position.x > 100);
+  CHECK(working_plane_grid(scene, plane_of("floor+1", 0.5, 1)).sensors.front().position.y ==
+        Approx(11));
+}
+
+TEST_CASE("points beyond the floor's border, or in the band along it, are left out") {
+  WorkingPlane plane = plane_of("floor+0.75", 0.25, 2);
+  plane.spacing = 0.25;
+  const SensorGrid grid = working_plane_grid(room_like_an_l(), plane);
+  REQUIRE(grid.layout);
+  CHECK(grid.layout->columns == 14);
+  CHECK(grid.layout->rows == 14);
+  // Of 14 x 14 cells of 0.25 m from 0.25 to 3.75 m, those at 1.875 or more in both are gone.
+  for (const Sensor& sensor : grid.sensors) {
+    CHECK_FALSE((sensor.position.x > 1.75 && sensor.position.y > 1.75));
+  }
+  CHECK(grid.sensors.size() == 14 * 14 - 8 * 8);
+}
+
+TEST_CASE("no floor, and a band that leaves nothing, are refused with a remedy") {
+  test::SceneBuilder builder("wall");
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));
+  builder.add(test::point_light("lamp", {0.5f, 0.5f, 1}));
+  CHECK_THROWS_WITH(working_plane_grid(builder.build(), plane_of("floor+0.75", 0.5, 1)),
+                    Contains("no floor") && Contains("--grid"));
+  CHECK_THROWS_WITH(working_plane_grid(room_on_a_slab(), plane_of("floor+0.75", 2, 1)),
+                    Contains("band"));
+}

@@ -1,0 +1,29 @@
+// Names of numbered frames.
+#include "walk/frame_names.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "photile/errors.hpp"
+
+using namespace photile;
+using walk::FrameNames;
+
+TEST_CASE("hashes and printf's numbers become frame numbers, as wide as they say at least") {
+  const auto [pattern, frame, name] = GENERATE(table<std::string, int, std::string>({
+      {"frame.####.exr", 7, "frame.0007.exr"},
+      {"frame.####.exr", 123456, "frame.123456.exr"},
+      {"#.exr", 12, "12.exr"},
+      {"a%04d.exr", 7, "a0007.exr"},
+      {"a%d.exr", 7, "a7.exr"},
+      {"a%3d.exr", 7, "a  7.exr"},
+      {"c#/b##.exr", 3, "c#/b03.exr"},
+  }));
+  CHECK(FrameNames(pattern).of(frame).string() == name);
+}
+
+TEST_CASE("a name without a place for the number, or with two, is refused") {
+  const std::string pattern =
+      GENERATE("frame.exr", "##-##.exr", "a%d#.exr", "####/frame.exr", "%s.exr");
+  INFO(pattern);
+  CHECK_THROWS_AS(FrameNames(pattern), UsageError);
+}

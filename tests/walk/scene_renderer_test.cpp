@@ -1,0 +1,50 @@
+// Many pictures from one set of maps are those of one rendering each.
+#include "photile/scene_renderer.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "photile/errors.hpp"
+#include "photile/renderer.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+
+using namespace photile;
+
+namespace {
+
+RenderParameters small() {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = 20'000;
+  parameters.film.width = 24;
+  parameters.film.height = 16;
+  parameters.film.samples_per_pixel = 2;
+  return parameters;
+}
+
+}  // namespace
+
+TEST_CASE("each picture is the one that render gives, bit for bit") {
+  const Scene scene = test::furnished_room();
+  const RenderParameters parameters = small();
+  std::span<Device> devices(&test::device(), 1);
+  SceneRenderer renderer(scene, devices, parameters);
+  for (const double x : {0.5, 2.0, 0.5}) {
+    const Camera camera = Camera::look_at({x, 0.3, 1.5}, {2, 2, 0.5}, {0, 0, 1}, 1.0);
+    const RenderResult kept = renderer.render(camera, parameters.film);
+    const RenderResult once = render(scene, camera, devices, parameters);
+    REQUIRE(kept.layers.layers.size() == 2);
+    for (std::size_t light = 0; light < 2; ++light) {
+      CHECK(kept.layers.layers[light].radiance == once.layers.layers[light].radiance);
+      CHECK(kept.layers.layers[light].illuminance == once.layers.layers[light].illuminance);
+    }
+    CHECK(kept.radius == once.radius);
+    CHECK(kept.stored_photons == once.stored_photons);
+  }
+}
+
+TEST_CASE("maps that need several passes cannot be kept") {
+  const Scene scene = test::furnished_room();
+  RenderParameters parameters = small();
+  parameters.passes = 2;
+  CHECK_THROWS_AS(SceneRenderer(scene, std::span(&test::device(), 1), parameters), UsageError);
+}
