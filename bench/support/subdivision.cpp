@@ -46,6 +46,8 @@ Scene subdivided(const Scene& scene) {
   fine.materials = scene.materials;
   fine.textures = scene.textures;
   fine.lights = scene.lights;
+  fine.distributions = scene.distributions;
+  fine.environments = scene.environments;
   fine.cameras = scene.cameras;
   for (Light& light : fine.lights) light.triangles.clear();
   for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
@@ -59,9 +61,13 @@ Scene subdivided(const Scene& scene) {
       if (scene.triangle_light[t] != none) {
         fine.lights[scene.triangle_light[t]].triangles.push_back(added);
       }
-      if (scene.corner_uv.empty()) continue;
-      const auto uv = quarters(from_the_front(scene.corner_uv[t], front_is_side_0));
-      fine.corner_uv.push_back(in_order_of(fine.corners(added), pieces[piece], uv[piece]));
+      const auto add_uv = [&](const auto& whole, auto& cut) {
+        if (whole.empty()) return;
+        const auto uv = quarters(from_the_front(whole[t], front_is_side_0));
+        cut.push_back(in_order_of(fine.corners(added), pieces[piece], uv[piece]));
+      };
+      add_uv(scene.corner_uv, fine.corner_uv);
+      add_uv(scene.corner_emission_uv, fine.corner_emission_uv);
     }
   }
   return fine;

@@ -5,8 +5,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/added_light_options.hpp"
 #include "app/commands.hpp"
-#include "app/light_group_option.hpp"
 #include "app/scene_report.hpp"
 #include "app/validators.hpp"
 #include "photile/light_mix.hpp"
@@ -18,7 +18,6 @@ namespace {
 struct InfoOptions {
   std::string scene;
   SceneLoadOptions load;
-  double lumen_per_watt = defaults::lumen_per_watt;
   bool json = false;
 };
 
@@ -41,7 +40,7 @@ void print_text(const Scene& scene, const LightMix& mix) {
 
 void run_info(const InfoOptions& options) {
   const Scene scene = load_scene(options.scene, options.load);
-  const LightMix mix = LightMix::of(scene, options.lumen_per_watt);
+  const LightMix mix = LightMix::of(scene, options.load.lumen_per_watt);
   if (options.json) {
     // Names come from files: bytes that are no UTF-8 are replaced, not fatal.
     std::cout
@@ -67,13 +66,15 @@ void add_info_command(CLI::App& photile) {
       ->type_name("X")
       ->transform(positive_number())
       ->capture_default_str();
-  command->add_option("--lumen-per-watt", options->lumen_per_watt, "683 or, as Radiance, 179")
+  command
+      ->add_option("--lumen-per-watt,--efficacy", options->load.lumen_per_watt,
+                   "683 or, as Radiance, 179")
       ->type_name("X")
       ->transform(positive_number())
       ->capture_default_str();
   command->add_flag("--allow-outside", options->load.allow_outside,
                     "the scene may name files outside its folder");
-  add_light_group_option(*command, options->load);
+  add_light_options(*command, options->load, "Lights");
   command->callback([options] { run_info(*options); });
 }
 

@@ -92,7 +92,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const Scene scene = load_scene(render.scene, render.load);
-  LightMix mix = LightMix::of(scene, render.lumen_per_watt);
+  LightMix mix = LightMix::of(scene, render.load.lumen_per_watt);
   photile::apply(mix, changes);  // qualified: std::apply would match better
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene);
   std::vector<Device> devices = devices_for(render, progress);

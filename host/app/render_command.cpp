@@ -140,7 +140,7 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   RunRecord record;
   record.stages.push_back(timed_stage("load scene", progress,
                                       [&] { scene = load_scene(options.scene, options.load); }));
-  record.mix = LightMix::of(scene, options.lumen_per_watt);
+  record.mix = LightMix::of(scene, options.load.lumen_per_watt);
   photile::apply(record.mix, changes);  // qualified: std::apply would match better
   tell_scene(scene, record.mix, progress);
   const Camera& camera = choose_camera(scene, options.camera);

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "app/light_group_option.hpp"
+#include "app/added_light_options.hpp"
 #include "app/quality_options.hpp"
 #include "app/validators.hpp"
 #include "photile/errors.hpp"
@@ -84,7 +84,7 @@ void add_light_group(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--light", options.lights,
                   "power of a light in its unit, a factor (x2), a colour or off; repeatable")
-      ->type_name("NAME=POWER|xFACTOR|#RRGGBB|off")
+      ->type_name("NAME=POWER|xFACTOR|#RRGGBB|KELVINK|off")
       ->allow_extra_args(false)
       ->group("Picture");
   command
@@ -175,7 +175,9 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
 }
 
 void add_scene_group(CLI::App& command, RenderOptions& options) {
-  command.add_option("--lumen-per-watt", options.lumen_per_watt, "683 or, as Radiance, 179")
+  command
+      .add_option("--lumen-per-watt,--efficacy", options.load.lumen_per_watt,
+                  "683 or, as Radiance, 179")
       ->type_name("X")
       ->transform(positive_number())
       ->capture_default_str()
@@ -191,7 +193,7 @@ void add_scene_group(CLI::App& command, RenderOptions& options) {
       .add_flag("--allow-outside", options.load.allow_outside,
                 "the scene may name files outside its folder")
       ->group("Scene");
-  add_light_group_option(command, options.load)->group("Scene");
+  add_light_options(command, options.load, "Lights");
 }
 
 void add_device_group(CLI::App& command, RenderOptions& options) {

@@ -43,7 +43,6 @@ struct RenderOptions {
   DeviceOptions device;
   bool no_cache = false;
   SceneLoadOptions load;
-  double lumen_per_watt = defaults::lumen_per_watt;
   int threads = 0;
   std::string statistics;            ///< file, "" = none
   std::string save_maps, load_maps;  ///< files, "" = none

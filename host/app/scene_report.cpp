@@ -22,8 +22,9 @@ std::string counted(std::size_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-const char* kind_name(LightKind kind) {
-  switch (kind) {
+const char* kind_name(const Light& light) {
+  if (light.distribution != none) return "photometric";
+  switch (light.kind) {
     case LightKind::area:
       return "area";
     case LightKind::point:
@@ -31,7 +32,9 @@ const char* kind_name(LightKind kind) {
     case LightKind::spot:
       return "spot";
     case LightKind::directional:
-      return "directional";
+      return light.has_size() ? "sun" : "directional";
+    case LightKind::environment:
+      return "environment";
   }
   return "";
 }
@@ -59,13 +62,22 @@ json power_json(double power, PowerUnit unit, double lumen_per_watt) {
           {"watts", lumen ? power / lumen_per_watt : power}};
 }
 
-json light_json(const Light& light, double power, PowerUnit unit, double lumen_per_watt) {
+/// The file that says where a light shines to, or "".
+std::string source_of(const Scene& scene, const Light& light) {
+  if (light.distribution != none) return scene.distributions[light.distribution].name();
+  if (light.environment != none) return scene.environments[light.environment].name();
+  return "";
+}
+
+json light_json(const Light& light, const std::string& source, double power, PowerUnit unit,
+                double lumen_per_watt) {
   json entry{{"name", light.name},
-             {"kind", kind_name(light.kind)},
+             {"kind", kind_name(light)},
              {"color", components(light.color)},
              {"triangles", light.triangles.size()},
              {"two_sided", light.two_sided}};
   if (!light.group.empty()) entry["group"] = light.group;
+  if (!source.empty()) entry["source"] = source;
   entry.update(power_json(power, unit, lumen_per_watt));
   return entry;
 }
@@ -145,9 +157,11 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
   const std::vector<double> powers = powers_of(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    lines.push_back(fmt::format("light: {}: {}, {}{}", light.name, kind_name(light.kind),
+    const std::string source = source_of(scene, light);
+    lines.push_back(fmt::format("light: {}: {}, {}{}{}", light.name, kind_name(light),
                                 format_power_in_both(powers[i], scene.unit, mix.lumen_per_watt),
-                                light.group.empty() ? "" : ", of group " + light.group));
+                                light.group.empty() ? "" : ", of group " + light.group,
+                                source.empty() ? "" : ", from " + source));
   }
   for (const MixedLight& group : mix.lights) {
     if (group.members.empty()) continue;
@@ -191,8 +205,8 @@ json scene_json(const Scene& scene, const LightMix& mix) {
   }
   const std::vector<double> powers = powers_of(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    result["lights"].push_back(
-        light_json(scene.lights[i], powers[i], scene.unit, mix.lumen_per_watt));
+    result["lights"].push_back(light_json(scene.lights[i], source_of(scene, scene.lights[i]),
+                                          powers[i], scene.unit, mix.lumen_per_watt));
   }
   for (const MixedLight& group : mix.lights) {
     if (!group.members.empty()) result["groups"].push_back(group_json(group, mix.lumen_per_watt));

@@ -142,7 +142,7 @@ void run_trade(TradeOptions& options) {
   TerminalProgress progress(render.quiet);
   std::vector<Device> devices = open_devices(render.device);
   const Scene scene = load_scene(render.scene, render.load);
-  LightMix mix = LightMix::of(scene, render.lumen_per_watt);
+  LightMix mix = LightMix::of(scene, render.load.lumen_per_watt);
   photile::apply(mix, changes);  // qualified: std::apply would match better
   const Camera& camera = choose_camera(scene, render.camera);
   render.parameters.film.width = defaults::trade_width;

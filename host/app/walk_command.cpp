@@ -228,7 +228,7 @@ void run_walk(WalkOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const Scene scene = load_scene(render.scene, render.load);
-  LightMix mix = LightMix::of(scene, render.lumen_per_watt);
+  LightMix mix = LightMix::of(scene, render.load.lumen_per_watt);
   photile::apply(mix, changes);  // qualified: std::apply would match better
   const Camera& camera = choose_camera(scene, render.camera);
   set_film_size(render.parameters.film, render.size, camera);

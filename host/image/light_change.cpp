@@ -8,6 +8,8 @@
 
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "scene/color_temperature.hpp"
 #include "scene/light_names.hpp"
 
 namespace photile {
@@ -42,6 +44,17 @@ SetColor parse_color(const LightChange& change) {
   return {{channel(16), channel(8), channel(0)}};
 }
 
+/// 2700K
+SetTemperature parse_temperature(const LightChange& change) {
+  const auto kelvin =
+      parse_amount(std::string_view(change.value).substr(0, change.value.size() - 1));
+  if (!kelvin || *kelvin < limits::min_color_temperature ||
+      *kelvin > limits::max_color_temperature) {
+    refuse(change, "is no colour temperature from 1000K to 40000K");
+  }
+  return {*kelvin};
+}
+
 bool remove_suffix(std::string_view& text, std::string_view suffix) {
   if (!text.ends_with(suffix)) return false;
   text.remove_suffix(suffix.size());
@@ -59,8 +72,8 @@ SetPower parse_power(const LightChange& change) {
   const std::optional<double> power = parse_amount(number);
   if (!power) {
     refuse(change,
-           "is no change of a light; use POWER, POWERlm or POWERW (0 or more), xFACTOR, #RRGGBB "
-           "or off");
+           "is no change of a light; use POWER, POWERlm or POWERW (0 or more), xFACTOR, #RRGGBB, "
+           "KELVINK or off");
   }
   return {*power, unit};
 }
@@ -70,6 +83,7 @@ SetPower parse_power(const LightChange& change) {
 Request understand(const LightChange& change) {
   if (change.value == "off") return ScalePower{0.0};
   if (change.value.starts_with('#')) return parse_color(change);
+  if (change.value.ends_with('K')) return parse_temperature(change);
   if (change.value.starts_with('x')) {
     const std::optional<double> factor = parse_amount(std::string_view(change.value).substr(1));
     if (!factor) refuse(change, "is no factor; use x and a number of 0 or more such as x1.5");
@@ -87,6 +101,18 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
           light.name));
     }
     light.tint = glm::vec3(color->linear / emitted);
+    return;
+  }
+  if (const auto* temperature = std::get_if<SetTemperature>(&request)) {
+    const glm::dvec3 own(light.color);
+    const glm::dvec3 wanted = scene_io::color_of_temperature(temperature->kelvin);
+    for (int c = 0; c < 3; ++c) {
+      if (own[c] > 0.0 || wanted[c] == 0.0) continue;
+      throw UsageError(fmt::format(
+          "light '{}' lacks a colour that {} K has; give the temperature when it is rendered",
+          light.name, temperature->kelvin));
+    }
+    light.tint = glm::vec3(wanted / glm::max(own, glm::dvec3(1e-30)));
     return;
   }
   double power = light.power;
@@ -121,8 +147,8 @@ LightChange LightChange::parse(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
     throw UsageError(
-        fmt::format("'{}' is no change of a light; use NAME=POWER, NAME=xFACTOR, NAME=#RRGGBB or "
-                    "NAME=off",
+        fmt::format("'{}' is no change of a light; use NAME=POWER, NAME=xFACTOR, NAME=#RRGGBB, "
+                    "NAME=KELVINK or NAME=off",
                     text));
   }
   return {text.substr(0, equals), text.substr(equals + 1)};

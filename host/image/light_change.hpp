@@ -25,7 +25,12 @@ struct SetColor {
   glm::dvec3 linear;  ///< Rec.709, not black
 };
 
-using Request = std::variant<SetPower, ScalePower, SetColor>;
+/// KELVINK
+struct SetTemperature {
+  double kelvin;
+};
+
+using Request = std::variant<SetPower, ScalePower, SetColor, SetTemperature>;
 
 /// Errors: UsageError naming the light, the value and the forms there are.
 Request understand(const LightChange& change);

@@ -96,16 +96,32 @@ class SurfacePath {
   /// The next surface point in a direction; adds what it emits. Nothing beyond the scene.
   std::optional<SurfacePoint> follow(const SurfacePoint& from, const glm::vec3& direction) {
     const auto hit = trace::intersect(rays_, from.origin_towards(direction), direction);
-    if (!hit) return std::nullopt;
+    if (!hit) {
+      add_what_lies_beyond(direction);
+      return std::nullopt;
+    }
     const SurfacePoint point = trace::surface_hit(scene_, *hit, direction);
     if (trace::emits(scene_, point)) {
       const std::uint32_t light = scene_.triangle_light[point.where.triangle];
-      // Lamps seen in mirrors or through glass are found by following alone.
-      const float weight =
-          density_ > 0.0f ? power_heuristic(density_, lights_.density(from_, point)) : 1.0f;
-      add(lights_.layer(light), weights_ * (weight * lights_.radiance(light)));
+      add(lights_.layer(light),
+          weights_ * (weight_against(lights_.density(from_, point)) * lights_.radiance(point)));
     }
     return point;
+  }
+
+  void add_what_lies_beyond(const glm::vec3& direction) {
+    for (const trace::DistantLight& light : lights_.distant()) {
+      const glm::vec3 radiance = light.radiance(direction);
+      if (radiance == glm::vec3(0.0f)) continue;
+      add(lights_.layer(light.light()),
+          weights_ * (weight_against(lights_.density(light, direction)) * radiance));
+    }
+  }
+
+  /// Of light that the path met, where looking at lamps finds it with density `other`. Lamps seen
+  /// in mirrors or through refracting glass are found by following alone.
+  float weight_against(float other) const {
+    return density_ > 0.0f ? power_heuristic(density_, other) : 1.0f;
   }
 
   /// Adds a lamp as seen from the point; goes on in a new direction, written to `direction`, or
@@ -115,7 +131,9 @@ class SurfacePath {
     if (trace::material_of(scene_, point).interaction != Interaction::opaque) {
       const trace::Scattered scattered =
           trace::scatter_specular(scene_, point, direction, numbers.uniform(trace::choice_word));
-      density_ = 0.0f;
+      // A pane of thin glass passes light straight on, and looking at lamps sees through it.
+      const bool straight = scattered.direction == direction;
+      if (!straight || !trace::material_of(scene_, point).thin) density_ = 0.0f;
       direction = scattered.direction;
       return survives(scattered.weight, numbers);
     }
@@ -140,13 +158,9 @@ class SurfacePath {
                        random_.block(Purpose::path_light, 2 * bounce_ + 1));
     if (!lamp || !(glm::dot(lamp->direction, point.normal) > 0.0f)) return;
     const glm::vec3 origin = point.origin_towards(lamp->direction);
-    glm::vec3 arrives = lamp->received;
-    if (lamp->density > 0.0f) {
-      if (trace::occluded(rays_, origin, lamp->target)) return;
-      arrives *= power_heuristic(lamp->density, density(lamp->direction));
-    } else {
-      arrives *= trace::transmittance(rays_, origin, lamp->target);
-    }
+    glm::vec3 arrives = lamp->received * trace::transmittance(rays_, origin, lamp->target);
+    if (arrives == glm::vec3(0.0f)) return;
+    if (lamp->density > 0.0f) arrives *= power_heuristic(lamp->density, density(lamp->direction));
     add(lamp->layer, weigh(lamp->direction) * arrives);
   }
 

@@ -95,7 +95,7 @@ PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
 bool has_unseen_caustics(const Scene& scene) {
   return needs_of(scene).specular_paths &&
          std::any_of(scene.lights.begin(), scene.lights.end(),
-                     [](const Light& light) { return light.kind != LightKind::area; });
+                     [](const Light& light) { return !light.has_size(); });
 }
 
 }  // namespace photile

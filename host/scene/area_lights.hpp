@@ -8,14 +8,16 @@
 #include <vector>
 
 #include "photile/scene.hpp"
+#include "scene/light_traits.hpp"
 #include "scene/warnings.hpp"
 
 namespace photile::scene_io {
 
 /// What a material emits, in cd/m2 or W/(m2 sr).
 struct Emission {
-  glm::dvec3 radiance{0.0};
+  glm::dvec3 radiance{0.0};  ///< of a white texel, where there is a texture
   bool two_sided = false;
+  std::uint32_t texture = none;  ///< into Scene::textures
 };
 
 /// One light per object (a glTF node, an OBJ object or group) and emissive material.
@@ -23,11 +25,11 @@ class AreaLights {
  public:
   explicit AreaLights(Scene& scene) : scene_(scene) {}
 
-  /// The light of `object` and `material`, or `none` when the material emits nothing. `group` is
-  /// that of the object's lights, "" = none. Errors: InputError beyond limits::max_lights.
+  /// The light of `object` and `material`, or `none` when the material emits nothing. `traits` are
+  /// those of the object's lights. Errors: InputError beyond limits::max_lights.
   std::uint32_t find_or_add(std::uint64_t object, const std::string& object_name,
                             std::uint32_t material, const Emission& emission,
-                            const std::string& group = {});
+                            const LightTraits& traits = {});
 
   /// Lists each light's triangles and computes its power. Lights that got no triangle are dropped
   /// with a warning. Call once, after the last triangle.
@@ -39,9 +41,11 @@ class AreaLights {
     std::string object_name;
     std::uint32_t material;
     Emission emission;
-    std::string group;
+    LightTraits traits;
   };
   std::string name_of(const Pending& light) const;
+  bool set_emission(const Pending& pending, double area, Light& light, Warnings& warnings) const;
+  void apply_lumens(std::size_t first_light, const std::vector<const Pending*>& sources);
 
   Scene& scene_;
   std::vector<Pending> pending_;

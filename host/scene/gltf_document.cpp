@@ -14,10 +14,17 @@
 namespace photile::scene_io {
 namespace {
 
-constexpr std::array<std::string_view, 8> understood_extensions{
-    "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_volume",
-    "KHR_mesh_quantization",  "KHR_texture_transform",
+constexpr std::array<std::string_view, 10> understood_extensions{
+    "EXT_lights_area",
+    "EXT_lights_ies",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
 };
 
 bool understood(const std::string& extension) {

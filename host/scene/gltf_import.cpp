@@ -15,12 +15,13 @@ void import_gltf(ImportContext& context) {
   const tinygltf::Model model = read_gltf(context);
   const AccessorReader accessors(model, context);
   context.scene.unit = PowerUnit::lumen;
-  const std::vector<TextureCoordinates> coordinates = add_gltf_materials(model, accessors, context);
+  const std::vector<MaterialCoordinates> coordinates =
+      add_gltf_materials(model, accessors, context);
   std::vector<NodeVisit> visits = visit_nodes(model, context);
   check_triangle_count(model, accessors, visits, context);
   move_to_origin(model, accessors, visits, context);
   add_gltf_cameras(model, visits, context);
-  add_gltf_lights(model, visits, context);
+  add_gltf_lights(model, accessors, visits, context);
   add_gltf_meshes(model, accessors, visits, coordinates, context);
 }
 

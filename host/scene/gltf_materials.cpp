@@ -24,7 +24,7 @@ class Converter {
         context_(context),
         textures_(context.scene, context.folder) {}
 
-  TextureCoordinates add(const tinygltf::Material& source, const std::string& name);
+  MaterialCoordinates add(const tinygltf::Material& source, const std::string& name);
 
  private:
   void warn(const std::string& message) { context_.warnings.add("material", name_, message); }
@@ -33,6 +33,7 @@ class Converter {
   void set_glass(const tinygltf::Material& source, const MetallicRoughness& model,
                  Material& material);
   void add_texture(const tinygltf::TextureInfo& info, Material& material);
+  Emission emission_of(const tinygltf::Material& source);
   std::uint32_t load_texture(int texture);
   TextureCoordinates coordinates(const tinygltf::TextureInfo& info);
 
@@ -50,7 +51,6 @@ void Converter::warn_about_ignored(const tinygltf::Material& source) {
   }
   if (source.normalTexture.index >= 0) warn("normal texture is ignored");
   if (source.occlusionTexture.index >= 0) warn("occlusion texture is ignored");
-  if (source.emissiveTexture.index >= 0) warn("emissive texture is ignored; its factor is used");
   if (source.alphaMode != "OPAQUE")
     warn("alpha mode " + source.alphaMode + " is treated as opaque");
   if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
@@ -151,7 +151,7 @@ TextureCoordinates Converter::coordinates(const tinygltf::TextureInfo& info) {
   return result;
 }
 
-TextureCoordinates Converter::add(const tinygltf::Material& source, const std::string& name) {
+MaterialCoordinates Converter::add(const tinygltf::Material& source, const std::string& name) {
   name_ = name;
   Material material;
   material.name = name;
@@ -165,6 +165,12 @@ TextureCoordinates Converter::add(const tinygltf::Material& source, const std::s
       warn("base-colour texture of a metal or glass is ignored; its factor is used");
     }
   }
+  context_.scene.materials.push_back(std::move(material));
+  context_.emission.push_back(emission_of(source));
+  return {coordinates(texture), coordinates(source.emissiveTexture)};
+}
+
+Emission Converter::emission_of(const tinygltf::Material& source) {
   Emission emission;
   emission.radiance = rgb_of(source.emissiveFactor, glm::dvec3(0.0));
   if (const auto* strength = find_extension(source.extensions, "KHR_materials_emissive_strength")) {
@@ -172,9 +178,13 @@ TextureCoordinates Converter::add(const tinygltf::Material& source, const std::s
   }
   emission.radiance *= static_cast<double>(context_.options.emissive_scale);
   emission.two_sided = source.doubleSided;
-  context_.scene.materials.push_back(std::move(material));
-  context_.emission.push_back(emission);
-  return coordinates(texture);
+  if (source.emissiveTexture.index < 0 || emission.radiance == glm::dvec3(0.0)) return emission;
+  try {
+    emission.texture = load_texture(source.emissiveTexture.index);
+  } catch (const ResourceError& error) {
+    warn(std::string(error.what()) + "; the emissive factor is used alone");
+  }
+  return emission;
 }
 
 void note_blender_units(const tinygltf::Model& model, ImportContext& context) {
@@ -191,11 +201,11 @@ void note_blender_units(const tinygltf::Model& model, ImportContext& context) {
 
 }  // namespace
 
-std::vector<TextureCoordinates> add_gltf_materials(const tinygltf::Model& model,
-                                                   const AccessorReader& accessors,
-                                                   ImportContext& context) {
+std::vector<MaterialCoordinates> add_gltf_materials(const tinygltf::Model& model,
+                                                    const AccessorReader& accessors,
+                                                    ImportContext& context) {
   Converter converter(model, accessors, context);
-  std::vector<TextureCoordinates> coordinates;
+  std::vector<MaterialCoordinates> coordinates;
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
     const std::string& name = model.materials[i].name;
     coordinates.push_back(

@@ -10,7 +10,7 @@
 
 namespace photile::scene_io {
 
-/// Which texture coordinates a material's base colour takes, and the affine map of
+/// Which texture coordinates a texture takes, and the affine map of
 /// KHR_texture_transform on them.
 struct TextureCoordinates {
   int set = 0;
@@ -20,11 +20,16 @@ struct TextureCoordinates {
   glm::dvec2 operator()(const glm::dvec2& uv) const { return linear * uv + offset; }
 };
 
+/// Those of a material's textures.
+struct MaterialCoordinates {
+  TextureCoordinates diffuse, emission;
+};
+
 /// Converts all materials, in the order of the file, and appends glTF's default material where some
 /// primitive has none. What photile approximates is named in a warning. Returns the texture
 /// coordinates of each material.
-std::vector<TextureCoordinates> add_gltf_materials(const tinygltf::Model& model,
-                                                   const AccessorReader& accessors,
-                                                   ImportContext& context);
+std::vector<MaterialCoordinates> add_gltf_materials(const tinygltf::Model& model,
+                                                    const AccessorReader& accessors,
+                                                    ImportContext& context);
 
 }  // namespace photile::scene_io

@@ -6,31 +6,39 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "photile/limits.hpp"
+#include "scene/gltf_document.hpp"
+#include "scene/gltf_panels.hpp"
 #include "scene/gltf_primitives.hpp"
 #include "scene/instance_recorder.hpp"
+#include "scene/light_traits.hpp"
 #include "scene/material_needs.hpp"
 
 namespace photile::scene_io {
 namespace {
 
+constexpr std::uint64_t first_panel_object = limits::max_node_visits;
+
 class MeshImporter {
  public:
   MeshImporter(const tinygltf::Model& model, const AccessorReader& accessors,
                const std::vector<NodeVisit>& visits,
-               const std::vector<TextureCoordinates>& coordinates, ImportContext& context)
+               const std::vector<MaterialCoordinates>& coordinates, ImportContext& context)
       : model_(model),
         accessors_(accessors),
         coordinates_(coordinates),
         context_(context),
         needs_(needs_of_materials(context.scene.materials)),
-        builder_(context.scene, needs_.textures, needs_.glossy || needs_.specular_paths),
+        builder_(context.scene, {needs_.textures, has_emission_texture(context),
+                                 needs_.glossy || needs_.specular_paths}),
         instances_(context.scene) {
     for (const NodeVisit& visit : visits) ++uses_[mesh_of(visit)];
   }
 
   void add(const NodeVisit& visit, std::uint64_t visit_number);
+  void add_panel(const NodeVisit& visit, std::uint64_t visit_number);
   void finish() {
     builder_.finish();
     instances_.finish();
@@ -48,13 +56,14 @@ class MeshImporter {
 
   const tinygltf::Model& model_;
   const AccessorReader& accessors_;
-  const std::vector<TextureCoordinates>& coordinates_;
+  const std::vector<MaterialCoordinates>& coordinates_;
   ImportContext& context_;
   SceneNeeds needs_;
   MeshBuilder builder_;
   InstanceRecorder instances_;
   std::map<int, std::size_t> uses_;  ///< of each mesh
   std::vector<bool> kept_;           ///< triangles of the visit that the scene took
+  std::uint32_t panel_material_ = none;
 };
 
 void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
@@ -86,6 +95,27 @@ void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
   }
 }
 
+void MeshImporter::add_panel(const NodeVisit& visit, std::uint64_t visit_number) {
+  const std::optional<Panel> panel = panel_of(model_, visit.node, context_);
+  if (!panel) return;
+  const std::string name = node_name(model_, visit.node);
+  if (panel_material_ == none) {
+    panel_material_ = static_cast<std::uint32_t>(context_.scene.materials.size());
+    context_.scene.materials.emplace_back().name = "panel";  // black
+  }
+  LightTraits traits = light_traits(model_.nodes[static_cast<std::size_t>(visit.node)].extras, name,
+                                    context_.warnings);
+  traits.lumens = 0;  // the panel's own say so
+  // Panels count as objects of their own, after all visits.
+  const std::uint32_t light = context_.area_lights.find_or_add(
+      first_panel_object + visit_number, name, panel_material_, {panel->radiance, false}, traits);
+  for (const auto& corners : panel_triangles(*panel, visit.world)) {
+    std::array<Corner, 3> triangle;
+    for (std::size_t i = 0; i < 3; ++i) triangle[i].position = corners[i];
+    builder_.add(triangle, panel_material_, light);
+  }
+}
+
 void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
                                  std::uint64_t visit_number, const std::string& mesh_name) {
   if (!primitive.targets.empty()) {
@@ -107,7 +137,8 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
   const std::uint32_t light = context_.area_lights.find_or_add(
       visit_number, node.name.empty() ? mesh_name : node.name, material,
-      context_.emission[material], light_group(node.extras));
+      context_.emission[material],
+      light_traits(node.extras, node_name(model_, visit.node), context_.warnings));
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
     const std::array<Corner, 3> triangle{corners[mirrored ? c : a], corners[b],
                                          corners[mirrored ? a : c]};
@@ -136,15 +167,20 @@ std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primit
   };
   const std::vector<float> positions = read("POSITION", 3);
   const std::size_t count = positions.size() / 3;
-  const TextureCoordinates& coordinates = coordinates_[material];
-  const bool textured = context_.scene.materials[material].diffuse_texture != none;
-  std::vector<float> uv, normals;
-  if (textured) uv = read(fmt::format("TEXCOORD_{}", coordinates.set), 2);
-  if (needs_.glossy || needs_.specular_paths) normals = read("NORMAL", 3);
-  if (textured && uv.size() != 2 * count) {
+  const MaterialCoordinates& coordinates = coordinates_[material];
+  const auto read_uv = [&](std::uint32_t texture, int set) {
+    if (texture == none) return std::vector<float>();
+    std::vector<float> uv = read(fmt::format("TEXCOORD_{}", set), 2);
+    if (uv.size() == 2 * count) return uv;
     context_.warnings.add("mesh", mesh_name, "has no texture coordinates for its texture");
-    uv.clear();
-  }
+    return std::vector<float>();
+  };
+  const std::vector<float> uv =
+      read_uv(context_.scene.materials[material].diffuse_texture, coordinates.diffuse.set);
+  const std::vector<float> emission_uv =
+      read_uv(context_.emission[material].texture, coordinates.emission.set);
+  std::vector<float> normals;
+  if (needs_.glossy || needs_.specular_paths) normals = read("NORMAL", 3);
   if (normals.size() != 3 * count) normals.clear();
 
   const glm::dmat3 linear(world);
@@ -158,7 +194,11 @@ std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primit
       return glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
     };
     corners[i].position = glm::dvec3(world * glm::dvec4(vector(positions), 1.0));
-    if (!uv.empty()) corners[i].uv = coordinates(glm::dvec2(uv[2 * i], uv[2 * i + 1]));
+    const auto mapped = [&](const std::vector<float>& values, const TextureCoordinates& map) {
+      return values.empty() ? glm::dvec2(0.0) : map(glm::dvec2(values[2 * i], values[2 * i + 1]));
+    };
+    corners[i].uv = mapped(uv, coordinates.diffuse);
+    corners[i].emission_uv = mapped(emission_uv, coordinates.emission);
     if (!normals.empty()) corners[i].normal = cofactor * vector(normals);
   }
   return corners;
@@ -192,9 +232,13 @@ void check_triangle_count(const tinygltf::Model& model, const AccessorReader& ac
 
 void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accessors,
                      const std::vector<NodeVisit>& visits,
-                     const std::vector<TextureCoordinates>& coordinates, ImportContext& context) {
+                     const std::vector<MaterialCoordinates>& coordinates, ImportContext& context) {
   MeshImporter importer(model, accessors, visits, coordinates, context);
-  for (std::size_t i = 0; i < visits.size(); ++i) importer.add(visits[i], i);
+  check_panel_names(model, visits, context);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    importer.add(visits[i], i);
+    importer.add_panel(visits[i], i);
+  }
   importer.finish();
 }
 

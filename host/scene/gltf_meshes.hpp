@@ -20,6 +20,6 @@ void check_triangle_count(const tinygltf::Model& model, const AccessorReader& ac
 /// their rest pose; points and lines are left out; both with a warning. Errors: InputError.
 void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accessors,
                      const std::vector<NodeVisit>& visits,
-                     const std::vector<TextureCoordinates>& coordinates, ImportContext& context);
+                     const std::vector<MaterialCoordinates>& coordinates, ImportContext& context);
 
 }  // namespace photile::scene_io

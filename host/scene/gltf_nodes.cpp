@@ -9,6 +9,8 @@
 
 #include "photile/limits.hpp"
 #include "scene/gltf_document.hpp"
+#include "scene/gltf_panels.hpp"
+#include "scene/gltf_profiles.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -102,7 +104,12 @@ class Walk {
 };
 
 void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
-                            Warnings& warnings) {
+                            ImportContext& context) {
+  const auto asked_for = [&](const tinygltf::Node& node) {
+    const std::vector<LuminousPanel>& panels = context.options.panels;
+    return std::any_of(panels.begin(), panels.end(),
+                       [&](const LuminousPanel& panel) { return panel.node == node.name; });
+  };
   std::vector<bool> is_joint(model.nodes.size(), false);
   for (const tinygltf::Skin& skin : model.skins) {
     for (const int joint : skin.joints) {
@@ -114,10 +121,11 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
   for (const NodeVisit& visit : visits) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(visit.node)];
     if (node.mesh < 0 && node.camera < 0 && node.children.empty() && node.extensions.empty() &&
-        !is_joint[static_cast<std::size_t>(visit.node)]) {
-      warnings.add("node", node_name(model, visit.node),
-                   "no mesh, light, camera or child; Blender's exporter drops area lights like "
-                   "that: use emissive faces instead");
+        !is_joint[static_cast<std::size_t>(visit.node)] && !has_profile(node) && !has_panel(node) &&
+        !asked_for(node)) {
+      context.warnings.add("node", node_name(model, visit.node),
+                           "no mesh, light, camera or child; Blender's exporter drops area lights "
+                           "like that: pass --area-light NAME=WxH,LUMENS, or see docs/lights.md");
     }
   }
 }
@@ -145,17 +153,13 @@ std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& 
   std::vector<NodeVisit> visits;
   Walk walk(model, context);
   for (const int root : root_nodes(model, context)) walk.from_root(root, visits);
-  warn_about_empty_nodes(model, visits, context.warnings);
+  warn_about_empty_nodes(model, visits, context);
   return visits;
 }
 
 std::string node_name(const tinygltf::Model& model, int node) {
   const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
   return name.empty() ? fmt::format("node {}", node) : name;
-}
-
-std::string light_group(const tinygltf::Value& extras) {
-  return string_member(extras, "photile_group");
 }
 
 }  // namespace photile::scene_io

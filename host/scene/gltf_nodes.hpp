@@ -27,7 +27,4 @@ glm::dmat4 local_transform(const tinygltf::Node& node);
 /// A node's name, or "node <number>".
 std::string node_name(const tinygltf::Model& model, int node);
 
-/// `photile_group` among the extras of a node or a light: the group of its lights; "" = none.
-std::string light_group(const tinygltf::Value& extras);
-
 }  // namespace photile::scene_io

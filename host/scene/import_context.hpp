@@ -1,6 +1,7 @@
 // What the importers share while they fill a scene.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,11 @@ struct ImportContext {
     return InputError(folder.scene_file().string() + ": " + message);
   }
 };
+
+/// Whether some material's emission has a texture.
+inline bool has_emission_texture(const ImportContext& context) {
+  return std::any_of(context.emission.begin(), context.emission.end(),
+                     [](const Emission& emission) { return emission.texture != none; });
+}
 
 }  // namespace photile::scene_io

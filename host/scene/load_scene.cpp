@@ -12,10 +12,12 @@
 #include "scene/default_camera.hpp"
 #include "scene/gltf_import.hpp"
 #include "scene/import_context.hpp"
+#include "scene/light_changes.hpp"
 #include "scene/light_grouping.hpp"
 #include "scene/light_names.hpp"
 #include "scene/obj_import.hpp"
 #include "scene/photometry.hpp"
+#include "scene/surroundings.hpp"
 
 namespace photile {
 namespace {
@@ -84,10 +86,12 @@ Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& opti
       throw lacks("no triangles with an area; export the scene with its geometry", context);
     }
     area_lights.finish(warnings);
+    finish_directional_lights(scene);
+    add_surroundings(scene, options);
     if (scene.lights.empty()) {
       throw lacks(
-          "no lights; give a material an emission (Ke in MTL, emissiveFactor in glTF) or add "
-          "KHR_lights_punctual lights",
+          "no lights; give a material an emission (Ke in MTL, emissiveFactor in glTF), add "
+          "KHR_lights_punctual lights, or pass --environment, --sun or --sky",
           context);
     }
   } catch (const Error&) {
@@ -98,8 +102,9 @@ Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& opti
     // The importer libraries throw what they like on malformed files.
     throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
   }
-  finish_directional_lights(scene);
   make_light_names_unique(scene.lights);
+  apply_profiles(scene, options.profiles, warnings);
+  apply_temperatures(scene, options.temperatures);
   group_lights(scene, options.light_groups);
   if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
   report_dropped_triangles(scene.report, warnings);

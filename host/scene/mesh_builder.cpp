@@ -33,8 +33,7 @@ std::size_t MeshBuilder::PositionHash::operator()(const std::array<std::uint32_t
   return static_cast<std::size_t>(hash ^ (hash >> 32));
 }
 
-MeshBuilder::MeshBuilder(Scene& scene, bool keep_uv, bool keep_normals)
-    : scene_(scene), keep_uv_(keep_uv), keep_normals_(keep_normals) {}
+MeshBuilder::MeshBuilder(Scene& scene, const Needs& needs) : scene_(scene), needs_(needs) {}
 
 std::uint32_t MeshBuilder::vertex_index(const glm::vec3& position) {
   const auto next = static_cast<std::uint32_t>(scene_.vertices.size());
@@ -86,11 +85,16 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
   scene_.front_side.push_back(front_side);
   scene_.triangle_material.push_back(material);
   scene_.triangle_light.push_back(light);
-  if (keep_uv_) {
+  if (needs_.uv) {
     scene_.corner_uv.push_back(
         {glm::vec2(sorted[0]->uv), glm::vec2(sorted[1]->uv), glm::vec2(sorted[2]->uv)});
   }
-  if (keep_normals_) add_normals(sorted, front_side == 0 ? normal : -normal);
+  if (needs_.emission_uv) {
+    scene_.corner_emission_uv.push_back({glm::vec2(sorted[0]->emission_uv),
+                                         glm::vec2(sorted[1]->emission_uv),
+                                         glm::vec2(sorted[2]->emission_uv)});
+  }
+  if (needs_.normals) add_normals(sorted, front_side == 0 ? normal : -normal);
   return true;
 }
 

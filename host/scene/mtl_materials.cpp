@@ -28,7 +28,7 @@ void warn_about_ignored(const tinyobj::material_t& source, Warnings& warnings) {
   const auto warn = [&](const std::string& message) {
     warnings.add("material", source.name, message);
   };
-  const std::array<std::pair<const std::string*, const char*>, 11> textures{{
+  const std::array<std::pair<const std::string*, const char*>, 10> textures{{
       {&source.specular_texname, "map_Ks"},
       {&source.specular_highlight_texname, "map_Ns"},
       {&source.bump_texname, "bump"},
@@ -38,7 +38,6 @@ void warn_about_ignored(const tinyobj::material_t& source, Warnings& warnings) {
       {&source.roughness_texname, "map_Pr"},
       {&source.metallic_texname, "map_Pm"},
       {&source.sheen_texname, "map_Ps"},
-      {&source.emissive_texname, "map_Ke"},
       {&source.normal_texname, "norm"},
   }};
   for (const auto& [name, statement] : textures) {
@@ -104,6 +103,25 @@ void set_surface(const tinyobj::material_t& source, Material& material, Warnings
   }
 }
 
+/// A picture that the library names, as written on Windows or elsewhere. Errors: ResourceError.
+std::uint32_t texture_named(std::string path, TextureStore& textures) {
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return textures.from_file(path);
+}
+
+Emission emission_of(const tinyobj::material_t& source, TextureStore& textures,
+                     ImportContext& context) {
+  Emission emission{color(source.emission) * static_cast<double>(context.options.emissive_scale)};
+  if (source.emissive_texname.empty() || emission.radiance == glm::dvec3(0.0)) return emission;
+  try {
+    emission.texture = texture_named(source.emissive_texname, textures);
+  } catch (const ResourceError& error) {
+    context.warnings.add("material", source.name,
+                         std::string(error.what()) + "; its Ke is used alone");
+  }
+  return emission;
+}
+
 }  // namespace
 
 void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
@@ -113,10 +131,8 @@ void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
   set_surface(source, material, context.warnings);
   warn_about_ignored(source, context.warnings);
   if (!source.diffuse_texname.empty() && material.interaction == Interaction::opaque) {
-    std::string path = source.diffuse_texname;
-    std::replace(path.begin(), path.end(), '\\', '/');  // as written on Windows
     try {
-      material.diffuse_texture = textures.from_file(path);
+      material.diffuse_texture = texture_named(source.diffuse_texname, textures);
     } catch (const ResourceError& error) {
       use_missing_texture_colour(material);
       context.warnings.add("material", source.name,
@@ -124,8 +140,7 @@ void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
     }
   }
   context.scene.materials.push_back(std::move(material));
-  context.emission.push_back(
-      {color(source.emission) * static_cast<double>(context.options.emissive_scale), false});
+  context.emission.push_back(emission_of(source, textures, context));
 }
 
 void add_missing_material(const std::string& name, ImportContext& context) {

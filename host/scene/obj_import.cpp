@@ -68,6 +68,7 @@ Corner corner_of(const ObjFile& file, const tinyobj::index_t& index) {
   if (index.texcoord_index >= 0) {
     const glm::dvec2 uv = file.texcoords[static_cast<std::size_t>(index.texcoord_index)];
     corner.uv = {uv.x, 1.0 - uv.y};  // OBJ puts (0,0) at the lower left corner
+    corner.emission_uv = corner.uv;
   }
   return corner;
 }
@@ -122,6 +123,10 @@ void move_to_origin(ObjFile& file, Scene& scene) {
 }  // namespace
 
 void import_obj(ImportContext& context) {
+  if (!context.options.panels.empty()) {
+    throw UsageError(fmt::format("--area-light {}: nodes are what glTF files have; this is an OBJ",
+                                 context.options.panels.front().node));
+  }
   const std::vector<unsigned char> bytes = context.folder.read_scene_file();
   std::string text(bytes.begin(), bytes.end());
   ObjTextFindings findings;
@@ -141,7 +146,8 @@ void import_obj(ImportContext& context) {
   context.scene.unit = PowerUnit::watt;
   const std::vector<std::uint32_t> material_index = add_materials(file, context);
   const SceneNeeds needs = needs_of_materials(context.scene.materials);
-  MeshBuilder builder(context.scene, needs.textures, needs.glossy || needs.specular_paths);
+  MeshBuilder builder(context.scene, {needs.textures, has_emission_texture(context),
+                                      needs.glossy || needs.specular_paths});
   for (const ObjFace& face : file.faces) {
     const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;
     add_face(file, face, material_index[name], builder, context);

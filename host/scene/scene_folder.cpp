@@ -34,7 +34,8 @@ class FileDescriptor {
   throw ResourceError(std::generic_category().message(errno));
 }
 
-/// The bytes of a regular file. Errors: ResourceError with the reason, without the name.
+}  // namespace
+
 std::vector<unsigned char> read_regular_file(const std::filesystem::path& file,
                                              std::uint64_t max_bytes) {
   // Opening a named pipe for reading would wait for a writer for ever, hence O_NONBLOCK.
@@ -57,8 +58,6 @@ std::vector<unsigned char> read_regular_file(const std::filesystem::path& file,
   }
   return bytes;
 }
-
-}  // namespace
 
 SceneFolder::SceneFolder(std::filesystem::path scene_file, bool allow_outside)
     : scene_file_(std::move(scene_file)), allow_outside_(allow_outside) {}

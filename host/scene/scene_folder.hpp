@@ -8,6 +8,10 @@
 
 namespace photile::scene_io {
 
+/// The bytes of a regular file. Errors: ResourceError with the reason, without the name.
+std::vector<unsigned char> read_regular_file(const std::filesystem::path& file,
+                                             std::uint64_t max_bytes);
+
 /// The folder of a scene file. A scene is data from strangers: it may name only regular files in
 /// its own folder, below the limits of limits.hpp. Names are checked after symbolic links have been
 /// resolved and before anything is opened.

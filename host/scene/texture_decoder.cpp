@@ -90,32 +90,46 @@ std::vector<T> read_pixels(OIIO::ImageInput& input, int channels, OIIO::TypeDesc
   return pixels;
 }
 
-std::vector<std::array<std::uint8_t, 4>> decode(const std::string& name,
-                                                std::span<const unsigned char> bytes,
-                                                OIIO::ImageSpec& spec) {
-  const std::string format = format_of(name, bytes);
-  if (format.empty()) throw ResourceError("not a picture format that is read (PNG, JPEG, ...)");
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
-  if (!input || !input->supports("ioproxy")) throw ResourceError(format + " pictures are not read");
-  OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(bytes.data()), bytes.size());
-  input->set_ioproxy(&memory);
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;  // colours as stored: alpha is not used
-  if (!input->open(name, spec, config)) throw ResourceError(input->geterror());
-  check_limits(spec, bytes.size());
+/// An encoded picture in memory, opened and within the limits.
+class OpenPicture {
+ public:
+  OpenPicture(const std::string& name, std::span<const unsigned char> bytes)
+      : memory_(const_cast<unsigned char*>(bytes.data()), bytes.size()) {
+    const std::string format = format_of(name, bytes);
+    if (format.empty()) throw ResourceError("not a picture format that is read (PNG, JPEG, ...)");
+    input_ = OIIO::ImageInput::create(format);
+    if (!input_ || !input_->supports("ioproxy")) {
+      throw ResourceError(format + " pictures are not read");
+    }
+    input_->set_ioproxy(&memory_);
+    OIIO::ImageSpec spec, config;
+    config["oiio:UnassociatedAlpha"] = 1;  // colours as stored: alpha is not used
+    if (!input_->open(name, spec, config)) throw ResourceError(input_->geterror());
+    check_limits(spec, bytes.size());
+  }
 
+  OIIO::ImageInput& input() { return *input_; }
+  const OIIO::ImageSpec& spec() const { return input_->spec(); }
+
+ private:
+  OIIO::Filesystem::IOMemReader memory_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+};
+
+std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture) {
+  const OIIO::ImageSpec& spec = picture.spec();
   const int channels = std::min(spec.nchannels, 4);
   const auto stride = static_cast<std::size_t>(channels);
   std::vector<std::array<std::uint8_t, 4>> texels(static_cast<std::size_t>(spec.width) *
                                                   static_cast<std::size_t>(spec.height));
   if (spec.format.is_floating_point()) {
-    const auto pixels = read_pixels<float>(*input, channels, OIIO::TypeDesc::FLOAT);
+    const auto pixels = read_pixels<float>(picture.input(), channels, OIIO::TypeDesc::FLOAT);
     for (std::size_t i = 0; i < texels.size(); ++i) {
       const std::array<float, 4> pixel = rgba(&pixels[i * stride], channels, 1.0f);
       for (std::size_t c = 0; c < 4; ++c) texels[i][c] = srgb_byte(pixel[c]);
     }
   } else {
-    const auto pixels = read_pixels<std::uint8_t>(*input, channels, OIIO::TypeDesc::UINT8);
+    const auto pixels = read_pixels<std::uint8_t>(picture.input(), channels, OIIO::TypeDesc::UINT8);
     for (std::size_t i = 0; i < texels.size(); ++i) {
       texels[i] = rgba<std::uint8_t>(&pixels[i * stride], channels, 255);
     }
@@ -127,12 +141,27 @@ std::vector<std::array<std::uint8_t, 4>> decode(const std::string& name,
 
 Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes) {
   try {
-    OIIO::ImageSpec spec;
-    auto texels = decode(name, bytes, spec);
-    return Texture(name, spec.width, spec.height, std::move(texels));
+    OpenPicture picture(name, bytes);
+    return Texture(name, picture.spec().width, picture.spec().height, decode(picture));
   } catch (const ResourceError& error) {
     throw ResourceError(fmt::format("texture '{}': {}", name, error.what()));
   }
+}
+
+RadiancePicture decode_radiance(const std::string& name, std::span<const unsigned char> bytes) {
+  OpenPicture picture(name, bytes);
+  const OIIO::ImageSpec& spec = picture.spec();
+  if (!spec.format.is_floating_point()) {
+    throw ResourceError("its pixels are no floating-point numbers");
+  }
+  const int channels = std::min(spec.nchannels, 4);
+  const auto pixels = read_pixels<float>(picture.input(), channels, OIIO::TypeDesc::FLOAT);
+  RadiancePicture result{spec.width, spec.height, {}};
+  for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(channels)) {
+    const std::array<float, 4> pixel = rgba(&pixels[i], channels, 1.0f);
+    result.texels.emplace_back(pixel[0], pixel[1], pixel[2]);
+  }
+  return result;
 }
 
 }  // namespace photile::scene_io

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "photile/scene.hpp"
+#include "scene/radiance_picture.hpp"
 
 namespace photile::scene_io {
 
@@ -13,5 +14,9 @@ namespace photile::scene_io {
 /// the texture and, by its extension, formats that have no signature.
 /// Errors: ResourceError naming the picture and the reason.
 Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes);
+
+/// Decodes a picture in floating point without clamping; grey ones have equal channels.
+/// Errors: ResourceError with the reason, also for a picture of integers.
+RadiancePicture decode_radiance(const std::string& name, std::span<const unsigned char> bytes);
 
 }  // namespace photile::scene_io

@@ -37,20 +37,32 @@ EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& d
 void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
                     EyeRecord& record, const LampTechnique* other) {
   const Scene& scene = *setup.rays->scene;
+  const glm::vec3 start = ray.origin;
+  bool straight = true;  // but for panes of thin glass, which looking at lamps sees through
+  // Lamps seen in mirrors or through refracting glass are found by following alone.
+  const auto weight_against = [&](float found) {
+    return straight ? power_heuristic(other->density, found) : 1.0f;
+  };
   for (int depth = 0;; ++depth) {
     ++record.rays;
     const auto hit = setup.rays->intersect(ray.origin, ray.direction);
-    if (!hit) return;
+    if (!hit) {
+      for (const DistantLight& light : *setup.distant) {
+        const glm::vec3 radiance = light.radiance(ray.direction);
+        if (radiance == glm::vec3(0.0f)) continue;
+        const float weight =
+            other ? weight_against(other->lamps.density(light, ray.direction)) : 1.0f;
+        record.emission.push_back({ray.pixel, light.light(), weight * ray.throughput * radiance});
+      }
+      return;
+    }
     const SurfacePoint point = surface_hit(scene, *hit, ray.direction);
     if (emits(scene, point)) {
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
-      // Lamps seen in mirrors or through glass are found by following alone.
-      const float weight =
-          other && depth == 0
-              ? power_heuristic(other->density, other->lamps.density(ray.origin, point))
-              : 1.0f;
-      record.emission.push_back(
-          {ray.pixel, light, weight * ray.throughput * (*setup.emitted_radiance)[light]});
+      const float weight = other ? weight_against(other->lamps.density(start, point)) : 1.0f;
+      record.emission.push_back({ray.pixel, light,
+                                 weight * ray.throughput * (*setup.emitted_radiance)[light] *
+                                     emission_texel(scene, point)});
     }
     if (material_of(scene, point).interaction == Interaction::opaque) {
       record.hits.push_back(eye_hit(scene, point, ray.direction, ray.pixel, ray.throughput));
@@ -61,6 +73,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
     const Scattered scattered =
         scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word));
     ray.throughput *= scattered.weight;
+    straight = straight && scattered.direction == ray.direction && material_of(scene, point).thin;
     ray.direction = scattered.direction;
     ray.origin = point.origin_towards(ray.direction);
   }

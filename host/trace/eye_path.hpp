@@ -7,6 +7,7 @@
 
 #include "photile/camera.hpp"
 #include "photile/primary_hits.hpp"
+#include "trace/distant_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_scene_impl.hpp"
@@ -37,7 +38,8 @@ struct EyeSetup {
   const RayScene::Impl* rays;
   const Camera* camera;  ///< null where rays do not start at one
   const PrimaryHitParameters* parameters;
-  const std::vector<glm::vec3>* emitted_radiance;  ///< per light, at unit power
+  const std::vector<glm::vec3>* emitted_radiance;  ///< per light, of white texels
+  const std::vector<DistantLight>* distant;        ///< what rays that leave the scene see
 };
 
 /// Place of sample `index` of `count` in the unit square, given two numbers in [0, 1): one in each

@@ -119,13 +119,10 @@ class Gatherer {
     if (!lamp) return;
     const float density = photometer_.density(lamp->direction);
     if (!(density > 0.0f)) return;
-    glm::vec3 arrives = density * weight() * lamp->received;
-    if (lamp->density > 0.0f) {
-      if (occluded(rays_, photometer_.origin(), lamp->target)) return;
-      arrives *= power_heuristic(lamp->density, density);
-    } else {
-      arrives *= transmittance(rays_, photometer_.origin(), lamp->target);
-    }
+    glm::vec3 arrives = density * weight() * lamp->received *
+                        transmittance(rays_, photometer_.origin(), lamp->target);
+    if (arrives == glm::vec3(0.0f)) return;
+    if (lamp->density > 0.0f) arrives *= power_heuristic(lamp->density, density);
     lamps.push_back({pixel_, lamp->layer, arrives});
   }
 
@@ -143,7 +140,8 @@ PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensor
                             const PrimaryHitParameters& film, int first_row, int last_row,
                             std::span<const std::uint32_t> map_of) {
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
-  const EyeSetup setup{&rays.impl(), nullptr, &film, &radiance};
+  const std::vector<DistantLight> distant = distant_lights(rays.scene());
+  const EyeSetup setup{&rays.impl(), nullptr, &film, &radiance, &distant};
   const auto count = static_cast<std::size_t>(last_row - first_row);
   std::vector<EyeRecord> rows(count);
   std::vector<std::vector<SeenEmission>> seen(count);

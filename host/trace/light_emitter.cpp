@@ -1,6 +1,7 @@
 #include "trace/light_emitter.hpp"
 
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "trace/sampling.hpp"
 #include "trace/spot_falloff.hpp"
@@ -12,32 +13,52 @@ namespace {
 
 enum Block : std::uint32_t { place_block = 0, direction_block = 1 };
 
+/// A place on the disc of the bounding sphere through which parallel light enters the scene.
+glm::vec3 entrance(const BoundingSphere& bounds, const glm::vec3& direction, float u1, float u2) {
+  const Frame frame(direction);
+  const glm::vec2 disc = sample_disc(u1, u2);
+  const glm::dvec3 point = glm::dvec3(frame.s * disc.x + frame.t * disc.y - frame.n);
+  return glm::vec3(bounds.center + bounds.radius * point);
+}
+
 }  // namespace
 
 LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds)
     : scene_(&scene), light_(&scene.lights[light]), bounds_(bounds) {
   if (light_->kind == LightKind::area) area_.emplace(scene, *light_);
+  if (light_->distribution != none) intensity_.emplace(scene, *light_);
+  if (light_->has_size() && light_->kind != LightKind::area) distant_.emplace(scene, *light_);
 }
 
 EmittedRay LightEmitter::emit(const RandomStream& random) const {
-  if (light_->kind == LightKind::area) return emit_from_area(random);
+  if (area_) return emit_from_area(random);
+  if (distant_) return emit_from_beyond(random);
 
   const RandomBlock numbers = random.block(Purpose::emission, direction_block);
   switch (light_->kind) {
     case LightKind::point:
-      return {light_->position, sample_sphere(numbers.uniform(0), numbers.uniform(1))};
+      return {light_->position,
+              intensity_ ? intensity_->sample(random)
+                         : sample_sphere(numbers.uniform(0), numbers.uniform(1)),
+              light_->color};
     case LightKind::spot: {
       const float cosine = spot_cosine(numbers.uniform_double(0));
       return {light_->position,
-              Frame(light_->direction).to_world(direction_at(cosine, numbers.uniform(2)))};
+              Frame(light_->direction).to_world(direction_at(cosine, numbers.uniform(2))),
+              light_->color};
     }
-    default: {  // directional; area lights were handled above
-      const Frame frame(light_->direction);
-      const glm::vec2 disc = sample_disc(numbers.uniform(0), numbers.uniform(1));
-      const glm::dvec3 point = glm::dvec3(frame.s * disc.x + frame.t * disc.y - frame.n);
-      return {glm::vec3(bounds_.center + bounds_.radius * point), light_->direction};
-    }
+    default:  // parallel light; lights with a size were handled above
+      return {entrance(bounds_, light_->direction, numbers.uniform(0), numbers.uniform(1)),
+              light_->direction, light_->color};
   }
+}
+
+EmittedRay LightEmitter::emit_from_beyond(const RandomStream& random) const {
+  const DistantSampler::Sample from =
+      distant_->sample(random.block(Purpose::emission, direction_block));
+  const RandomBlock numbers = random.block(Purpose::emission, place_block);
+  return {entrance(bounds_, -from.direction, numbers.uniform(0), numbers.uniform(1)),
+          -from.direction, from.color};
 }
 
 EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {
@@ -49,7 +70,15 @@ EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {
   const glm::vec3 direction =
       Frame(point.normal)
           .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
-  return {point.origin_towards(direction), direction};
+  return {point.origin_towards(direction), direction, color_of(point)};
+}
+
+glm::vec3 LightEmitter::color_of(const SurfacePoint& point) const {
+  if (light_->emission_texture == none) return light_->color;
+  // Radiosity over the density of the place, which follows the luminance only about.
+  const double sides = light_->two_sided ? 2 : 1;
+  return glm::vec3(glm::dvec3(light_->texel_radiance * emission_texel(*scene_, point)) *
+                   (glm::pi<double>() * sides / area_->density(point.where)));
 }
 
 float LightEmitter::spot_cosine(double u) const {

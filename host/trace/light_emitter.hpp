@@ -7,21 +7,27 @@
 
 #include "photile/scene.hpp"
 #include "trace/area_sampler.hpp"
+#include "trace/distant_light.hpp"
+#include "trace/intensity_sampler.hpp"
 #include "trace/random_stream.hpp"
+#include "trace/surface.hpp"
 
 namespace photile::trace {
 
 struct EmittedRay {
   glm::vec3 origin;
   glm::vec3 direction;  ///< unit
+  glm::vec3 color;      ///< of the photon's flux, linear RGB; the mean of its luminance is 1
 };
 
-/// Draws photon paths of one light so that each carries the same flux: area lights uniformly over
-/// their area and with the cosine law; points uniformly over the sphere; spots by the falloff of
-/// KHR_lights_punctual; directional lights uniformly over the disc of the scene's bounding sphere.
+/// Draws photon paths of one light so that each carries the same flux: area lights over
+/// their area by what it emits and with the cosine law; points uniformly over the sphere, or by
+/// their intensities; spots by the falloff of KHR_lights_punctual; directional lights and
+/// environments by the luminance of each direction, and uniformly over a disc of the scene's
+/// bounding sphere that faces it.
 class LightEmitter {
  public:
-  /// `scene` must outlive this; `bounds` is its bounding sphere, which only directional lights use.
+  /// `scene` must outlive this; `bounds` is its bounding sphere, which only light from beyond uses.
   /// Errors: InputError for an area light without area.
   LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds);
 
@@ -29,11 +35,15 @@ class LightEmitter {
 
  private:
   EmittedRay emit_from_area(const RandomStream& random) const;
+  EmittedRay emit_from_beyond(const RandomStream& random) const;
+  glm::vec3 color_of(const SurfacePoint& point) const;
   float spot_cosine(double u) const;
 
   const Scene* scene_;
   const Light* light_;
-  std::optional<AreaSampler> area_;  ///< of area lights
+  std::optional<AreaSampler> area_;            ///< of area lights
+  std::optional<IntensitySampler> intensity_;  ///< of points with a distribution
+  std::optional<DistantSampler> distant_;      ///< of environments and suns with a disc
   BoundingSphere bounds_;
 };
 

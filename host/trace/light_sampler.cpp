@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "photile/primary_hits.hpp"
+#include "trace/lamp_axes.hpp"
 #include "trace/photon_quota.hpp"
 #include "trace/spot_falloff.hpp"
 
@@ -15,7 +16,9 @@ LightSampler::LightSampler(const Scene& scene)
     : scene_(&scene),
       groups_(light_groups_of(scene)),
       bounds_(bounding_sphere(scene)),
-      radiance_(emitted_radiance_at_unit_power(scene)) {
+      radiance_(emitted_radiance_at_unit_power(scene)),
+      distant_(distant_lights(scene)),
+      distant_of_(scene.lights.size(), none) {
   double sum = 0;
   for (const double share : light_shares(scene.lights, PhotonQuota::balanced)) {
     chance_up_to_.push_back(sum += share);
@@ -24,6 +27,10 @@ LightSampler::LightSampler(const Scene& scene)
     const bool area = light.kind == LightKind::area;
     area_of_.push_back(area ? static_cast<std::uint32_t>(areas_.size()) : none);
     if (area) areas_.emplace_back(scene, light);
+  }
+  for (const DistantLight& light : distant_) {
+    distant_of_[light.light()] = static_cast<std::uint32_t>(distant_samplers_.size());
+    distant_samplers_.emplace_back(scene, scene.lights[light.light()]);
   }
 }
 
@@ -39,11 +46,12 @@ std::optional<LightSample> LightSampler::sample(const glm::vec3& position,
   const double target = choice.uniform_double(0) * chance_up_to_.back();
   const auto light = static_cast<std::uint32_t>(
       std::upper_bound(chance_up_to_.begin(), chance_up_to_.end(), target) - chance_up_to_.begin());
+  if (distant_of_[light] != none) return towards_distant(light, position, place);
   switch (scene_->lights[light].kind) {
     case LightKind::area:
       return towards_area(light, position, place);
     case LightKind::directional:
-      return towards_sky(light, position);
+      return towards_sun(light, position);
     default:
       return towards_point(light, position);
   }
@@ -60,7 +68,7 @@ std::optional<LightSample> LightSampler::towards_area(std::uint32_t light,
   if (!(seen > 0.0f) || !(seen < std::numeric_limits<float>::infinity())) return std::nullopt;
   const glm::vec3 direction = glm::normalize(point.position - position);
   return LightSample{groups_.group_of[light], direction, point.origin_towards(-direction),
-                     radiance_[light] / seen, seen};
+                     radiance_[light] * emission_texel(*scene_, point) / seen, seen};
 }
 
 std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
@@ -71,7 +79,10 @@ std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
   if (!(squared_distance > 0)) return std::nullopt;
   const glm::dvec3 direction = offset / std::sqrt(squared_distance);
   double intensity = 0.25 * glm::one_over_pi<double>();  // candela for each lumen
-  if (lamp.kind == LightKind::spot) {
+  if (lamp.distribution != none) {
+    const IntensityDistribution& distribution = scene_->distributions[lamp.distribution];
+    intensity = distribution.intensity(LampAxes(lamp).to_lamp(-direction)) / distribution.flux();
+  } else if (lamp.kind == LightKind::spot) {
     const SpotFalloff spot(lamp);
     intensity = spot.at(-glm::dot(direction, glm::dvec3(lamp.direction))) /
                 (glm::two_pi<double>() * spot.integral());
@@ -83,14 +94,33 @@ std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
                      0.0f};
 }
 
-LightSample LightSampler::towards_sky(std::uint32_t light, const glm::vec3& position) const {
+glm::vec3 LightSampler::beyond(const glm::vec3& position, const glm::vec3& direction) const {
+  return position + static_cast<float>(2.5 * bounds_.radius) * direction;
+}
+
+LightSample LightSampler::towards_sun(std::uint32_t light, const glm::vec3& position) const {
   const Light& lamp = scene_->lights[light];
   // Its flux falls on the disc of the bounding sphere, which the line of sight leaves.
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
-  return {groups_.group_of[light], -lamp.direction,
-          position - static_cast<float>(2.5 * bounds_.radius) * lamp.direction,
+  return {groups_.group_of[light], -lamp.direction, beyond(position, -lamp.direction),
           glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] / (disc * double{chance(light)})),
           0.0f};
+}
+
+LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& position,
+                                          const RandomBlock& place) const {
+  const std::uint32_t index = distant_of_[light];
+  const DistantSampler::Sample chosen = distant_samplers_[index].sample(place);
+  const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
+  // Density is in proportion to luminance, and both integrate to 1 over the sphere.
+  return {
+      groups_.group_of[light], chosen.direction, beyond(position, chosen.direction),
+      glm::vec3(glm::dvec3(chosen.color) * groups_.share[light] / (disc * double{chance(light)})),
+      chance(light) * chosen.density};
+}
+
+float LightSampler::density(const DistantLight& light, const glm::vec3& direction) const {
+  return chance(light.light()) * distant_samplers_[distant_of_[light.light()]].density(direction);
 }
 
 float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitting) const {
@@ -98,8 +128,8 @@ float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitt
   const glm::vec3 offset = emitting.position - position;
   const float squared_distance = glm::dot(offset, offset);
   const float cosine = -glm::dot(offset, emitting.normal) / std::sqrt(squared_distance);
-  const auto area = static_cast<float>(areas_[area_of_[light]].area());
-  return cosine > 0.0f ? chance(light) * squared_distance / (area * cosine) : 0.0f;
+  const auto chosen = static_cast<float>(areas_[area_of_[light]].density(emitting.where));
+  return cosine > 0.0f ? chance(light) * chosen * squared_distance / cosine : 0.0f;
 }
 
 }  // namespace photile::trace

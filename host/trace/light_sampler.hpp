@@ -9,6 +9,7 @@
 #include "photile/light_groups.hpp"
 #include "photile/scene.hpp"
 #include "trace/area_sampler.hpp"
+#include "trace/distant_light.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
 
@@ -28,7 +29,8 @@ struct LightSample {
 };
 
 /// Chooses one lamp of all, half by power and half equally as PhotonQuota::balanced does, and on an
-/// area light a point uniformly.
+/// area light a point by what it emits, of light from beyond the scene a direction by its
+/// luminance.
 class LightSampler {
  public:
   /// References are kept. Errors: InputError for an area light without area.
@@ -43,8 +45,16 @@ class LightSampler {
   /// `position`.
   float density(const glm::vec3& position, const SurfacePoint& emitting) const;
 
-  /// Radiance of an area light towards its emitting sides, at the power 1 of its layer.
-  const glm::vec3& radiance(std::uint32_t light) const { return radiance_[light]; }
+  /// Lights beyond the scene that rays can meet, and the density per steradian with which `sample`
+  /// would have chosen a direction towards one of them.
+  const std::vector<DistantLight>& distant() const { return distant_; }
+  float density(const DistantLight& light, const glm::vec3& direction) const;
+
+  /// Radiance that a point of an area light emits at the power 1 of its layer.
+  glm::vec3 radiance(const SurfacePoint& emitting) const {
+    return radiance_[scene_->triangle_light[emitting.where.triangle]] *
+           emission_texel(*scene_, emitting);
+  }
   std::uint32_t layer(std::uint32_t light) const { return groups_.group_of[light]; }
 
  private:
@@ -52,15 +62,21 @@ class LightSampler {
   std::optional<LightSample> towards_area(std::uint32_t light, const glm::vec3& position,
                                           const RandomBlock& place) const;
   std::optional<LightSample> towards_point(std::uint32_t light, const glm::vec3& position) const;
-  LightSample towards_sky(std::uint32_t light, const glm::vec3& position) const;
+  LightSample towards_sun(std::uint32_t light, const glm::vec3& position) const;
+  LightSample towards_distant(std::uint32_t light, const glm::vec3& position,
+                              const RandomBlock& place) const;
+  glm::vec3 beyond(const glm::vec3& position, const glm::vec3& direction) const;
 
   const Scene* scene_;
   LightGroups groups_;
   BoundingSphere bounds_;
   std::vector<double> chance_up_to_;    ///< of the lights up to and with this one
-  std::vector<glm::vec3> radiance_;     ///< per light; black without area
+  std::vector<glm::vec3> radiance_;     ///< per light, of white texels; black without area
   std::vector<std::uint32_t> area_of_;  ///< per light: its sampler, or `none`
   std::vector<AreaSampler> areas_;
+  std::vector<DistantLight> distant_;
+  std::vector<DistantSampler> distant_samplers_;
+  std::vector<std::uint32_t> distant_of_;  ///< per light: into both, or `none`
 };
 
 }  // namespace photile::trace

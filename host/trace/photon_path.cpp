@@ -35,24 +35,25 @@ glm::vec3 play_roulette(const glm::vec3& before, const glm::vec3& after, bool ma
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record) {
   const Scene& scene = *setup.rays->scene;
   const RandomStream random(setup.parameters->seed, path, setup.light);
-  glm::vec3 flux = setup.emitted_flux;
-  EmittedRay ray = setup.emitter->emit(random);
+  const EmittedRay emitted = setup.emitter->emit(random);
+  glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
+  glm::vec3 origin = emitted.origin, direction = emitted.direction;
 
   for (int bounce = 1;; ++bounce) {
-    const auto hit = setup.rays->intersect(ray.origin, ray.direction);
+    const auto hit = setup.rays->intersect(origin, direction);
     if (!hit) {
       record.escaped += luminance_of(flux);
       return;
     }
-    const SurfacePoint point = surface_hit(scene, *hit, ray.direction);
+    const SurfacePoint point = surface_hit(scene, *hit, direction);
     const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
-    if (opaque) store(setup, point, ray.direction, flux, record);
+    if (opaque) store(setup, point, direction, flux, record);
     if (bounce >= setup.parameters->max_path_length) break;
 
     const RandomBlock numbers = random.block(Purpose::photon_scattering, bounce);
     const std::optional<Scattered> scattered =
-        opaque ? scatter_opaque(scene, point, ray.direction, numbers)
-               : scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word));
+        opaque ? scatter_opaque(scene, point, direction, numbers)
+               : scatter_specular(scene, point, direction, numbers.uniform(choice_word));
     if (!scattered) break;
     const glm::vec3 left =
         play_roulette(flux, flux * scattered->weight, bounce >= setup.parameters->roulette_start,
@@ -60,7 +61,8 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     if (!(largest(left) > 0.0f)) break;
     record.absorbed += luminance_of(flux) - luminance_of(left);
     flux = left;
-    ray = {point.origin_towards(scattered->direction), scattered->direction};
+    direction = scattered->direction;
+    origin = point.origin_towards(direction);
   }
   record.absorbed += luminance_of(flux);
 }

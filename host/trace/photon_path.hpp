@@ -27,7 +27,7 @@ struct PathSetup {
   const PhotonTracerParameters* parameters;
   const LightEmitter* emitter;
   std::uint32_t light;
-  glm::vec3 emitted_flux;  ///< of one path
+  std::uint64_t paths;  ///< that share the light's flux 1
   bool keep_incoming;
 };
 

@@ -78,8 +78,7 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                  &parameters,
                                  &emitters[chunk.light],
                                  chunk.light,
-                                 glm::vec3(glm::dvec3(scene.scene().lights[chunk.light].color) /
-                                           static_cast<double>(paths_per_light[chunk.light])),
+                                 paths_per_light[chunk.light],
                                  keep_incoming};
     const std::uint64_t before =
         parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];

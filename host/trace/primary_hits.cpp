@@ -46,7 +46,8 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
                                    int last_row, std::span<const std::uint32_t> map_of) {
   check(parameters, first_row, last_row);
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(ray_scene.scene());
-  const trace::EyeSetup setup{&ray_scene.impl(), &camera, &parameters, &radiance};
+  const std::vector<trace::DistantLight> distant = trace::distant_lights(ray_scene.scene());
+  const trace::EyeSetup setup{&ray_scene.impl(), &camera, &parameters, &radiance, &distant};
   std::vector<EyeRecord> rows(static_cast<std::size_t>(last_row - first_row));
   tbb::parallel_for(first_row, last_row, [&](int y) {
     const trace::FlushDenormals flush_denormals;
@@ -65,6 +66,10 @@ std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene) {
   std::vector<glm::vec3> radiance;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
+    if (light.emission_texture != none) {
+      radiance.push_back(static_cast<float>(groups.share[i]) * light.texel_radiance);
+      continue;
+    }
     double area = 0;
     for (const std::uint32_t triangle : light.triangles) area += triangle_area(scene, triangle);
     if (light.two_sided) area *= 2;

@@ -45,9 +45,16 @@ Box bounds_of(const Scene& scene) {
   return box;
 }
 
+bool is_pane(const Material& material) {
+  return material.interaction == Interaction::glass && material.thin;
+}
+
 }  // namespace
 
-RayScene::Impl::Impl(const Scene& scene) : scene(&scene), bounds(bounds_of(scene)) {
+RayScene::Impl::Impl(const Scene& scene)
+    : scene(&scene),
+      bounds(bounds_of(scene)),
+      has_panes(std::any_of(scene.materials.begin(), scene.materials.end(), is_pane)) {
   try {
     build();
   } catch (...) {

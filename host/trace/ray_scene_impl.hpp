@@ -34,6 +34,7 @@ struct RayScene::Impl {
 
   const Scene* scene;
   Box bounds;                          ///< encloses all triangles
+  bool has_panes;                      ///< some material is thin glass
   std::atomic<std::int64_t> bytes{0};  ///< outlives the device, which reports to it
   RTCDevice device = nullptr;
   RTCScene bvh = nullptr;

@@ -35,6 +35,11 @@ Interpolated interpolate(const Scene& scene, const TriangleHit& where) {
               std::max({largest(glm::abs(a)), largest(glm::abs(b)), largest(glm::abs(c))})};
 }
 
+glm::vec3 texel(const Texture& texture, const std::array<glm::vec2, 3>& uv,
+                const TriangleHit& where) {
+  return texture.sample((1.0f - where.u - where.v) * uv[0] + where.u * uv[1] + where.v * uv[2]);
+}
+
 SurfacePoint on_side(const TriangleHit& where, const Interpolated& at, std::uint32_t side) {
   SurfacePoint point;
   point.where = where;
@@ -70,13 +75,18 @@ SurfacePoint surface_hit(const Scene& scene, const TriangleHit& where, const glm
   return on_side(where, at, glm::dot(at.normal, glm::dvec3(direction)) > 0.0 ? 1 : 0);
 }
 
+glm::vec3 emission_texel(const Scene& scene, const SurfacePoint& point) {
+  const std::uint32_t light = scene.triangle_light[point.where.triangle];
+  if (light == none || scene.lights[light].emission_texture == none) return glm::vec3(1.0f);
+  return texel(scene.textures[scene.lights[light].emission_texture],
+               scene.corner_emission_uv[point.where.triangle], point.where);
+}
+
 glm::vec3 diffuse_albedo(const Scene& scene, const SurfacePoint& point) {
   const Material& material = material_of(scene, point);
   if (material.diffuse_texture == none || scene.corner_uv.empty()) return material.diffuse;
-  const auto& uv = scene.corner_uv[point.where.triangle];
-  const float u = point.where.u, v = point.where.v;
-  return material.diffuse * scene.textures[material.diffuse_texture].sample((1.0f - u - v) * uv[0] +
-                                                                            u * uv[1] + v * uv[2]);
+  return material.diffuse * texel(scene.textures[material.diffuse_texture],
+                                  scene.corner_uv[point.where.triangle], point.where);
 }
 
 glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point,

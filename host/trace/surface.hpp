@@ -51,6 +51,9 @@ inline bool emits(const Scene& scene, const SurfacePoint& point) {
   return light != none && (on_front(scene, point) || scene.lights[light].two_sided);
 }
 
+/// Texel of the emission of the point's light; white where it has no texture.
+glm::vec3 emission_texel(const Scene& scene, const SurfacePoint& point);
+
 /// Lambertian albedo, textured. Each channel in [0, 1].
 glm::vec3 diffuse_albedo(const Scene& scene, const SurfacePoint& point);
 

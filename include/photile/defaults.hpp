@@ -54,6 +54,9 @@ inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 
 inline constexpr int validation_neighbours = 1'000;
 inline constexpr int validation_paths = 500'000;  ///< of each seed, over the sensors of a case
 
+// Lights
+inline constexpr double sun_diameter_degrees = 0.533;  ///< as seen from the Earth, the mean
+
 // Measuring: a mean of repeats with photons of their own, whose scatter tells the standard error
 inline constexpr int measuring_rays = 1'024;  ///< of each sensor and repeat
 inline constexpr int measuring_repeats = 8;

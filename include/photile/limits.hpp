@@ -39,6 +39,16 @@ inline constexpr int max_json_depth = 256;  ///< recursive parsers overflow the 
 /// Elements of a glTF accessor that has no buffer view: zeros that cost a file nothing.
 inline constexpr std::uint64_t max_implicit_elements = 16'000'000;
 
+// Photometric files (LM-63, EULUMDAT): ten times the finest that goniophotometers write
+inline constexpr std::uint64_t max_photometry_bytes = 64ull << 20;
+inline constexpr std::uint64_t max_photometric_angles = 20'000;  ///< of either kind
+inline constexpr std::uint64_t max_photometric_values = 4'000'000;
+
+// Light
+inline constexpr double min_color_temperature = 1'000, max_color_temperature = 40'000;  ///< kelvin
+/// Degrees of a sun's disc: the light of a wider one is that of an environment.
+inline constexpr double max_sun_diameter_degrees = 90;
+
 // Pictures
 inline constexpr int max_image_side = 16'384;
 inline constexpr std::uint64_t max_image_pixels = 268'435'456;

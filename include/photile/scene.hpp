@@ -6,11 +6,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "photile/camera.hpp"
 #include "photile/defaults.hpp"
+#include "photile/environment_map.hpp"
+#include "photile/intensity_distribution.hpp"
+#include "photile/light_options.hpp"
 
 namespace photile {
 
@@ -71,27 +75,43 @@ struct Material {
   bool glossy() const { return interaction == Interaction::opaque && specular != glm::vec3(0.0f); }
 };
 
-enum class LightKind : std::uint8_t { area, point, spot, directional };
+enum class LightKind : std::uint8_t { area, point, spot, directional, environment };
 
 /// A light. Its photons carry `color` with luminance 1, so that `power` alone scales its layer.
 struct Light {
   std::string name;   ///< unique; no dots; at most limits::max_light_name_bytes bytes
   std::string group;  ///< of light_groups.hpp; "" = a layer of its own
   LightKind kind = LightKind::area;
-  glm::vec3 color{1.0f};  ///< linear RGB scaled to luminance 1
-  /// Emitted flux in `Scene::unit`s (luminance-weighted). For a directional light: the flux that
-  /// falls on the disc of `bounding_sphere`.
+  glm::vec3 color{1.0f};  ///< linear RGB scaled to luminance 1; of a picture: that of its mean
+  /// Emitted flux in `Scene::unit`s (luminance-weighted). For directional lights and environments:
+  /// the flux that crosses discs of the radius of `bounding_sphere`, each facing its direction.
   double power = 0;
 
-  // Area lights: uniform radiance over the triangles' front sides, or both sides.
+  // Area lights: radiance over the triangles' front sides, or both sides, uniform or textured.
   std::vector<std::uint32_t> triangles;
   bool two_sided = false;
+  std::uint32_t emission_texture = none;
+  /// Where a texture is: radiance of a white texel at power 1, linear RGB.
+  glm::vec3 texel_radiance{0.0f};
 
   // Point, spot and directional lights.
   glm::vec3 position{0.0f};
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit, where the light shines to
   float inner_cone_angle = 0.0f;           ///< radians, spot
   float outer_cone_angle = 0.7853982f;     ///< radians, spot
+  /// Of a point light: into Scene::distributions; `none` = the same intensity everywhere.
+  std::uint32_t distribution = none;
+  /// Unit, perpendicular to `direction`: the x axis of a lamp whose -z axis is `direction`.
+  glm::vec3 x_axis{1.0f, 0.0f, 0.0f};
+  float angular_diameter = 0.0f;  ///< radians, of a directional light's disc; 0 = parallel light
+
+  std::uint32_t environment = none;  ///< of an environment light: into Scene::environments
+
+  /// Whether rays can meet the light: a surface, a disc in the sky or surroundings.
+  bool has_size() const {
+    return kind == LightKind::area || kind == LightKind::environment ||
+           (kind == LightKind::directional && angular_diameter > 0.0f);
+  }
 };
 
 /// A mesh that several places of the scene repeat, in a space of its own around its centre.
@@ -136,6 +156,8 @@ struct Scene {
   std::vector<std::uint32_t> triangle_material;     ///< per triangle
   std::vector<std::uint32_t> triangle_light;        ///< per triangle: area light, or none
   std::vector<std::array<glm::vec2, 3>> corner_uv;  ///< empty when nothing is textured
+  /// Coordinates of Light::emission_texture; empty when no light has one.
+  std::vector<std::array<glm::vec2, 3>> corner_emission_uv;
   /// Shading normals per corner, on the front side; empty when no material is specular or glossy
   /// or the file has none. A zero vector means "use the geometric normal".
   std::vector<std::array<glm::vec3, 3>> corner_normal;
@@ -148,6 +170,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;
+  std::vector<IntensityDistribution> distributions;
+  std::vector<EnvironmentMap> environments;
   std::vector<Camera> cameras;  ///< never empty after load_scene
   ImportReport report;
 
@@ -177,7 +201,7 @@ glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle);
 double triangle_area(const Scene& scene, std::uint32_t triangle);
 
 /// A sphere that encloses the scene: around the centre of its bounding box, through the box's
-/// corners. Directional lights take their flux from its disc.
+/// corners. Light from beyond the scene takes its flux from its disc.
 struct BoundingSphere {
   glm::dvec3 center{0.0};
   double radius = 0;  ///< metres
@@ -200,18 +224,18 @@ struct SceneNeeds {
 };
 SceneNeeds needs_of(const Scene& scene);
 
-/// Puts lights into a group: `--light-group GLOB=NAME`.
-struct LightGrouping {
-  std::string glob;   ///< of light names: *, ? and [...] as in a shell
-  std::string group;  ///< cleaned as light names are
-  /// Splits at the last '='. Errors: UsageError when `text` has no '=' or an empty side.
-  static LightGrouping parse(const std::string& text);
-};
-
 struct SceneLoadOptions {
   float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 mends Blender files
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
   std::vector<LightGrouping> light_groups = {};  ///< after the file's own; the last match counts
+  std::vector<LightProfile> profiles = {};
+  std::vector<LightTemperature> temperatures = {};
+  std::vector<LuminousPanel> panels = {};
+  EnvironmentPicture environment = {};
+  std::optional<Sun> sun = std::nullopt;
+  std::optional<Sky> sky = std::nullopt;
+  /// Turns what is given in lumens or lux into the watts of an OBJ scene.
+  double lumen_per_watt = defaults::lumen_per_watt;
 };
 
 /// Reads a scene from OBJ+MTL (.obj) or glTF 2.0 (.gltf, .glb).

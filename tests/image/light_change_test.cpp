@@ -61,6 +61,21 @@ TEST_CASE("a colour becomes a tint of luminance 1 with the ratios of linear sRGB
   CHECK(after({"lamp=#00FF00", "lamp=#808080"}).lights[0].tint.b == Approx(1.0).epsilon(1e-6));
 }
 
+TEST_CASE("a colour temperature replaces the light's own colour and keeps its power") {
+  LightMix mix = two_lights();
+  mix.lights[0].color = {1.4f, 0.9f, 0.8172f};
+  photile::apply(mix, {LightChange::parse("lamp=2700K")});
+  const glm::dvec3 color = glm::dvec3(mix.lights[0].tint) * glm::dvec3(mix.lights[0].color);
+  CHECK(color.r / color.b == Approx(1.76 / 0.149).epsilon(0.05));  // a black body, in Rec.709
+  CHECK(luminance(color) == Approx(1.0).epsilon(1e-6));
+  CHECK(mix.lights[0].power == 800.0);
+  mix.lights[0].color = {4.7036689f, 0.0f, 0.0f};
+  CHECK_THROWS_AS(photile::apply(mix, {LightChange::parse("lamp=2700K")}), UsageError);
+  for (const char* text : {"lamp=K", "lamp=999K", "lamp=40001K", "lamp=x2K", "lamp=-5000K"}) {
+    CHECK_THROWS_AS(after({text}), UsageError);
+  }
+}
+
 TEST_CASE("a tint keeps the luminance of the light's own colour") {
   LightMix mix = two_lights();
   mix.lights[0].color = {2.0f, 0.7f, 1.0f};

@@ -1,0 +1,77 @@
+// Lights that the user adds to a scene, or changes in it, while it is loaded.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "photile/defaults.hpp"
+
+namespace photile {
+
+/// Puts lights into a group: `--light-group GLOB=NAME`.
+struct LightGrouping {
+  std::string glob;   ///< of light names: *, ? and [...] as in a shell
+  std::string group;  ///< cleaned as light names are
+  /// Splits at the last '='. Errors: UsageError when `text` has no '=' or an empty side.
+  static LightGrouping parse(const std::string& text);
+};
+
+/// Gives a point or spot light of the scene the intensities of a photometric file:
+/// `--ies NAME=FILE`.
+struct LightProfile {
+  std::string light;
+  std::filesystem::path file;  ///< LM-63 (.ies) or EULUMDAT (.ldt)
+  /// Splits at the first '='. Errors: UsageError.
+  static LightProfile parse(const std::string& text);
+};
+
+/// Surroundings from a picture: `--environment FILE`.
+struct EnvironmentPicture {
+  std::filesystem::path file;   ///< "" = none
+  double scale = 1;             ///< multiplies the texels, which are cd/m2 or W/(m2 sr)
+  double rotation_degrees = 0;  ///< clockwise as seen from above
+};
+
+/// `--sun AZIMUTH,ELEVATION,LUX`.
+struct Sun {
+  double azimuth_degrees = 0;    ///< clockwise from north, which is -z; east is +x
+  double elevation_degrees = 0;  ///< above the horizon, y upwards
+  double illuminance = 0;        ///< lux on a surface that faces it
+  double diameter_degrees = defaults::sun_diameter_degrees;  ///< of its disc; 0 = parallel light
+  /// Errors: UsageError for other than three numbers, or one out of range.
+  static Sun parse(const std::string& text);
+};
+
+enum class SkyKind {
+  uniform,   ///< the same luminance everywhere
+  overcast,  ///< CIE overcast sky: three times as bright at the zenith as at the horizon
+  clear      ///< CIE standard clear sky (ISO 15469, type 12); it needs a sun
+};
+
+/// `--sky KIND=LUX`: the upper half of the surroundings, black below the horizon.
+struct Sky {
+  SkyKind kind = SkyKind::overcast;
+  double illuminance = 0;  ///< lux on a horizontal surface that sees all of it, without the sun
+  /// Errors: UsageError.
+  static Sky parse(const std::string& text);
+};
+
+/// A luminous rectangle at a node of a glTF file: `--area-light NAME=WxH,LUMENS`.
+struct LuminousPanel {
+  std::string node;
+  double width = 0, height = 0;  ///< metres, along the node's x and y axes; it shines along -z
+  double lumens = 0;
+  /// Splits at the last '='. Errors: UsageError.
+  static LuminousPanel parse(const std::string& text);
+};
+
+/// The colour of a light by its temperature: `--light-temperature NAME=KELVIN`.
+struct LightTemperature {
+  std::string light;
+  double kelvin = 0;
+  /// Splits at the last '='. Errors: UsageError.
+  static LightTemperature parse(const std::string& text);
+};
+
+}  // namespace photile
