@@ -11,7 +11,7 @@ namespace photile::scene_io {
 
 /// Reads an LM-63 file of photometric type A, B or C. Intensities are the candela values times the
 /// multiplier and the ballast factor, and in files of 1986 and 1991 times the ballast-lamp factor:
-/// where the rated lumens of the lamps count, they count already (LM-63-02, 5.12), and in absolute
+/// where the rated lumens of the lamps count, they count already, and in absolute
 /// photometry (-1 lumens) there are none. Light at angles between those measured is interpolated,
 /// beyond them there is none. TILT is read and ignored, with a warning if it changes anything.
 /// The axes are those of the glTF extension EXT_lights_ies: vertical angle 0 of type C, or both

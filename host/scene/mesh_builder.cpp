@@ -33,7 +33,7 @@ std::size_t MeshBuilder::PositionHash::operator()(const std::array<std::uint32_t
   return static_cast<std::size_t>(hash ^ (hash >> 32));
 }
 
-MeshBuilder::MeshBuilder(Scene& scene, const Needs& needs) : scene_(scene), needs_(needs) {}
+MeshBuilder::MeshBuilder(Scene& scene, const CornerNeeds& needs) : scene_(scene), needs_(needs) {}
 
 std::uint32_t MeshBuilder::vertex_index(const glm::vec3& position) {
   const auto next = static_cast<std::uint32_t>(scene_.vertices.size());

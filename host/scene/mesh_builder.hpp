@@ -13,8 +13,13 @@ namespace photile::scene_io {
 struct Corner {
   glm::dvec3 position{0.0};
   glm::dvec2 uv{0.0};
-  glm::dvec2 emission_uv{0.0};
   glm::dvec3 normal{0.0};  ///< any length; zero when the file has none
+  glm::dvec2 emission_uv{0.0};
+};
+
+/// Which attributes of corners some material needs.
+struct CornerNeeds {
+  bool uv = false, emission_uv = false, normals = false;
 };
 
 /// Appends triangles to a scene. Positions are rounded to float and welded where their bits agree;
@@ -22,11 +27,7 @@ struct Corner {
 /// `front_side` and the signs of shading normals depends on the winding.
 class MeshBuilder {
  public:
-  /// Which of the corners' attributes some material needs.
-  struct Needs {
-    bool uv, emission_uv, normals;
-  };
-  MeshBuilder(Scene& scene, const Needs& needs);
+  MeshBuilder(Scene& scene, const CornerNeeds& needs);
 
   /// Adds a triangle whose front is the side from which `corners` run counter-clockwise. Triangles
   /// with a corner that is not finite or beyond limits::max_coordinate and triangles without area
@@ -46,7 +47,7 @@ class MeshBuilder {
   void add_normals(const std::array<const Corner*, 3>& sorted, const glm::dvec3& front);
 
   Scene& scene_;
-  Needs needs_;
+  CornerNeeds needs_;
   bool any_normal_ = false;
   std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, PositionHash> index_of_position_;
 };

@@ -82,7 +82,7 @@ void Room::add_ball(const glm::dvec3& centre, double radius, int rings, std::uin
 }
 
 Scene Room::build(double power) {
-  scene_io::MeshBuilder mesh(scene_, false, false);
+  scene_io::MeshBuilder mesh(scene_, {});
   for (const Triangle& triangle : triangles_) {
     const auto index = static_cast<std::uint32_t>(scene_.triangles.size());
     const std::array corners{scene_io::Corner{triangle.corners[0]},

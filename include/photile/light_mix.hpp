@@ -34,7 +34,7 @@ struct LightMix {
 };
 
 /// A change asked for on the command line: NAME=POWER[lm|W] | NAME=xFACTOR | NAME=#RRGGBB |
-/// NAME=off. POWER is in the light's own unit unless it says otherwise; #RRGGBB is an sRGB colour
+/// NAME=KELVINK | NAME=off. POWER is in the light's own unit unless it names one; #RRGGBB is sRGB,
 /// of which only the hue and saturation count. Several changes of one light apply in order.
 struct LightChange {
   std::string name;

@@ -68,8 +68,8 @@ PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
                                    int last_row, std::span<const std::uint32_t> map_of = {});
 
 /// Radiance that each light emits towards the front of its triangles where its layer's power is 1:
-/// its share of the layer / (pi A) x colour, A counting both sides of two-sided lights. Zero for
-/// lights without area.
+/// its share of the layer / (pi A) x colour, A counting both sides of two-sided lights; of textured
+/// lights that of a white texel. Zero for lights without area.
 std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene);
 
 }  // namespace photile

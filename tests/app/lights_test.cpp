@@ -41,8 +41,8 @@ TEST_CASE("both integrators render a floor under a sky, as a layer that can be r
   const std::string integrator = GENERATE("photon-map", "path");
   const std::string picture = folder / "floor.exr";
   const Outcome outcome =
-      run_photile({"render", write_floor(folder), "-o", picture, "--size", "16x12", "--samples",
-                   "16", "--integrator", integrator, "--sky", "uniform=6830"});
+      run_photile({"render", write_floor(folder), "-o", picture, "--size", "64x48", "--samples",
+                   "4", "--integrator", integrator, "--sky", "uniform=6830"});
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   const Image image = read_image(picture);

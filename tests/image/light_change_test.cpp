@@ -66,7 +66,8 @@ TEST_CASE("a colour temperature replaces the light's own colour and keeps its po
   mix.lights[0].color = {1.4f, 0.9f, 0.8172f};
   photile::apply(mix, {LightChange::parse("lamp=2700K")});
   const glm::dvec3 color = glm::dvec3(mix.lights[0].tint) * glm::dvec3(mix.lights[0].color);
-  CHECK(color.r / color.b == Approx(1.76 / 0.149).epsilon(0.05));  // a black body, in Rec.709
+  // Chromaticity (0.4599, 0.4106) of the black body, in Rec.709.
+  CHECK(color.r / color.b == Approx(1.9353 / 0.1917).epsilon(0.02));
   CHECK(luminance(color) == Approx(1.0).epsilon(1e-6));
   CHECK(mix.lights[0].power == 800.0);
   mix.lights[0].color = {4.7036689f, 0.0f, 0.0f};

@@ -38,8 +38,10 @@ nlohmann::json node_of_profile(nlohmann::json members = nlohmann::json::object()
 }
 
 nlohmann::json point_light_node(nlohmann::json& document) {
-  document["extensions"]["KHR_lights_punctual"]["lights"] = {
-      {{"type", "spot"}, {"intensity", 7}, {"color", {1, 0.5, 0}}}};
+  document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"},
+                                                              {"intensity", 7},
+                                                              {"color", {1, 0.5, 0}},
+                                                              {"spot", {{"outerConeAngle", 0.5}}}}};
   return {{"KHR_lights_punctual", {{"light", 0}}}};
 }
 

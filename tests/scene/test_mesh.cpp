@@ -58,7 +58,7 @@ TEST_CASE("another winding of some triangles changes nothing but front_side, bit
 TEST_CASE("texture coordinates follow their corners whatever the winding") {
   const auto build = [](bool flipped) {
     Scene scene;
-    MeshBuilder builder(scene, true, false);
+    MeshBuilder builder(scene, {.uv = true});
     const Corner a{{1, 0, 0}, {0.1, 0.2}, {}}, b{{0, 1, 0}, {0.3, 0.4}, {}},
         c{{0, 0, 1}, {0.5, 0.6}, {}};
     builder.add({a, flipped ? c : b, flipped ? b : c}, 0, none);
@@ -77,7 +77,7 @@ TEST_CASE("the front side is the one that the winding faces, by the cross produc
   for (const auto& [i, j, k] : {std::array{0, 1, 2}, std::array{0, 2, 1}, std::array{1, 2, 0},
                                 std::array{3, 1, 0}, std::array{2, 3, 1}, std::array{3, 2, 0}}) {
     Scene scene;
-    MeshBuilder builder(scene, false, false);
+    MeshBuilder builder(scene, {});
     const auto at = [&](int n) { return p[static_cast<std::size_t>(n)]; };
     REQUIRE(builder.add({Corner{at(i), {}, {}}, Corner{at(j), {}, {}}, Corner{at(k), {}, {}}}, 0,
                         none));
@@ -88,7 +88,7 @@ TEST_CASE("the front side is the one that the winding faces, by the cross produc
 
 TEST_CASE("shading normals lie on the front side, even when the file has them the other way") {
   Scene scene;
-  MeshBuilder builder(scene, false, true);
+  MeshBuilder builder(scene, {.normals = true});
   const glm::dvec3 inwards(0, 0, -2);
   builder.add({Corner{{0, 0, 0}, {}, inwards}, Corner{{1, 0, 0}, {}, inwards},
                Corner{{0, 1, 0}, {}, glm::dvec3(std::nan(""))}},
@@ -103,7 +103,7 @@ TEST_CASE("shading normals lie on the front side, even when the file has them th
 
 TEST_CASE("positions with equal bits are welded, and -0 is 0") {
   Scene scene;
-  MeshBuilder builder(scene, false, false);
+  MeshBuilder builder(scene, {});
   builder.add({Corner{{0, 0, 0}, {}, {}}, Corner{{1, 0, 0}, {}, {}}, Corner{{0, 1, 0}, {}, {}}}, 0,
               none);
   builder.add(
@@ -114,7 +114,7 @@ TEST_CASE("positions with equal bits are welded, and -0 is 0") {
 
 TEST_CASE("triangles without area and with corners that are not finite are counted and dropped") {
   Scene scene;
-  MeshBuilder builder(scene, false, false);
+  MeshBuilder builder(scene, {});
   const auto add = [&](const glm::dvec3& c) {
     return builder.add({Corner{{0, 0, 0}, {}, {}}, Corner{{1, 0, 0}, {}, {}}, Corner{c, {}, {}}}, 0,
                        none);
@@ -134,7 +134,7 @@ TEST_CASE("triangles without area and with corners that are not finite are count
 
 TEST_CASE("area and normal of a triangle are those of its closed form") {
   Scene scene;
-  MeshBuilder builder(scene, false, false);
+  MeshBuilder builder(scene, {});
   builder.add({Corner{{0, 0, 0}, {}, {}}, Corner{{3, 0, 0}, {}, {}}, Corner{{0, 4, 0}, {}, {}}}, 0,
               none);
   CHECK(triangle_area(scene, 0) == Approx(6.0));
