@@ -18,8 +18,9 @@ void add_material(const Material& material, ContentHash& hash) {
 }
 
 void add_light(const Light& light, ContentHash& hash) {
-  const auto& [name, group, kind, color, power, triangles, two_sided, position, direction,
-               inner_cone_angle, outer_cone_angle] = light;
+  const auto& [name, group, kind, color, power, triangles, two_sided, emission_texture,
+               texel_radiance, position, direction, inner_cone_angle, outer_cone_angle,
+               distribution, x_axis, angular_diameter, environment] = light;
   hash.add(name);
   hash.add(group);
   hash.add(kind);
@@ -27,18 +28,50 @@ void add_light(const Light& light, ContentHash& hash) {
   hash.add(power);  // quotas and shares of groups follow it
   hash.add(triangles);
   hash.add(two_sided);
+  hash.add(emission_texture);
+  hash.add(texel_radiance);
   hash.add(position);
   hash.add(direction);
   hash.add(inner_cone_angle);
   hash.add(outer_cone_angle);
+  hash.add(distribution);
+  hash.add(x_axis);
+  hash.add(angular_diameter);
+  hash.add(environment);
+}
+
+void add_distribution(const IntensityDistribution& distribution, ContentHash& hash) {
+  hash.add(std::uint64_t{distribution.columns()});
+  hash.add(std::uint64_t{distribution.rows()});
+  for (std::size_t column = 0; column < distribution.columns(); ++column) {
+    for (std::size_t row = 0; row < distribution.rows(); ++row) {
+      for (const double u : {0.0, 1.0}) {
+        for (const double v : {0.0, 1.0}) {
+          const auto corner = distribution.in_cell(column, row, u, v);
+          hash.add(corner.direction);
+          hash.add(corner.intensity);
+        }
+      }
+    }
+  }
+}
+
+void add_environment(const EnvironmentMap& map, ContentHash& hash) {
+  hash.add(map.width());
+  hash.add(map.height());
+  hash.add(map.direction_at(0.0, 0, 0.5));  // its rotation
+  for (int row = 0; row < map.height(); ++row) {
+    for (int column = 0; column < map.width(); ++column) hash.add(map.texel(column, row));
+  }
 }
 
 }  // namespace
 
 void add_scene(const Scene& scene, ContentHash& hash) {
   const auto& [source, unit, origin, vertices, triangles, front_side, triangle_material,
-               triangle_light, corner_uv, corner_normal, shared_meshes, instances, materials,
-               textures, lights, cameras, report] = scene;
+               triangle_light, corner_uv, corner_emission_uv, corner_normal, shared_meshes,
+               instances, materials, textures, lights, distributions, environments, cameras,
+               report] = scene;
   hash.add(unit);
   hash.add(origin);
   hash.add(vertices);
@@ -47,6 +80,7 @@ void add_scene(const Scene& scene, ContentHash& hash) {
   hash.add(triangle_material);
   hash.add(triangle_light);
   hash.add(corner_uv);
+  hash.add(corner_emission_uv);
   hash.add(corner_normal);
   hash.add(std::uint64_t{materials.size()});
   for (const Material& material : materials) add_material(material, hash);
@@ -64,6 +98,12 @@ void add_scene(const Scene& scene, ContentHash& hash) {
   }
   hash.add(std::uint64_t{lights.size()});
   for (const Light& light : lights) add_light(light, hash);
+  hash.add(std::uint64_t{distributions.size()});
+  for (const IntensityDistribution& distribution : distributions) {
+    add_distribution(distribution, hash);
+  }
+  hash.add(std::uint64_t{environments.size()});
+  for (const EnvironmentMap& map : environments) add_environment(map, hash);
 }
 
 }  // namespace photile

@@ -58,7 +58,8 @@ struct EyeRay {
   std::uint32_t pixel;
 };
 
-/// Looking at lamps, as another technique that finds those which a ray meets at once.
+/// Looking at lamps, as another technique that finds those which a ray meets at once, or through
+/// panes.
 struct LampTechnique {
   const LightSampler& lamps;
   float density;  ///< of the ray's direction, per steradian
