@@ -41,9 +41,15 @@ double rounded_up(double value) {
   return 10 * power;
 }
 
-double automatic_scale(std::vector<double> differences) {
-  for (double& difference : differences) difference = std::abs(difference);
-  std::erase_if(differences, [](double value) { return !std::isfinite(value); });
+/// Of the pixels that see no lamp in `b`: a lamp that moved would leave nothing else to see.
+double automatic_scale(const std::vector<double>& all, const Image& b) {
+  const RelativeErrorWeights weights(b);
+  std::vector<double> differences;
+  for (std::size_t pixel = 0; pixel < all.size(); ++pixel) {
+    if (weights.counts(pixel) && std::isfinite(all[pixel])) {
+      differences.push_back(std::abs(all[pixel]));
+    }
+  }
   if (differences.empty()) return 1;
   const auto at =
       differences.begin() +
@@ -124,7 +130,7 @@ void draw_legend(Sheet& sheet, int x, int height, double scale, const Palette& p
     const int middle = title_height + static_cast<int>((1 - share) * height);
     const int y =
         std::clamp(middle + font_size / 3, title_height + font_size, title_height + height);
-    sheet.write(x + bar_width + 6, y, x + legend_width, fmt::format("{:+.3g}", value));
+    sheet.write(x + bar_width + 6, y, x + legend_width, fmt::format("{:+.4g}", value));
   }
 }
 
@@ -138,7 +144,7 @@ Image draw_comparison(const Image& a, const Image& b, const ComparisonDrawing& o
   for (std::size_t i = 0; i < differences.size(); ++i) {
     differences[i] = luminance_at(a, i) - luminance_at(b, i);
   }
-  const double scale = options.scale > 0 ? options.scale : automatic_scale(differences);
+  const double scale = options.scale > 0 ? options.scale : automatic_scale(differences, b);
   const Palette palette("blue-red");
   const Image both = tone_mapped(a, b, options.exposure);
 

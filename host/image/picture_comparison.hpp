@@ -32,9 +32,9 @@ PictureComparison compare_pictures(const Image& a, const Image& b);
 /// How a comparison is drawn.
 struct ComparisonDrawing {
   std::string name_a, name_b;
-  std::string unit;     ///< of the difference
-  double scale = 0;     ///< largest difference of the legend; 0 = the 99th percentile of them,
-                        ///< rounded up to 1, 2 or 5 times a power of ten
+  std::string unit;  ///< of the difference
+  double scale = 0;  ///< largest difference of the legend; 0 = the 99th percentile where no lamp is
+                     ///< seen, rounded up to 1, 2 or 5 times a power of ten
   double exposure = 0;  ///< stops on top of the automatic exposure of both together
 };
 

@@ -66,10 +66,15 @@ TEST_CASE("one wrong region is the worst region") {
   Image picture = reference;
   for (auto& plane : picture.channels) {
     for (int y = 0; y < 2; ++y) {  // a tile of a sixteenth of the height
-      for (int x = 0; x < 2; ++x) plane[static_cast<std::size_t>(y * side + x)] = 0.5f;
+      for (int x = 4; x < 6; ++x) plane[static_cast<std::size_t>(y * side + x)] = 0.5f;
     }
   }
-  CHECK(picture_error(picture, reference).worst_region == Approx(0.5).epsilon(1e-6));
+  const PictureError error = picture_error(picture, reference);
+  CHECK(error.worst_region == Approx(0.5).epsilon(1e-6));
+  CHECK(error.worst_place.x == 4);
+  CHECK(error.worst_place.y == 0);
+  CHECK(error.worst_place.width == 2);
+  CHECK(error.worst_place.height == 2);
 }
 
 TEST_CASE("pixels that see a lamp in the reference do not count, nor do those next to them") {
