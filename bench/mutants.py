@@ -6,7 +6,7 @@
 NAME is a part of the name of those to run; default: all of bench/mutant_list.py. Kernels are changed in
 a copy that PHOTILE_KERNEL_DIR names and run by the tests of the build at hand; other files in a
 worktree of the last commit, which is built with its tests (minutes the first time; ccache helps).
-Every test first has to pass without the mutant. Results stay in out/mutants and those of earlier runs
+Every test first has to pass without the mutant. Results stay in docs/testing, and those of earlier runs
 are kept, so that the table can be made in parts.
 """
 
@@ -25,7 +25,7 @@ from mutant_list import MUTANTS
 from report_section import replace_section
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-RESULTS = ROOT / "out/mutants/results.json"
+RESULTS = ROOT / "docs/testing/mutants.json"
 
 
 class CannotRun(Exception):
@@ -41,7 +41,7 @@ class Outcome:
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME")
-    parser.add_argument("--redraw", action="store_true", help="make the table from out/mutants alone")
+    parser.add_argument("--redraw", action="store_true", help="make the table from docs/testing alone")
     parser.add_argument("--tree", type=pathlib.Path, default=ROOT / "out/mutants/tree",
                         help="worktree for what has to be built; default: %(default)s")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release",
