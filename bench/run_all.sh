@@ -43,5 +43,5 @@ for bench in "${programs[@]}"; do
   "$benches/photile_bench_$bench" --output "$results/$bench.json" "${options[@]}" "${extra[@]}"
 done
 bench/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
-[[ $results != docs/benchmarks ]] || bench/report_borders.py
+[[ $results != docs/benchmarks ]] || { bench/report_borders.py && bench/report_area.py; }
 exec /usr/bin/python3 bench/report.py --results "$results" --page "$results.md"
