@@ -137,6 +137,22 @@ TEST_CASE("in a furnace every sensor reads pi L / (1 - rho), planar and cylindri
   }
 }
 
+TEST_CASE("under an even sky a sensor reads pi L, a deviation of 1% would be seen") {
+  constexpr double radiance = 5;
+  Scene scene = test::plate(test::diffuse(glm::vec3(0)), 2);
+  const EnvironmentMap map("even", 6, 3, std::vector<glm::vec3>(18, glm::vec3(radiance)));
+  Light sky;
+  sky.name = "sky";
+  sky.kind = LightKind::environment;
+  sky.environment = 0;
+  sky.power =
+      luminance(glm::dvec3(map.integral())) * pi * std::pow(bounding_sphere(scene).radius, 2);
+  scene.environments.push_back(map);
+  scene.lights.push_back(sky);
+  const double truth = pi * radiance / sky.power;
+  CHECK_VERDICT(paths_give(scene, {{0.2, 0.1, 0.5}, up}, {.rays = 4096}, truth, 0.01 * truth));
+}
+
 TEST_CASE("a sensor that lies on a surface reads what paths find there") {
   const Scene scene = test::furnished_room();
   const std::vector<Sensor> sensors{{{1.0, 1.0, 0}, up}, {{3.5, 0.4, 0}, up}};
