@@ -25,6 +25,9 @@ libstb-dev             | picture decoder that tinygltf's header names
 nlohmann-json3-dev     | JSON
 libfmt-dev             | text output
 libcli11-dev           | command line
+libglfw3-dev           | the window of photile view
+libimgui-dev           | its panels
+libgl-dev              | what draws them
 libxxhash-dev          | checksums of the program cache
 fonts-dejavu-core      | the letters of photile compare's pictures
 catch2                 | tests
@@ -32,6 +35,10 @@ libfcl-dev             | tests: an independent triangle distance
 libnanoflann-dev       | tests and benches: an independent nearest-neighbour search
 libbenchmark-dev       | benches
 python3-matplotlib     | benches: plots
+xvfb                   | tests: a screen without a screen
+xauth                  | the same
+xdotool                | tests: keys and mouse for the window
+libgl1-mesa-dri        | tests: OpenGL in software
 oclgrind               | tests: checks every memory access of the kernels
 openimageio-tools      | tests: reads the pictures as other tools do
 python3                | scripts of the docs and the tests

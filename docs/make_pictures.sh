@@ -17,3 +17,17 @@ for maps in naive triangle; do
   "$photile" render scenes/cornell-box/cornell-box.gltf --maps "$maps" --size 400x400 --samples 16 \
     --photons 200k --neighbours 1000 --quiet -o "$pictures/$maps.png"
 done
+
+# The window, on a screen in memory: a click reads the light on the table.
+outputs=$(mktemp -d)
+trap 'rm -rf "$outputs"' EXIT
+export photile outputs
+xvfb-run --auto-servernum --server-args "-screen 0 1280x960x24" bash -c '
+  "$photile" view scenes/living-room/living-room.gltf --size 1000x750 --samples 9 --photons 10M \
+    --neighbours 600 --outputs "$outputs" --quiet &
+  until xdotool search --name "9 of 9 samples, 10M"; do sleep 1; done
+  xdotool mousemove 660 520 click 1; sleep 2
+  xdotool key F12; sleep 2
+  xdotool key ctrl+q
+  wait'
+mv "$outputs/screenshot-0001.png" "$pictures/view.png"

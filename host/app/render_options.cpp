@@ -266,6 +266,11 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--stats", options.statistics, "write the summary as JSON")
       ->type_name("FILE")
       ->group("Run");
+  add_saved_maps_options(command, options);
+  add_quality_options(command, options.target);
+}
+
+void add_saved_maps_options(CLI::App& command, RenderOptions& options) {
   CLI::Option* save =
       command.add_option("--save-maps", options.save_maps, "keep the photons for --load-maps")
           ->type_name("FILE")
@@ -276,7 +281,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE")
       ->excludes(save)
       ->group("Photons");
-  add_quality_options(command, options.target);
 }
 
 void apply_words(RenderOptions& options) {

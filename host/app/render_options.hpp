@@ -59,6 +59,9 @@ void add_setting_options(CLI::App& command, RenderOptions& options);
 /// Adds those of them that say how light is found, but not what a camera makes of it.
 void add_light_setting_options(CLI::App& command, RenderOptions& options);
 
+/// Adds --save-maps and --load-maps.
+void add_saved_maps_options(CLI::App& command, RenderOptions& options);
+
 /// Adds --integrator.
 void add_integrator_option(CLI::App& command, RenderOptions& options);
 

@@ -27,25 +27,31 @@ std::string settings_of(const RenderOptions& options) {
 
 }  // namespace
 
+std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions& options,
+                                         Progress& progress) {
+  if (options.load_maps.empty()) return std::nullopt;
+  progress.begin("load photons", 0, "");
+  PreparedPhotons prepared = saved_maps::load(options.load_maps, scene, settings_of(options));
+  progress.end();
+  return prepared;
+}
+
+KeepPhotons keep_maps(const Scene& scene, const RenderOptions& options, Progress& progress) {
+  if (options.save_maps.empty()) return {};
+  return [&scene, &progress, file = options.save_maps,
+          settings = settings_of(options)](const PreparedPhotons& photons) {
+    progress.begin("save photons", 0, "");
+    saved_maps::save(file, scene, settings, photons);
+    progress.end();
+  };
+}
+
 RenderResult render_with_saved_maps(const Scene& scene, const Camera& camera,
                                     std::span<Device> devices, const RenderOptions& options,
                                     Progress& progress) {
-  const std::string settings = settings_of(options);
-  std::optional<PreparedPhotons> prepared;
-  KeepPhotons keep;
-  if (!options.load_maps.empty()) {
-    progress.begin("load photons", 0, "");
-    prepared = saved_maps::load(options.load_maps, scene, settings);
-    progress.end();
-  } else {
-    keep = [&](const PreparedPhotons& photons) {
-      progress.begin("save photons", 0, "");
-      saved_maps::save(options.save_maps, scene, settings, photons);
-      progress.end();
-    };
-  }
-  SceneRenderer renderer(scene, devices, options.parameters, prepared ? &*prepared : nullptr, keep,
-                         progress);
+  std::optional<PreparedPhotons> prepared = load_maps(scene, options, progress);
+  SceneRenderer renderer(scene, devices, options.parameters, prepared ? &*prepared : nullptr,
+                         keep_maps(scene, options, progress), progress);
   return renderer.render(camera, options.parameters.film, progress);
 }
 

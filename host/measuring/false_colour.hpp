@@ -1,6 +1,8 @@
 // Colours and steps of illuminances, with the options of Radiance's falsecolor.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,7 @@ class ColourScale {
   ColourScale(const FalseColour& options, double largest);
 
   std::string hex(double value) const { return palette_.hex(share_of(value)); }
+  std::array<std::uint8_t, 3> rgb(double value) const { return palette_.at(share_of(value)); }
   double top() const { return top_; }
   /// The value at a share in [0, 1] of the scale.
   double value_at(double share) const;

@@ -49,6 +49,10 @@ inline constexpr double most_chosen_samples = 64;  ///< per pixel
 inline constexpr std::uint64_t pilot_photons = 200'000;
 inline constexpr int pilot_height = 96;  ///< pixels
 
+// The walkthrough: what is aimed at while moving, and how far a picture is refined at rest
+inline constexpr double view_frames_per_second = 30;
+inline constexpr int view_samples_per_pixel = 16;
+
 // Validation: readings whose noise leaves room for the tolerance of 1%
 inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 16 seeds
 inline constexpr int validation_neighbours = 1'000;

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/commands.hpp"
+#include "app/render_options.hpp"
+#include "app/run_notes.hpp"
+#include "app/saved_maps_option.hpp"
+#include "app/signals.hpp"
+#include "app/terminal_progress.hpp"
+#include "app/threads.hpp"
+#include "app/validators.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "view/viewer.hpp"
+
+namespace photile::app {
+namespace {
+
+struct ViewOptions {
+  RenderOptions render;
+  double frames_per_second = defaults::view_frames_per_second;
+  std::string outputs = ".";
+};
+
+void run_view(ViewOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  apply_words(render);
+  std::vector<LightChange> changes;
+  for (const auto& text : render.lights) changes.push_back(LightChange::parse(text));
+  if (!std::filesystem::is_directory(options.outputs)) {
+    throw UsageError(
+        fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
+  }
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  const Scene scene = load_scene(render.scene, render.load);
+  LightMix mix = LightMix::of(scene, render.load.lumen_per_watt);
+  photile::apply(mix, changes);  // qualified: std::apply would match better
+  const Camera& camera = choose_camera(scene, render.camera);
+  set_film_size(render.parameters.film, render.size, camera);
+  tell_scene(scene, mix, progress);
+
+  view::ViewerParameters parameters;
+  parameters.render = render.parameters;
+  parameters.frames_per_second = options.frames_per_second;
+  parameters.outputs = options.outputs;
+  parameters.prepared = load_maps(scene, render, progress);
+  // Progress is shown in the window from here on.
+  parameters.keep = keep_maps(scene, render, Progress::none());
+  parameters.interrupted = [&progress] { return progress.cancelled(); };
+  view::run_viewer(
+      scene, camera, mix, [&render] { return open_devices(render.device); }, std::move(parameters));
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& photile) {
+  auto options = std::make_shared<ViewOptions>();
+  options->render.parameters.film.samples_per_pixel = defaults::view_samples_per_pixel;
+  CLI::App* command =
+      photile.add_subcommand("view", "Walk through a scene in a window, and set its lamps");
+  command
+      ->add_option("--frame-rate", options->frames_per_second,
+                   "frames per second aimed at while moving: pictures become smaller for it")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Window");
+  command->add_option("--outputs", options->outputs, "folder of what F12 and Ctrl+S keep")
+      ->type_name("FOLDER")
+      ->capture_default_str()
+      ->group("Window");
+  add_setting_options(*command, options->render);
+  add_saved_maps_options(*command, options->render);
+  command->callback([options] { run_view(*options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,21 @@
+// A finished picture of the walkthrough, before its lights are mixed.
+#pragma once
+
+#include <cstdint>
+
+#include "photile/camera.hpp"
+#include "photile/light_layers.hpp"
+#include "photile/statistics.hpp"
+
+namespace photile::view {
+
+struct Frame {
+  LightLayers layers;
+  Camera camera;  ///< in the scene's coordinates
+  int samples_per_pixel = 1;
+  std::uint64_t emitted_photons = 0;  ///< paths of the maps it was estimated from
+  double seconds = 0;                 ///< that it took
+  RunStatistics statistics;           ///< of its stages
+};
+
+}  // namespace photile::view

@@ -1,0 +1,48 @@
+// The window: GLFW for input, OpenGL for the picture, Dear ImGui for the panels.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace photile::view {
+
+/// One window with one picture that fills it. Used from the main thread alone.
+class Window {
+ public:
+  /// Errors: DeviceError when there is no display or no OpenGL 3.
+  Window(const std::string& title, int width, int height);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  bool should_close() const;
+  void close();
+
+  /// Waits for input, at most so many seconds, and begins a frame of panels.
+  void begin_frame(double longest_wait);
+  /// Draws the picture and the panels over it.
+  void draw_frame();
+  void show_frame();
+
+  void set_title(const std::string& title);
+
+  /// Of the picture area, in pixels.
+  int width() const;
+  int height() const;
+
+  /// What fills the window from the next frame on: sRGB texels, row 0 at the top; stretched.
+  void set_picture(int width, int height, std::span<const std::uint8_t> rgb);
+
+  /// All that the window is about to show, between draw_frame and show_frame: sRGB texels of
+  /// width() x height(), row 0 at the top.
+  std::vector<std::uint8_t> read_pixels() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace photile::view

@@ -1,0 +1,67 @@
+// From layers and powers to what the screen shows.
+#include "view/display.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "image/palette.hpp"
+#include "photile/errors.hpp"
+
+using namespace photile;
+using namespace photile::view;
+
+namespace {
+
+/// Two lights over two pixels, at power 1.
+Frame two_pixels() {
+  Frame frame;
+  frame.layers = LightLayers(2, 1, {"a", "b"});
+  frame.layers.layers[0].radiance = {glm::vec3(1), glm::vec3(0)};
+  frame.layers.layers[0].illuminance = {3, 0};
+  frame.layers.layers[1].radiance = {glm::vec3(0.5f), glm::vec3(0.25f)};
+  frame.layers.layers[1].illuminance = {1, 2};
+  return frame;
+}
+
+LightMix mix_of(double a, double b) {
+  LightMix mix;
+  mix.lights.resize(2);
+  mix.lights[0].name = "a";
+  mix.lights[0].power = a;
+  mix.lights[1].name = "b";
+  mix.lights[1].power = b;
+  return mix;
+}
+
+}  // namespace
+
+TEST_CASE("illuminance is the sum over lights of power times layer") {
+  CHECK(mixed_illuminance(two_pixels().layers, mix_of(10, 100)) == std::vector<float>{130, 200});
+}
+
+TEST_CASE("a reading has each light's part of luminance and illuminance") {
+  const auto readings = readings_at(two_pixels(), mix_of(10, 100), 0, 0);
+  CHECK(readings[0].illuminance == Approx(30));
+  CHECK(readings[1].illuminance == Approx(100));
+  CHECK(readings[0].luminance == Approx(10));
+  CHECK(readings[1].luminance == Approx(50));
+  CHECK(readings_at(two_pixels(), mix_of(10, 100), 2, 0)[1].illuminance == 0);
+}
+
+TEST_CASE("the picture is scaled by stops and encoded as sRGB") {
+  DisplaySettings settings;
+  settings.exposure = -1;  // halves
+  const DisplayedFrame shown = display(two_pixels(), mix_of(0, 1), settings);
+  // 0.25 and 0.125 in sRGB: 255 (1.055 x^(1/2.4) - 0.055) = 136.9 and 99.1
+  CHECK(shown.rgb == std::vector<std::uint8_t>{137, 137, 137, 99, 99, 99});
+}
+
+TEST_CASE("false colour runs over its palette from zero to the top of the scale") {
+  DisplaySettings settings;
+  settings.mode = DisplayMode::illuminance;
+  settings.false_colour.scale = 260;
+  const DisplayedFrame shown = display(two_pixels(), mix_of(10, 100), settings);
+  const auto middle = image::Palette("turbo").at(0.5);  // 130 of 260
+  CHECK(std::equal(middle.begin(), middle.end(), shown.rgb.begin()));
+  settings.false_colour.palette = "no such";
+  CHECK_THROWS_AS(display(two_pixels(), mix_of(1, 1), settings), UsageError);
+}

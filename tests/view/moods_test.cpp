@@ -1,0 +1,94 @@
+// Named moods and their file.
+#include "view/moods.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "photile/errors.hpp"
+#include "temporary_folder.hpp"
+
+using namespace photile;
+using Catch::Contains;
+using view::LightBoard;
+using view::Moods;
+
+namespace {
+
+LightMix lamps() {
+  LightMix mix;
+  mix.lights.resize(2);
+  mix.lights[0].name = "ceiling";
+  mix.lights[0].power = 100;
+  mix.lights[1].name = "floor lamp";
+  mix.lights[1].power = 300;
+  return mix;
+}
+
+}  // namespace
+
+TEST_CASE("a mood comes back from its file as it was kept") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "room.moods.json";
+  LightBoard board(lamps());
+  board.controls()[0].on = false;
+  board.controls()[1].power = 42.5;
+  board.controls()[1].color = glm::vec3(1, 204 / 255.0f, 0);
+  Moods(file).keep("evening", board);
+
+  LightBoard other(lamps());
+  const Moods read(file);
+  CHECK(read.names() == std::vector<std::string>{"evening"});
+  read.apply("evening", other);
+  CHECK_FALSE(other.controls()[0].on);
+  CHECK(other.controls()[0].power == 100);
+  CHECK(other.controls()[1].power == 42.5);
+  REQUIRE(other.controls()[1].color);
+  CHECK(view::hex_of(*other.controls()[1].color) == "#ffcc00");
+}
+
+TEST_CASE("the moods of a scene lie beside it") {
+  CHECK(Moods::file_of("rooms/hall.gltf") == "rooms/hall.moods.json");
+}
+
+TEST_CASE("removing one mood keeps the others") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "room.moods.json";
+  Moods moods(file);
+  moods.keep("day", LightBoard(lamps()));
+  moods.keep("night", LightBoard(lamps()));
+  moods.remove("day");
+  CHECK(Moods(file).names() == std::vector<std::string>{"night"});
+}
+
+TEST_CASE("lights that a scene does not have, or in another unit, are passed over") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "room.moods.json";
+  std::ofstream(file) << R"({"photile_moods": 1, "moods": {"x": {
+      "gone": {"power": 1}, "ceiling": {"power": 5, "unit": "W"}}}})";
+  LightBoard board(lamps());
+  Moods(file).apply("x", board);
+  CHECK(board.controls()[0].power == 100);
+}
+
+TEST_CASE("a damaged file of moods is refused with its name and what is wrong") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "room.moods.json";
+  const auto [text, told] = GENERATE(table<std::string, std::string>(
+      {{"", "parse error"},
+       {"{", "parse error"},
+       {R"({"photile_moods": 2, "moods": {}})", "is not 1"},
+       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": -1}}}})", "mood 'x', light 'a'"},
+       {R"({"photile_moods": 1, "moods": {"x": {"a": {}}}})", "power"},
+       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "unit": "cd"}}}})", "no unit"},
+       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "color": "#12345g"}}}})",
+        "no colour"}}));
+  std::ofstream(file) << text;
+  CHECK_THROWS_WITH(Moods(file), Contains("room.moods.json") && Contains(told));
+  CHECK_THROWS_AS(Moods(file), InputError);
+}
+
+TEST_CASE("a mood that cannot be written leaves the moods as they were") {
+  Moods moods("/nonexistent-folder/room.moods.json");
+  CHECK_THROWS_AS(moods.keep("day", LightBoard(lamps())), OutputError);
+  CHECK(moods.names().empty());
+}

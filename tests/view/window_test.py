@@ -1,0 +1,200 @@
+#!/usr/bin/python3
+"""Drives `photile view` in a real window by keys and mouse, and compares what it keeps with what
+`photile render` gives.
+
+    xvfb-run window_test.py PHOTILE
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+import OpenImageIO as oiio
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SCENE = SOURCE / "scenes/cornell-box/cornell-box.gltf"
+SETTINGS = ["--photons", "100k", "--size", "480x360", "--samples", "4", "--quiet"]
+PATIENCE = 120  # seconds for what should take one
+
+
+def fail(text):
+    sys.exit(f"window_test.py: error: {text}")
+
+
+def until(condition, what):
+    """The first value of condition() that is true."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.2)
+    fail(f"waited {PATIENCE} s for {what}")
+
+
+class Picture:
+    def __init__(self, file):
+        source = oiio.ImageInput.open(str(file))
+        if source is None:
+            fail(f"{file}: {oiio.geterror()}")
+        self.spec = source.spec()
+        self.pixels = np.asarray(source.read_image(format="float")).reshape(
+            self.spec.height, self.spec.width, self.spec.nchannels)
+        source.close()
+
+    @property
+    def rgb(self):
+        return self.pixels[:, :, :3]
+
+    def position(self):
+        """Of the camera, in the world."""
+        matrix = np.array(self.spec.getattribute("worldToCamera")).reshape(4, 4)  # row vectors
+        return np.linalg.inv(matrix)[3, :3]
+
+    def power(self):
+        return json.loads(self.spec.getattribute("photile.lights"))[0]["power"]
+
+
+class Window:
+    """photile view, and the hands on its keyboard and mouse."""
+
+    def __init__(self, photile, folder):
+        self.folder = folder
+        self.process = subprocess.Popen(
+            [photile, "view", SCENE, "--outputs", folder, *SETTINGS],
+            stderr=subprocess.PIPE, text=True)
+        self.id = until(lambda: self.running() and self.find("photile"), "the window")
+        until(lambda: self.running() and self.find("4 of 4 samples, 0.1M paths"),
+              "the finished picture")
+
+    def running(self):
+        if self.process.poll() is not None:
+            fail(f"photile view ended with {self.process.returncode}: {self.process.stderr.read()}")
+        return True
+
+    @staticmethod
+    def find(title):
+        found = subprocess.run(["xdotool", "search", "--name", title], text=True,
+                               capture_output=True, check=False)
+        return found.stdout.split()[-1] if found.stdout.split() else None
+
+    @staticmethod
+    def hand(*arguments):
+        subprocess.run(["xdotool", *map(str, arguments)], check=True)
+
+    def drag(self, start, end, button=1):
+        self.hand("mousemove", *start)
+        time.sleep(0.3)
+        self.hand("mousedown", button)
+        time.sleep(0.3)
+        for share in (0.25, 0.5, 0.75, 1):
+            self.hand("mousemove", *(round(a + share * (b - a)) for a, b in zip(start, end)))
+            time.sleep(0.1)
+        time.sleep(0.3)
+        self.hand("mouseup", button)
+
+    def keep(self, key, pattern):
+        """Presses a key that keeps a picture, and reads it."""
+        before = set(self.folder.glob(pattern))
+        self.hand("key", key)
+        new = until(lambda: self.running() and set(self.folder.glob(pattern)) - before,
+                    f"what {key} keeps")
+        return Picture(new.pop())
+
+    def picture_when(self, condition, what):
+        """The first kept picture of which condition(picture) is true."""
+        def kept():
+            picture = self.keep("ctrl+s", "view-*.exr")
+            return picture if condition(picture) else None
+        return until(kept, what)
+
+
+def same_exposure(screenshot, picture):
+    """The screenshot is the picture, scaled, cut at white and encoded as sRGB."""
+    shown = np.where(screenshot <= 0.04045, screenshot / 12.92, ((screenshot + 0.055) / 1.055)**2.4)
+    unclipped = (shown.max(axis=2) < 0.9) & (shown.min(axis=2) > 0.02)
+    if unclipped.mean() < 0.2:
+        fail(f"only {unclipped.mean():.0%} of the screenshot is between black and white")
+    scale = np.median(shown[unclipped] / picture[unclipped])
+    expected = np.minimum(scale * picture, 1)
+    encoded = np.where(expected <= 0.0031308, 12.92 * expected,
+                       1.055 * np.maximum(expected, 1e-9)**(1 / 2.4) - 0.055)
+    return np.abs(encoded - screenshot)[unclipped].max() < 2 / 255
+
+
+def refuses_without_a_display(photile):
+    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    done = subprocess.run([photile, "view", SCENE, "--quiet"], env=environment, text=True,
+                          capture_output=True, check=False)
+    if done.returncode == 0 or "no window can be opened" not in done.stderr:
+        fail(f"without a display: {done.returncode}, {done.stderr}")
+
+
+def main():
+    photile = sys.argv[1]
+    refuses_without_a_display(photile)
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        window = Window(photile, folder)
+
+        kept = window.keep("ctrl+s", "view-*.exr")
+        subprocess.run([photile, "render", SCENE, "-o", folder / "expected.exr", *SETTINGS],
+                       check=True)
+        expected = Picture(folder / "expected.exr")
+        if list(kept.spec.channelnames) != list(expected.spec.channelnames):
+            fail("the kept picture has other channels than a rendered one")
+        if not np.array_equal(kept.pixels, expected.pixels):
+            fail("the kept picture is not the rendered one")
+
+        window.hand("key", "F2")  # no panels
+        time.sleep(1)
+        shot = window.keep("F12", "screenshot-*.png")
+        if not same_exposure(shot.rgb, kept.rgb):
+            fail("the window does not show the picture")
+        window.hand("mousemove", 400, 200, "click", 1)
+        time.sleep(1)
+        window.hand("key", "F2")
+        time.sleep(1)
+        with_panels = window.keep("F12", "screenshot-*.png")
+        right_top = (slice(0, 60), slice(160, 470))
+        if np.allclose(with_panels.rgb[right_top], shot.rgb[right_top]):
+            fail("a click shows no reading")
+
+        window.hand("keydown", "w")
+        time.sleep(0.7)
+        window.hand("keyup", "w")
+        at_first = kept.position()
+        moved = window.picture_when(lambda each: np.linalg.norm(each.position() - at_first) > 0.01
+                                    and each.spec.width == 480, "a step ahead")
+        if abs(moved.position()[1] - at_first[1]) > 1e-6:
+            fail("walking ahead left the floor")
+
+        # The slider of the only lamp, first under "Lights", all the way to the left.
+        def darkened():
+            for y in range(165, 200, 5):
+                window.drag((150, y), (12, y))
+                picture = window.keep("ctrl+s", "view-*.exr")
+                if picture.power() == 0:
+                    return picture
+            return None
+        dark = until(darkened, "the slider")
+        if dark.rgb.max() != 0:
+            fail("a lamp of 0 lm gives light")
+
+        window.hand("windowsize", window.id, 400, 300)
+        resized = window.picture_when(lambda each: (each.spec.width, each.spec.height) ==
+                                      (400, 300), "a picture of the new size")
+        del resized
+
+        window.hand("key", "ctrl+q")
+        if window.process.wait(PATIENCE) != 0:
+            fail(f"closing ended with {window.process.returncode}: {window.process.stderr.read()}")
+    print("walked, clicked, dragged, resized, closed")
+
+
+main()

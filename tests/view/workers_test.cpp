@@ -1,0 +1,120 @@
+// Photon maps that get better in the background, and the frames that are rendered from them.
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <thread>
+
+#include "photile/errors.hpp"
+#include "photile/scene_renderer.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+#include "view/frame_worker.hpp"
+#include "view/photon_worker.hpp"
+
+using namespace photile;
+using namespace photile::view;
+
+namespace {
+
+/// A lamp over a floor of one square metre.
+Scene lit_floor() {
+  test::SceneBuilder builder;
+  const std::uint32_t grey = builder.add(test::diffuse(glm::vec3(0.5f)));
+  builder.quad({-0.5f, 0, 0.5f}, {0.5f, 0, 0.5f}, {0.5f, 0, -0.5f}, {-0.5f, 0, -0.5f}, grey);
+  Light lamp;
+  lamp.name = "lamp";
+  lamp.kind = LightKind::point;
+  lamp.position = {0, 1, 0};
+  lamp.power = 100;
+  builder.add(lamp);
+  return builder.build();
+}
+
+Camera from_above() { return Camera::look_at({0, 1, 1}, {0, 0, 0}, {0, 1, 0}, glm::radians(40.0)); }
+
+RenderParameters few_photons() {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = 16'000;
+  return parameters;
+}
+
+std::vector<Device> one_device() {
+  std::vector<Device> devices;
+  devices.emplace_back();
+  return devices;
+}
+
+/// Waits for what another thread does; a minute is an error.
+template <class Condition>
+void wait_for(const Condition& condition) {
+  for (int i = 0; i < 6000 && !condition(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  REQUIRE(condition());
+}
+
+}  // namespace
+
+TEST_CASE("photons grow fourfold to all that were asked for") {
+  CHECK(generations_to(16'000'000) == std::vector<std::uint64_t>{1'000'000, 4'000'000, 16'000'000});
+  CHECK(generations_to(1) == std::vector<std::uint64_t>{1});
+}
+
+TEST_CASE("a viewer that stands still sees what render gives, bit for bit") {
+  const Scene scene = lit_floor();
+  FrameWorker frames(defaults::seed, 4, 30);
+  frames.show({from_above(), 40, 30, false});
+  PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
+                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
+  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 16'000; });
+  const auto frame = frames.latest();
+  CHECK(frame->samples_per_pixel == 4);
+
+  RenderParameters parameters = few_photons();
+  parameters.film.width = 40;
+  parameters.film.height = 30;
+  parameters.film.samples_per_pixel = 4;
+  const RenderResult expected = render(scene, from_above(), test::device(), parameters);
+  CHECK(frame->layers.layers[0].radiance == expected.layers.layers[0].radiance);
+  CHECK(frame->layers.layers[0].illuminance == expected.layers.layers[0].illuminance);
+  CHECK(luminance(glm::dvec3(frame->layers.layers[0].radiance[15 * 40 + 20])) > 0);
+  CHECK_FALSE(frames.take_error());
+  CHECK_FALSE(photons.take_error());
+}
+
+TEST_CASE("a frame is of the last viewpoint that was asked for") {
+  const Scene scene = lit_floor();
+  FrameWorker frames(defaults::seed, 1, 30);
+  PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
+                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
+  Camera camera = from_above();
+  for (int step = 0; step < 20; ++step) {
+    camera.position.x += 0.01;
+    frames.show({camera, 40, 30, true});
+  }
+  frames.show({camera, 44, 33, false});
+  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 16'000; });
+  CHECK(frames.latest()->camera.position == camera.position);
+  CHECK(frames.latest()->layers.width == 44);
+}
+
+TEST_CASE("what fails in the background is told, and ends nothing else") {
+  const Scene scene = lit_floor();
+  PhotonWorker photons(
+      scene, []() -> std::vector<Device> { throw DeviceError("no device today"); }, few_photons(),
+      std::nullopt, {}, [](std::shared_ptr<MapGeneration>) {});
+  std::exception_ptr error;
+  wait_for([&] { return error || (error = photons.take_error()); });
+  CHECK_THROWS_WITH(std::rethrow_exception(error), "no device today");
+  CHECK_FALSE(photons.take_error());
+}
+
+TEST_CASE("closing the window in the middle of the work waits for no photons") {
+  const Scene scene = lit_floor();
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = 400'000'000;  // minutes
+  FrameWorker frames(defaults::seed, 1024, 30);
+  frames.show({from_above(), 400, 300, false});
+  PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
+                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
+  wait_for([&] { return !photons.progress().stage.empty(); });
+}
