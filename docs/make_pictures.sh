@@ -23,10 +23,10 @@ outputs=$(mktemp -d)
 trap 'rm -rf "$outputs"' EXIT
 export photile outputs
 xvfb-run --auto-servernum --server-args "-screen 0 1280x960x24" bash -c '
-  "$photile" view scenes/living-room/living-room.gltf --size 1000x750 --samples 9 --photons 10M \
-    --neighbours 600 --outputs "$outputs" --quiet &
-  until xdotool search --name "9 of 9 samples, 10M"; do sleep 1; done
-  xdotool mousemove 660 520 click 1; sleep 2
+  "$photile" view scenes/living-room/living-room.gltf --size 800x600 --samples 4 --photons 2M \
+    --neighbours 200 --outputs "$outputs" --quiet &
+  until xdotool search --name "4 of 4 samples, 2M"; do sleep 1; done
+  xdotool mousemove 560 470 click 1; sleep 2
   xdotool key F12; sleep 2
   xdotool key ctrl+q
   wait'
