@@ -195,7 +195,7 @@ The scenes that follow CIE 171:2006 have its kind of light and surface, not its 
 values are computed from form factors, none is quoted. Some of the printed tables are known to be
 wrong: table 19 of case 5.7, and others (Ashdown, [CIE 171:2006 errata](
 https://lightinganalysts.com/cie-1712006-errata)). Its cases of skies, windows and luminaires with
-measured photometry need what photile does not have.
+measured photometry are not among these.
 
 Means over whole walls show what happens at edges and corners: a density whose disc hangs over the
 edge of a surface comes out too dark unless the disc is clipped. Readings away from edges show the
