@@ -202,8 +202,9 @@ int main(int count, char** arguments) {
       if (test.memory_per_photon == 0) {
         print_fingerprint(devices, test, sizes);
       } else {
-        std::vector<Device> bounded =
-            open_devices({.memory_bytes = test.memory_per_photon * sizes.photons});
+        DeviceOptions options;
+        options.memory_bytes = test.memory_per_photon * sizes.photons;
+        std::vector<Device> bounded = open_devices(options);
         print_fingerprint(bounded, test, sizes);
       }
     }

@@ -83,7 +83,7 @@ TEST_CASE("photile_area and photile_lumens make an area light of a node, whateve
   }
 }
 
-TEST_CASE("--area-light makes one of any node, before its extras", "[panels]") {
+TEST_CASE("the option --area-light makes one of any node, before its extras", "[panels]") {
   const Scene scene = load_gltf(with_extras({{"photile_area", {3, 3}}, {"photile_lumens", 1}}),
                                 panel_option("Area=0.5x0.25,800"));
   REQUIRE(scene.lights.size() == 1);

@@ -171,7 +171,7 @@ TEST_CASE("a profile that is missing, outside or malformed is an error that name
              Catch::Contains("'bad.ies'") && Catch::Contains("ends before"));
 }
 
-TEST_CASE("--ies gives a point or spot light a file", "[profiles]") {
+TEST_CASE("the option --ies gives a point or spot light a file", "[profiles]") {
   const Folder folder;
   nlohmann::json document = document_with(nlohmann::json::object());
   document["nodes"][1]["extensions"] = point_light_node(document);
