@@ -40,9 +40,9 @@ class Bench {
   /// Median of 5 runs over all hits, after one that warms up.
   double microseconds_per_hit(const EstimateTuning& tuning) {
     const maps::MapStore& store = maps_of(tuning.photons_per_cell).store();
-    const auto query = make_grid_query(store, neighbours_, neighbours_,
-                                       static_cast<float>(sample_.radius), tuning, nullptr,
-                                       DensityKernel::constant);
+    const auto query =
+        make_grid_query(store, neighbours_, neighbours_, static_cast<float>(sample_.radius), tuning,
+                        nullptr, DensityKernel::constant);
     std::array<double, 5> seconds{};
     run(store, *query);
     for (double& measured : seconds) {

@@ -55,10 +55,10 @@ struct ToneMapping {
   double exposure = 0;             ///< stops on top
 };
 
-/// Factor that brings the log-average luminance of R, G, B to mid grey, over pixels of finite positive
-/// luminance within a factor of 20 of their median (Reinhard et al., "Photographic tone reproduction
-/// for digital images", 2002, without the outliers: lamps and black backgrounds). 1 where no pixel
-/// has any. Errors: InputError where there is no R, G or B.
+/// Factor that brings the log-average luminance of R, G, B to mid grey, over pixels of finite
+/// positive luminance within a factor of 20 of their median (Reinhard et al., "Photographic tone
+/// reproduction for digital images", 2002, without the outliers: lamps and black backgrounds). 1
+/// where no pixel has any. Errors: InputError where there is no R, G or B.
 double automatic_exposure(const Image& scene_referred);
 
 /// Root R, G, B to display-referred values in [0,1], still linear; `write_png` applies the sRGB
