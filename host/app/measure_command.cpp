@@ -85,15 +85,12 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (options.planes.empty() && options.points.empty() && options.height.empty()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
-  std::vector<LightChange> changes;
-  for (const auto& text : render.lights) changes.push_back(LightChange::parse(text));
   const MeasureOutputs outputs(options.outputs, render.scene);
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const Scene scene = load_scene(render.scene, render.load);
-  LightMix mix = LightMix::of(scene, render.load.lumen_per_watt);
-  photile::apply(mix, changes);  // qualified: std::apply would match better
+  const LightMix mix = mix_of(scene, render);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene);
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);

@@ -128,8 +128,6 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   const Stopwatch stopwatch;
   apply_words(options);
   if (options.integrates == Integrator::path) refuse_photon_map_options(command);
-  std::vector<LightChange> changes;
-  for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
   const PictureOutputs outputs = check_outputs_of(options);
 
   const ThreadLimit threads(options.threads);
@@ -140,8 +138,7 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   RunRecord record;
   record.stages.push_back(timed_stage("load scene", progress,
                                       [&] { scene = load_scene(options.scene, options.load); }));
-  record.mix = LightMix::of(scene, options.load.lumen_per_watt);
-  photile::apply(record.mix, changes);  // qualified: std::apply would match better
+  record.mix = mix_of(scene, options);
   tell_scene(scene, record.mix, progress);
   const Camera& camera = choose_camera(scene, options.camera);
   set_film_size(options.parameters.film, options.size, camera);

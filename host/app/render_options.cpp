@@ -292,6 +292,7 @@ void apply_words(RenderOptions& options) {
   options.parameters.structure = value_for(structures, options.structure);
   options.parameters.photons.seed = options.parameters.film.seed;
   options.device.use_program_cache = !options.no_cache;
+  for (const auto& text : options.lights) options.light_changes.push_back(LightChange::parse(text));
 }
 
 void refuse_photon_map_options(const CLI::App& command) {
@@ -316,6 +317,12 @@ const Camera& choose_camera(const Scene& scene, const std::string& selector) {
   }
   throw UsageError(
       fmt::format("no camera '{}' in {}; it has {}", selector, scene.source.string(), known));
+}
+
+LightMix mix_of(const Scene& scene, const RenderOptions& options) {
+  LightMix mix = LightMix::of(scene, options.load.lumen_per_watt);
+  photile::apply(mix, options.light_changes);  // qualified: std::apply would match better
+  return mix;
 }
 
 void set_film_size(PrimaryHitParameters& film, const std::string& size, const Camera& camera) {

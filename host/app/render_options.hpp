@@ -38,8 +38,9 @@ struct RenderOptions {
   bool tuned = false;                 ///< use the tuning that `photile devices --tune` stored
   bool own_photons_per_cell = false;  ///< given by the user: a tuning does not replace it
   std::string camera;
-  std::string size;  ///< "" = by the camera
-  std::vector<std::string> lights;
+  std::string size;                        ///< "" = by the camera
+  std::vector<std::string> lights;         ///< what --light asks for
+  std::vector<LightChange> light_changes;  ///< the same, understood
   DeviceOptions device;
   bool no_cache = false;
   SceneLoadOptions load;
@@ -65,8 +66,9 @@ void add_saved_maps_options(CLI::App& command, RenderOptions& options);
 /// Adds --integrator.
 void add_integrator_option(CLI::App& command, RenderOptions& options);
 
-/// Sets what `options` holds as words: the integrator, the quota, the maps, the structure, the area
-/// and the cache. Errors: none, CLI11 has checked the words.
+/// Sets what `options` holds as words: the integrator, the quota, the maps, the structure, the
+/// area, the light changes and the cache. Errors: UsageError for a light change that is not
+/// understood; CLI11 has checked the other words.
 void apply_words(RenderOptions& options);
 
 /// Errors: UsageError that names an option which was given to `command` although the path tracer
@@ -76,6 +78,10 @@ void refuse_photon_map_options(const CLI::App& command);
 /// The camera named by `selector`: a name, an index, or "" for the first.
 /// Errors: UsageError listing those there are.
 const Camera& choose_camera(const Scene& scene, const std::string& selector);
+
+/// The scene's lights as they are, then as --light asks for.
+/// Errors: UsageError where no light has the name.
+LightMix mix_of(const Scene& scene, const RenderOptions& options);
 
 /// Width and height into `film`: `size` if given, else the default height and the camera's aspect
 /// ratio, else the default size. Errors: UsageError when the aspect ratio makes the picture too

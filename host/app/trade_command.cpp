@@ -132,8 +132,6 @@ void run_trade(TradeOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
   apply_words(render);
-  std::vector<LightChange> changes;
-  for (const auto& text : render.lights) changes.push_back(LightChange::parse(text));
   const TradeFiles files(options.folder);
   make_folder(options.folder);
   check_outputs(std::array{files.csv, files.json, files.plot, files.reference}, render.scene);
@@ -142,8 +140,7 @@ void run_trade(TradeOptions& options) {
   TerminalProgress progress(render.quiet);
   std::vector<Device> devices = open_devices(render.device);
   const Scene scene = load_scene(render.scene, render.load);
-  LightMix mix = LightMix::of(scene, render.load.lumen_per_watt);
-  photile::apply(mix, changes);  // qualified: std::apply would match better
+  const LightMix mix = mix_of(scene, render);
   const Camera& camera = choose_camera(scene, render.camera);
   render.parameters.film.width = defaults::trade_width;
   render.parameters.film.height = defaults::trade_height;

@@ -32,8 +32,6 @@ void run_view(ViewOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
   apply_words(render);
-  std::vector<LightChange> changes;
-  for (const auto& text : render.lights) changes.push_back(LightChange::parse(text));
   if (!std::filesystem::is_directory(options.outputs)) {
     throw UsageError(
         fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
@@ -42,8 +40,7 @@ void run_view(ViewOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const Scene scene = load_scene(render.scene, render.load);
-  LightMix mix = LightMix::of(scene, render.load.lumen_per_watt);
-  photile::apply(mix, changes);  // qualified: std::apply would match better
+  const LightMix mix = mix_of(scene, render);
   const Camera& camera = choose_camera(scene, render.camera);
   set_film_size(render.parameters.film, render.size, camera);
   tell_scene(scene, mix, progress);

@@ -6,13 +6,11 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "input_text.hpp"
+#include "json_object.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "walk/interpolation.hpp"
@@ -37,54 +35,7 @@ glm::dquat orientation_of(const Camera& camera) {
   return glm::quat_cast(glm::dmat3(camera.right, camera.up, -camera.forward));
 }
 
-/// One keyframe of a file, for messages.
-class Keyframe {
- public:
-  Keyframe(const json& object, std::string where) : object_(object), where_(std::move(where)) {
-    if (!object.is_object()) refuse("is no object {...}");
-    static const std::set<std::string> known{"time",      "position", "look_at",
-                                             "direction", "up",       "fov"};
-    for (const auto& [key, value] : object.items()) {
-      if (known.count(key) == 0) {
-        refuse(fmt::format(
-            "'{}' is not known; there are time, position, look_at, direction, up, fov", key));
-      }
-    }
-  }
-
-  bool has(const char* key) const { return object_.contains(key); }
-
-  double number(const char* key, double lowest, double highest) const {
-    const json value = object_.value(key, json());
-    if (!value.is_number() || !(value.get<double>() >= lowest) ||
-        !(value.get<double>() <= highest)) {
-      refuse(fmt::format("'{}' is not a number from {:g} to {:g}", key, lowest, highest));
-    }
-    return value.get<double>();
-  }
-
-  glm::dvec3 vector(const char* key) const {
-    const json value = object_.value(key, json());
-    const auto is_coordinate = [](const json& each) {
-      return each.is_number() && std::abs(each.get<double>()) <= limits::max_coordinate;
-    };
-    if (!value.is_array() || value.size() != 3 ||
-        !std::all_of(value.begin(), value.end(), is_coordinate)) {
-      refuse(fmt::format("'{}' is not three numbers", key));
-    }
-    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
-  }
-
-  [[noreturn]] void refuse(const std::string& reason) const {
-    throw InputError(fmt::format("{}: {}", where_, reason));
-  }
-
- private:
-  const json& object_;
-  std::string where_;
-};
-
-void add(const Keyframe& keyframe, const Camera& base, Keyframes& all) {
+void add(const JsonObject& keyframe, const Camera& base, Keyframes& all) {
   const double time = keyframe.number("time", -1e9, 1e9);
   if (!all.times.empty() && !(time > all.times.back())) {
     keyframe.refuse("'time' is not after that of the keyframe before");
@@ -145,8 +96,7 @@ bool is_smooth(const json& content, const std::string& file) {
 }  // namespace
 
 CameraMotion read_camera_path(const std::filesystem::path& file, const Camera& base) {
-  const json content = json::parse(read_input_text(file), nullptr, /*allow_exceptions=*/false);
-  if (content.is_discarded()) throw InputError(fmt::format("{}: is no JSON", file.string()));
+  const json content = read_input_json(file);
   const json list = content.is_object() ? content.value("keyframes", json()) : content;
   if (!list.is_array() || list.empty()) {
     throw InputError(
@@ -156,7 +106,9 @@ CameraMotion read_camera_path(const std::filesystem::path& file, const Camera& b
   auto all = std::make_shared<Keyframes>();
   all->smooth = is_smooth(content, file.string());
   for (std::size_t i = 0; i < list.size(); ++i) {
-    add(Keyframe(list[i], fmt::format("{}: keyframe {}", file.string(), i + 1)), base, *all);
+    const JsonObject keyframe(list[i], fmt::format("{}: keyframe {}", file.string(), i + 1),
+                              {"time", "position", "look_at", "direction", "up", "fov"});
+    add(keyframe, base, *all);
   }
   // Targets and directions do not mix: then all turn as orientations.
   if (all->targets.size() < all->times.size()) all->targets.clear();

@@ -8,6 +8,7 @@
 
 #include "device/embedded_files.hpp"
 #include "photile/errors.hpp"
+#include "source_folder.hpp"
 
 using photile::device::assemble_source;
 using photile::device::register_kernel_source;
@@ -42,7 +43,7 @@ TEST_CASE("files that include each other end") {
 }
 
 TEST_CASE("every kernel and shared header is embedded byte for byte") {
-  const std::filesystem::path root(PHOTILE_SOURCE_DIR);
+  const std::filesystem::path root = test::source_folder();
   std::size_t count = 0;
   const auto compare = [&](const std::filesystem::path& folder, const std::filesystem::path& base) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

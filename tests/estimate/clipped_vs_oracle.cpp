@@ -7,13 +7,12 @@
 #include "estimates_comparison.hpp"
 #include "photon_sets.hpp"
 #include "reference/clipped_area.hpp"
+#include "source_folder.hpp"
 #include "test_device.hpp"
 
 using namespace photile;
 
 namespace {
-
-const std::filesystem::path source_folder = PHOTILE_SOURCE_DIR;
 
 /// Areas are compared with polygons of 4096 corners, and computed from floats: a ten-thousandth of
 /// the whole disc, where the clipped one is a tenth of that at least.
@@ -127,7 +126,7 @@ TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, f
 }
 
 TEST_CASE("clipped irradiance in the living room equals the oracle's") {
-  Scene scene = load_scene(source_folder / "scenes/living-room/living-room.gltf");
+  Scene scene = load_scene(test::source_folder() / "scenes/living-room/living-room.gltf");
   for (Material& material : scene.materials) material.specular = glm::vec3(0.0f);  // no lobes
   const Photons photons = test::uniform_photons(scene, 60'000, 51);
   const DensityKernel kernel = GENERATE(from_range(all_density_kernels));

@@ -5,13 +5,12 @@
 
 #include "neighbour_comparison.hpp"
 #include "photon_sets.hpp"
+#include "source_folder.hpp"
 #include "test_device.hpp"
 
 using namespace photile;
 
 namespace {
-
-const std::filesystem::path source_folder = PHOTILE_SOURCE_DIR;
 
 void check_modes(const Scene& scene, std::size_t photon_count, std::size_t hit_count, double radius,
                  std::initializer_list<MapStructure> structures,
@@ -85,12 +84,12 @@ TEST_CASE("a patch has the photons that are nearly the radius away") {
 }
 
 TEST_CASE("maps of patches find the oracle's neighbours in the Cornell box") {
-  const Scene scene = load_scene(source_folder / "scenes/cornell-box/cornell-box.obj");
+  const Scene scene = load_scene(test::source_folder() / "scenes/cornell-box/cornell-box.obj");
   check_modes(scene, 20'000, 300, 0.08, every_structure, {1, 50, 300});
 }
 
 TEST_CASE("maps of patches find the oracle's neighbours in the living room", "[long]") {
-  const Scene scene = load_scene(source_folder / "scenes/living-room/living-room.gltf");
+  const Scene scene = load_scene(test::source_folder() / "scenes/living-room/living-room.gltf");
   check_modes(scene, 60'000, 400, 0.4, every_structure, {50});
 }
 
@@ -99,7 +98,7 @@ TEST_CASE(
     "[slow]") {
   const char* set = std::getenv("PHOTILE_SHARED_SCENES");
   const std::filesystem::path folder =
-      set != nullptr ? set : source_folder.parent_path() / "shared/scenes";
+      set != nullptr ? set : test::source_folder().parent_path() / "shared/scenes";
   for (const char* file : {"kitchen/kitchen-diffuse.gltf", "classroom/classroom-diffuse.gltf"}) {
     if (!std::filesystem::exists(folder / file)) {
       WARN("skipped: no " << file << " in the shared scenes");
@@ -110,7 +109,7 @@ TEST_CASE(
 }
 
 TEST_CASE("estimates of maps of patches equal those of triangles up to the order of the sums") {
-  const Scene scene = load_scene(source_folder / "scenes/living-room/living-room.gltf");
+  const Scene scene = load_scene(test::source_folder() / "scenes/living-room/living-room.gltf");
   const Photons photons = test::uniform_photons(scene, 60'000, 53);
   PrimaryHits hits = test::uniform_hits(scene, 2000, 54);
   if (needs_of(scene).glossy) {

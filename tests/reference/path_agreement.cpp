@@ -8,6 +8,7 @@
 #include "photile/image.hpp"
 #include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
+#include "source_folder.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -59,7 +60,7 @@ TEST_CASE("paths and photon maps see the same light in a closed box, away from i
 }
 
 TEST_CASE("paths and photon maps see the same light in the living room, light by light", "[slow]") {
-  const Scene scene = load_scene(PHOTILE_SOURCE_DIR "/scenes/living-room/living-room.gltf");
+  const Scene scene = load_scene(test::source_folder() / "scenes/living-room/living-room.gltf");
   const std::size_t lights = scene.lights.size();
   std::vector<std::vector<double>> by_photons(lights), by_paths(lights);
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {

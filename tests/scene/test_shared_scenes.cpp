@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "scene_files.hpp"
+#include "source_folder.hpp"
 
 namespace photile {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 std::filesystem::path shared_scenes() {
   const char* place = std::getenv("PHOTILE_SHARED_SCENES");
   return place != nullptr ? std::filesystem::path(place)
-                          : std::filesystem::path(PHOTILE_SOURCE_DIR) / "../shared/scenes";
+                          : test::source_folder() / "../shared/scenes";
 }
 
 /// Whether the shared scenes are here; says so when they are not.

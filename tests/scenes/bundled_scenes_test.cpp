@@ -10,12 +10,13 @@
 #include <string>
 
 #include "photile/scene.hpp"
+#include "source_folder.hpp"
 
 using namespace photile;
 
 namespace {
 
-const std::filesystem::path folder = std::filesystem::path(PHOTILE_SOURCE_DIR) / "scenes";
+const std::filesystem::path folder = test::source_folder() / "scenes";
 const std::filesystem::path cornell_obj = folder / "cornell-box/cornell-box.obj";
 const std::filesystem::path cornell_gltf = folder / "cornell-box/cornell-box.gltf";
 const std::filesystem::path cornell_specular = folder / "cornell-box/cornell-box-specular.gltf";

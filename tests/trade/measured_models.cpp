@@ -7,6 +7,7 @@
 #include "photile/path_tracer.hpp"
 #include "photile/picture_error.hpp"
 #include "photile/quality_target.hpp"
+#include "source_folder.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
@@ -20,7 +21,7 @@ struct View {
 };
 
 View cornell_box() {
-  View view{load_scene(PHOTILE_SOURCE_DIR "/scenes/cornell-box/cornell-box.obj"), {}};
+  View view{load_scene(test::source_folder() / "scenes/cornell-box/cornell-box.obj"), {}};
   view.camera = view.scene.cameras.front();
   return view;
 }

@@ -4,6 +4,7 @@
 #include "photile/layered_picture.hpp"
 #include "photile/path_tracer.hpp"
 #include "photile/trade.hpp"
+#include "source_folder.hpp"
 #include "test_device.hpp"
 
 using namespace photile;
@@ -11,7 +12,7 @@ using namespace photile;
 namespace {
 
 struct Subject {
-  Scene scene = load_scene(PHOTILE_SOURCE_DIR "/scenes/cornell-box/cornell-box.obj");
+  Scene scene = load_scene(test::source_folder() / "scenes/cornell-box/cornell-box.obj");
   LightMix mix = LightMix::of(scene, defaults::lumen_per_watt);
   RenderParameters parameters;
   Image reference;
