@@ -106,7 +106,8 @@ Scene box(const glm::vec3& size, int cells) {
 
 }  // namespace
 
-TEST_CASE("a uniformly lit plate reads 1 over all of it, borders and corners, for any triangles") {
+TEST_CASE("a uniformly lit plate reads 1 over all of it, borders and corners, for any triangles",
+          "[long]") {
   for (const int cells : {1, 3, 40}) {
     const Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, cells);
     CAPTURE(cells);

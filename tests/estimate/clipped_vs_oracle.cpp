@@ -111,7 +111,8 @@ TEST_CASE("clipped irradiance on vertices and edges to the last bit equals the o
   check_clipped(scene, photons, hits_on_vertices_and_edges(scene), 0.2, 50, kernel);
 }
 
-TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode") {
+TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode",
+          "[long]") {
   const auto [mode, kernel] =
       GENERATE(table<MapMode, DensityKernel>({{MapMode::triangle, DensityKernel::constant},
                                               {MapMode::patch, DensityKernel::constant},

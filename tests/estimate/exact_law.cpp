@@ -165,12 +165,16 @@ void check_law(float s, float t, bool half) {
 
 }  // namespace
 
-TEST_CASE("the exact law of the estimate in the middle of a plate") {
+TEST_CASE("the exact law of the estimate in the middle of a plate", "[long]") {
   check_law(0.5f, 0.45f, false);
 }
 
-TEST_CASE("the exact law of the estimate at an edge") { check_law(0.5f, 0, false); }
+TEST_CASE("the exact law of the estimate at an edge", "[long]") { check_law(0.5f, 0, false); }
 
-TEST_CASE("the exact law of the estimate in a corner of 90 degrees") { check_law(0, 0, false); }
+TEST_CASE("the exact law of the estimate in a corner of 90 degrees", "[long]") {
+  check_law(0, 0, false);
+}
 
-TEST_CASE("the exact law of the estimate in a corner of 45 degrees") { check_law(1, 0, true); }
+TEST_CASE("the exact law of the estimate in a corner of 45 degrees", "[long]") {
+  check_law(1, 0, true);
+}

@@ -56,7 +56,7 @@ Scene sphere() {
 
 }  // namespace
 
-TEST_CASE("maps of patches find the oracle's neighbours on a fine torus") {
+TEST_CASE("maps of patches find the oracle's neighbours on a fine torus", "[long]") {
   Scene scene = test::empty_scene();
   test::add_torus(scene, 1.0f, 0.2f, 96, 48);
   check_modes(scene, 20'000, 300, 0.3, every_structure, {1, 50, 400});
