@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "groups/group_lists.hpp"
 #include "groups/triangle_bvh.hpp"
-#include "photile/neighbour_groups.hpp"
 
 namespace photile::surface {
 namespace {
@@ -17,30 +17,50 @@ constexpr double coincident = 1e-4;  ///< over the radius: layers so close lie o
 constexpr float least_open = 0.5f;   ///< with less a triangle counts as covered
 constexpr int samples = 64;
 
-/// What may cover a triangle, in the triangle's plane.
-struct Cover {
-  std::array<glm::dvec3, 3> corner;
-};
+using Corners = std::array<glm::dvec3, 3>;
 
 /// Point i of `samples` of a triangle, evenly spread: Roberts, "The Unreasonable Effectiveness of
 /// Quasirandom Sequences" (2018), folded into the triangle.
-glm::dvec3 sample_point(const std::array<glm::vec3, 3>& corners, int i) {
+glm::dvec3 sample_point(const Corners& corners, int i) {
   double u = std::fmod(0.5 + 0.7548776662466927 * i, 1.0);
   double v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0);
   if (u + v > 1) u = 1 - u, v = 1 - v;
-  return (1 - u - v) * glm::dvec3(corners[0]) + u * glm::dvec3(corners[1]) +
-         v * glm::dvec3(corners[2]);
+  return (1 - u - v) * corners[0] + u * corners[1] + v * corners[2];
 }
 
-/// Whether a point's projection along `normal` lies in the triangle, whichever way that is wound.
-bool covers(const Cover& cover, const glm::dvec3& point, const glm::dvec3& normal) {
-  int inside = 0;
-  for (int i = 0; i < 3; ++i) {
-    const glm::dvec3 edge = cover.corner[(i + 1) % 3] - cover.corner[i];
-    inside += glm::dot(glm::cross(normal, edge), point - cover.corner[i]) >= 0 ? 1 : -1;
+/// The inside of a triangle's projection along `normal`, whichever way it is wound: three planes.
+class Projection {
+ public:
+  Projection(const Corners& corner, const glm::dvec3& normal) {
+    const double winding =
+        glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), normal) < 0 ? -1 : 1;
+    for (int i = 0; i < 3; ++i) {
+      inwards_[i] = winding * glm::cross(normal, corner[(i + 1) % 3] - corner[i]);
+      border_[i] = glm::dot(inwards_[i], corner[i]);
+    }
   }
-  return std::abs(inside) == 3;
-}
+
+  bool holds(const glm::dvec3& point) const {
+    return glm::dot(inwards_[0], point) >= border_[0] &&
+           glm::dot(inwards_[1], point) >= border_[1] && glm::dot(inwards_[2], point) >= border_[2];
+  }
+
+  /// Whether one of its edges has all of a triangle's corners on the outer side.
+  bool is_apart_from(const Corners& corner) const {
+    for (int i = 0; i < 3; ++i) {
+      if (std::all_of(corner.begin(), corner.end(), [&](const glm::dvec3& point) {
+            return glm::dot(inwards_[i], point) < border_[i];
+          })) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  std::array<glm::dvec3, 3> inwards_;
+  std::array<double, 3> border_;
+};
 
 class ExposureFinder {
  public:
@@ -54,19 +74,19 @@ class ExposureFinder {
         tree_(mesh.scene) {}
 
   float exposure_of(std::uint32_t own) const {
-    if (lit_[sheets_.of[own]] == 0) return 1;
+    if (is_dark(own)) return 1;
     const glm::dvec3 normal = normal_of(own);
-    const std::vector<Cover> near = covers_near(own, normal);
-    if (near.empty()) return 1;
-    const auto corners = mesh_.scene.corners(triangle_of(own));
+    const Corners corners = corners_of(triangle_of(own));
+    const std::vector<Projection> covers = covers_near(own, corners, normal);
+    if (covers.empty()) return 1;
     int open = 0;
     for (int i = 0; i < samples; ++i) {
       const glm::dvec3 point = sample_point(corners, i);
-      open += std::none_of(near.begin(), near.end(),
-                           [&](const Cover& cover) { return covers(cover, point, normal); });
+      if (open >= least_open * samples) return 1;
+      open += std::none_of(covers.begin(), covers.end(),
+                           [&](const Projection& cover) { return cover.holds(point); });
     }
-    const float fraction = static_cast<float>(open) / samples;
-    return fraction < least_open ? fraction : 1.0f;
+    return open < least_open * samples ? static_cast<float>(open) / samples : 1.0f;
   }
 
  private:
@@ -74,32 +94,48 @@ class ExposureFinder {
     return side_of(s) == 0 ? mesh_.normal[triangle_of(s)] : -mesh_.normal[triangle_of(s)];
   }
 
-  std::vector<Cover> covers_near(std::uint32_t own, const glm::dvec3& normal) const {
-    std::vector<Cover> near;
-    const glm::dvec3 origin(mesh_.scene.corners(triangle_of(own))[0]);
-    const auto add = [&](std::uint32_t s) {
-      if (lit_[sheets_.of[s]] != 0 || !normals_agree(normal_of(s), -normal, cos_angle_)) return;
-      Cover cover;
+  Corners corners_of(std::uint32_t triangle) const {
+    const auto corners = mesh_.scene.corners(triangle);
+    return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
+  }
+
+  /// Whether a side of the triangle that no light reaches looks against `normal`.
+  bool faces_in_the_dark(std::uint32_t triangle, const glm::dvec3& normal) const {
+    if (!mesh_.counts(triangle)) return false;
+    const std::uint32_t sides = groups::agreeing_sides(mesh_.normal[triangle], -normal, cos_angle_);
+    return ((sides & groups::equal_sides) != 0 && is_dark(sided(triangle, 0))) ||
+           ((sides & groups::opposite_sides) != 0 && is_dark(sided(triangle, 1)));
+  }
+
+  bool is_dark(std::uint32_t s) const { return lit_[sheets_.of[s]] == 0; }
+
+  /// What lies above a triangle, close to it, as seen along its normal.
+  std::vector<Projection> covers_near(std::uint32_t own, const Corners& own_corners,
+                                      const glm::dvec3& normal) const {
+    std::vector<Projection> covers;
+    const Projection outline(own_corners, normal);
+    const auto add = [&](std::uint32_t triangle) {
+      if (!faces_in_the_dark(triangle, normal)) return;
+      const Corners corners = corners_of(triangle);
+      if (outline.is_apart_from(corners)) return;
       double lowest = reach * radius_, highest = 0;
-      for (int i = 0; i < 3; ++i) {
-        cover.corner[i] = glm::dvec3(mesh_.scene.corners(triangle_of(s))[i]);
-        const double height = glm::dot(cover.corner[i] - origin, normal);
+      for (const glm::dvec3& corner : corners) {
+        const double height = glm::dot(corner - own_corners[0], normal);
         lowest = std::min(lowest, height);
         highest = std::max(highest, height);
       }
-      if (lowest >= -coincident * radius_ && highest < reach * radius_) near.push_back(cover);
+      if (lowest < -coincident * radius_ || highest >= reach * radius_) return;
+      const Projection cover(corners, normal);
+      if (!cover.is_apart_from(own_corners)) covers.push_back(cover);
     };
     tree_.for_each_leaf_within(groups::triangle_box(mesh_.scene, triangle_of(own)), reach * radius_,
                                [&](std::size_t first, std::size_t last) {
                                  for (std::size_t i = first; i < last; ++i) {
                                    const std::uint32_t triangle = tree_.order()[i];
-                                   if (triangle == triangle_of(own) || !mesh_.counts(triangle))
-                                     continue;
-                                   add(sided(triangle, 0));
-                                   add(sided(triangle, 1));
+                                   if (triangle != triangle_of(own)) add(triangle);
                                  }
                                });
-    return near;
+    return covers;
   }
 
   const SurfaceMesh& mesh_;
