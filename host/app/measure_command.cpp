@@ -15,6 +15,7 @@
 #include "app/terminal_progress.hpp"
 #include "app/threads.hpp"
 #include "app/validators.hpp"
+#include "measuring/furniture.hpp"
 #include "measuring/measure_grids.hpp"
 #include "measuring/plane_file.hpp"
 #include "measuring/points_file.hpp"
@@ -36,11 +37,30 @@ struct MeasureOptions {
   double wall_band = defaults::wall_band;
   double spacing = 0;  ///< metres; 0 = that of EN 12464-1
   std::string up = "y";
+  double clearance = 0;  ///< metres; 0 = furniture is not looked for
   bool cylindrical = false;
 };
 
+/// Errors: UsageError where no point is left.
+void leave_out_furniture(const Scene& scene, double clearance, measuring::SensorGrid& grid,
+                         Progress& progress) {
+  const std::size_t all = grid.sensors.size();
+  const std::size_t left_out = measuring::leave_out_furniture(scene, clearance, grid);
+  if (grid.sensors.empty()) {
+    throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
+                                 clearance, all, grid.name));
+  }
+  if (left_out > 0) {
+    progress.note(
+        fmt::format("{}: {} of {} points lie in furniture, or less than {} m from some; "
+                    "they are left out",
+                    grid.name, left_out, all, clearance));
+  }
+}
+
 /// Everything that the command line asks to be measured.
-std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const Scene& scene) {
+std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const Scene& scene,
+                                            Progress& progress) {
   std::vector<measuring::SensorGrid> grids;
   for (const auto& file : options.planes) {
     for (auto& grid : measuring::read_planes(file)) grids.push_back(std::move(grid));
@@ -52,6 +72,9 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
     plane.spacing = options.spacing;
     plane.up = options.up[0] - 'x';
     grids.push_back(measuring::working_plane_grid(scene, plane));
+  }
+  if (options.clearance > 0) {
+    for (auto& grid : grids) leave_out_furniture(scene, options.clearance, grid, progress);
   }
   std::size_t sensors = 0;
   for (const auto& grid : grids) sensors += grid.sensors.size();
@@ -91,7 +114,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   TerminalProgress progress(render.quiet);
   const Scene scene = load_scene(render.scene, render.load);
   const LightMix mix = mix_of(scene, render);
-  const std::vector<measuring::SensorGrid> grids = grids_of(options, scene);
+  const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);
   warn(scene, grids, progress);
@@ -127,6 +150,13 @@ void add_places(CLI::App& command, MeasureOptions& options) {
       ->capture_default_str()
       ->group("Places");
   command.add_option("--spacing", options.spacing, "metres; default: that of EN 12464-1")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Places");
+  command
+      .add_option("--clearance", options.clearance,
+                  "leaves out points inside furniture, or with a surface less than M before or "
+                  "behind them")
       ->type_name("M")
       ->transform(positive_number())
       ->group("Places");

@@ -81,7 +81,19 @@ void add_false_colour_options(CLI::App& command, MeasureOutputOptions& options) 
       ->check(CLI::IsMember(image::Palette::names()))
       ->capture_default_str()
       ->group(group);
-  command.add_flag("--cl", colours.lines_only, "isolines alone")->group(group);
+  const auto contours = [&](const char* name, measuring::Contours drawn, const char* what) {
+    return command
+        .add_flag_callback(
+            name, [&colours, drawn] { colours.contours = drawn; }, what)
+        ->group(group);
+  };
+  CLI::Option* lines = contours("--cl", measuring::Contours::lines, "isolines alone");
+  CLI::Option* bands =
+      contours("--cb", measuring::Contours::bands, "bands around the isolines alone");
+  CLI::Option* steps =
+      contours("--cp", measuring::Contours::steps, "posterized: one colour for each step");
+  bands->excludes(lines);
+  steps->excludes(lines)->excludes(bands);
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run) {

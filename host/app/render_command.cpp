@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/glare_output.hpp"
 #include "app/number_format.hpp"
 #include "app/output_files.hpp"
 #include "app/quality_options.hpp"
@@ -20,19 +23,28 @@
 #include "app/threads.hpp"
 #include "app/tuning_report.hpp"
 #include "device/context.hpp"
+#include "image/live_preview.hpp"
 #include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/path_tracer.hpp"
+#include "render/hit_source.hpp"
 
 namespace photile::app {
 namespace {
 
 PictureOutputs check_outputs_of(const RenderOptions& options) {
   PictureOutputs outputs(options.pictures);
-  if (outputs.empty()) throw UsageError("no output; give -o FILE.exr or -o FILE.png");
+  if (outputs.empty() && options.glare.empty()) {
+    throw UsageError("no output; give -o FILE.exr or -o FILE.png");
+  }
+  if (!options.glare.empty() && std::filesystem::path(options.glare).extension() != ".png") {
+    throw UsageError(
+        fmt::format("{}: --glare writes a file that ends in .png; rename it", options.glare));
+  }
   auto files = outputs.files();
   if (!options.statistics.empty()) files.emplace_back(options.statistics);
+  if (!options.glare.empty()) files.emplace_back(options.glare);
   if (!options.save_maps.empty()) files.emplace_back(options.save_maps);
   check_outputs(files, options.scene);
   return outputs;
@@ -87,17 +99,39 @@ void tell_kernels(Device& device, bool profile, Progress& progress) {
   for (const auto& line : kernel_table(device.context().kernel_times())) progress.note(line);
 }
 
+/// What is rendered: the picture and, where --glare asks for it, what came by reflection.
+struct Views {
+  const HitSource& picture;
+  LightLayers* reflections;  ///< is filled; may be null
+};
+
+/// What the camera sees; with --preview its picture is shown while it grows.
+std::unique_ptr<HitSource> hits_of(const Camera& camera, const RenderOptions& options,
+                                   const RunRecord& record, Progress& progress) {
+  if (options.preview.empty()) return std::make_unique<CameraHits>(camera);
+  auto preview =
+      std::make_shared<image::LivePreview>(options.preview, record.scene, record.mix, progress);
+  return std::make_unique<WatchedHits>(
+      camera, [preview](const LightLayers& layers, int first, int last, double share) {
+        preview->rows(layers, first, last, share);
+      });
+}
+
 /// The layers by photon maps. Fills in what `record` tells of them.
 LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
-                              RenderOptions& options, RunRecord& record, Progress& progress) {
+                              RenderOptions& options, const Views& views, RunRecord& record,
+                              Progress& progress) {
   if (options.tuned) use_stored_tuning(options, devices, scene, progress);
   if (is_wanted(options.target)) {
     record.stages.push_back(choose_quality(options.target, scene, camera, devices.front(),
                                            record.mix, options.parameters, progress));
   }
-  RenderResult result = options.save_maps.empty() && options.load_maps.empty()
-                            ? render(scene, camera, devices, options.parameters, progress)
-                            : render_with_saved_maps(scene, camera, devices, options, progress);
+  const bool keeps_maps =
+      !options.save_maps.empty() || !options.load_maps.empty() || views.reflections;
+  RenderResult result =
+      keeps_maps ? render_with_kept_maps(scene, camera, views.picture, devices, options,
+                                         views.reflections, progress)
+                 : render_hits(scene, views.picture, devices, options.parameters, progress);
   record.parameters = options.parameters;
   for (const Device& device : devices) record.devices.push_back(device.info());
   record.device_shares = result.device_shares;
@@ -110,14 +144,20 @@ LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::spa
 }
 
 /// The layers by path tracing.
-LightLayers render_by_paths(const Scene& scene, const Camera& camera, RunRecord& record,
-                            Progress& progress) {
+LightLayers render_by_paths(const Scene& scene, const Camera& camera, const Views& views,
+                            RunRecord& record, Progress& progress) {
   if (has_unseen_caustics(scene)) {
     progress.note(
         "warning: paths do not find what mirrors and glass throw from point, spot and directional "
         "lights; photon maps do");
   }
-  PathTracerResult result = trace_paths(scene, camera, record.parameters.film, progress);
+  PathTracerResult result =
+      trace_paths_of_hits(scene, views.picture, record.parameters.film, progress);
+  if (views.reflections) {
+    PathTracerResult reflected =
+        trace_paths_of_hits(scene, ReflectedHits(camera), record.parameters.film, progress);
+    *views.reflections = std::move(reflected.layers);
+  }
   record.samples_per_pixel = record.parameters.film.samples_per_pixel;
   record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
   return std::move(result.layers);
@@ -147,15 +187,19 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   record.integrator = options.integrator;
   record.parameters = options.parameters;
 
+  const std::unique_ptr<HitSource> hits = hits_of(camera, options, record, progress);
+  LightLayers reflections;
+  const Views views{*hits, options.glare.empty() ? nullptr : &reflections};
   const LightLayers layers =
       options.integrates == Integrator::path
-          ? render_by_paths(scene, camera, record, progress)
-          : render_by_photons(scene, camera, devices, options, record, progress);
+          ? render_by_paths(scene, camera, views, record, progress)
+          : render_by_photons(scene, camera, devices, options, views, record, progress);
   record.stages.push_back(timed_stage("write pictures", progress, [&] {
     const std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, record.mix);
     set_camera_attributes(picture->header(), in_world(scene, camera), layers.width, layers.height);
     set_run_attributes(picture->header(), record);
     outputs.write(*picture);
+    if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
   }));
   record.total_seconds = stopwatch.seconds();
   if (!options.statistics.empty()) {

@@ -13,6 +13,7 @@
 #include "app/added_light_options.hpp"
 #include "app/quality_options.hpp"
 #include "app/validators.hpp"
+#include "image/tev_connection.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -268,6 +269,29 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->group("Run");
   add_saved_maps_options(command, options);
   add_quality_options(command, options.target);
+  add_preview_option(command, options, "Output");
+  command
+      .add_option("--glare", options.glare,
+                  "picture in which reflections above a limit are marked, in a colour per light")
+      ->type_name("FILE.png")
+      ->group("Output");
+  command
+      .add_option("--glare-limit", options.glare_limit,
+                  "above 100: luminance in cd/m2; else times the mean luminance of the picture")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Output");
+}
+
+void add_preview_option(CLI::App& command, RenderOptions& options, const std::string& group) {
+  command
+      .add_option("--preview", options.preview,
+                  fmt::format("show the picture in a running tev; default: {}", image::tev_address))
+      ->type_name("[HOST:PORT]")
+      ->expected(0, 1)
+      ->default_str(image::tev_address)
+      ->group(group);
 }
 
 void add_saved_maps_options(CLI::App& command, RenderOptions& options) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/picture_outputs.hpp"
+#include "image/glare.hpp"
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
 #include "photile/light_mix.hpp"
@@ -47,6 +48,9 @@ struct RenderOptions {
   int threads = 0;
   std::string statistics;            ///< file, "" = none
   std::string save_maps, load_maps;  ///< files, "" = none
+  std::string preview;               ///< HOST:PORT of a tev; "" = none
+  std::string glare;                 ///< PNG of marked reflections, "" = none
+  double glare_limit = image::default_glare_limit;
   bool quiet = false;
 };
 
@@ -62,6 +66,9 @@ void add_light_setting_options(CLI::App& command, RenderOptions& options);
 
 /// Adds --save-maps and --load-maps.
 void add_saved_maps_options(CLI::App& command, RenderOptions& options);
+
+/// Adds --preview.
+void add_preview_option(CLI::App& command, RenderOptions& options, const std::string& group);
 
 /// Adds --integrator.
 void add_integrator_option(CLI::App& command, RenderOptions& options);

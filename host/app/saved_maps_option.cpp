@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "app/version.hpp"
 #include "photile/scene_renderer.hpp"
@@ -46,13 +47,17 @@ KeepPhotons keep_maps(const Scene& scene, const RenderOptions& options, Progress
   };
 }
 
-RenderResult render_with_saved_maps(const Scene& scene, const Camera& camera,
-                                    std::span<Device> devices, const RenderOptions& options,
-                                    Progress& progress) {
+RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, const HitSource& hits,
+                                   std::span<Device> devices, const RenderOptions& options,
+                                   LightLayers* reflections, Progress& progress) {
   std::optional<PreparedPhotons> prepared = load_maps(scene, options, progress);
   SceneRenderer renderer(scene, devices, options.parameters, prepared ? &*prepared : nullptr,
                          keep_maps(scene, options, progress), progress);
-  return renderer.render(camera, options.parameters.film, progress);
+  RenderResult result = renderer.render(hits, options.parameters.film, progress);
+  if (!reflections) return result;
+  RenderResult reflected = renderer.render_reflections(camera, options.parameters.film, progress);
+  *reflections = std::move(reflected.layers);
+  return result;
 }
 
 }  // namespace photile::app

@@ -18,10 +18,13 @@ std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions
 /// progress must outlive it.
 KeepPhotons keep_maps(const Scene& scene, const RenderOptions& options, Progress& progress);
 
-/// As `render`, from photons that a file holds, or that are kept in one. Errors: those of `render`
-/// and of saved_maps; UsageError where the photons do not fit in memory at once.
-RenderResult render_with_saved_maps(const Scene& scene, const Camera& camera,
-                                    std::span<Device> devices, const RenderOptions& options,
-                                    Progress& progress);
+/// As `render`, from photons that a file holds, or that are kept in one.
+///   hits          what the camera sees
+///   reflections   gets the part of the picture that came by reflection, or null
+/// Errors: those of `render` and of saved_maps; UsageError where the photons do not fit in memory
+/// at once.
+RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, const HitSource& hits,
+                                   std::span<Device> devices, const RenderOptions& options,
+                                   LightLayers* reflections, Progress& progress);
 
 }  // namespace photile::app

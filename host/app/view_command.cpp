@@ -52,6 +52,9 @@ void run_view(ViewOptions& options) {
   parameters.prepared = load_maps(scene, render, progress);
   // Progress is shown in the window from here on.
   parameters.keep = keep_maps(scene, render, Progress::none());
+  parameters.load = render.load;
+  parameters.preview = render.preview;
+  parameters.notes = &progress;
   parameters.interrupted = [&progress] { return progress.cancelled(); };
   view::run_viewer(
       scene, camera, mix, [&render] { return open_devices(render.device); }, std::move(parameters));
@@ -75,6 +78,7 @@ void add_view_command(CLI::App& photile) {
       ->type_name("FOLDER")
       ->capture_default_str()
       ->group("Window");
+  add_preview_option(*command, options->render, "Window");
   add_setting_options(*command, options->render);
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_view(*options); });

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image/radiance_palettes.hpp"
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
 
@@ -30,8 +31,9 @@ OIIO::ImageBuf ramp() {
 }  // namespace
 
 const std::vector<std::string>& Palette::names() {
-  static const std::vector<std::string> all{"turbo",  "viridis", "inferno",  "magma",
-                                            "plasma", "heat",    "spectrum", "blue-red"};
+  static const std::vector<std::string> all{"turbo", "viridis",  "inferno",  "magma", "plasma",
+                                            "heat",  "spectrum", "blue-red", "def",   "spec",
+                                            "pm3d",  "hot",      "eco"};
   return all;
 }
 
@@ -40,6 +42,13 @@ Palette::Palette(const std::string& name) {
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     throw UsageError(fmt::format("no palette '{}'; there are {}", name, fmt::join(known, ", ")));
   }
+  for (int i = 0; i < entries && is_radiance_palette(name); ++i) {
+    const glm::dvec3 rgb = radiance_palette(name, static_cast<double>(i) / (entries - 1));
+    colours_.push_back({srgb8_from_linear(static_cast<float>(rgb.r)),
+                        srgb8_from_linear(static_cast<float>(rgb.g)),
+                        srgb8_from_linear(static_cast<float>(rgb.b))});
+  }
+  if (!colours_.empty()) return;
   const OIIO::ImageBuf mapped = name == "blue-red"
                                     ? OIIO::ImageBufAlgo::color_map(ramp(), 0, 3, 3, blue_red)
                                     : OIIO::ImageBufAlgo::color_map(ramp(), 0, name);

@@ -8,11 +8,12 @@
 
 namespace photile::image {
 
-/// A run of colours from low to high, as OpenImageIO's `color_map` has it.
+/// A run of colours from low to high, as OpenImageIO's `color_map` or Radiance's falsecolor has it.
 class Palette {
  public:
   /// The names there are: "turbo" (tbo in Radiance), "viridis", "inferno", "magma", "plasma",
-  /// "heat", "spectrum", and "blue-red", which is for differences: white lies in its middle.
+  /// "heat", "spectrum", and "blue-red", which is for differences: white lies in its middle; and
+  /// Radiance's "def", "spec", "pm3d", "hot" and "eco".
   static const std::vector<std::string>& names();
 
   /// Errors: UsageError listing the names.

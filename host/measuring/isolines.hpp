@@ -17,4 +17,11 @@ using Segment = std::array<glm::dvec2, 2>;
 ///   returns  places in cells: (0.5, 0.5) is the middle of the first
 std::vector<Segment> isoline(std::span<const double> values, int columns, int rows, double level);
 
+/// Convex polygons that together cover where values lie between two levels. Each square of middles
+/// is four triangles around its middle, whose value is the mean, with linear interpolation in each.
+/// Arguments and places as above.
+using Polygon = std::vector<glm::dvec2>;
+std::vector<Polygon> isoband(std::span<const double> values, int columns, int rows, double low,
+                             double high);
+
 }  // namespace photile::measuring

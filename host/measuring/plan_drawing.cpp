@@ -49,7 +49,11 @@ class Plan {
         "<text x=\"{2}\" y=\"20\" font-size=\"14\">{3}</text>\n",
         width, height, margin, escaped_xml(title_));
     add_cells();
-    add_isolines();
+    if (options_.contours == Contours::bands) {
+      add_bands();
+    } else if (options_.contours != Contours::steps) {
+      add_isolines();
+    }
     add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"none\" "
         "stroke=\"#000000\"/>\n",
         margin, title_height, width_, height_);
@@ -79,7 +83,7 @@ class Plan {
       const auto column = static_cast<double>(cell % static_cast<std::size_t>(layout_.columns));
       const auto row = static_cast<double>(cell / static_cast<std::size_t>(layout_.columns));
       const glm::dvec2 corner = at({column, row + 1});
-      if (!options_.lines_only) {
+      if (is_filled()) {
         add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\" "
             "shape-rendering=\"crispEdges\"/>\n",
             corner.x, corner.y, w, h, scale_.hex(values_[cell]));
@@ -96,12 +100,39 @@ class Plan {
         middle.x, middle.y + 0.35 * size, size, weight, value);
   }
 
+  bool is_filled() const {
+    return options_.contours == Contours::none || options_.contours == Contours::steps;
+  }
+
+  /// Of bands, their levels are numbered as isolines are.
+  void add_bands() {
+    const std::vector<double> levels = scale_.levels();
+    const auto bands = scale_.bands();
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+      const auto polygons =
+          isoband(values_, layout_.columns, layout_.rows, bands[i][0], bands[i][1]);
+      if (polygons.empty()) continue;
+      const std::string colour = scale_.hex(levels[i]);
+      // The thin stroke closes the seams between polygons.
+      add("<path fill=\"{0}\" stroke=\"{0}\" stroke-width=\"0.3\" d=\"", colour);
+      for (const Polygon& polygon : polygons) {
+        for (std::size_t corner = 0; corner < polygon.size(); ++corner) {
+          const glm::dvec2 place = at(polygon[corner]);
+          add("{}{:.2f} {:.2f}", corner == 0 ? "M" : "L", place.x, place.y);
+        }
+        add("Z");
+      }
+      add("\"/>\n");
+      add_label(at(polygons[polygons.size() / 2][0]), levels[i], 11, "bold");
+    }
+  }
+
   void add_isolines() {
     for (const double level : scale_.levels()) {
       const auto segments = isoline(values_, layout_.columns, layout_.rows, level);
       if (segments.empty()) continue;
       add("<path fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" d=\"",
-          options_.lines_only ? scale_.hex(level) : "#000000");
+          options_.contours == Contours::lines ? scale_.hex(level) : "#000000");
       for (const Segment& segment : segments) {
         const glm::dvec2 a = at(segment[0]), b = at(segment[1]);
         add("M{:.2f} {:.2f}L{:.2f} {:.2f}", a.x, a.y, b.x, b.y);

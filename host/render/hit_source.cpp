@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "trace/reflected_hits.hpp"
 #include "trace/sensor_hits.hpp"
 
 namespace photile {
@@ -23,6 +24,12 @@ PrimaryHitBatch CameraHits::trace(const RayScene& rays, const PrimaryHitParamete
                                   int first_row, int last_row,
                                   std::span<const std::uint32_t> map_of) const {
   return trace_primary_hits(rays, camera_, film, first_row, last_row, map_of);
+}
+
+PrimaryHitBatch ReflectedHits::trace(const RayScene& rays, const PrimaryHitParameters& film,
+                                     int first_row, int last_row,
+                                     std::span<const std::uint32_t> map_of) const {
+  return trace::trace_reflected_hits(rays, camera_, film, first_row, last_row, map_of);
 }
 
 PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParameters& film, int, int,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <utility>
 
 #include "photile/path_tracer.hpp"
 #include "photile/primary_hits.hpp"
@@ -19,11 +21,43 @@ class HitSource {
   virtual PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film,
                                 int first_row, int last_row,
                                 std::span<const std::uint32_t> map_of) const = 0;
+
+  /// Whether somebody watches the film fill: renderers then finish fewer rows at a time.
+  virtual bool watched() const { return false; }
+  /// Rows [first, last) of the film are as far as they will be for a while: `share` of their light
+  /// is there, in (0, 1].
+  virtual void show(const LightLayers&, int /*first*/, int /*last*/, double /*share*/) const {}
 };
 
 class CameraHits : public HitSource {
  public:
   explicit CameraHits(const Camera& camera) : camera_(camera) {}
+  PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
+                        int last_row, std::span<const std::uint32_t> map_of) const override;
+
+ private:
+  const Camera& camera_;
+};
+
+/// What a camera sees, for somebody who watches.
+class WatchedHits : public CameraHits {
+ public:
+  using Watcher = std::function<void(const LightLayers&, int first, int last, double share)>;
+  WatchedHits(const Camera& camera, Watcher watcher)
+      : CameraHits(camera), watcher_(std::move(watcher)) {}
+  bool watched() const override { return true; }
+  void show(const LightLayers& layers, int first, int last, double share) const override {
+    watcher_(layers, first, last, share);
+  }
+
+ private:
+  Watcher watcher_;
+};
+
+/// What a camera sees by reflection alone (trace/reflected_hits.hpp).
+class ReflectedHits : public HitSource {
+ public:
+  explicit ReflectedHits(const Camera& camera) : camera_(camera) {}
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
 

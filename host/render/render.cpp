@@ -25,6 +25,9 @@ std::int64_t hits_per_batch(int neighbours) {
          std::max(defaults::neighbours, neighbours);
 }
 
+/// Least number of batches of a picture that somebody watches.
+constexpr int watched_batches = 16;
+
 NeighbourGroups groups_of(const Scene& scene, const Photons& photons,
                           const RenderParameters& parameters, double radius, Progress& progress) {
   const bool global = parameters.structure == MapStructure::kdtree_global;  // no use for patches
@@ -214,13 +217,15 @@ class Rendering {
   void add_pass_rows(const HitSource& source) {
     const std::int64_t samples_per_row =
         std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
+    const int most = source.watched() ? (film_.height - 1) / watched_batches + 1 : film_.height;
     const int rows = static_cast<int>(std::clamp<std::int64_t>(
-        hits_per_batch(parameters_.neighbours) / samples_per_row, 1, film_.height));
+        hits_per_batch(parameters_.neighbours) / samples_per_row, 1, most));
     progress_->begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
     for (int first = 0; first < film_.height; first += rows) {
       progress_->throw_if_cancelled();
       const int last = std::min(first + rows, film_.height);
       add_rows(source, first, last);
+      source.show(layers_, first, last, (film_.pass + 1.0) / film_.passes);
       progress_->advance(static_cast<std::uint64_t>(last - first));
     }
     progress_->end();
@@ -301,6 +306,13 @@ RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> 
 
 struct SceneRenderer::Impl : Rendering {
   using Rendering::Rendering;
+
+  RenderResult render(const HitSource& hits, const PrimaryHitParameters& film, Progress& progress) {
+    report_to(progress);
+    start(film);
+    add_pass(hits);
+    return finish();
+  }
 };
 
 SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
@@ -320,10 +332,18 @@ SceneRenderer::~SceneRenderer() = default;
 
 RenderResult SceneRenderer::render(const Camera& camera, const PrimaryHitParameters& film,
                                    Progress& progress) {
-  impl_->report_to(progress);
-  impl_->start(film);
-  impl_->add_pass(CameraHits(camera));
-  return impl_->finish();
+  return impl_->render(CameraHits(camera), film, progress);
+}
+
+RenderResult SceneRenderer::render(const HitSource& hits, const PrimaryHitParameters& film,
+                                   Progress& progress) {
+  return impl_->render(hits, film, progress);
+}
+
+RenderResult SceneRenderer::render_reflections(const Camera& camera,
+                                               const PrimaryHitParameters& film,
+                                               Progress& progress) {
+  return impl_->render(ReflectedHits(camera), film, progress);
 }
 
 RenderResult render(const Scene& scene, const Camera& camera, Device& device,

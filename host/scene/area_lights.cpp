@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "scene/color_temperature.hpp"
 #include "scene/emission_cells.hpp"
 #include "scene/photometry.hpp"
@@ -44,7 +43,7 @@ std::string AreaLights::name_of(const Pending& light) const {
   return alone ? light.object_name : fmt::format("{}_{}", light.object_name, material);
 }
 
-void AreaLights::finish(Warnings& warnings) {
+std::vector<AreaLights::Origin> AreaLights::finish(Warnings& warnings) {
   std::vector<double> area(pending_.size(), 0.0);
   std::vector<std::vector<std::uint32_t>> triangles(pending_.size());
   for (std::uint32_t triangle = 0; triangle < scene_.triangles.size(); ++triangle) {
@@ -75,6 +74,9 @@ void AreaLights::finish(Warnings& warnings) {
     if (light != none) light = final_index[light];
   }
   apply_lumens(first_light, sources);
+  std::vector<Origin> origins;
+  for (const Pending* pending : sources) origins.push_back({pending->object, pending->material});
+  return origins;
 }
 
 /// Colour, power and texture; false where nothing is emitted.

@@ -7,11 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "photile/limits.hpp"
 #include "photile/scene.hpp"
 #include "scene/light_traits.hpp"
 #include "scene/warnings.hpp"
 
 namespace photile::scene_io {
+
+/// Panels count as objects of their own, after all visits of nodes.
+inline constexpr std::uint64_t first_panel_object = limits::max_node_visits;
 
 /// What a material emits, in cd/m2 or W/(m2 sr).
 struct Emission {
@@ -31,9 +35,16 @@ class AreaLights {
                             std::uint32_t material, const Emission& emission,
                             const LightTraits& traits = {});
 
+  /// What find_or_add was given for a light.
+  struct Origin {
+    std::uint64_t object;
+    std::uint32_t material;
+  };
+
   /// Lists each light's triangles and computes its power. Lights that got no triangle are dropped
-  /// with a warning. Call once, after the last triangle.
-  void finish(Warnings& warnings);
+  /// with a warning. Call once, after the last triangle. Returns the origins of the lights that it
+  /// appended to the scene.
+  std::vector<Origin> finish(Warnings& warnings);
 
  private:
   struct Pending {

@@ -18,6 +18,9 @@ void import_gltf(ImportContext& context) {
   const std::vector<MaterialCoordinates> coordinates =
       add_gltf_materials(model, accessors, context);
   std::vector<NodeVisit> visits = visit_nodes(model, context);
+  for (const NodeVisit& visit : visits) {
+    context.visited_nodes.push_back(static_cast<std::uint32_t>(visit.node));
+  }
   check_triangle_count(model, accessors, visits, context);
   move_to_origin(model, accessors, visits, context);
   add_gltf_cameras(model, visits, context);

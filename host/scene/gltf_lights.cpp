@@ -93,7 +93,7 @@ class LightImporter {
     Warnings& warnings = context_.warnings;
     apply_traits(light_traits(node.extras, node_name(model_, visit.node), warnings), light,
                  warnings);
-    place(visit.world, light);
+    place(visit, light);
   }
 
  private:
@@ -136,10 +136,10 @@ class LightImporter {
     return true;
   }
 
-  void place(const glm::dmat4& world, Light& light) {
-    const glm::dvec3 position(world[3]);
+  void place(const NodeVisit& visit, Light& light) {
+    const glm::dvec3 position(visit.world[3]);
     if (!std::isfinite(light.power) || light.power <= 0.0 || !within_limit(position) ||
-        !set_orientation(world, light)) {
+        !set_orientation(visit.world, light)) {
       context_.warnings.add("light", light.name,
                             "emits nothing or has no place within reach; dropped");
       return;
@@ -149,6 +149,8 @@ class LightImporter {
       throw context_.error(fmt::format("more than {} lights", limits::max_lights));
     }
     context_.scene.lights.push_back(std::move(light));
+    context_.light_sources.push_back(
+        {LightSource::Kind::node, static_cast<std::uint32_t>(visit.node), none});
   }
 
   const tinygltf::Model& model_;

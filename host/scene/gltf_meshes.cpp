@@ -19,8 +19,6 @@
 namespace photile::scene_io {
 namespace {
 
-constexpr std::uint64_t first_panel_object = limits::max_node_visits;
-
 class MeshImporter {
  public:
   MeshImporter(const tinygltf::Model& model, const AccessorReader& accessors,
@@ -106,7 +104,6 @@ void MeshImporter::add_panel(const NodeVisit& visit, std::uint64_t visit_number)
   LightTraits traits = light_traits(model_.nodes[static_cast<std::size_t>(visit.node)].extras, name,
                                     context_.warnings);
   traits.lumens = 0;  // the panel's own say so
-  // Panels count as objects of their own, after all visits.
   const std::uint32_t light = context_.area_lights.find_or_add(
       first_panel_object + visit_number, name, panel_material_, {panel->radiance, false}, traits);
   for (const auto& corners : panel_triangles(*panel, visit.world)) {

@@ -8,6 +8,7 @@
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
 #include "scene/area_lights.hpp"
+#include "scene/light_source.hpp"
 #include "scene/scene_folder.hpp"
 #include "scene/warnings.hpp"
 
@@ -19,7 +20,9 @@ struct ImportContext {
   const SceneLoadOptions& options;
   Warnings& warnings;
   AreaLights& area_lights;
-  std::vector<Emission> emission;  ///< per material of `scene`
+  std::vector<Emission> emission;                 ///< per material of `scene`
+  std::vector<std::uint32_t> visited_nodes = {};  ///< of a glTF file, in the order of visits
+  std::vector<LightSource> light_sources = {};    ///< of the lights of `scene` so far
 
   /// An error about the scene file; `message` says what was found and the remedy.
   InputError error(const std::string& message) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <new>
+#include <utility>
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -15,6 +16,7 @@
 #include "scene/light_changes.hpp"
 #include "scene/light_grouping.hpp"
 #include "scene/light_names.hpp"
+#include "scene/light_source.hpp"
 #include "scene/obj_import.hpp"
 #include "scene/photometry.hpp"
 #include "scene/surroundings.hpp"
@@ -71,9 +73,22 @@ void finish_directional_lights(Scene& scene) {
   }
 }
 
+/// Objects of a glTF file are its visits, then its panels; those of an OBJ file have no nodes.
+LightSource source_of(const AreaLights::Origin& origin, const ImportContext& context) {
+  const std::vector<std::uint32_t>& nodes = context.visited_nodes;
+  if (nodes.empty()) return {LightSource::Kind::surface, none, origin.material};
+  if (origin.object < nodes.size()) {
+    return {LightSource::Kind::surface, nodes[origin.object], origin.material};
+  }
+  return {LightSource::Kind::panel, nodes[origin.object - first_panel_object], none};
+}
+
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options) {
+namespace scene_io {
+
+SourcedScene load_sourced_scene(const std::filesystem::path& file,
+                                const SceneLoadOptions& options) {
   Scene scene;
   scene.source = file;
   SceneFolder folder(file, options.allow_outside);
@@ -85,9 +100,12 @@ Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& opti
     if (scene.triangles.empty()) {
       throw lacks("no triangles with an area; export the scene with its geometry", context);
     }
-    area_lights.finish(warnings);
+    for (const AreaLights::Origin& origin : area_lights.finish(warnings)) {
+      context.light_sources.push_back(source_of(origin, context));
+    }
     finish_directional_lights(scene);
     add_surroundings(scene, options);
+    context.light_sources.resize(scene.lights.size());
     if (scene.lights.empty()) {
       throw lacks(
           "no lights; give a material an emission (Ke in MTL, emissiveFactor in glTF), add "
@@ -109,7 +127,13 @@ Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& opti
   if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
   report_dropped_triangles(scene.report, warnings);
   scene.report.warnings = warnings.lines();
-  return scene;
+  return {std::move(scene), std::move(context.light_sources)};
+}
+
+}  // namespace scene_io
+
+Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options) {
+  return load_sourced_scene(file, options).scene;
 }
 
 }  // namespace photile

@@ -44,9 +44,11 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
     return straight ? power_heuristic(other->density, found) : 1.0f;
   };
   for (int depth = 0;; ++depth) {
+    const bool seen_directly = setup.reflections_only && straight;
     ++record.rays;
     const auto hit = setup.rays->intersect(ray.origin, ray.direction);
     if (!hit) {
+      if (seen_directly) return;
       for (const DistantLight& light : *setup.distant) {
         const glm::vec3 radiance = light.radiance(ray.direction);
         if (radiance == glm::vec3(0.0f)) continue;
@@ -57,7 +59,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
       return;
     }
     const SurfacePoint point = surface_hit(scene, *hit, ray.direction);
-    if (emits(scene, point)) {
+    if (emits(scene, point) && !seen_directly) {
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
       const float weight = other ? weight_against(other->lamps.density(start, point)) : 1.0f;
       record.emission.push_back({ray.pixel, light,
@@ -65,7 +67,9 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
                                      emission_texel(scene, point)});
     }
     if (material_of(scene, point).interaction == Interaction::opaque) {
+      if (seen_directly && !material_of(scene, point).glossy()) return;
       record.hits.push_back(eye_hit(scene, point, ray.direction, ray.pixel, ray.throughput));
+      if (seen_directly) record.hits.back().diffuse_albedo = glm::vec3(0.0f);
       return;
     }
     if (depth >= setup.parameters->max_specular_depth) return;

@@ -40,6 +40,8 @@ struct EyeSetup {
   const PrimaryHitParameters* parameters;
   const std::vector<glm::vec3>* emitted_radiance;  ///< per light, of white texels
   const std::vector<DistantLight>* distant;        ///< what rays that leave the scene see
+  /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.
+  bool reflections_only = false;
 };
 
 /// Place of sample `index` of `count` in the unit square, given two numbers in [0, 1): one in each

@@ -12,6 +12,7 @@
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
+#include "trace/reflected_hits.hpp"
 
 namespace photile {
 
@@ -39,15 +40,14 @@ void check(const PrimaryHitParameters& film, int first_row, int last_row) {
               static_cast<std::int64_t>(limits::max_stored_photons));
 }
 
-}  // namespace
-
-PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& camera,
-                                   const PrimaryHitParameters& parameters, int first_row,
-                                   int last_row, std::span<const std::uint32_t> map_of) {
+PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
+                           const PrimaryHitParameters& parameters, int first_row, int last_row,
+                           std::span<const std::uint32_t> map_of, bool reflections_only) {
   check(parameters, first_row, last_row);
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(ray_scene.scene());
   const std::vector<trace::DistantLight> distant = trace::distant_lights(ray_scene.scene());
-  const trace::EyeSetup setup{&ray_scene.impl(), &camera, &parameters, &radiance, &distant};
+  const trace::EyeSetup setup{&ray_scene.impl(), &camera,  &parameters,
+                              &radiance,         &distant, reflections_only};
   std::vector<EyeRecord> rows(static_cast<std::size_t>(last_row - first_row));
   tbb::parallel_for(first_row, last_row, [&](int y) {
     const trace::FlushDenormals flush_denormals;
@@ -59,6 +59,20 @@ PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& came
   });
 
   return trace::batch_of(ray_scene, std::move(rows), map_of);
+}
+
+}  // namespace
+
+PrimaryHitBatch trace_primary_hits(const RayScene& ray_scene, const Camera& camera,
+                                   const PrimaryHitParameters& parameters, int first_row,
+                                   int last_row, std::span<const std::uint32_t> map_of) {
+  return trace_rows(ray_scene, camera, parameters, first_row, last_row, map_of, false);
+}
+
+PrimaryHitBatch trace::trace_reflected_hits(const RayScene& ray_scene, const Camera& camera,
+                                            const PrimaryHitParameters& parameters, int first_row,
+                                            int last_row, std::span<const std::uint32_t> map_of) {
+  return trace_rows(ray_scene, camera, parameters, first_row, last_row, map_of, true);
 }
 
 std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene) {

@@ -1,15 +1,18 @@
 #include "view/display.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "image/glare.hpp"
+#include "image/pixel_lights.hpp"
 #include "image/srgb.hpp"
 #include "photile/image.hpp"
 
 namespace photile::view {
+
+using image::for_each_light;
+using image::for_each_pixel;
+
 namespace {
 
 /// The mixed picture, as tone mapping takes it.
@@ -26,17 +29,6 @@ Image root_of(const Frame& frame, const LightMix& mix) {
   return image;
 }
 
-/// Calls work(pixel) for all pixels, on all cores.
-template <class Work>
-void for_each_pixel(std::size_t count, const Work& work) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
-                        work(pixel);
-                      }
-                    });
-}
-
 DisplayedFrame tone_mapped(const Image& root, double exposure) {
   const Image display = tone_map(root, {false, exposure});
   DisplayedFrame result{root.width, root.height, std::vector<std::uint8_t>(3 * root.pixels())};
@@ -47,23 +39,6 @@ DisplayedFrame tone_mapped(const Image& root, double exposure) {
     });
   }
   return result;
-}
-
-/// Calls add(light, illuminance, radiance) for all that reaches a pixel, at power 1.
-template <class Add>
-void for_each_light(const LightLayers& layers, std::size_t x, std::size_t y, const Add& add) {
-  if (layers.sparse()) {
-    const LightLayers::Row& row = layers.rows[y];
-    for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
-      add(std::size_t{row.light[i]}, row.illuminance[i], row.radiance[i]);
-    }
-    return;
-  }
-  const std::size_t pixel = y * static_cast<std::size_t>(layers.width) + x;
-  for (std::size_t light = 0; light < layers.layers.size(); ++light) {
-    const LightLayers::Layer& layer = layers.layers[light];
-    add(light, layer.illuminance[pixel], layer.radiance[pixel]);
-  }
 }
 
 }  // namespace
@@ -82,20 +57,50 @@ std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& 
   return result;
 }
 
-DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings) {
-  if (settings.mode == DisplayMode::picture) {
-    return tone_mapped(root_of(frame, mix), settings.exposure);
-  }
+namespace {
+
+/// Illuminances in their colours; of isolines and bands the rest is the picture.
+DisplayedFrame false_coloured(const Frame& frame, const LightMix& mix,
+                              const DisplaySettings& settings) {
+  using measuring::Contours;
   const std::vector<float> values = mixed_illuminance(frame.layers, mix);
   const double largest = values.empty() ? 0 : *std::max_element(values.begin(), values.end());
   const measuring::ColourScale scale(settings.false_colour, largest);
+  const Contours contours = settings.false_colour.contours;
+  const bool over_picture = contours == Contours::lines || contours == Contours::bands;
+  const auto width = static_cast<std::size_t>(frame.layers.width);
   DisplayedFrame result{frame.layers.width, frame.layers.height,
                         std::vector<std::uint8_t>(3 * values.size())};
+  if (over_picture) result = tone_mapped(root_of(frame, mix), settings.exposure);
+  const auto value_at = [&](std::size_t pixel) { return static_cast<double>(values[pixel]); };
+  const auto on_line = [&](std::size_t pixel) {
+    const int level = scale.levels_below(value_at(pixel));
+    const bool right = (pixel + 1) % width != 0 && scale.levels_below(value_at(pixel + 1)) != level;
+    const bool below =
+        pixel + width < values.size() && scale.levels_below(value_at(pixel + width)) != level;
+    return right || below;
+  };
   for_each_pixel(values.size(), [&](std::size_t pixel) {
-    const auto color = scale.rgb(static_cast<double>(values[pixel]));
+    if (contours == Contours::lines && !on_line(pixel)) return;
+    if (contours == Contours::bands && !scale.in_band(value_at(pixel))) return;
+    const auto color = scale.rgb(value_at(pixel));
     std::copy(color.begin(), color.end(),
               result.rgb.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
   });
+  return result;
+}
+
+}  // namespace
+
+DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings) {
+  if (settings.mode == DisplayMode::illuminance) return false_coloured(frame, mix, settings);
+  DisplayedFrame result = tone_mapped(root_of(frame, mix), settings.exposure);
+  // The first frames of the mode may still be without.
+  if (settings.mode == DisplayMode::glare && frame.reflections) {
+    image::draw_marks(
+        image::find_glare(frame.layers, *frame.reflections, mix, settings.glare_limit).marks,
+        result.rgb);
+  }
   return result;
 }
 

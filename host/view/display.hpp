@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "image/glare.hpp"
 #include "measuring/false_colour.hpp"
 #include "photile/light_mix.hpp"
 #include "view/frame.hpp"
@@ -11,14 +12,17 @@
 namespace photile::view {
 
 enum class DisplayMode {
-  picture,     ///< tone mapped
-  illuminance  ///< of the surface seen, in false colour
+  picture,      ///< tone mapped
+  illuminance,  ///< of the surface seen, in false colour
+  glare         ///< the picture, its unwanted reflections marked
 };
 
 struct DisplaySettings {
   DisplayMode mode = DisplayMode::picture;
   double exposure = 0;  ///< stops that the picture is scaled by
   measuring::FalseColour false_colour;
+  double glare_limit = image::default_glare_limit;  ///< as image::find_glare takes it
+  bool photon_map = false;  ///< of the clicked triangle, over any of the modes
 };
 
 /// sRGB texels of a frame.

@@ -86,14 +86,19 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   });
   const Stopwatch stopwatch;
   RenderResult result = task.maps->renderer->render(task.request.camera, film, progress);
+  std::optional<LightLayers> reflections;
+  if (task.request.reflections) {
+    reflections = std::move(
+        task.maps->renderer->render_reflections(task.request.camera, film, progress).layers);
+  }
   const double seconds = stopwatch.seconds();
   // The first frame of maps waits for kernels to be compiled.
   if (std::exchange(timed_maps_, task.maps.get()) == task.maps.get()) {
     size_.record(static_cast<double>(film.width) * film.height * task.samples, seconds);
   }
-  return std::make_shared<Frame>(Frame{std::move(result.layers), task.request.camera,
-                                       result.samples_per_pixel, task.maps->emitted_photons,
-                                       seconds, std::move(result.statistics)});
+  return std::make_shared<Frame>(Frame{
+      std::move(result.layers), std::move(reflections), task.maps->photons, task.request.camera,
+      result.samples_per_pixel, task.maps->emitted_photons, seconds, std::move(result.statistics)});
 }
 
 void FrameWorker::work(std::stop_token stop) {

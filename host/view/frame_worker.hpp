@@ -21,6 +21,7 @@ struct FrameRequest {
   /// While the viewer moves, frames are as small as their rate asks for. Standing still, they are
   /// whole and get more and more samples.
   bool moving = false;
+  bool reflections = false;  ///< asks for Frame::reflections
 };
 
 /// Renders what was asked for last from the newest maps. A frame in the making is finished while

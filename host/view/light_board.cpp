@@ -14,7 +14,9 @@ namespace {
 /// Tints a light of the mix. Returns whether it can have that colour.
 bool tint(LightMix& mix, const LightControl& control) {
   try {
-    photile::apply(mix, {{control.name, hex_of(*control.color)}});
+    const std::string value =
+        control.kelvin > 0 ? fmt::format("{:.6g}K", control.kelvin) : hex_of(*control.color);
+    photile::apply(mix, {{control.name, value}});
     return true;
   } catch (const UsageError&) {
     return false;
@@ -35,8 +37,11 @@ LightBoard::LightBoard(LightMix scene) : scene_(std::move(scene)) { reset(); }
 void LightBoard::reset() {
   controls_.clear();
   for (const MixedLight& light : scene_.lights) {
-    LightControl control{light.name,  light.members, light.unit, light.power,
-                         light.power, true,          false,      std::nullopt};
+    LightControl control;
+    control.name = light.name;
+    control.members = light.members;
+    control.unit = light.unit;
+    control.power = control.scene_power = light.power;
     controls_.push_back(std::move(control));
   }
 }
@@ -47,7 +52,7 @@ LightMix LightBoard::mix() const {
   LightMix result = scene_;
   for (std::size_t i = 0; i < controls_.size(); ++i) {
     const LightControl& control = controls_[i];
-    if (control.color) tint(result, control);
+    if (control.tinted()) tint(result, control);
     const bool lit = any_solo ? control.solo : control.on;
     result.lights[i].power = lit ? control.power : 0;
   }
@@ -58,7 +63,7 @@ std::vector<std::string> LightBoard::refused() const {
   LightMix scratch = scene_;
   std::vector<std::string> names;
   for (const LightControl& control : controls_) {
-    if (control.color && !tint(scratch, control)) names.push_back(control.name);
+    if (control.tinted() && !tint(scratch, control)) names.push_back(control.name);
   }
   return names;
 }

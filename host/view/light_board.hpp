@@ -19,6 +19,9 @@ struct LightControl {
   bool on = true;
   bool solo = false;
   std::optional<glm::vec3> color;  ///< sRGB in [0, 1] that tints it; none = the light's own
+  double kelvin = 0;               ///< temperature of its colour, in place of `color`; 0 = none
+
+  bool tinted() const { return color || kelvin > 0; }
 };
 
 /// One control per layer of the picture. Changing one costs a sum over the layers, no light is

@@ -10,6 +10,7 @@
 #include "image/output_file.hpp"
 #include "input_text.hpp"
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::view {
 namespace {
@@ -26,6 +27,15 @@ glm::vec3 color_of(const std::string& hex) {
     throw std::invalid_argument(fmt::format("'{}' is no colour such as #ffd9a0", hex));
   }
   return glm::vec3((value >> 16) & 255, (value >> 8) & 255, value & 255) / 255.0f;
+}
+
+double kelvin_of(double value) {
+  if (value >= limits::min_color_temperature && value <= limits::max_color_temperature) {
+    return value;
+  }
+  throw std::invalid_argument(fmt::format("{} is no colour temperature from {} to {}", value,
+                                          limits::min_color_temperature,
+                                          limits::max_color_temperature));
 }
 
 PowerUnit unit_of(const std::string& word) {
@@ -52,11 +62,12 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
       for (const auto& [light, setting] : lights.items()) {
         place = fmt::format("mood '{}', light '{}'", name, light);
         Setting read{setting.at("power").get<double>(), unit_of(setting.value("unit", "lm")),
-                     setting.value("on", true), std::nullopt};
+                     setting.value("on", true), std::nullopt, 0};
         if (!(read.power >= 0) || !std::isfinite(read.power)) {
           throw std::invalid_argument("its power is not a number of 0 or more");
         }
         if (setting.contains("color")) read.color = color_of(setting["color"].get<std::string>());
+        if (setting.contains("kelvin")) read.kelvin = kelvin_of(setting["kelvin"].get<double>());
         moods_[name][light] = read;
       }
     }
@@ -78,7 +89,7 @@ void Moods::keep(const std::string& name, const LightBoard& board) {
   auto moods = moods_;
   Mood& mood = moods[name];
   for (const LightControl& control : board.controls()) {
-    mood[control.name] = {control.power, control.unit, control.on, control.color};
+    mood[control.name] = {control.power, control.unit, control.on, control.color, control.kelvin};
   }
   write(moods);
   moods_ = std::move(moods);
@@ -102,6 +113,7 @@ void Moods::apply(const std::string& name, LightBoard& board) const {
     control.power = setting->second.power;
     control.on = setting->second.on;
     control.color = setting->second.color;
+    control.kelvin = setting->second.kelvin;
     control.solo = false;
   }
 }
@@ -116,6 +128,7 @@ void Moods::write(const std::map<std::string, Mood>& moods) const {
                {"unit", setting.unit == PowerUnit::lumen ? "lm" : "W"},
                {"on", setting.on}};
       if (setting.color) entry["color"] = hex_of(*setting.color);
+      if (setting.kelvin > 0) entry["kelvin"] = setting.kelvin;
     }
   }
   const std::string text = document.dump(2) + "\n";

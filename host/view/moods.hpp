@@ -16,6 +16,7 @@ namespace photile::view {
 ///                            "floor lamp": {"power": 800, "unit": "lm", "on": true,
 ///                                           "color": "#ffd9a0"}}}}
 ///
+/// In place of a colour there may be its temperature, "kelvin": 2700.
 /// A light that a mood does not name keeps its setting.
 class Moods {
  public:
@@ -44,6 +45,7 @@ class Moods {
     PowerUnit unit;
     bool on;
     std::optional<glm::vec3> color;
+    double kelvin = 0;
   };
   using Mood = std::map<std::string, Setting>;  ///< by light
 

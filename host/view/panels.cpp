@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cfloat>
+#include <cmath>
 #include <functional>
 
+#include "image/glare.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -26,7 +28,24 @@ void tell(std::string& message, const std::function<void()>& action) {
   }
 }
 
-/// One row per light: on, solo, power, colour.
+/// The temperature of a light's colour, dragged; "own" while it has none.
+bool draw_temperature(LightControl& control) {
+  constexpr float kelvin_per_pixel = 20;
+  constexpr float white = 6500;  // where a light without one begins
+  const bool set = control.kelvin > 0;
+  auto kelvin = set ? static_cast<float>(control.kelvin) : white;
+  if (!ImGui::DragFloat("##kelvin", &kelvin, kelvin_per_pixel,
+                        static_cast<float>(limits::min_color_temperature),
+                        static_cast<float>(limits::max_color_temperature), set ? "%.0f K" : "K",
+                        ImGuiSliderFlags_AlwaysClamp)) {
+    return false;
+  }
+  control.kelvin = std::round(static_cast<double>(kelvin));
+  control.color.reset();
+  return true;
+}
+
+/// Two rows per light: on, solo, colour, name; power and temperature.
 bool draw_light(LightControl& control) {
   bool changed = false;
   ImGui::PushID(control.name.c_str());
@@ -37,12 +56,14 @@ bool draw_light(LightControl& control) {
   glm::vec3 color = control.color.value_or(glm::vec3(1));
   if (ImGui::ColorEdit3("##color", &color.x, ImGuiColorEditFlags_NoInputs)) {
     control.color = color;
+    control.kelvin = 0;
     changed = true;
   }
-  if (control.color) {
+  if (control.tinted()) {
     ImGui::SameLine();
     if (ImGui::SmallButton("own")) {
       control.color.reset();
+      control.kelvin = 0;
       changed = true;
     }
   }
@@ -55,9 +76,13 @@ bool draw_light(LightControl& control) {
   const double most = control.scene_power > 0 ? 4 * control.scene_power : 1000;
   const double least = 0;
   const std::string format = fmt::format("%.4g {}", word_of(control.unit));
-  ImGui::SetNextItemWidth(-1);
+  constexpr float temperature_width = 70;
+  ImGui::SetNextItemWidth(-temperature_width - ImGui::GetStyle().ItemSpacing.x);
   changed |= ImGui::SliderScalar("##power", ImGuiDataType_Double, &control.power, &least, &most,
                                  format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1);
+  changed |= draw_temperature(control);
   ImGui::PopID();
   return changed;
 }
@@ -81,7 +106,7 @@ bool draw_lights(PanelState& state) {
   return changed;
 }
 
-bool draw_moods(PanelState& state) {
+bool draw_moods(PanelState& state, PanelEvents& events) {
   bool changed = false;
   if (!ImGui::CollapsingHeader("Moods", ImGuiTreeNodeFlags_DefaultOpen)) return false;
   for (const std::string& name : state.moods.names()) {
@@ -90,6 +115,8 @@ bool draw_moods(PanelState& state) {
       tell(state.message, [&] { state.moods.apply(name, state.lights); });
       changed = true;
     }
+    ImGui::SameLine();
+    if (ImGui::SmallButton("to scene")) events.mood_to_scene = name;
     ImGui::SameLine();
     const bool removed = ImGui::SmallButton("remove");
     ImGui::PopID();
@@ -126,15 +153,77 @@ void draw_legend(const Frame* frame, PanelState& state) {
   }
 }
 
-void draw_display(PanelState& state, const Frame* frame, PanelEvents& events) {
+/// Contours and palette of false colour.
+bool draw_false_colour(measuring::FalseColour& colours) {
+  bool changed = false;
+  constexpr std::array names{"filled", "lines", "bands", "steps"};
+  int contours = static_cast<int>(colours.contours);
+  if (ImGui::Combo("contours", &contours, names.data(), static_cast<int>(names.size()))) {
+    colours.contours = static_cast<measuring::Contours>(contours);
+    changed = true;
+  }
+  if (ImGui::BeginCombo("palette", colours.palette.c_str())) {
+    for (const std::string& name : image::Palette::names()) {
+      if (!ImGui::Selectable(name.c_str(), name == colours.palette)) continue;
+      colours.palette = name;
+      changed = true;
+    }
+    ImGui::EndCombo();
+  }
+  return changed;
+}
+
+/// The limit of glare, and the colour and the share of each light that exceeds it.
+bool draw_glare(PanelState& state, const Frame* frame) {
+  auto limit = static_cast<float>(state.display.glare_limit);
+  bool changed = false;
+  if (ImGui::InputFloat("limit (to 100: x mean)", &limit, 0, 0, "%.4g",
+                        ImGuiInputTextFlags_EnterReturnsTrue) &&
+      limit > 0) {
+    state.display.glare_limit = static_cast<double>(limit);
+    changed = true;
+  }
+  if (!frame || !frame->reflections) return changed;
+  const image::Glare glare = image::find_glare(frame->layers, *frame->reflections,
+                                               state.lights.mix(), state.display.glare_limit);
+  ImGui::Text("above %.4g", glare.limit);
+  for (std::size_t light = 0; light < glare.lights.size(); ++light) {
+    const image::LightGlare& its = glare.lights[light];
+    if (!(its.share > 0)) continue;
+    const auto rgb = image::mark_colour(static_cast<int>(light));
+    ImGui::ColorButton("##mark", ImVec4(rgb[0] / 255.0f, rgb[1] / 255.0f, rgb[2] / 255.0f, 1),
+                       ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop);
+    ImGui::SameLine();
+    ImGui::Text("%s: %.2g%%, up to %.4g", its.light.c_str(), 100 * its.share, its.peak);
+  }
+  return changed;
+}
+
+void draw_photon_map(const PhotonMapView* map) {
+  if (!map) {
+    ImGui::TextWrapped("Click on a triangle to see its photons.");
+    return;
+  }
+  ImGui::TextWrapped(
+      "triangle %u, side %u: %zu photons (yellow); %zu triangles near (blue) with "
+      "%zu photons in reach (cyan); %zu more share its map (green)",
+      triangle_of(map->sided_triangle), side_of(map->sided_triangle), map->own_photons.size(),
+      map->group.size(), map->group_photons.size(), map->patch.size());
+}
+
+void draw_display(PanelState& state, const PanelReadings& readings, PanelEvents& events) {
   if (!ImGui::CollapsingHeader("Display", ImGuiTreeNodeFlags_DefaultOpen)) return;
   DisplaySettings& display = state.display;
   int mode = static_cast<int>(display.mode);
   events.display_changed |= ImGui::RadioButton("picture", &mode, 0);
   ImGui::SameLine();
   events.display_changed |= ImGui::RadioButton("illuminance", &mode, 1);
+  ImGui::SameLine();
+  events.display_changed |= ImGui::RadioButton("glare", &mode, 2);
   display.mode = static_cast<DisplayMode>(mode);
-  if (display.mode == DisplayMode::picture) {
+  events.display_changed |= ImGui::Checkbox("photon map of a triangle", &display.photon_map);
+  if (display.photon_map) draw_photon_map(readings.photon_map);
+  if (display.mode != DisplayMode::illuminance) {
     auto exposure = static_cast<float>(display.exposure);
     if (ImGui::SliderFloat("stops", &exposure, -15, 15)) {
       display.exposure = static_cast<double>(exposure);
@@ -142,6 +231,9 @@ void draw_display(PanelState& state, const Frame* frame, PanelEvents& events) {
     }
     ImGui::SameLine();
     events.expose = ImGui::SmallButton("auto");
+    if (display.mode == DisplayMode::glare) {
+      events.display_changed |= draw_glare(state, readings.frame);
+    }
     return;
   }
   auto top = static_cast<float>(display.false_colour.scale);
@@ -149,7 +241,8 @@ void draw_display(PanelState& state, const Frame* frame, PanelEvents& events) {
     display.false_colour.scale = static_cast<double>(top);
     events.display_changed = true;
   }
-  draw_legend(frame, state);
+  events.display_changed |= draw_false_colour(display.false_colour);
+  draw_legend(readings.frame, state);
 }
 
 template <class Value, std::size_t count>
@@ -237,8 +330,8 @@ PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
     draw_frame_times(readings);
     if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
     events.lights_changed |= draw_lights(state);
-    events.lights_changed |= draw_moods(state);
-    draw_display(state, readings.frame, events);
+    events.lights_changed |= draw_moods(state, events);
+    draw_display(state, readings, events);
     events.maps_changed = draw_maps(state.parameters);
     if (ImGui::CollapsingHeader("Walking")) {
       auto speed = static_cast<float>(state.speed);

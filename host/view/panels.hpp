@@ -9,6 +9,7 @@
 #include "view/display.hpp"
 #include "view/light_board.hpp"
 #include "view/moods.hpp"
+#include "view/photon_map_view.hpp"
 #include "view/photon_worker.hpp"
 
 namespace photile::view {
@@ -35,6 +36,7 @@ struct PanelReadings {
   const Frame* frame = nullptr;
   WorkProgress work;
   const std::deque<float>& frame_milliseconds;  ///< newest last
+  const PhotonMapView* photon_map = nullptr;    ///< that is shown
 };
 
 /// What was asked for by them in this frame.
@@ -43,6 +45,7 @@ struct PanelEvents {
   bool display_changed = false;  ///< colour again
   bool maps_changed = false;     ///< trace and build again, with other parameters
   bool expose = false;           ///< set the exposure by the picture
+  std::string mood_to_scene;     ///< write this one into a copy of the scene; "" = none
 };
 
 PanelEvents draw_panels(PanelState& state, const PanelReadings& readings);

@@ -96,8 +96,12 @@ std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, Prepared
   auto generation = std::make_shared<MapGeneration>();
   generation->devices = open_devices_();
   const bool last = paths == parameters_.photons.emitted_photons;
-  generation->renderer = std::make_unique<SceneRenderer>(
-      scene_, generation->devices, parameters, prepared, last ? keep_ : KeepPhotons(), *listener_);
+  const KeepPhotons keep = [&](const PreparedPhotons& photons) {
+    generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
+    if (last && keep_) keep_(photons);
+  };
+  generation->renderer = std::make_unique<SceneRenderer>(scene_, generation->devices, parameters,
+                                                         prepared, keep, *listener_);
   generation->emitted_photons = paths;
   return generation;
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "photile/scene_renderer.hpp"
+#include "view/photon_map_view.hpp"
 
 namespace photile::view {
 
@@ -21,6 +22,7 @@ struct MapGeneration {
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
   std::uint64_t emitted_photons = 0;
+  std::shared_ptr<const InspectablePhotons> photons;
 };
 
 /// How far the work in the background is.

@@ -9,13 +9,16 @@
 #include <string>
 #include <utility>
 
+#include "image/live_preview.hpp"
 #include "photile/errors.hpp"
+#include "scene/lit_copy.hpp"
 #include "view/display.hpp"
 #include "view/frame_worker.hpp"
 #include "view/light_board.hpp"
 #include "view/moods.hpp"
 #include "view/navigation.hpp"
 #include "view/panels.hpp"
+#include "view/photon_map_overlay.hpp"
 #include "view/snapshots.hpp"
 #include "view/viewpoint.hpp"
 #include "view/window.hpp"
@@ -46,8 +49,13 @@ class Viewer {
                     orbit_share * bounding_sphere(scene).radius),
         window_(fmt::format("{} - photile", scene.source.filename().string()),
                 parameters_.render.film.width, parameters_.render.film.height),
+        inspector_(scene),
         frames_(parameters_.render.film.seed, parameters_.render.film.samples_per_pixel,
                 parameters_.frames_per_second) {
+    if (!parameters_.preview.empty()) {
+      preview_.emplace(parameters_.preview, scene.source.filename().string(), mix,
+                       *parameters_.notes);
+    }
     build_maps(std::exchange(parameters_.prepared, std::nullopt), parameters_.keep);
   }
 
@@ -58,14 +66,18 @@ class Viewer {
       follow_input();
       const bool new_frame = take_frame();
       take_errors();
+      picked_ = pick_triangle();
       const PanelEvents events = panels_shown_ ? show_panels() : PanelEvents();
       if (events.expose && frame_) set_exposure();
-      if (frame_ &&
-          (new_frame || events.lights_changed || events.display_changed || events.expose)) {
-        const DisplayedFrame shown = display(*frame_, lights_.mix(), display_);
+      if (frame_ && (new_frame || events.lights_changed || events.display_changed ||
+                     events.expose || picked_)) {
+        DisplayedFrame shown = display(*frame_, lights_.mix(), display_);
+        if (display_.photon_map) inspector_.draw(*frame_, shown);
         window_.set_picture(shown.width, shown.height, shown.rgb);
       }
+      if (preview_ && frame_ && (new_frame || events.lights_changed)) show_preview();
       if (events.maps_changed) build_maps(std::nullopt, {});
+      if (!events.mood_to_scene.empty()) write_scene(events.mood_to_scene);
       window_.draw_frame();
       keep_screenshot();
       window_.show_frame();
@@ -96,17 +108,51 @@ class Viewer {
     if (moved) last_motion_ = now;
     const bool moving = last_motion_ && now - *last_motion_ < settling_seconds;
     const int width = window_.width(), height = window_.height();
-    if (moved || moving != was_moving_ || width != asked_width_ || height != asked_height_) {
+    const bool reflections = display_.mode == DisplayMode::glare;
+    if (moved || moving != was_moving_ || reflections != had_reflections_ ||
+        width != asked_width_ || height != asked_height_) {
       // A window that is made small to nothing keeps its last picture.
-      if (width > 0 && height > 0) frames_.show({viewpoint_.camera(), width, height, moving});
+      if (width > 0 && height > 0) {
+        frames_.show({viewpoint_.camera(), width, height, moving, reflections});
+      }
       was_moving_ = moving;
+      had_reflections_ = reflections;
       asked_width_ = width;
       asked_height_ = height;
     }
     double x = 0, y = 0;
-    if (navigation_.clicked(x, y)) {
+    clicked_ = navigation_.clicked(x, y);
+    if (clicked_) {
       const ImVec2 size = ImGui::GetIO().DisplaySize;
       probe_ = Probe{x / static_cast<double>(size.x), y / static_cast<double>(size.y)};
+    }
+  }
+
+  /// Whether a click has picked a triangle whose photons are to be shown.
+  bool pick_triangle() {
+    if (!clicked_ || !display_.photon_map || !frame_ || !probe_) return false;
+    inspector_.pick(*frame_, probe_->x, probe_->y);
+    return true;
+  }
+
+  /// Frames of a moving viewer are too small to be of use elsewhere.
+  void show_preview() {
+    if (frame_->layers.width != window_.width() || frame_->layers.height != window_.height())
+      return;
+    preview_->picture(frame_->layers, lights_.mix());
+  }
+
+  void write_scene(const std::string& mood) {
+    try {
+      LightBoard board = lights_;
+      for (LightControl& control : board.controls()) control.solo = false;
+      moods_.apply(mood, board);
+      const scene_io::LitCopy copy =
+          scene_io::write_lit_copy(scene_.source, parameters_.load, board.mix(), mood);
+      message_ = fmt::format("{} is written", copy.file.filename().string());
+      for (const std::string& line : copy.left_out) message_ += "\n" + line;
+    } catch (const Error& error) {
+      message_ = error.what();
     }
   }
 
@@ -145,7 +191,8 @@ class Viewer {
   PanelEvents show_panels() {
     PanelState state{lights_, moods_,   display_, parameters_.render, navigation_.speed(),
                      probe_,  message_, new_mood_};
-    return draw_panels(state, {frame_.get(), photons_->progress(), milliseconds_});
+    return draw_panels(state, {frame_.get(), photons_->progress(), milliseconds_,
+                               display_.photon_map ? inspector_.map() : nullptr});
   }
 
   void keep_screenshot() {
@@ -182,12 +229,14 @@ class Viewer {
   Viewpoint viewpoint_;
   Navigation navigation_;
   Window window_;
+  PhotonInspector inspector_;
+  std::optional<image::LivePreview> preview_;
   std::optional<Probe> probe_;
   std::string message_, new_mood_;
   std::shared_ptr<const Frame> frame_;
   std::deque<float> milliseconds_;
   std::optional<double> last_motion_;  ///< GLFW's clock, seconds
-  bool was_moving_ = false;
+  bool was_moving_ = false, had_reflections_ = false, clicked_ = false, picked_ = false;
   int asked_width_ = 0, asked_height_ = 0;
   bool panels_shown_ = true, screenshot_wanted_ = false;
   FrameWorker frames_;

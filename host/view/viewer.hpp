@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "photile/light_mix.hpp"
 #include "photile/scene_renderer.hpp"
@@ -17,7 +18,10 @@ struct ViewerParameters {
   std::filesystem::path outputs = ".";  ///< folder of screenshots and pictures
   /// Photons of an earlier run in place of all tracing, or none.
   std::optional<PreparedPhotons> prepared;
-  KeepPhotons keep;  ///< is given all photons once they are there; may be empty
+  SceneLoadOptions load;                ///< with which the scene was loaded, for copies of its file
+  std::string preview;                  ///< HOST:PORT of a tev that gets the pictures; "" = none
+  Progress* notes = &Progress::none();  ///< is told what has no place in the window
+  KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
   /// Asked before each redraw: true ends the walkthrough.
   std::function<bool()> interrupted = [] { return false; };
 };

@@ -11,6 +11,8 @@
 
 namespace photile {
 
+class HitSource;
+
 /// What photon maps are built from: all that depends on random numbers or takes long on the host.
 struct PreparedPhotons {
   Photons photons;
@@ -35,6 +37,15 @@ class SceneRenderer {
   /// the maps each time.
   RenderResult render(const Camera& camera, const PrimaryHitParameters& film,
                       Progress& progress = Progress::none());
+
+  /// The same of any hits (host/render/hit_source.hpp).
+  RenderResult render(const HitSource& hits, const PrimaryHitParameters& film,
+                      Progress& progress = Progress::none());
+
+  /// The part of that picture which comes by a mirror, by glass that bends or reflects it, or by a
+  /// glossy lobe.
+  RenderResult render_reflections(const Camera& camera, const PrimaryHitParameters& film,
+                                  Progress& progress = Progress::none());
 
  private:
   struct Impl;

@@ -1,6 +1,7 @@
 // Isolines against straight lines and circles, and the colours of values.
 #include "measuring/isolines.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -62,6 +63,57 @@ TEST_CASE("cells without a value have no lines") {
   auto values = field(3, 3, [](double x, double) { return x; });
   values[4] = std::numeric_limits<double>::quiet_NaN();
   CHECK(isoline(values, 3, 3, 1.2).empty());
+}
+
+TEST_CASE("the isoband of a slope has the area between its isolines") {
+  const auto values = field(6, 5, [](double x, double) { return x; });
+  double area = 0;
+  for (const Polygon& polygon : isoband(values, 6, 5, 1.7, 3.2)) {
+    double twice = 0;  // shoelace formula
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      twice += a.x * b.y - b.x * a.y;
+      CHECK(a.x == Approx(std::clamp(a.x, 1.7, 3.2)));
+    }
+    area += std::abs(twice) / 2;
+  }
+  CHECK(area == Approx(1.5 * 4));  // between the middles of the first and the last row
+}
+
+TEST_CASE("the isoband of a hill is a ring, whole where all is inside, gone where nothing is") {
+  const auto values =
+      field(80, 80, [](double x, double y) { return 100 - std::hypot(x - 40, y - 40); });
+  const auto area = [&](double low, double high) {
+    double sum = 0;
+    for (const Polygon& polygon : isoband(values, 80, 80, low, high)) {
+      double twice = 0;
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        twice += a.x * b.y - b.x * a.y;
+      }
+      sum += std::abs(twice) / 2;
+    }
+    return sum;
+  };
+  CHECK(area(70, 80) == Approx(3.14159265 * (30 * 30 - 20 * 20)).epsilon(0.002));
+  CHECK(area(0, 200) == Approx(79 * 79));
+  CHECK(area(150, 200) == 0);
+}
+
+TEST_CASE("bands are the middle fifth of each step, and posterized values have its colour") {
+  const ColourScale bands({.contours = Contours::bands}, 0);  // 8 steps of 125
+  CHECK(bands.bands()[2][0] == Approx(2.4 * 125));
+  CHECK(bands.bands()[2][1] == Approx(2.6 * 125));
+  CHECK(bands.in_band(2.5 * 125));
+  CHECK_FALSE(bands.in_band(2.39 * 125));
+  CHECK_FALSE(bands.in_band(2.61 * 125));
+  CHECK_FALSE(bands.in_band(8.5 * 125));  // beyond the scale
+  CHECK(bands.levels_below(2.49 * 125) == 2);
+  CHECK(bands.levels_below(2.51 * 125) == 3);
+  const ColourScale steps({.contours = Contours::steps}, 0), filled({}, 0);
+  CHECK(steps.hex(2.01 * 125) == filled.hex(2.5 * 125));
+  CHECK(steps.hex(2.99 * 125) == filled.hex(2.5 * 125));
+  CHECK(steps.hex(5000) == filled.hex(7.5 * 125));
 }
 
 TEST_CASE("legend steps and isolines lie as in Radiance's falsecolor") {

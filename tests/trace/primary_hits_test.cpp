@@ -9,6 +9,7 @@
 #include "test_scenes.hpp"
 #include "trace/hit_order.hpp"
 #include "trace/ray_scene_impl.hpp"
+#include "trace/reflected_hits.hpp"
 
 using namespace photile;
 using namespace photile::test;
@@ -210,4 +211,57 @@ TEST_CASE("Films and rows out of range are refused") {
   CHECK_THROWS_AS(traced({.max_specular_depth = -1}, 0, 1), UsageError);
   CHECK_THROWS_AS(traced({.height = 10}, 3, 2), UsageError);
   CHECK_THROWS_AS(traced({.height = 10}, 0, 11), UsageError);
+}
+
+TEST_CASE("what comes by reflection and what is left out are the whole") {
+  // A plate under the camera, half of it a mirror that sees a lamp above, a quarter glossy.
+  test::SceneBuilder builder;
+  const auto matt = builder.add(test::diffuse(glm::vec3(0.5f)));
+  const auto shining = builder.add(test::glossy(glm::vec3(0.4f), glm::vec3(0.04f), 0.3f));
+  const auto mirror = builder.add(test::mirror(glm::vec3(0.9f)));
+  builder.quad({-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}, matt);
+  builder.quad({-1, -1, 0}, {0, -1, 0}, {0, 0, 0}, {-1, 0, 0}, shining);
+  builder.quad({0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0}, mirror);
+  Light lamp;
+  lamp.name = "lamp";
+  lamp.power = 10;
+  const auto light = builder.add(lamp);
+  builder.quad({-9, 9, 5}, {9, 9, 5}, {9, -9, 5}, {-9, -9, 5}, matt, light);  // faces down
+  const Scene scene = builder.build();
+  const PrimaryHitParameters film{.width = 16, .height = 16, .samples_per_pixel = 4};
+  const RayScene rays(scene);
+  const PrimaryHitBatch all = trace_primary_hits(rays, camera_above(), film, 0, 16);
+  const PrimaryHitBatch reflected = trace::trace_reflected_hits(rays, camera_above(), film, 0, 16);
+
+  // The mirror fills the right half: all that it shows is there, hits and lamp.
+  REQUIRE(reflected.emission.size() == all.emission.size());
+  CHECK(total_emission(reflected) == total_emission(all));
+  std::size_t behind_mirror = 0, lobes = 0;
+  for (std::size_t i = 0; i < reflected.hits.size(); ++i) {
+    const bool right = reflected.hits.pixel[i] % 16 >= 8;
+    const bool lower = reflected.hits.pixel[i] / 16 >= 8;
+    CHECK((right || lower));  // the matt quarter reflects nothing
+    ++(right ? behind_mirror : lobes);
+    if (right) {
+      CHECK(reflected.hits.diffuse_albedo[i] == glm::vec3(0.5f));
+    } else {
+      CHECK(reflected.hits.diffuse_albedo[i] == glm::vec3(0.0f));
+      CHECK(reflected.hits.lobe[i].specular == glm::vec3(0.04f));
+    }
+  }
+  CHECK(behind_mirror == 8 * 16 * 4);
+  CHECK(lobes == 8 * 8 * 4);
+}
+
+TEST_CASE("what lies behind a pane of thin glass is seen, and not reflected") {
+  test::SceneBuilder builder;
+  const auto matt = builder.add(test::diffuse(glm::vec3(0.5f)));
+  const auto pane = builder.add(test::glass(1.0f, true));  // of index 1: it reflects nothing
+  builder.quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, matt);
+  builder.quad({-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}, pane);
+  const Scene scene = builder.build();
+  const PrimaryHitParameters film{.width = 8, .height = 8, .samples_per_pixel = 1};
+  const RayScene rays(scene);
+  CHECK(trace_primary_hits(rays, camera_above(), film, 0, 8).hits.size() == 64);
+  CHECK(trace::trace_reflected_hits(rays, camera_above(), film, 0, 8).hits.size() == 0);
 }

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "image/glare.hpp"
 #include "image/palette.hpp"
 #include "photile/errors.hpp"
 
@@ -64,4 +65,42 @@ TEST_CASE("false colour runs over its palette from zero to the top of the scale"
   CHECK(std::equal(middle.begin(), middle.end(), shown.rgb.begin()));
   settings.false_colour.palette = "no such";
   CHECK_THROWS_AS(display(two_pixels(), mix_of(1, 1), settings), UsageError);
+}
+
+TEST_CASE("contours are drawn over the picture, posterized values fill it") {
+  DisplaySettings settings;
+  settings.mode = DisplayMode::illuminance;
+  settings.false_colour.scale = 400;
+  settings.false_colour.steps = 2;      // levels 100 and 300; bands 80 to 120 and 280 to 320
+  const LightMix mix = mix_of(10, 39);  // 69 and 78 lux at the pixels, hence no band
+  settings.false_colour.contours = measuring::Contours::bands;
+  DisplaySettings picture;
+  CHECK(display(two_pixels(), mix, settings).rgb == display(two_pixels(), mix, picture).rgb);
+  const LightMix brighter = mix_of(10, 50);  // 80 and 100: the second is in a band
+  const auto band = display(two_pixels(), brighter, settings);
+  const auto colour = image::Palette("turbo").at(0.25);
+  CHECK(std::equal(colour.begin(), colour.end(), band.rgb.begin() + 3));
+  settings.false_colour.contours = measuring::Contours::lines;  // between 80 and 100
+  const auto line = display(two_pixels(), brighter, settings);
+  const auto left = image::Palette("turbo").at(0.2);
+  CHECK(std::equal(left.begin(), left.end(), line.rgb.begin()));
+  settings.false_colour.contours = measuring::Contours::steps;
+  const auto steps = display(two_pixels(), brighter, settings);
+  CHECK(std::equal(colour.begin(), colour.end(), steps.rgb.begin()));
+  CHECK(std::equal(colour.begin(), colour.end(), steps.rgb.begin() + 3));
+}
+
+TEST_CASE("glare marks reflections over the dimmed picture") {
+  Frame frame = two_pixels();
+  DisplaySettings settings;
+  settings.mode = DisplayMode::glare;
+  const LightMix mix = mix_of(1, 1);
+  const auto picture = display(frame, mix, settings).rgb;  // without reflections: the picture
+  frame.reflections = LightLayers(2, 1, {"a", "b"});
+  frame.reflections->layers[1].radiance[1] = glm::vec3(200);
+  settings.glare_limit = 150;
+  const auto marked = display(frame, mix, settings).rgb;
+  const auto colour = image::mark_colour(1);
+  CHECK(marked[0] == picture[0] / 2);
+  CHECK(std::equal(colour.begin(), colour.end(), marked.begin() + 3));
 }

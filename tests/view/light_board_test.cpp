@@ -57,3 +57,17 @@ TEST_CASE("a colour that a light cannot have is told and leaves it as it was") {
   CHECK(board.refused() == std::vector<std::string>{"sodium"});
   CHECK(board.mix().lights[1].tint == glm::vec3(1));
 }
+
+TEST_CASE("a colour temperature tints as --light NAME=KELVINK does, in place of a colour") {
+  LightBoard board(two_lamps());
+  board.controls()[0].kelvin = 2700;
+  LightMix expected = two_lamps();
+  apply(expected, {{"ceiling", "2700K"}});
+  CHECK(board.mix().lights[0].tint == expected.lights[0].tint);
+  CHECK(board.mix().lights[0].tint.r > board.mix().lights[0].tint.b);
+  CHECK(board.mix().lights[0].power == 100);
+  board.controls()[1].kelvin = 6500;  // of which the lamp lacks the blue
+  CHECK(board.refused() == std::vector<std::string>{"sodium"});
+  board.reset();
+  CHECK_FALSE(board.controls()[0].tinted());
+}

@@ -34,11 +34,18 @@ TEST_CASE("a mood comes back from its file as it was kept") {
   board.controls()[1].power = 42.5;
   board.controls()[1].color = glm::vec3(1, 204 / 255.0f, 0);
   Moods(file).keep("evening", board);
+  board.controls()[1].color.reset();
+  board.controls()[1].kelvin = 2700;
+  Moods(file).keep("warm", board);
 
   LightBoard other(lamps());
   const Moods read(file);
-  CHECK(read.names() == std::vector<std::string>{"evening"});
+  CHECK(read.names() == std::vector<std::string>{"evening", "warm"});
+  read.apply("warm", other);
+  CHECK(other.controls()[1].kelvin == 2700);
+  CHECK_FALSE(other.controls()[1].color);
   read.apply("evening", other);
+  CHECK(other.controls()[1].kelvin == 0);
   CHECK_FALSE(other.controls()[0].on);
   CHECK(other.controls()[0].power == 100);
   CHECK(other.controls()[1].power == 42.5);
@@ -81,7 +88,9 @@ TEST_CASE("a damaged file of moods is refused with its name and what is wrong") 
        {R"({"photile_moods": 1, "moods": {"x": {"a": {}}}})", "power"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "unit": "cd"}}}})", "no unit"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "color": "#12345g"}}}})",
-        "no colour"}}));
+        "no colour"},
+       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "kelvin": 99}}}})",
+        "no colour temperature"}}));
   std::ofstream(file) << text;
   CHECK_THROWS_WITH(Moods(file), Contains("room.moods.json") && Contains(told));
   CHECK_THROWS_AS(Moods(file), InputError);

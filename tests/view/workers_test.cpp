@@ -76,9 +76,27 @@ TEST_CASE("a viewer that stands still sees what render gives, bit for bit") {
   const RenderResult expected = render(scene, from_above(), test::device(), parameters);
   CHECK(frame->layers.layers[0].radiance == expected.layers.layers[0].radiance);
   CHECK(frame->layers.layers[0].illuminance == expected.layers.layers[0].illuminance);
+  CHECK_FALSE(frame->reflections);
+  REQUIRE(frame->photons);
+  CHECK(frame->photons->position.size() == expected.stored_photons);
   CHECK(luminance(glm::dvec3(frame->layers.layers[0].radiance[15 * 40 + 20])) > 0);
   CHECK_FALSE(frames.take_error());
   CHECK_FALSE(photons.take_error());
+}
+
+TEST_CASE("reflections come with a frame where they are asked for: none of a matt floor") {
+  const Scene scene = lit_floor();
+  FrameWorker frames(defaults::seed, 1, 30);
+  frames.show({from_above(), 40, 30, false, true});
+  PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
+                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
+  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 16'000; });
+  const auto frame = frames.latest();
+  REQUIRE(frame->reflections);
+  REQUIRE(frame->reflections->layers[0].radiance.size() == 40 * 30);
+  for (const glm::vec3& radiance : frame->reflections->layers[0].radiance) {
+    CHECK(radiance == glm::vec3(0.0f));
+  }
 }
 
 TEST_CASE("a frame is of the last viewpoint that was asked for") {

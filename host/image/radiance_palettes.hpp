@@ -1,0 +1,15 @@
+// The palettes of Radiance's falsecolor.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+
+namespace photile::image {
+
+/// "def", "spec", "pm3d", "hot" or "eco". ("tbo" is OpenImageIO's turbo.)
+bool is_radiance_palette(const std::string& name);
+
+/// Linear RGB in [0, 1] of a share in [0, 1], as falsecolor.pl of Radiance 5 has it.
+glm::dvec3 radiance_palette(const std::string& name, double share);
+
+}  // namespace photile::image

@@ -1,0 +1,21 @@
+// Points of a grid that furniture stands on.
+#pragma once
+
+#include <cstddef>
+
+#include "measuring/sensor_grid.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::measuring {
+
+/// Takes those sensors, and the cells of a plane that are theirs, out of a grid:
+/// - with a surface nearer than `clearance` metres, along or against their direction;
+/// - inside a solid: of six rays, along and across their direction, at least five cross an odd
+/// number
+///   of surfaces where the same ray of most sensors of the grid crosses an even one, or the other
+///   way round. Whichever way a closed mesh is wound, a ray from inside leaves it once more than it
+///   enters it; a single sheet, such as a pane, turns no more than one or two of the rays.
+/// Returns how many were taken out.
+std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid& grid);
+
+}  // namespace photile::measuring

@@ -1,0 +1,33 @@
+// Where in its file a light comes from.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "photile/scene.hpp"
+
+namespace photile::scene_io {
+
+struct LightSource {
+  enum class Kind : std::uint8_t {
+    node,         ///< KHR_lights_punctual or photometric data at a glTF node
+    surface,      ///< an emissive material
+    panel,        ///< a luminous rectangle or disc at a glTF node
+    surroundings  ///< an option, not the file
+  };
+  Kind kind = Kind::surroundings;
+  std::uint32_t node = none;      ///< of the glTF file
+  std::uint32_t material = none;  ///< of a surface: into Scene::materials, and the glTF file's
+};
+
+/// A scene with the source of each of its lights.
+struct SourcedScene {
+  Scene scene;
+  std::vector<LightSource> sources;
+};
+
+/// load_scene, which keeps no sources. Errors: the same.
+SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLoadOptions& options);
+
+}  // namespace photile::scene_io
