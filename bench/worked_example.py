@@ -28,7 +28,7 @@ EVENING = ("--light daylight=off --light ceiling_panel=off --light floor_lamp=15
 # it prints.
 STEPS = (
     ("What does the file hold, and which lamps?",
-     "photile info living-room.gltf", {}, ("triangles", "extent", "light:")),
+     "photile info living-room.gltf", {}, ("scene", "extents", "light:")),
     ("Render it once, a layer for each lamp.",
      "photile render living-room.gltf --photons 4M -k 200 -o room.exr --png day.png",
      {"day.png": "By day, every lamp on"}, ()),
@@ -36,19 +36,19 @@ STEPS = (
      "photile measure living-room.gltf --plane floor+0.75 --clearance 0.1 --maintenance 0.8 "
      "-s 600 -o report.html -o plan.svg",
      {"plan.svg": "Illuminance on the working plane"}, ("working plane", "lux", "all lights")),
-    ("A mood for work after dark: the ceiling alone, in neutral white.",
+    ("A mood for work after dark: the ceiling in neutral white, the floor lamp off.",
      "photile relight room.exr --light daylight=off --light floor_lamp=off "
      "--light ceiling_panel=4000K -o work.exr --png work.png", {}, ()),
-    ("And one for the evening: lamps at eye level, warm.",
+    ("And one for the evening: the floor lamp, warm, and the ceiling off.",
      f"photile relight room.exr {EVENING} -o evening.exr --png evening.png", {}, ()),
     ("How do they differ? Red is where work is brighter, blue where the evening is.",
      "photile compare work.exr evening.exr -o moods.png",
-     {"moods.png": "Work, evening, and the difference of their luminances"}, ("picture",)),
+     {"moods.png": "Work, evening, and the difference of their luminances"}, ("error", "picture  ")),
     ("What is left of the light on the plane in the evening?",
      f"photile measure living-room.gltf {EVENING} --plane floor+0.75 --clearance 0.1 "
      "--maintenance 0.8 -s 600 --cb -o evening.svg",
      {"evening.svg": "The evening's contour bands"}, ("working plane", "lux", "all lights")),
-    ("Do mirrors or glossy surfaces reflect a lamp five times as bright as the mean of the picture?",
+    ("Is a reflection five times as bright as the mean of the picture?",
      "photile render living-room.gltf --photons 4M -k 200 --glare glare.png",
      {}, ("glare",)),
 )

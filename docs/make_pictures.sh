@@ -31,3 +31,19 @@ xvfb-run --auto-servernum --server-args "-screen 0 1280x960x24" bash -c '
   xdotool key ctrl+q
   wait'
 mv "$outputs/screenshot-0001.png" "$pictures/view.png"
+
+# The photon map of a triangle of the right wall: few photons, so that they can be told apart. Buttons
+# are held for longer than the window takes to be drawn.
+xvfb-run --auto-servernum --server-args "-screen 0 1280x960x24" bash -c '
+  "$photile" view scenes/cornell-box/cornell-box-specular.gltf --size 640x480 --samples 1 \
+    --photons 30k --outputs "$outputs" --quiet &
+  until xdotool search --name "1 of 1 samples, 0.03M"; do sleep 1; done
+  for place in "27 310" "480 330"; do
+    xdotool mousemove $place; sleep 0.4
+    xdotool mousedown 1; sleep 0.4
+    xdotool mouseup 1; sleep 1
+  done
+  xdotool keydown F12; sleep 0.3; xdotool keyup F12; sleep 2
+  xdotool key ctrl+q
+  wait'
+mv "$outputs/screenshot-0001.png" "$pictures/photon-map.png"
