@@ -46,8 +46,8 @@ def section(result):
     bare = median(row, "bare rays") + median(row, "bare kernels")
     overhead = (total - bare) / total
     lines = [f"{settings['side']} x {settings['side']} pixels of the living room, diffuse, "
-             f"{settings['lights']} lights, {settings['photons']:,} paths, k = {settings['k']}, one "
-             f"sample a pixel; medians of {settings['frames']} frames of a walk. "
+             f"{settings['lights']} lights, {settings['photons']:,} paths, k = {settings['k']}, "
+             f"one sample a pixel;\nmedians of {settings['frames']} frames of a walk. "
              f"{result['machine']['processor']}, {result['machine']['hardware threads']} hardware "
              f"threads, {result['date']}.",
              "", "| stage | | ms | share |", "|---|---|---|---|"]
@@ -64,8 +64,8 @@ def section(result):
 
     def aim(text, reached):
         return f"{text}: {'reached' if reached else 'missed'}"
-    lines += ["", aim(f"Aim of {FRAMES_A_SECOND} whole frames a second", 1 / total >= FRAMES_A_SECOND)
-              + f" ({1 / total:.1f}). "
+    lines += ["", aim(f"Aim of {FRAMES_A_SECOND} whole frames a second",
+                      1 / total >= FRAMES_A_SECOND) + f" ({1 / total:.1f}). "
               + aim(f"Aim of less than {MOST_OVERHEAD:.0%} overhead", overhead < MOST_OVERHEAD)
               + f" ({overhead:.0%})."]
     if 1 / total < FRAMES_A_SECOND:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Runs the worked example of docs/walkthrough.md as it is written there: puts the commands with what
-they print into the page and their pictures into docs/pictures.
+"""Runs the worked example of docs/walkthrough.md as it is written there: puts the commands with
+what they print into the page and their pictures into docs/pictures.
 
     bench/worked_example.py [--photile FILE] [--quick]
 
@@ -24,8 +24,8 @@ ROOM = ROOT / "scenes/living-room"
 EVENING = ("--light daylight=off --light ceiling_panel=off --light floor_lamp=1500 "
            "--light floor_lamp=2700K")
 
-# What a command is for, the command, the pictures it leaves with their captions, lines shown of what
-# it prints.
+# What a command is for, the command, the pictures it leaves with their captions, what begins the
+# lines that are shown of what it prints.
 STEPS = (
     ("What does the file hold, and which lamps?",
      "photile info living-room.gltf", {}, ("scene", "extents", "light:")),
@@ -43,7 +43,8 @@ STEPS = (
      f"photile relight room.exr {EVENING} -o evening.exr --png evening.png", {}, ()),
     ("How do they differ? Red is where work is brighter, blue where the evening is.",
      "photile compare work.exr evening.exr -o moods.png",
-     {"moods.png": "Work, evening, and the difference of their luminances"}, ("error", "picture  ")),
+     {"moods.png": "Work, evening, and the difference of their luminances"},
+     ("error", "picture  ")),
     ("What is left of the light on the plane in the evening?",
      f"photile measure living-room.gltf {EVENING} --plane floor+0.75 --clearance 0.1 "
      "--maintenance 0.8 -s 600 --cb -o evening.svg",

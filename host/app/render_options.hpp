@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/picture_outputs.hpp"
-#include "image/glare.hpp"
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
 #include "photile/light_mix.hpp"
@@ -50,7 +49,7 @@ struct RenderOptions {
   std::string save_maps, load_maps;  ///< files, "" = none
   std::string preview;               ///< HOST:PORT of a tev; "" = none
   std::string glare;                 ///< PNG of marked reflections, "" = none
-  double glare_limit = image::default_glare_limit;
+  double glare_limit = defaults::glare_limit;
   bool quiet = false;
 };
 

@@ -11,9 +11,6 @@
 
 namespace photile::image {
 
-/// Times the mean luminance, as evalglare's -b.
-inline constexpr double default_glare_limit = 5;
-
 /// The reflection of one light.
 struct LightGlare {
   std::string light;

@@ -48,12 +48,9 @@ class Plan {
         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
         "<text x=\"{2}\" y=\"20\" font-size=\"14\">{3}</text>\n",
         width, height, margin, escaped_xml(title_));
+    if (options_.contours == Contours::bands) add_bands();  // below the cells' numbers
     add_cells();
-    if (options_.contours == Contours::bands) {
-      add_bands();
-    } else if (options_.contours != Contours::steps) {
-      add_isolines();
-    }
+    if (options_.contours == Contours::none || options_.contours == Contours::lines) add_isolines();
     add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"none\" "
         "stroke=\"#000000\"/>\n",
         margin, title_height, width_, height_);

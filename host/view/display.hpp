@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/glare.hpp"
 #include "measuring/false_colour.hpp"
+#include "photile/defaults.hpp"
 #include "photile/light_mix.hpp"
 #include "view/frame.hpp"
 
@@ -21,8 +21,8 @@ struct DisplaySettings {
   DisplayMode mode = DisplayMode::picture;
   double exposure = 0;  ///< stops that the picture is scaled by
   measuring::FalseColour false_colour;
-  double glare_limit = image::default_glare_limit;  ///< as image::find_glare takes it
-  bool photon_map = false;  ///< of the clicked triangle, over any of the modes
+  double glare_limit = defaults::glare_limit;  ///< as image::find_glare takes it
+  bool photon_map = false;                     ///< of the clicked triangle, over any of the modes
 };
 
 /// sRGB texels of a frame.

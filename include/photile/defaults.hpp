@@ -70,6 +70,9 @@ inline constexpr double maintenance_factor = 1.0;  ///< none: the light of a new
 // False colour, as Radiance's falsecolor has them
 inline constexpr int legend_steps = 8;
 
+// Glare
+inline constexpr double glare_limit = 5;  ///< times the mean luminance, as evalglare's -b
+
 // Contact sheets of walks
 inline constexpr int contact_sheet_width = 256;  ///< pixels, of a frame
 
