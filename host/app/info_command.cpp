@@ -7,8 +7,8 @@
 
 #include "app/added_light_options.hpp"
 #include "app/commands.hpp"
+#include "app/scene_options.hpp"
 #include "app/scene_report.hpp"
-#include "app/validators.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
 
@@ -23,12 +23,7 @@ struct InfoOptions {
 
 void print_text(const Scene& scene, const LightMix& mix) {
   for (const auto& line : scene_summary(scene, mix)) std::cout << line << '\n';
-  // Names and colours are laid out once, in scene_json.
-  const nlohmann::json facts = scene_json(scene, mix);
-  for (const auto& material : facts["materials"]) {
-    std::cout << fmt::format("material: {}: {}\n", material["name"].get<std::string>(),
-                             material["interaction"].get<std::string>());
-  }
+  for (const auto& line : material_summary(scene)) std::cout << line << '\n';
   for (const Camera& camera : scene.cameras) {
     const glm::dvec3 position = in_world(scene, camera).position;
     std::cout << fmt::format("camera: {}: at ({:.4g}, {:.4g}, {:.4g}), {:.4g} degrees high\n",
@@ -60,20 +55,7 @@ void add_info_command(CLI::App& photile) {
       ->required()
       ->type_name("");
   command->add_flag("--json", options->json, "as JSON");
-  command
-      ->add_option("--emissive-scale", options->load.emissive_scale,
-                   "multiplies emissive materials; 683 mends files from Blender")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str();
-  command
-      ->add_option("--lumen-per-watt,--efficacy", options->load.lumen_per_watt,
-                   "683 or, as Radiance, 179")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str();
-  command->add_flag("--allow-outside", options->load.allow_outside,
-                    "the scene may name files outside its folder");
+  add_scene_options(*command, options->load, "Scene");
   add_light_options(*command, options->load, "Lights");
   command->callback([options] { run_info(*options); });
 }

@@ -12,6 +12,7 @@
 
 #include "app/added_light_options.hpp"
 #include "app/quality_options.hpp"
+#include "app/scene_options.hpp"
 #include "app/validators.hpp"
 #include "image/tev_connection.hpp"
 #include "photile/errors.hpp"
@@ -175,28 +176,6 @@ void add_estimate_group(CLI::App& command, RenderOptions& options) {
       ->group("Estimate");
 }
 
-void add_scene_group(CLI::App& command, RenderOptions& options) {
-  command
-      .add_option("--lumen-per-watt,--efficacy", options.load.lumen_per_watt,
-                  "683 or, as Radiance, 179")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str()
-      ->group("Scene");
-  command
-      .add_option("--emissive-scale", options.load.emissive_scale,
-                  "multiplies emissive materials; 683 mends files from Blender")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str()
-      ->group("Scene");
-  command
-      .add_flag("--allow-outside", options.load.allow_outside,
-                "the scene may name files outside its folder")
-      ->group("Scene");
-  add_light_options(command, options.load, "Lights");
-}
-
 void add_device_group(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--device", options.device.selector,
@@ -233,7 +212,8 @@ void add_light_setting_options(CLI::App& command, RenderOptions& options) {
   add_light_group(command, options);
   add_photon_group(command, options);
   add_estimate_group(command, options);
-  add_scene_group(command, options);
+  add_scene_options(command, options.load, "Scene");
+  add_light_options(command, options.load, "Lights");
   add_device_group(command, options);
   add_run_group(command, options);
 }

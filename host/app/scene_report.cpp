@@ -98,9 +98,16 @@ std::vector<double> powers_of(const Scene& scene, const LightMix& mix) {
   return powers;
 }
 
-json material_json(const Scene& scene, const Material& material) {
+std::vector<std::size_t> triangles_of_materials(const Scene& scene) {
+  std::vector<std::size_t> triangles(scene.materials.size(), 0);
+  for (const std::uint32_t material : scene.triangle_material) ++triangles[material];
+  return triangles;
+}
+
+json material_json(const Scene& scene, const Material& material, std::size_t triangles) {
   json entry{{"name", material.name},
              {"interaction", interaction_name(material)},
+             {"triangles", triangles},
              {"diffuse", components(material.diffuse)},
              {"specular", components(material.specular)},
              {"roughness", material.roughness}};
@@ -172,6 +179,20 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
   return lines;
 }
 
+std::vector<std::string> material_summary(const Scene& scene) {
+  const std::vector<std::size_t> triangles = triangles_of_materials(scene);
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& material = scene.materials[i];
+    const bool textured = material.diffuse_texture != none;
+    lines.push_back(fmt::format(
+        "material: {}: {}, {}{}", material.name, interaction_name(material),
+        counted(triangles[i], "triangle"),
+        textured ? ", texture " + scene.textures[material.diffuse_texture].name() : ""));
+  }
+  return lines;
+}
+
 std::vector<std::string> scene_warnings(const Scene& scene) {
   std::vector<std::string> lines = scene.report.warnings;
   if (const std::string doubt = doubtful_unit(extents_of(scene)); !doubt.empty()) {
@@ -190,6 +211,7 @@ json scene_json(const Scene& scene, const LightMix& mix) {
               {"polygons_triangulated", scene.report.polygons_triangulated},
               {"degenerate_triangles", scene.report.degenerate_triangles},
               {"non_finite_triangles", scene.report.non_finite_triangles},
+              {"duplicate_triangles", scene.report.duplicate_triangles},
               {"extents",
                {{"lowest", components(extents.lowest)},
                 {"highest", components(extents.highest)},
@@ -200,8 +222,9 @@ json scene_json(const Scene& scene, const LightMix& mix) {
               {"groups", json::array()},
               {"cameras", json::array()},
               {"warnings", scene_warnings(scene)}};
-  for (const Material& material : scene.materials) {
-    result["materials"].push_back(material_json(scene, material));
+  const std::vector<std::size_t> triangles = triangles_of_materials(scene);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    result["materials"].push_back(material_json(scene, scene.materials[i], triangles[i]));
   }
   const std::vector<double> powers = powers_of(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

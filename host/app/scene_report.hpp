@@ -25,6 +25,9 @@ std::string doubtful_unit(const Extents& extents);
 /// The counts, every light and every group of lights with its power in `mix`, a line each.
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
 
+/// How each material scatters, on how many triangles and with which texture, a line each.
+std::vector<std::string> material_summary(const Scene& scene);
+
 /// The import's warnings and a doubtful unit, a line each.
 std::vector<std::string> scene_warnings(const Scene& scene);
 

@@ -45,8 +45,8 @@ struct WalkOptions {
 
 walk::CameraMotion motion_of(const WalkOptions& options, const Camera& camera) {
   if (!options.path.empty()) return walk::read_camera_path(options.path, camera);
-  return scene_io::read_camera_animation(options.render.scene, options.render.load.allow_outside,
-                                         camera, options.animation);
+  return scene_io::read_camera_animation(options.render.scene, options.render.load, camera,
+                                         options.animation);
 }
 
 int count_of(const walk::CameraMotion& motion, double frames_per_second) {

@@ -8,7 +8,7 @@
 
 #include "device/context.hpp"
 #include "photile/estimator.hpp"
-#include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile::estimate {
 

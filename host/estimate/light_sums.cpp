@@ -23,7 +23,7 @@ void set_sum_defines(device::Defines& defines, const SceneNeeds& needs, std::uin
     defines.set("MANY_LIGHTS");
     defines.set("LIGHT_SLOTS", static_cast<long long>(estimates_per_hit(needs, neighbours)));
     defines.set("LIGHT_TABLE", static_cast<long long>(light_table(needs, neighbours)));
-  } else if (needs.light_count > 1) {
+  } else if (needs.several_lights()) {
     defines.set("LIGHT_COUNT", static_cast<long long>(needs.light_count));
   }
 }

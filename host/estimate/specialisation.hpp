@@ -7,7 +7,7 @@
 
 #include "device/context.hpp"
 #include "photile/estimate_tuning.hpp"
-#include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile::estimate {
 

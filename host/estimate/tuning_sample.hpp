@@ -5,7 +5,7 @@
 
 #include "photile/photons.hpp"
 #include "photile/primary_hits.hpp"
-#include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile::estimate {
 

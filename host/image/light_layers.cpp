@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "photile/scene_needs.hpp"
+
 namespace photile {
 namespace {
 

@@ -13,6 +13,7 @@
 
 #include "maps/build_kernels.hpp"
 #include "maps/candidate_maps.hpp"
+#include "maps/entry_defines.hpp"
 #include "maps/gather_entries.hpp"
 #include "maps/kdtree_builder.hpp"
 #include "maps/map_numbers.hpp"
@@ -220,10 +221,7 @@ std::unique_ptr<PhotonPages> photon_pages(Context& context, const MapStore& stor
 /// build needs, later a batch of hits and its estimates.
 PageLimits page_limits(const Context& context, const MapStore& store, float photons_per_cell,
                        bool normals) {
-  const SceneNeeds& needs = store.needs;
-  const std::uint64_t record =
-      7 * sizeof(float) + (needs.light_count > 1 ? sizeof(std::uint16_t) : 0) +
-      (needs.glossy ? 3 * sizeof(float) : 0) + (normals ? 3 * sizeof(float) : 0);
+  const std::uint64_t record = bytes_per_entry(store.needs) + (normals ? 3 * sizeof(float) : 0);
   // Two cells for what photons_per_cell asks of one: grids reach beyond the photons. Each is
   // counted and has a start.
   const double cells = 2.0 / photons_per_cell;

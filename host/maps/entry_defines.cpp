@@ -3,8 +3,13 @@
 namespace photile::maps {
 
 std::uint32_t bytes_per_light(const SceneNeeds& needs) {
-  if (needs.light_count <= 1) return 0;
+  if (!needs.several_lights()) return 0;
   return needs.light_count <= 256 ? 1 : 2;
+}
+
+std::uint32_t bytes_per_entry(const SceneNeeds& needs) {
+  constexpr std::uint32_t vector = 3 * sizeof(float);  // position, flux, direction
+  return 2 * vector + sizeof(std::uint32_t) + bytes_per_light(needs) + (needs.glossy ? vector : 0);
 }
 
 void set_entry_defines(device::Defines& defines, const SceneNeeds& needs) {

@@ -17,7 +17,7 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
   };
   page.entry_position = planes("photon map positions");
   page.entry_flux = planes("photon map flux");
-  if (needs.light_count > 1) {
+  if (needs.several_lights()) {
     page.entry_light =
         context.allocate<std::uint8_t>(std::size_t{bytes_per_light(needs)} * page.entry_stride,
                                        "photon map lights", device::MemoryPages::large);
@@ -40,7 +40,7 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
         gather(optional...);
       }
     };
-    if (needs.light_count > 1) {
+    if (needs.several_lights()) {
       with_directions(photons.light, page.entry_light);
     } else {
       with_directions();

@@ -8,7 +8,7 @@
 #include "maps/resident_maps.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/primary_hits.hpp"
-#include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile::maps {
 

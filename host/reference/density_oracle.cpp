@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "photile/neighbour_groups.hpp"
+#include "photile/scene_needs.hpp"
 #include "reference/kernel_weights.hpp"
 
 namespace photile::reference {

@@ -66,7 +66,7 @@ class EstimateWriter {
 }  // namespace
 
 PathEstimator::PathEstimator(const RayScene& rays, std::uint64_t seed)
-    : rays_(rays), seed_(seed), needs_(needs_of(rays.scene())), lights_(rays.scene()) {}
+    : rays_(rays), seed_(seed), needs_(rays.needs()), lights_(rays.scene()) {}
 
 Estimates PathEstimator::estimate(const PrimaryHits& hits, std::span<const std::uint64_t> number,
                                   const Progress& progress) const {

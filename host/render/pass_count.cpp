@@ -15,7 +15,7 @@ std::uint64_t bytes_per_stored_photon(const SceneNeeds& needs) {
   constexpr std::uint64_t copies = 2;      // while arrays are joined and sorted
   constexpr std::uint64_t references = 4;  // an entry repeats the record
   const std::uint64_t record = 3 * sizeof(float) + 3 * sizeof(float) + sizeof(std::uint32_t) +
-                               (needs.light_count > 1 ? sizeof(std::uint16_t) : 0) +
+                               (needs.several_lights() ? sizeof(std::uint16_t) : 0) +
                                (needs.glossy ? 3 * sizeof(float) : 0);
   return (copies + references) * record;
 }
@@ -41,7 +41,7 @@ int automatic_passes(const RayScene& rays, const PhotonTracerParameters& paramet
       static_cast<double>(trace_photons(rays, sample).photons.size()) / static_cast<double>(few);
   const std::uint64_t memory = installed_host_bytes();
   const int passes = passes_within(parameters.emitted_photons, stored_per_path,
-                                   bytes_per_stored_photon(needs_of(rays.scene())), memory);
+                                   bytes_per_stored_photon(rays.needs()), memory);
   if (passes > limits::max_passes) {
     throw UsageError(
         fmt::format("{} photons do not fit in {} bytes of memory even in {} passes; "

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "photile/scene_needs.hpp"
+
 namespace photile::saved_maps {
 namespace {
 
@@ -30,7 +32,7 @@ bool has_all_arrays(const Photons& photons, const SceneNeeds& needs) {
   const std::size_t count = photons.size();
   return photons.flux.size() == count && photons.sided_triangle.size() == count &&
          photons.incoming.size() == (needs.glossy ? count : 0) &&
-         photons.light.size() == (needs.light_count > 1 ? count : 0);
+         photons.light.size() == (needs.several_lights() ? count : 0);
 }
 
 /// Whether photons lie in the rows of their sided triangles.

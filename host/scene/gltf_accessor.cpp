@@ -88,6 +88,11 @@ std::uint64_t AccessorReader::count(int accessor, const std::string& use) const 
   return at(accessor, use).count;
 }
 
+bool AccessorReader::has_data(int accessor, const std::string& use) const {
+  const tinygltf::Accessor& source = at(accessor, use);
+  return source.bufferView >= 0 || (source.sparse.isSparse && source.sparse.count > 0);
+}
+
 std::span<const unsigned char> AccessorReader::view(int buffer_view, const std::string& use) const {
   if (buffer_view < 0 || static_cast<std::size_t>(buffer_view) >= model_.bufferViews.size()) {
     throw context_.error(
@@ -152,33 +157,42 @@ std::vector<float> AccessorReader::floats(int accessor_index, int components,
       }
     }
   } else {
-    if (accessor.count > limits::max_implicit_elements) {
-      throw context_.error(fmt::format("{}: {} elements without data; the limit is {}", use,
-                                       accessor.count, limits::max_implicit_elements));
-    }
+    check_implicit_count(accessor, use);
     values.assign(accessor.count * width, 0.0f);
   }
-  if (accessor.sparse.isSparse) apply_sparse(accessor, components, values, use);
+  for_each_sparse(
+      accessor, size * width, use, [&](std::uint64_t target, const unsigned char* replacement) {
+        for (std::size_t c = 0; c < width; ++c) {
+          values[target * width + c] =
+              component(replacement + c * size, accessor.componentType, accessor.normalized);
+        }
+      });
   return values;
 }
 
-void AccessorReader::apply_sparse(const tinygltf::Accessor& accessor, int components,
-                                  std::vector<float>& values, const std::string& use) const {
+void AccessorReader::check_implicit_count(const tinygltf::Accessor& accessor,
+                                          const std::string& use) const {
+  if (accessor.count > limits::max_implicit_elements) {
+    throw context_.error(fmt::format("{}: {} elements without data; the limit is {}", use,
+                                     accessor.count, limits::max_implicit_elements));
+  }
+}
+
+void AccessorReader::for_each_sparse(const tinygltf::Accessor& accessor, std::uint64_t element_size,
+                                     const std::string& use, const SparseVisit& visit) const {
   const auto& sparse = accessor.sparse;
-  if (sparse.count <= 0) return;
+  if (!sparse.isSparse || sparse.count <= 0) return;
   if (static_cast<std::uint64_t>(sparse.count) > accessor.count || sparse.indices.byteOffset < 0 ||
       sparse.values.byteOffset < 0 || !is_index_type(sparse.indices.componentType)) {
     throw context_.error(use + ": malformed sparse accessor; export it again");
   }
   const auto count = static_cast<std::uint64_t>(sparse.count);
-  const std::uint64_t size = component_size(accessor.componentType);
-  const auto width = static_cast<std::size_t>(components);
   const Elements indices =
       elements(sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset),
                count, component_size(sparse.indices.componentType), use);
   const Elements replacements =
       elements(sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset),
-               count, size * width, use);
+               count, element_size, use);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t target =
         index(indices.first + i * indices.stride, sparse.indices.componentType);
@@ -186,32 +200,34 @@ void AccessorReader::apply_sparse(const tinygltf::Accessor& accessor, int compon
       throw context_.error(fmt::format("{}: sparse index {} of {} elements; export it again", use,
                                        target, accessor.count));
     }
-    for (std::size_t c = 0; c < width; ++c) {
-      values[target * width + c] =
-          component(replacements.first + i * replacements.stride + c * size, accessor.componentType,
-                    accessor.normalized);
-    }
+    visit(target, replacements.first + i * replacements.stride);
   }
 }
 
 std::vector<std::uint32_t> AccessorReader::indices(int accessor_index,
                                                    const std::string& use) const {
   const tinygltf::Accessor& accessor = at(accessor_index, use);
-  if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType) ||
-      accessor.sparse.isSparse) {
-    throw context_.error(
-        fmt::format("{}: accessor {} holds no plain unsigned indices; export it "
-                    "again",
-                    use, accessor_index));
+  if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType)) {
+    throw context_.error(fmt::format("{}: accessor {} holds no unsigned indices; export it again",
+                                     use, accessor_index));
   }
   std::vector<std::uint32_t> result;
   if (accessor.count == 0) return result;
-  const Elements source = elements(accessor.bufferView, accessor.byteOffset, accessor.count,
-                                   component_size(accessor.componentType), use);
-  result.reserve(accessor.count);
-  for (std::size_t i = 0; i < accessor.count; ++i) {
-    result.push_back(index(source.first + i * source.stride, accessor.componentType));
+  const std::uint64_t size = component_size(accessor.componentType);
+  if (accessor.bufferView < 0 && accessor.sparse.isSparse) {
+    check_implicit_count(accessor, use);
+    result.assign(accessor.count, 0);
+  } else {
+    const Elements source =
+        elements(accessor.bufferView, accessor.byteOffset, accessor.count, size, use);
+    result.reserve(accessor.count);
+    for (std::size_t i = 0; i < accessor.count; ++i) {
+      result.push_back(index(source.first + i * source.stride, accessor.componentType));
+    }
   }
+  for_each_sparse(accessor, size, use, [&](std::uint64_t target, const unsigned char* replacement) {
+    result[target] = index(replacement, accessor.componentType);
+  });
   return result;
 }
 

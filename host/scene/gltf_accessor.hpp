@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ class AccessorReader {
   /// Number of elements, without reading them. Errors: InputError when there is no such accessor.
   std::uint64_t count(int accessor, const std::string& use) const;
 
+  /// Whether any element is given; all others are 0. Errors: as count.
+  bool has_data(int accessor, const std::string& use) const;
+
   /// The bytes of a buffer view. Errors: InputError when it leaves its buffer.
   std::span<const unsigned char> view(int buffer_view, const std::string& use) const;
 
@@ -40,8 +44,13 @@ class AccessorReader {
   const tinygltf::Accessor& at(int accessor, const std::string& use) const;
   Elements elements(int buffer_view, std::uint64_t offset, std::uint64_t count,
                     std::uint64_t element_size, const std::string& use) const;
-  void apply_sparse(const tinygltf::Accessor& accessor, int components, std::vector<float>& values,
-                    const std::string& use) const;
+  /// Errors: InputError where an accessor without data has too many elements.
+  void check_implicit_count(const tinygltf::Accessor& accessor, const std::string& use) const;
+
+  /// Takes the number of an element and the bytes that replace it.
+  using SparseVisit = std::function<void(std::uint64_t, const unsigned char*)>;
+  void for_each_sparse(const tinygltf::Accessor& accessor, std::uint64_t element_size,
+                       const std::string& use, const SparseVisit& visit) const;
 
   const tinygltf::Model& model_;
   const ImportContext& context_;

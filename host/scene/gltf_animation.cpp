@@ -204,14 +204,14 @@ bool is_chosen(const tinygltf::Animation& animation, std::size_t index,
 
 }  // namespace
 
-walk::CameraMotion read_camera_animation(const std::filesystem::path& file, bool allow_outside,
-                                         const Camera& camera, const std::string& animation) {
+walk::CameraMotion read_camera_animation(const std::filesystem::path& file,
+                                         const SceneLoadOptions& options, const Camera& camera,
+                                         const std::string& animation) {
   Scene scene;
   scene.source = file;
-  SceneFolder folder(file, allow_outside);
+  SceneFolder folder(file, options.allow_outside);
   Warnings warnings;
   AreaLights area_lights(scene);
-  const SceneLoadOptions options;
   ImportContext context{scene, folder, options, warnings, area_lights, {}};
   if (file.extension() != ".gltf" && file.extension() != ".glb") {
     throw context.error("only glTF files have animations; describe the path with --camera-path");

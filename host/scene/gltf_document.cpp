@@ -3,34 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <string_view>
 
 #include "photile/limits.hpp"
+#include "scene/gltf_extensions.hpp"
 #include "scene/resource_error.hpp"
 
 namespace photile::scene_io {
 namespace {
-
-constexpr std::array<std::string_view, 10> understood_extensions{
-    "EXT_lights_area",
-    "EXT_lights_ies",
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-};
-
-bool understood(const std::string& extension) {
-  return std::find(understood_extensions.begin(), understood_extensions.end(), extension) !=
-         understood_extensions.end();
-}
 
 /// Deepest nesting of arrays and objects. tinygltf copies JSON recursively, so depth is stack.
 int json_depth(std::string_view json) {
@@ -56,7 +39,7 @@ int json_depth(std::string_view json) {
 }
 
 /// The JSON text of a file: all of a .gltf, the first chunk of a .glb.
-std::string_view json_text(const std::vector<unsigned char>& bytes, bool binary) {
+std::string_view json_text(std::span<const unsigned char> bytes, bool binary) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   constexpr std::size_t binary_header = 20;  // file header and the header of the first chunk
   if (!binary) return text;
@@ -100,20 +83,6 @@ std::string first_line(std::string text) {
   return text.empty() ? "not a glTF file" : text;
 }
 
-void check_extensions(const tinygltf::Model& model, ImportContext& context) {
-  for (const std::string& extension : model.extensionsRequired) {
-    if (!understood(extension)) {
-      throw context.error(fmt::format(
-          "requires the glTF extension {}, which is not understood; export without it", extension));
-    }
-  }
-  for (const std::string& extension : model.extensionsUsed) {
-    if (!understood(extension)) {
-      context.warnings.add("extension", extension, "not understood; what it says is ignored");
-    }
-  }
-}
-
 void check_counts(const tinygltf::Model& model, const ImportContext& context) {
   if (model.nodes.size() > limits::max_nodes) {
     throw context.error(
@@ -132,15 +101,15 @@ tinygltf::Model read_gltf(ImportContext& context) {
   const std::string_view magic(reinterpret_cast<const char*>(bytes.data()),
                                std::min<std::size_t>(bytes.size(), 4));
   const bool binary = magic == "glTF";
-  const int depth = json_depth(json_text(bytes, binary));
+  const auto size = static_cast<unsigned int>(bytes.size());
+  // tinygltf 2.7 leaves the 8 bytes of the second chunk's header out of its length check.
+  bytes.resize(bytes.size() + 8, 0);
+  const std::string_view json = json_text(std::span(bytes).first(size), binary);
+  const int depth = json_depth(json);
   if (depth > limits::max_json_depth) {
     throw context.error(
         fmt::format("JSON nested {} levels deep; the limit is {}", depth, limits::max_json_depth));
   }
-  const auto size = static_cast<unsigned int>(bytes.size());
-  // tinygltf 2.7 leaves the 8 bytes of the second chunk's header out of its length check.
-  bytes.resize(bytes.size() + 8, 0);
-
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks(context.folder));
   loader.SetImageLoader(keep_encoded, nullptr);
@@ -151,6 +120,7 @@ tinygltf::Model read_gltf(ImportContext& context) {
              : loader.LoadASCIIFromString(&model, &error, &warning,
                                           reinterpret_cast<const char*>(bytes.data()), size, "");
   if (!loaded) {
+    check_required_extensions(json, context);
     throw context.error("malformed glTF: " + first_line(error) + "; export it again");
   }
   if (!error.empty()) context.warnings.add("malformed glTF: " + first_line(error));

@@ -79,12 +79,12 @@ void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
   const auto first = static_cast<std::uint32_t>(context_.scene.triangles.size());
   kept_.clear();
   for (const tinygltf::Primitive& primitive : mesh.primitives) {
-    if (is_usable(primitive)) {
-      add_primitive(primitive, visit, visit_number, name);
+    if (!has_triangles(primitive.mode)) {
+      context_.warnings.add("mesh", name, "points and lines are ignored");
+    } else if (!is_usable(primitive, fmt::format("mesh '{}'", name), accessors_)) {
+      context_.warnings.add("mesh", name, "has no positions; ignored");
     } else {
-      context_.warnings.add("mesh", name,
-                            has_triangles(primitive.mode) ? "has no positions; ignored"
-                                                          : "points and lines are ignored");
+      add_primitive(primitive, visit, visit_number, name);
     }
   }
   if (uses_[node.mesh] > 1) {
@@ -211,12 +211,11 @@ void check_triangle_count(const tinygltf::Model& model, const AccessorReader& ac
     if (mesh < 0 || static_cast<std::size_t>(mesh) >= model.meshes.size()) continue;
     for (const tinygltf::Primitive& primitive :
          model.meshes[static_cast<std::size_t>(mesh)].primitives) {
-      const auto position = primitive.attributes.find("POSITION");
-      const int counted = primitive.indices >= 0                   ? primitive.indices
-                          : position == primitive.attributes.end() ? -1
-                                                                   : position->second;
-      if (counted < 0) continue;
-      const std::uint64_t count = accessors.count(counted, "a mesh");
+      const std::string use = fmt::format("mesh '{}'", name_of_mesh(model, mesh));
+      if (!is_usable(primitive, use, accessors)) continue;
+      const int counted =
+          primitive.indices >= 0 ? primitive.indices : attribute(primitive, "POSITION");
+      const std::uint64_t count = accessors.count(counted, use);
       const std::uint64_t per_triangle = primitive.mode == TINYGLTF_MODE_TRIANGLES ? 3 : 1;
       triangles += std::min(count, 3 * limits::max_triangles) / per_triangle;
       if (triangles > limits::max_triangles) {

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <optional>
 
 #include "photile/limits.hpp"
 #include "scene/gltf_document.hpp"
@@ -15,22 +16,8 @@
 namespace photile::scene_io {
 namespace {
 
-std::vector<int> root_nodes(const tinygltf::Model& model, ImportContext& context) {
-  if (!model.scenes.empty()) {
-    const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
-    if (static_cast<std::size_t>(scene) >= model.scenes.size()) {
-      throw context.error(
-          fmt::format("the default scene is {}, but there are only {}; export it "
-                      "again",
-                      scene, model.scenes.size()));
-    }
-    if (model.scenes.size() > 1) {
-      context.warnings.add(fmt::format("{} scenes; only scene {} '{}' is loaded",
-                                       model.scenes.size(), scene,
-                                       model.scenes[static_cast<std::size_t>(scene)].name));
-    }
-    return model.scenes[static_cast<std::size_t>(scene)].nodes;
-  }
+/// The nodes that no other one has as a child.
+std::vector<int> parentless_nodes(const tinygltf::Model& model) {
   std::vector<bool> is_child(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes) {
     for (const int child : node.children) {
@@ -44,6 +31,94 @@ std::vector<int> root_nodes(const tinygltf::Model& model, ImportContext& context
     if (!is_child[i]) roots.push_back(static_cast<int>(i));
   }
   return roots;
+}
+
+/// "0 'day', 1 'night'"
+std::string scene_list(const tinygltf::Model& model) {
+  constexpr std::size_t most_listed = 10;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(model.scenes.size(), most_listed); ++i) {
+    names.push_back(fmt::format("{} '{}'", i, model.scenes[i].name));
+  }
+  if (model.scenes.size() > most_listed) names.emplace_back("...");
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// The scene that the user names, else the file's default, else the first. There is one at least.
+std::size_t chosen_scene(const tinygltf::Model& model, ImportContext& context) {
+  const std::string& wanted = context.options.scene;
+  if (!wanted.empty()) {
+    for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+      if (model.scenes[i].name == wanted) return i;
+    }
+    for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+      if (std::to_string(i) == wanted) return i;
+    }
+    throw UsageError(fmt::format("{}: no scene '{}'; its scenes are {}",
+                                 context.folder.scene_file().string(), wanted, scene_list(model)));
+  }
+  const int scene = std::max(model.defaultScene, 0);
+  if (static_cast<std::size_t>(scene) >= model.scenes.size()) {
+    throw context.error(
+        fmt::format("the default scene is {}, but there are only {}; pass --scene or export it "
+                    "again",
+                    scene, model.scenes.size()));
+  }
+  if (model.scenes.size() > 1) {
+    context.warnings.add(
+        fmt::format("of {} scenes only scene {} is loaded; --scene takes another: {}",
+                    model.scenes.size(), scene, scene_list(model)));
+  }
+  return static_cast<std::size_t>(scene);
+}
+
+std::vector<int> root_nodes(const tinygltf::Model& model, ImportContext& context) {
+  if (!model.scenes.empty()) return model.scenes[chosen_scene(model, context)].nodes;
+  if (!context.options.scene.empty()) {
+    throw UsageError(
+        fmt::format("{}: no scene '{}'; the file has none, only nodes: leave --scene out",
+                    context.folder.scene_file().string(), context.options.scene));
+  }
+  return parentless_nodes(model);
+}
+
+/// Counts visits before they are made: nodes with several parents multiply, and a file of a few
+/// hundred bytes could ask for more than any memory holds.
+class VisitCounter {
+ public:
+  explicit VisitCounter(const tinygltf::Model& model) : model_(model), below_(model.nodes.size()) {}
+
+  /// Of the node and all below it, at most one more than the limit. What counts as nothing here
+  /// (cycles, deep trees, missing nodes) ends the walk, which comes by in the same order.
+  std::uint64_t count(int node, int depth = 0) {
+    if (node < 0 || static_cast<std::size_t>(node) >= below_.size()) return 0;
+    if (depth > limits::max_node_depth) return 0;
+    std::optional<std::uint64_t>& known = below_[static_cast<std::size_t>(node)];
+    if (known) return *known;
+    known = 0;  // until it is known: a node below itself
+    std::uint64_t visits = 1;
+    for (const int child : model_.nodes[static_cast<std::size_t>(node)].children) {
+      visits = std::min(visits + count(child, depth + 1), limits::max_node_visits + 1);
+    }
+    known = visits;
+    return visits;
+  }
+
+ private:
+  const tinygltf::Model& model_;
+  std::vector<std::optional<std::uint64_t>> below_;  ///< visits of a node and all below it
+};
+
+void check_visit_count(const tinygltf::Model& model, const std::vector<int>& roots,
+                       const ImportContext& context) {
+  VisitCounter counter(model);
+  std::uint64_t visits = 0;
+  for (const int root : roots) visits += counter.count(root);
+  if (visits > limits::max_node_visits) {
+    throw context.error(fmt::format(
+        "nodes with several parents appear more than {} times; export their meshes once",
+        limits::max_node_visits));
+  }
 }
 
 /// A node on the way from the root, and which of its children comes next.
@@ -86,10 +161,6 @@ class Walk {
     if (path_.size() >= static_cast<std::size_t>(limits::max_node_depth)) {
       throw context_.error(
           fmt::format("nodes nested more than {} levels deep", limits::max_node_depth));
-    }
-    if (visits.size() >= limits::max_node_visits) {
-      throw context_.error(fmt::format("nodes with several parents appear more than {} times",
-                                       limits::max_node_visits));
     }
     on_path_[static_cast<std::size_t>(node)] = true;
     const glm::dmat4 world = parent * local_transform(model_.nodes[static_cast<std::size_t>(node)]);
@@ -152,7 +223,9 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
 std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& context) {
   std::vector<NodeVisit> visits;
   Walk walk(model, context);
-  for (const int root : root_nodes(model, context)) walk.from_root(root, visits);
+  const std::vector<int> roots = root_nodes(model, context);
+  check_visit_count(model, roots, context);
+  for (const int root : roots) walk.from_root(root, visits);
   warn_about_empty_nodes(model, visits, context);
   return visits;
 }

@@ -16,9 +16,10 @@ struct NodeVisit {
   glm::dmat4 world;  ///< node to world space
 };
 
-/// Every node of the default scene (or of the first; or all root nodes when there is no scene), in
-/// depth-first order. Empty nodes, which are what remains of Blender's area lights, are named in a
-/// warning. Errors: InputError for cycles, wrong node numbers and trees beyond the limits.
+/// Every node of the scene that SceneLoadOptions::scene names, else of the default scene (or of the
+/// first; or all root nodes when there is no scene), in depth-first order. Empty nodes, which are
+/// what remains of Blender's area lights, are named in a warning. Errors: InputError for cycles,
+/// wrong node numbers and trees beyond the limits; UsageError where there is no such scene.
 std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& context);
 
 /// Node to parent space: its matrix, or its translation, rotation and scale.

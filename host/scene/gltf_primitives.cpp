@@ -11,13 +11,16 @@ bool has_triangles(int mode) {
          mode == TINYGLTF_MODE_TRIANGLE_FAN;
 }
 
-bool is_usable(const tinygltf::Primitive& primitive) {
-  return has_triangles(primitive.mode) && primitive.attributes.count("POSITION") > 0;
-}
-
 int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
   const auto found = primitive.attributes.find(name);
   return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+bool is_usable(const tinygltf::Primitive& primitive, const std::string& use,
+               const AccessorReader& accessors) {
+  const int position = attribute(primitive, "POSITION");
+  return has_triangles(primitive.mode) && position >= 0 &&
+         accessors.has_data(position, "POSITION of " + use);
 }
 
 std::vector<std::array<std::uint32_t, 3>> assemble(const std::vector<std::uint32_t>& indices,
@@ -72,7 +75,7 @@ LocalMesh read_local_mesh(const tinygltf::Model& model, int mesh, const Accessor
   LocalMesh local;
   for (const tinygltf::Primitive& primitive :
        model.meshes[static_cast<std::size_t>(mesh)].primitives) {
-    if (!is_usable(primitive)) continue;
+    if (!is_usable(primitive, use, accessors)) continue;
     const auto first = static_cast<std::uint32_t>(local.positions.size());
     const std::vector<float> positions =
         accessors.floats(attribute(primitive, "POSITION"), 3, "POSITION of " + use);

@@ -16,8 +16,11 @@ namespace photile::scene_io {
 /// Whether a primitive's mode makes triangles.
 bool has_triangles(int mode);
 
-/// Whether triangles can be made of it.
-bool is_usable(const tinygltf::Primitive& primitive);
+/// Whether triangles can be made of it: of its mode, and positions that are not all 0, as those of
+/// meshes that an extension compresses are. Errors: InputError for a wrong accessor number, naming
+/// `use`.
+bool is_usable(const tinygltf::Primitive& primitive, const std::string& use,
+               const AccessorReader& accessors);
 
 /// The accessor of an attribute, or -1.
 int attribute(const tinygltf::Primitive& primitive, const std::string& name);

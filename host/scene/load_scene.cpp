@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <new>
 #include <utility>
 
@@ -49,6 +50,11 @@ void report_dropped_triangles(const ImportReport& report, Warnings& warnings) {
         fmt::format("{} triangles with a corner that is NaN, infinite or beyond {:g} m are dropped",
                     report.non_finite_triangles, limits::max_coordinate));
   }
+  if (report.duplicate_triangles > 0) {
+    warnings.add(fmt::format(
+        "{} triangles that lie exactly on others are dropped: of two materials the first counts",
+        report.duplicate_triangles));
+  }
 }
 
 /// An error about a scene that lacks something. What the import warned about is often the reason: a
@@ -64,11 +70,15 @@ InputError lacks(const std::string& what, const ImportContext& context) {
 
 /// Importers leave the irradiance of a directional light in `power`, since the size of the scene is
 /// known only now.
-void finish_directional_lights(Scene& scene) {
-  const double radius = bounding_sphere(scene).radius;
-  for (Light& light : scene.lights) {
-    if (light.kind == LightKind::directional) {
-      light.power = directional_flux(light.power, radius);
+void finish_directional_lights(const ImportContext& context) {
+  const double radius = bounding_sphere(context.scene).radius;
+  for (Light& light : context.scene.lights) {
+    if (light.kind != LightKind::directional) continue;
+    light.power = directional_flux(light.power, radius);
+    if (!std::isfinite(light.power)) {
+      throw context.error(fmt::format(
+          "light '{}': its flux over a scene of {:g} m is beyond any number; give it fewer lux",
+          light.name, 2 * radius));
     }
   }
 }
@@ -97,13 +107,14 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   ImportContext context{scene, folder, options, warnings, area_lights, {}};
   try {
     import_by_extension(context);
+    report_dropped_triangles(scene.report, warnings);
     if (scene.triangles.empty()) {
       throw lacks("no triangles with an area; export the scene with its geometry", context);
     }
     for (const AreaLights::Origin& origin : area_lights.finish(warnings)) {
       context.light_sources.push_back(source_of(origin, context));
     }
-    finish_directional_lights(scene);
+    finish_directional_lights(context);
     add_surroundings(scene, options);
     context.light_sources.resize(scene.lights.size());
     if (scene.lights.empty()) {
@@ -125,7 +136,6 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   apply_temperatures(scene, options.temperatures);
   group_lights(scene, options.light_groups);
   if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
-  report_dropped_triangles(scene.report, warnings);
   scene.report.warnings = warnings.lines();
   return {std::move(scene), std::move(context.light_sources)};
 }

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile::scene_io {
 

@@ -18,6 +18,15 @@ namespace {
 /// Rounded to float, with -0 made +0 so that equal positions have equal bits.
 glm::vec3 rounded(const glm::dvec3& position) { return glm::vec3(position) + glm::vec3(0.0f); }
 
+std::size_t hash_of(const std::array<std::uint32_t, 3>& words) {
+  std::uint64_t hash = 0;
+  for (const std::uint32_t word : words) {
+    // Multiplication by the golden ratio spreads the low entropy of float bits over the word.
+    hash = (std::rotl(hash, 29) ^ word) * 0x9E37'79B9'7F4A'7C15ull;
+  }
+  return static_cast<std::size_t>(hash ^ (hash >> 32));
+}
+
 bool comes_before(const glm::vec3& a, const glm::vec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
@@ -25,15 +34,20 @@ bool comes_before(const glm::vec3& a, const glm::vec3& b) {
 }  // namespace
 
 std::size_t MeshBuilder::PositionHash::operator()(const std::array<std::uint32_t, 3>& bits) const {
-  std::uint64_t hash = 0;
-  for (const std::uint32_t word : bits) {
-    // Multiplication by the golden ratio spreads the low entropy of float bits over the word.
-    hash = (std::rotl(hash, 29) ^ word) * 0x9E37'79B9'7F4A'7C15ull;
-  }
-  return static_cast<std::size_t>(hash ^ (hash >> 32));
+  return hash_of(bits);
 }
 
-MeshBuilder::MeshBuilder(Scene& scene, const CornerNeeds& needs) : scene_(scene), needs_(needs) {}
+std::size_t MeshBuilder::TriangleHash::operator()(std::uint32_t triangle) const {
+  const glm::uvec3& corners = scene->triangles[triangle];
+  return hash_of({corners.x, corners.y, corners.z});
+}
+
+bool MeshBuilder::TriangleEqual::operator()(std::uint32_t a, std::uint32_t b) const {
+  return scene->triangles[a] == scene->triangles[b];
+}
+
+MeshBuilder::MeshBuilder(Scene& scene, const CornerNeeds& needs)
+    : scene_(scene), needs_(needs), distinct_(0, TriangleHash{&scene}, TriangleEqual{&scene}) {}
 
 std::uint32_t MeshBuilder::vertex_index(const glm::vec3& position) {
   const auto next = static_cast<std::uint32_t>(scene_.vertices.size());
@@ -85,6 +99,14 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
   scene_.front_side.push_back(front_side);
   scene_.triangle_material.push_back(material);
   scene_.triangle_light.push_back(light);
+  if (is_duplicate(static_cast<std::uint32_t>(scene_.triangles.size() - 1))) {
+    scene_.triangles.pop_back();
+    scene_.front_side.pop_back();
+    scene_.triangle_material.pop_back();
+    scene_.triangle_light.pop_back();
+    ++scene_.report.duplicate_triangles;
+    return false;
+  }
   if (needs_.uv) {
     scene_.corner_uv.push_back(
         {glm::vec2(sorted[0]->uv), glm::vec2(sorted[1]->uv), glm::vec2(sorted[2]->uv)});
@@ -96,6 +118,17 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
   }
   if (needs_.normals) add_normals(sorted, front_side == 0 ? normal : -normal);
   return true;
+}
+
+/// Whether the triangle lies exactly on one before it. Which of the two a ray meets would be
+/// chance, and photons would be shared between them. Files have such pairs for both sides of a
+/// surface, which here reflects on either; lamps emit from one side only, so that they need both.
+bool MeshBuilder::is_duplicate(std::uint32_t triangle) {
+  const auto [first, inserted] = distinct_.insert(triangle);
+  if (inserted) return false;
+  const std::uint32_t light = scene_.triangle_light[triangle];
+  return light == none || (light == scene_.triangle_light[*first] &&
+                           scene_.front_side[triangle] == scene_.front_side[*first]);
 }
 
 void MeshBuilder::add_normals(const std::array<const Corner*, 3>& sorted, const glm::dvec3& front) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "photile/scene.hpp"
 
@@ -30,9 +31,9 @@ class MeshBuilder {
   MeshBuilder(Scene& scene, const CornerNeeds& needs);
 
   /// Adds a triangle whose front is the side from which `corners` run counter-clockwise. Triangles
-  /// with a corner that is not finite or beyond limits::max_coordinate and triangles without area
-  /// are counted and left out; false then. `light` is an area light's index, or `none`. Errors:
-  /// InputError beyond a limit.
+  /// with a corner that is not finite or beyond limits::max_coordinate, triangles without area and
+  /// duplicates are counted and left out; false then. `light` is an area light's index, or `none`.
+  /// Errors: InputError beyond a limit.
   bool add(const std::array<Corner, 3>& corners, std::uint32_t material, std::uint32_t light);
 
   /// Drops normals when the file turned out to have none.
@@ -43,13 +44,25 @@ class MeshBuilder {
     std::size_t operator()(const std::array<std::uint32_t, 3>& bits) const;
   };
 
+  /// Numbers of triangles by their corners.
+  struct TriangleHash {
+    const Scene* scene;
+    std::size_t operator()(std::uint32_t triangle) const;
+  };
+  struct TriangleEqual {
+    const Scene* scene;
+    bool operator()(std::uint32_t a, std::uint32_t b) const;
+  };
+
   std::uint32_t vertex_index(const glm::vec3& position);
+  bool is_duplicate(std::uint32_t triangle);
   void add_normals(const std::array<const Corner*, 3>& sorted, const glm::dvec3& front);
 
   Scene& scene_;
   CornerNeeds needs_;
   bool any_normal_ = false;
   std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, PositionHash> index_of_position_;
+  std::unordered_set<std::uint32_t, TriangleHash, TriangleEqual> distinct_;  ///< triangles
 };
 
 }  // namespace photile::scene_io

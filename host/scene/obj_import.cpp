@@ -12,6 +12,7 @@
 #include "scene/material_needs.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/mtl_materials.hpp"
+#include "scene/obj_libraries.hpp"
 #include "scene/obj_reader.hpp"
 #include "scene/obj_text.hpp"
 #include "scene/polygon_triangulator.hpp"
@@ -30,12 +31,14 @@ void report_findings(const ObjTextFindings& findings, Warnings& warnings) {
 
 /// Adds the materials that faces use. Returns the scene's material of each usemtl name, and one
 /// more for faces without any.
-std::vector<std::uint32_t> add_materials(const ObjFile& file, ImportContext& context) {
+std::vector<std::uint32_t> add_materials(const ObjFile& file,
+                                         const std::vector<tinyobj::material_t>& defined,
+                                         ImportContext& context) {
   if (file.material_names.size() + 1 > limits::max_materials) {
     throw context.error(fmt::format("more than {} materials", limits::max_materials));
   }
   std::map<std::string, const tinyobj::material_t*> library;
-  for (const tinyobj::material_t& material : file.library) {
+  for (const tinyobj::material_t& material : defined) {
     library.emplace(material.name, &material);
   }
   TextureStore textures(context.scene, context.folder);
@@ -127,6 +130,10 @@ void import_obj(ImportContext& context) {
     throw UsageError(fmt::format("--area-light {}: nodes are what glTF files have; this is an OBJ",
                                  context.options.panels.front().node));
   }
+  if (!context.options.scene.empty()) {
+    throw UsageError(fmt::format("--scene {}: only glTF files hold several scenes; this is an OBJ",
+                                 context.options.scene));
+  }
   const std::vector<unsigned char> bytes = context.folder.read_scene_file();
   std::string text(bytes.begin(), bytes.end());
   ObjTextFindings findings;
@@ -144,7 +151,8 @@ void import_obj(ImportContext& context) {
   }
   move_to_origin(file, context.scene);
   context.scene.unit = PowerUnit::watt;
-  const std::vector<std::uint32_t> material_index = add_materials(file, context);
+  const std::vector<std::uint32_t> material_index =
+      add_materials(file, read_obj_libraries(findings.libraries, context), context);
   const SceneNeeds needs = needs_of_materials(context.scene.materials);
   MeshBuilder builder(context.scene, {needs.textures, has_emission_texture(context),
                                       needs.glossy || needs.specular_paths});

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <istream>
 #include <map>
-#include <sstream>
 #include <streambuf>
-#include <string_view>
 
 #include "photile/limits.hpp"
-#include "scene/resource_error.hpp"
+#include "scene/trimmed.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -21,52 +18,6 @@ class MemoryBuffer : public std::streambuf {
   explicit MemoryBuffer(std::string& text) {
     setg(text.data(), text.data(), text.data() + text.size());
   }
-};
-
-std::string trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r";
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
-}
-
-void warn_lines(Warnings& warnings, const std::string& prefix, const std::string& text) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (!trimmed(line).empty()) warnings.add(prefix + ": " + trimmed(line));
-  }
-}
-
-/// Reads material libraries from the scene's folder only.
-class LibraryReader : public tinyobj::MaterialReader {
- public:
-  explicit LibraryReader(ImportContext& context) : context_(context) {}
-
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* index, std::string*, std::string*) override {
-    std::string path = name;
-    std::replace(path.begin(), path.end(), '\\', '/');  // as written on Windows
-    try {
-      const std::vector<unsigned char> bytes = context_.folder.read(path);
-      std::string text(bytes.begin(), bytes.end());
-      if (text.find('\0') != std::string::npos) {
-        throw ResourceError("'" + name + "': NUL bytes: this is no plain text (UTF-16?)");
-      }
-      MemoryBuffer buffer(text);
-      std::istream stream(&buffer);
-      std::string warning, error;
-      tinyobj::LoadMtl(index, materials, &stream, &warning, &error);
-      warn_lines(context_.warnings, name, warning + error);
-      return true;
-    } catch (const ResourceError& error) {
-      context_.warnings.add(
-          fmt::format("material library {}; its materials become mid grey (0.5)", error.what()));
-      return false;
-    }
-  }
-
- private:
-  ImportContext& context_;
 };
 
 /// Collects what the callbacks report.
@@ -95,11 +46,11 @@ class Collector {
   }
 
   void use_material(const std::string& name) {
-    material_ = find_or_add(trimmed(name), file_.material_names, material_index_);
+    material_ = find_or_add(std::string(trimmed(name)), file_.material_names, material_index_);
   }
 
   void begin_object(const std::string& name) {
-    object_ = find_or_add(trimmed(name), file_.objects, object_index_);
+    object_ = find_or_add(std::string(trimmed(name)), file_.objects, object_index_);
   }
 
  private:
@@ -150,9 +101,6 @@ tinyobj::callback_t callbacks() {
   result.usemtl_cb = [](void* p, const char* name, int) {
     static_cast<CallbackData*>(p)->collector.use_material(name);
   };
-  result.mtllib_cb = [](void* p, const tinyobj::material_t* materials, int count) {
-    static_cast<CallbackData*>(p)->file.library.assign(materials, materials + count);
-  };
   result.group_cb = [](void* p, const char** names, int count) {
     static_cast<CallbackData*>(p)->collector.begin_object(count > 0 ? names[0] : "");
   };
@@ -199,13 +147,11 @@ void check_corners(ObjFile& file, ImportContext& context) {
 ObjFile read_obj(std::string& text, ImportContext& context) {
   ObjFile file;
   CallbackData data{Collector(context, file), file};
-  LibraryReader library_reader(context);
   MemoryBuffer buffer(text);
   std::istream stream(&buffer);
   // tinyobjloader's own warnings only repeat, less precisely, what the reader and the collector
   // say.
-  tinyobj::LoadObjWithCallback(stream, callbacks(), &data, &library_reader, nullptr, nullptr);
-  for (tinyobj::material_t& material : file.library) material.name = trimmed(material.name);
+  tinyobj::LoadObjWithCallback(stream, callbacks(), &data, nullptr, nullptr, nullptr);
   check_corners(file, context);
   return file;
 }

@@ -25,13 +25,12 @@ struct ObjFile {
   std::vector<glm::dvec2> texcoords;      ///< as in the file: (0,0) is the lower left corner
   std::vector<tinyobj::index_t> corners;  ///< from 0; -1 = not given or out of range
   std::vector<ObjFace> faces;
-  std::vector<std::string> objects;          ///< names of objects and groups; "" before the first
-  std::vector<std::string> material_names;   ///< as usemtl names them
-  std::vector<tinyobj::material_t> library;  ///< what the material libraries define
+  std::vector<std::string> objects;         ///< names of objects and groups; "" before the first
+  std::vector<std::string> material_names;  ///< as usemtl names them
 };
 
-/// Reads `text`, and the material libraries it names from the scene's folder. Missing libraries are
-/// warnings. Errors: InputError naming the face with an impossible vertex index.
+/// Reads `text`, without the material libraries that it names (obj_libraries.hpp). Errors:
+/// InputError naming the face with an impossible vertex index.
 ObjFile read_obj(std::string& text, ImportContext& context);
 
 }  // namespace photile::scene_io

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "scene/resource_error.hpp"
+#include "scene/trimmed.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -53,8 +54,7 @@ ObjTextFindings examine_obj_text(std::string& text) {
     throw ResourceError("NUL bytes: this is no plain text (UTF-16?); save it as UTF-8");
   }
   join_continued_lines(text);
-  constexpr std::array<std::string_view, 8> understood{"vn", "vt",     "f", "o",
-                                                       "g",  "usemtl", "s", "mtllib"};
+  constexpr std::array<std::string_view, 7> understood{"vn", "vt", "f", "o", "g", "usemtl", "s"};
   ObjTextFindings findings;
   std::uint64_t vertices = 0;
   std::string_view rest = text;
@@ -65,6 +65,8 @@ ObjTextFindings examine_obj_text(std::string& text) {
     const std::string_view keyword = take_word(line);
     if (keyword == "v") {
       examine_vertex(line, vertices++, findings);
+    } else if (keyword == "mtllib") {
+      findings.libraries.emplace_back(trimmed(line));
     } else if (!keyword.empty() && keyword[0] != '#' &&
                std::find(understood.begin(), understood.end(), keyword) == understood.end()) {
       ++findings.ignored_statements[std::string(keyword.substr(0, 20))];

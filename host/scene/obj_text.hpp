@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <unordered_set>
+#include <vector>
 
 namespace photile::scene_io {
 
@@ -14,6 +15,7 @@ struct ObjTextFindings {
   std::unordered_set<std::uint64_t> unreadable_vertices;
   std::map<std::string, std::uint64_t> ignored_statements;  ///< keyword -> lines
   bool vertex_colors = false;
+  std::vector<std::string> libraries;  ///< what follows each mtllib
 };
 
 /// Looks through OBJ text. Lines that end in a backslash are joined with the next in place, which

@@ -8,14 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/trimmed.hpp"
+
 namespace photile::scene_io {
 
 /// A number that fills the text, with a decimal point; a leading + is allowed. Nothing for NaN,
 /// infinities and all else.
 std::optional<double> parse_number(std::string_view text);
-
-/// Without blanks at either end.
-std::string_view trimmed(std::string_view text);
 
 /// Lines without their ends (LF, CR LF or CR) and without a byte-order mark.
 std::vector<std::string_view> lines_of(std::string_view text);

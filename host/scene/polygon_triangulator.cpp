@@ -57,7 +57,10 @@ double signed_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c
 class Ring {
  public:
   explicit Ring(const std::vector<glm::dvec2>& points)
-      : points_(points), next_(points.size()), previous_(points.size()), concave_(points.size()) {
+      : points_(points),
+        next_(points.size()),
+        previous_(points.size()),
+        place_(points.size(), absent) {
     const auto count = static_cast<std::uint32_t>(points.size());
     for (std::uint32_t i = 0; i < count; ++i) {
       next_[i] = (i + 1) % count;
@@ -77,9 +80,9 @@ class Ring {
   bool is_ear(std::uint32_t i) const {
     if (corner_area(i) <= 0.0) return false;
     const glm::dvec2 a = points_[previous_[i]], b = points_[i], c = points_[next_[i]];
-    for (std::uint32_t j = next_[next_[i]]; j != previous_[i]; j = next_[j]) {
-      // Only a concave corner can poke into an ear. One that touches it at a corner does not.
-      if (!concave_[j] || points_[j] == a || points_[j] == b || points_[j] == c) continue;
+    // Only a concave corner can poke into an ear. One that touches it at a corner does not.
+    for (const std::uint32_t j : concave_) {
+      if (points_[j] == a || points_[j] == b || points_[j] == c) continue;
       if (signed_area(a, b, points_[j]) >= 0.0 && signed_area(b, c, points_[j]) >= 0.0 &&
           signed_area(c, a, points_[j]) >= 0.0) {
         return false;
@@ -90,6 +93,7 @@ class Ring {
 
   void remove(std::uint32_t i) {
     const std::uint32_t before = previous_[i], after = next_[i];
+    set_concave(i, false);
     next_[before] = after;
     previous_[after] = before;
     update(before);
@@ -97,11 +101,27 @@ class Ring {
   }
 
  private:
-  void update(std::uint32_t i) { concave_[i] = corner_area(i) <= 0.0; }
+  static constexpr std::uint32_t absent = 0xFFFF'FFFFu;
+
+  void update(std::uint32_t i) { set_concave(i, corner_area(i) <= 0.0); }
+
+  void set_concave(std::uint32_t i, bool concave) {
+    if (concave == (place_[i] != absent)) return;
+    if (concave) {
+      place_[i] = static_cast<std::uint32_t>(concave_.size());
+      concave_.push_back(i);
+    } else {
+      place_[concave_.back()] = place_[i];
+      concave_[place_[i]] = concave_.back();
+      concave_.pop_back();
+      place_[i] = absent;
+    }
+  }
 
   const std::vector<glm::dvec2>& points_;
   std::vector<std::uint32_t> next_, previous_;
-  std::vector<bool> concave_;
+  std::vector<std::uint32_t> concave_;  ///< points with a concave corner, in no order
+  std::vector<std::uint32_t> place_;    ///< of a point in concave_, or absent
 };
 
 }  // namespace

@@ -99,6 +99,14 @@ std::filesystem::path SceneFolder::resolve(const std::string& name) const {
   return target;
 }
 
+bool SceneFolder::holds(const std::string& name) const {
+  try {
+    return std::filesystem::is_regular_file(resolve(name));
+  } catch (const ResourceError&) {
+    return false;
+  }
+}
+
 std::vector<unsigned char> SceneFolder::read(const std::string& name) {
   try {
     std::vector<unsigned char> bytes =
@@ -106,7 +114,9 @@ std::vector<unsigned char> SceneFolder::read(const std::string& name) {
     external_bytes_ += bytes.size();
     return bytes;
   } catch (const ResourceError& error) {
-    throw ResourceError(fmt::format("'{}': {}", name, error.what()));
+    std::string shown = name;
+    std::replace(shown.begin(), shown.end(), '\0', '?');  // an exception's text ends there
+    throw ResourceError(fmt::format("'{}': {}", shown, error.what()));
   }
 }
 

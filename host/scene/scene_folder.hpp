@@ -27,6 +27,9 @@ class SceneFolder {
   /// Errors: ResourceError when it is missing, outside, no regular file or too large.
   std::vector<unsigned char> read(const std::string& name);
 
+  /// Whether there is such a file that may be read.
+  bool holds(const std::string& name) const;
+
   const std::filesystem::path& scene_file() const { return scene_file_; }
 
  private:

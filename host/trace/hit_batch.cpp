@@ -66,7 +66,7 @@ PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
   for (SeenEmission& seen : batch.emission) seen.light = layer_of[seen.light];
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
-  batch.hits = sorted(all.hits, rays.impl().bounds, needs_of(rays.scene()).glossy, map_of);
+  batch.hits = sorted(all.hits, rays.impl().bounds, rays.needs().glossy, map_of);
   return batch;
 }
 

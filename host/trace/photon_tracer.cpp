@@ -119,7 +119,7 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   const Stopwatch stopwatch;
   check(parameters);
   const Scene& scene = ray_scene.scene();
-  const SceneNeeds needs = needs_of(scene);
+  const SceneNeeds& needs = ray_scene.needs();
   const std::size_t light_count = scene.lights.size();
 
   PhotonTracerResult result;
@@ -149,7 +149,7 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   photons.flux = concatenate(records, &PathRecord::flux);
   photons.incoming = concatenate(records, &PathRecord::incoming);
   photons.sided_triangle = concatenate(records, &PathRecord::sided_triangle);
-  if (groups.groups.size() > 1) {
+  if (needs.several_lights()) {
     photons.light.reserve(photons.size());
     for (std::size_t light = 0; light < light_count; ++light)
       photons.light.insert(photons.light.end(), result.stored_per_light[light],

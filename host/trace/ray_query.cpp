@@ -15,7 +15,7 @@ bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) 
 }
 
 glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {
-  if (!rays.impl().has_panes) return glm::vec3(occluded(rays, from, to) ? 0.0f : 1.0f);
+  if (!rays.needs().panes) return glm::vec3(occluded(rays, from, to) ? 0.0f : 1.0f);
   const Scene& scene = rays.scene();
   const glm::vec3 direction = glm::normalize(to - from);
   glm::vec3 passed(1.0f), origin = from;

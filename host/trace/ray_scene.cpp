@@ -45,16 +45,10 @@ Box bounds_of(const Scene& scene) {
   return box;
 }
 
-bool is_pane(const Material& material) {
-  return material.interaction == Interaction::glass && material.thin;
-}
-
 }  // namespace
 
 RayScene::Impl::Impl(const Scene& scene)
-    : scene(&scene),
-      bounds(bounds_of(scene)),
-      has_panes(std::any_of(scene.materials.begin(), scene.materials.end(), is_pane)) {
+    : scene(&scene), needs(needs_of(scene)), bounds(bounds_of(scene)) {
   try {
     build();
   } catch (...) {
@@ -105,6 +99,7 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 const Scene& RayScene::scene() const { return *impl_->scene; }
+const SceneNeeds& RayScene::needs() const { return impl_->needs; }
 std::uint64_t RayScene::bytes() const {
   return static_cast<std::uint64_t>(std::max<std::int64_t>(0, impl_->bytes.load()));
 }

@@ -33,8 +33,8 @@ struct RayScene::Impl {
   bool occluded(const glm::vec3& from, const glm::vec3& to) const;
 
   const Scene* scene;
+  SceneNeeds needs;
   Box bounds;                          ///< encloses all triangles
-  bool has_panes;                      ///< some material is thin glass
   std::atomic<std::int64_t> bytes{0};  ///< outlives the device, which reports to it
   RTCDevice device = nullptr;
   RTCScene bvh = nullptr;

@@ -14,7 +14,7 @@ namespace photile::trace {
 PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
   constexpr double reach = 1e-3;  // metres
   const Scene& scene = rays.scene();
-  const bool glossy = needs_of(scene).glossy;
+  const bool glossy = rays.needs().glossy;
   PrimaryHits hits;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const Sensor& sensor = sensors[i];

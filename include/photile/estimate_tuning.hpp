@@ -10,7 +10,7 @@
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
 #include "photile/progress.hpp"
-#include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile {
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile {
 
@@ -19,7 +20,8 @@ class RayScene {
   RayScene& operator=(RayScene&&) noexcept;
 
   const Scene& scene() const;
-  std::uint64_t bytes() const;  ///< held by Embree
+  const SceneNeeds& needs() const;  ///< of the scene, computed once
+  std::uint64_t bytes() const;      ///< held by Embree
 
   /// Embree's handle (an RTCScene), for host/trace only.
   struct Impl;

@@ -133,6 +133,7 @@ struct ImportReport {
   std::vector<std::string> warnings;       ///< one line each: object, what was found, what was done
   std::uint64_t degenerate_triangles = 0;  ///< zero area; dropped
   std::uint64_t non_finite_triangles = 0;  ///< NaN, infinite or too far a corner; dropped
+  std::uint64_t duplicate_triangles = 0;   ///< exactly on another; dropped
   std::uint64_t polygons_triangulated = 0;
 };
 
@@ -208,25 +209,11 @@ struct BoundingSphere {
 };
 BoundingSphere bounding_sphere(const Scene& scene);
 
-/// Up to this many layers (see light_groups.hpp) each has a value at every hit and pixel. With
-/// more, memory and time grow with the lights that reach a hit, not with all.
-inline constexpr std::uint32_t max_dense_lights = 8;
-
-/// What later stages must provide for; whatever is false costs nothing anywhere.
-struct SceneNeeds {
-  bool glossy = false;            ///< some opaque material has a specular lobe
-  bool textures = false;          ///< some material has a texture
-  bool specular_paths = false;    ///< some material is a mirror or glass
-  std::uint32_t light_count = 0;  ///< layers: a group of lights counts as one
-
-  /// Whether only the lights that reach a point are kept for it.
-  bool many_lights() const { return light_count > max_dense_lights; }
-};
-SceneNeeds needs_of(const Scene& scene);
-
 struct SceneLoadOptions {
   float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 mends Blender files
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
+  /// Of the scenes in a glTF file: name or index; "" = the file's default, else its first.
+  std::string scene = {};
   std::vector<LightGrouping> light_groups = {};  ///< after the file's own; the last match counts
   std::vector<LightProfile> profiles = {};
   std::vector<LightTemperature> temperatures = {};
@@ -240,8 +227,8 @@ struct SceneLoadOptions {
 
 /// Reads a scene from OBJ+MTL (.obj) or glTF 2.0 (.gltf, .glb).
 /// Errors: InputError naming the file and the remedy when it is missing, unreadable, malformed,
-/// beyond a limit of limits.hpp, without triangles or without lights; UsageError when a grouping
-/// matches no light, or its group bears the name of a light outside it.
+/// beyond a limit of limits.hpp, without triangles or without lights; UsageError when the file has
+/// no such scene, a grouping matches no light, or its group bears the name of a light outside it.
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace photile

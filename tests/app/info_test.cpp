@@ -27,7 +27,13 @@ TEST_CASE("info counts the triangles, materials, lights and extents of a box") {
   const FileFolder folder;
   const auto facts = info(write_box(folder));
   CHECK(facts["triangles"] == 16);  // 6 walls and 2 lamps, two triangles each
-  CHECK(facts["materials"].size() == 3);
+  REQUIRE(facts["materials"].size() == 3);
+  std::size_t triangles = 0;
+  for (const auto& material : facts["materials"]) {
+    triangles += material["triangles"].get<std::size_t>();
+    if (material["name"] == "wall") CHECK(material["triangles"] == 12);
+  }
+  CHECK(triangles == 16);
   CHECK(facts["lights"].size() == 2);
   CHECK(facts["cameras"].size() == 1);
   CHECK(facts["extents"]["size"] == nlohmann::json::array({2.0, 2.0, 2.0}));
@@ -79,7 +85,40 @@ TEST_CASE("info as text names every light and material") {
   const Outcome outcome = run_photile({"info", write_box(folder)});
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("light: left: area") && Contains("light: right: area") &&
-                                 Contains("material: wall: diffuse"));
+                                 Contains("material: wall: diffuse, 12 triangles"));
+}
+
+TEST_CASE("info counts what the import dropped, and says so") {
+  const FileFolder folder;
+  folder.write("box.mtl", box_mtl());
+  // The first wall again, the other way round, and a triangle without area.
+  const std::string scene =
+      folder.write("box.obj", box_obj() + "usemtl wall\nf 4 3 2 1\nf 1 2 2\n");
+  const auto facts = info(scene);
+  CHECK(facts["triangles"] == 16);
+  CHECK(facts["degenerate_triangles"] == 1);
+  CHECK(facts["duplicate_triangles"] == 2);
+  const Outcome text = run_photile({"info", scene});
+  CHECK_THAT(text.output, Contains("warning: 1 triangles without area are dropped"));
+}
+
+TEST_CASE(
+    "info takes the scene of a glTF file that --scene names, and refuses one that is not there") {
+  const FileFolder folder;
+  const std::string scene = folder.write("two.gltf", R"({"asset": {"version": "2.0"},
+    "scenes": [{"name": "day", "nodes": [0]}, {"name": "night", "nodes": [0, 1]}],
+    "nodes": [{"name": "a", "mesh": 0}, {"name": "b", "mesh": 0, "translation": [0, 0, 1]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+    "materials": [{"emissiveFactor": [1, 1, 1]}],
+    "buffers": [{"byteLength": 36, "uri":
+      "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]})");
+  CHECK(info(scene)["lights"].size() == 1);
+  CHECK(info(scene, {"--scene", "night"})["lights"].size() == 2);
+  CHECK(info(scene, {"--scene", "1"})["lights"].size() == 2);
+  const Outcome dusk = run_photile({"info", scene, "--scene", "dusk"});
+  CHECK_THAT(only_error(dusk, 2), Contains("0 'day', 1 'night'"));
 }
 
 TEST_CASE("only a scene of a doubtful size is doubted") {

@@ -11,6 +11,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 #include "temporary_folder.hpp"
 
 namespace photile::tests {

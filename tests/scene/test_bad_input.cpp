@@ -111,11 +111,28 @@ TEST_CASE("glTF indices, accessors and views that leave their bounds are refused
   refused([](json& d) { d["scene"] = 3; }, {"default scene is 3"});
   refused(
       [](json& d) {
+        d["accessors"][3].erase("bufferView");
+        d["accessors"][3]["count"] = 1'000'000'000;
+      },
+      {"NORMAL", "elements without data"});
+  refused(
+      [](json& d) {
         d["accessors"][0].erase("bufferView");
         d["accessors"][0]["count"] = 1'000'000'000;
       },
-      {"elements without data"});
+      {"no triangles", "'square'", "no positions"});
   refused([](json& d) { d["buffers"][0]["uri"] = "absent.bin"; }, {"absent.bin"});
+}
+
+TEST_CASE("a directional light whose flux is beyond any number is refused by name") {
+  json document = square_document();
+  document["nodes"].push_back(
+      {{"name", "star"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  document["nodes"][0]["scale"] = {1e9, 1e9, 1};
+  document["scenes"][0]["nodes"] = {0, 1};
+  document["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "directional"}, {"intensity", 1e300}}};
+  CHECK(input_error_of([&] { load_gltf(document); }).find("'star'") != std::string::npos);
 }
 
 TEST_CASE("a glTF vertex that is not finite drops its triangles") {

@@ -65,7 +65,7 @@ struct AnimatedFile {
     std::ofstream(folder.path / "a.gltf") << document.dump();
     Camera camera;
     camera.name = "eye";
-    return scene_io::read_camera_animation(folder.path / "a.gltf", false, camera, animation);
+    return scene_io::read_camera_animation(folder.path / "a.gltf", {}, camera, animation);
   }
 };
 
