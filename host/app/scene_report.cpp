@@ -110,9 +110,21 @@ json material_json(const Scene& scene, const Material& material, std::size_t tri
              {"triangles", triangles},
              {"diffuse", components(material.diffuse)},
              {"specular", components(material.specular)},
-             {"roughness", material.roughness}};
-  if (material.diffuse_texture != none) {
-    entry["texture"] = scene.textures[material.diffuse_texture].name();
+             {"f90", material.f90},
+             {"roughness", material.roughness},
+             {"opacity", material.opacity},
+             {"opacity_cutoff", material.opacity_cutoff}};
+  const auto add_texture = [&](const char* member, std::uint32_t texture) {
+    if (texture != none) entry[member] = scene.textures[texture].name();
+  };
+  add_texture("texture", material.diffuse_texture);
+  add_texture("opacity_texture", material.opacity_texture);
+  add_texture("normal_texture", material.normal_texture);
+  if (material.metallic_roughness != none) {
+    const MetallicRoughness& model = scene.metallic_roughness[material.metallic_roughness];
+    add_texture("metallic_roughness_texture", model.texture);
+    add_texture("specular_texture", model.specular_texture);
+    add_texture("specular_color_texture", model.specular_color_texture);
   }
   return entry;
 }

@@ -57,10 +57,10 @@ struct Estimator::Impl {
   }
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
-    return {.largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
-            .bytes_per_hit = estimate::hit_bytes(store.needs.glossy, !store.normals.empty(),
-                                                 surface != nullptr) +
-                             outputs};
+    return {
+        .largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
+        .bytes_per_hit =
+            estimate::hit_bytes(store.needs, !store.normals.empty(), surface != nullptr) + outputs};
   }
 
   /// The estimates of hits [first, first + count) become those of hits from `place` on in `result`.
@@ -68,7 +68,7 @@ struct Estimator::Impl {
                 Estimates& result) {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
-                                                     surface.get(), store.needs.glossy);
+                                                     surface.get(), store.needs);
     estimates.begin(static_cast<std::uint32_t>(count));
     estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
       query->estimate(page_hits, estimates);
@@ -82,7 +82,7 @@ struct Estimator::Impl {
     const std::size_t k = neighbours;
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers =
-        estimate::upload_hits(context, hits, first, hit_maps, store.normals, nullptr, false);
+        estimate::upload_hits(context, hits, first, hit_maps, store.normals, nullptr, {});
     auto photons = context.allocate<std::uint32_t>(count * k, "neighbour lists");
     auto squared_radius = context.allocate<float>(count, "neighbour radii");
     context.fill(photons, none);

@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "trace/diffuse_part.hpp"
+
 namespace photile::estimate {
 namespace {
 
@@ -21,20 +23,41 @@ device::Buffer<float> upload_lobes(device::Context& context, const PrimaryHits& 
   return context.upload(floats(values, 0, count), what);
 }
 
+std::vector<DiffusePart> diffuse_of(const PrimaryHits& hits, std::size_t first, std::size_t count) {
+  std::vector<DiffusePart> parts(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const HitLobe& lobe = hits.lobe[first + i];
+    parts[i] =
+        diffuse_part({hits.diffuse_albedo[first + i], lobe.specular, lobe.f90, lobe.roughness},
+                     glm::dot(lobe.normal, hits.outgoing[first + i]));
+  }
+  return parts;
+}
+
+std::vector<glm::vec4> bumps_of(const PrimaryHits& hits, std::size_t first, std::size_t count) {
+  std::vector<glm::vec4> bumps(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    bumps[i] = glm::vec4(hits.lobe[first + i].smooth_normal,
+                         most_bump(hits.diffuse_albedo[first + i] + hits.lobe[first + i].specular));
+  }
+  return bumps;
+}
+
 }  // namespace
 
-std::uint64_t hit_bytes(bool glossy, bool normals, bool clipped) {
+std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped) {
   constexpr std::uint64_t position_and_map = 3 * sizeof(float) + sizeof(std::uint32_t);
-  constexpr std::uint64_t surface = (4 * 3 + 1) * sizeof(float);
+  constexpr std::uint64_t surface = (6 * 3 + 2) * sizeof(float);
+  constexpr std::uint64_t bump = 4 * sizeof(float);
   constexpr std::uint64_t normal = 3 * sizeof(float);
   constexpr std::uint64_t place = 3 * sizeof(std::uint32_t);
-  return position_and_map + (glossy ? surface : 0) + (normals || clipped ? normal : 0) +
-         (clipped ? place : 0);
+  return position_and_map + (needs.glossy ? surface : 0) + (needs.normal_maps ? bump : 0) +
+         (normals || clipped ? normal : 0) + (clipped ? place : 0);
 }
 
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                       const SurfaceIndex* surface, bool glossy) {
+                       const SurfaceIndex* surface, const SceneNeeds& needs) {
   const std::size_t count = maps.size();
   HitBuffers buffers;
   buffers.count = static_cast<std::uint32_t>(count);
@@ -57,16 +80,22 @@ HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::s
     for (std::size_t i = 0; i < count; ++i) of_hits[i] = normals[hits.sided_triangle[first + i]];
     buffers.face_normal = context.upload(floats(of_hits, 0, count), "hit face normals");
   }
-  if (!glossy) return buffers;
+  if (!needs.glossy) return buffers;
   buffers.outgoing = context.upload(floats(hits.outgoing, first, count), "hit directions");
-  buffers.albedo = context.upload(floats(hits.diffuse_albedo, first, count), "hit albedos");
   buffers.normal =
       upload_lobes(context, hits, first, count, &HitLobe::normal, "hit shading normals");
-  buffers.specular =
-      upload_lobes(context, hits, first, count, &HitLobe::specular, "hit specular colours");
-  std::vector<float> roughness(count);
-  for (std::size_t i = 0; i < count; ++i) roughness[i] = hits.lobe[first + i].roughness;
-  buffers.roughness = context.upload(std::span<const float>(roughness), "hit roughness");
+  const std::vector<DiffusePart> diffuse = diffuse_of(hits, first, count);
+  buffers.diffuse =
+      context.upload(std::span<const float>(&diffuse[0][0].x, 9 * count), "hit diffuse parts");
+  buffers.f0 = upload_lobes(context, hits, first, count, &HitLobe::specular, "hit F0");
+  std::vector<glm::vec2> shape(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    shape[i] = {hits.lobe[first + i].roughness, hits.lobe[first + i].f90};
+  }
+  buffers.shape = context.upload(std::span<const float>(&shape[0].x, 2 * count), "hit lobes");
+  if (!needs.normal_maps) return buffers;
+  const std::vector<glm::vec4> bumps = bumps_of(hits, first, count);
+  buffers.bump = context.upload(std::span<const float>(&bumps[0].x, 4 * count), "hit normal maps");
   return buffers;
 }
 

@@ -18,21 +18,24 @@ struct HitBuffers {
   device::Buffer<float> face_normal;       ///< 3 per hit: of its sided triangle; or empty
   device::Buffer<std::uint32_t> place;     ///< 3 per hit: facet, triangle, sheet; or empty
   device::Buffer<float> outgoing, normal;  ///< 3 per hit, unit
-  device::Buffer<float> albedo, specular;  ///< 3 per hit
-  device::Buffer<float> roughness;         ///< 1 per hit
+  device::Buffer<float> diffuse;           ///< 9 per hit: DiffusePart
+  device::Buffer<float> f0;                ///< 3 per hit
+  device::Buffer<float> shape;             ///< 2 per hit: GGX alpha and F90
+  device::Buffer<float> bump;              ///< 4 per hit, with normal maps; or empty
 };
 
 /// Device memory that a hit takes as input.
 ///   normals   whether normals of faces are uploaded
 ///   clipped   whether areas are clipped
-std::uint64_t hit_bytes(bool glossy, bool normals, bool clipped);
+std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 
 /// Hits [first, first + maps.size()).
 ///   maps      of those hits
 ///   normals   per sided triangle, if a map is mixed (maps::MapStore::normals), else empty
 ///   surface   where areas are clipped, else null
+///   needs     of which `glossy` and `normal_maps` ask for lobes
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                       const SurfaceIndex* surface, bool glossy);
+                       const SurfaceIndex* surface, const SceneNeeds& needs);
 
 }  // namespace photile::estimate

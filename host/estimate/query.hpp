@@ -114,9 +114,14 @@ void with_scene_arguments(const maps::MapStore& store, const PageHits& page_hits
     }
   };
   const auto glossy = [&](const auto&... scene) {
-    if (needs.glossy) {
-      slots(scene..., page.entry_incoming, hits.outgoing, hits.normal, hits.albedo, hits.specular,
-            hits.roughness, estimates.radiance);
+    const auto lobes = [&](const auto&... bump) {
+      slots(scene..., page.entry_incoming, hits.outgoing, hits.normal, hits.diffuse, hits.f0,
+            hits.shape, bump..., estimates.radiance);
+    };
+    if (needs.normal_maps) {
+      lobes(hits.bump);
+    } else if (needs.glossy) {
+      lobes();
     } else {
       slots(scene...);
     }

@@ -44,6 +44,7 @@ device::Defines Specialisation::defines() const {
   }
   maps::set_entry_defines(defines, needs);
   set_sum_defines(defines, needs, static_cast<std::uint32_t>(neighbours));
+  if (needs.normal_maps) defines.set("NORMAL_MAPS");
   return defines;
 }
 

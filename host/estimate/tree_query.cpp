@@ -43,6 +43,7 @@ class TreeQuery : public Query {
     device::Defines defines = page_defines(hits.page);
     maps::set_entry_defines(defines, store_.needs);
     set_sum_defines(defines, store_.needs, neighbours_);
+    if (store_.needs.normal_maps) defines.set("NORMAL_MAPS");
     set_density_defines(defines, surface_, kernel_);
     const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
     const maps::MapPage& page = hits.page;

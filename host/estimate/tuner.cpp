@@ -32,7 +32,7 @@ class Bench {
         sample_(make_tuning_sample(needs, neighbours, size)),
         groups_(find_neighbour_groups(sample_.scene, {sample_.radius})),
         hits_(upload_hits(device.context(), sample_.hits, 0, sample_.hits.sided_triangle, {},
-                          nullptr, needs.glossy)),
+                          nullptr, needs)),
         estimates_(device.context(), needs, neighbours_) {
     estimates_.begin(hits_.count);
   }

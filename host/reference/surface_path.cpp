@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "photile/device/bsdf.h"
+#include "trace/holes.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
@@ -95,16 +96,15 @@ class SurfacePath {
  private:
   /// The next surface point in a direction; adds what it emits. Nothing beyond the scene.
   std::optional<SurfacePoint> follow(const SurfacePoint& from, const glm::vec3& direction) {
-    const auto hit = trace::intersect(rays_, from.origin_towards(direction), direction);
-    if (!hit) {
+    glm::vec3 origin = from.origin_towards(direction);
+    const auto point =
+        trace::next_surface(rays_, origin, direction, random_, Purpose::path_holes, holes_);
+    if (!point) {
       add_what_lies_beyond(direction);
-      return std::nullopt;
-    }
-    const SurfacePoint point = trace::surface_hit(scene_, *hit, direction);
-    if (trace::emits(scene_, point)) {
-      const std::uint32_t light = scene_.triangle_light[point.where.triangle];
+    } else if (trace::emits(scene_, *point)) {
+      const std::uint32_t light = scene_.triangle_light[point->where.triangle];
       add(lights_.layer(light),
-          weights_ * (weight_against(lights_.density(from_, point)) * lights_.radiance(point)));
+          weights_ * (weight_against(lights_.density(from_, *point)) * lights_.radiance(*point)));
     }
     return point;
   }
@@ -190,6 +190,7 @@ class SurfacePath {
   glm::vec3 from_{0.0f};  ///< the last opaque point, metres
   float density_ = 0;     ///< of the direction from there; 0 after a mirror or glass
   std::uint32_t bounce_ = 1;
+  std::uint32_t holes_ = 0;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "scene/gltf_document.hpp"
 #include "scene/resource_error.hpp"
@@ -15,6 +16,46 @@ namespace {
 
 /// From this transmission factor on a surface counts as glass.
 constexpr double glass_transmission = 0.5;
+
+TextureCoordinates coordinates_of(int set, const tinygltf::Value* transform) {
+  TextureCoordinates result;
+  result.set = set;
+  if (transform == nullptr) return result;
+  const glm::dvec3 offset = vector_member(*transform, "offset", glm::dvec3(0.0));
+  const glm::dvec3 scale = vector_member(*transform, "scale", glm::dvec3(1.0));
+  const double angle = number_member(*transform, "rotation", 0.0);
+  // Counter-clockwise as seen in the picture, whose v axis points down.
+  const glm::dmat2 rotation(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
+  result.linear = rotation * glm::dmat2(scale.x, 0.0, 0.0, scale.y);
+  result.offset = {offset.x, offset.y};
+  result.set = static_cast<int>(number_member(*transform, "texCoord", result.set));
+  return result;
+}
+
+/// A texture as a material names it; index -1 where it names none.
+struct TextureReference {
+  int index = -1;
+  TextureCoordinates coordinates;
+};
+
+/// Of a tinygltf::TextureInfo or NormalTextureInfo.
+template <class Info>
+TextureReference reference_of(const Info& info) {
+  return {info.index,
+          coordinates_of(info.texCoord, find_extension(info.extensions, "KHR_texture_transform"))};
+}
+
+/// Of a member of an extension.
+TextureReference reference_of(const tinygltf::Value& extension, const std::string& name) {
+  if (!extension.Has(name) || !extension.Get(name).IsObject()) return {};
+  const tinygltf::Value& info = extension.Get(name);
+  const tinygltf::Value* transform = nullptr;
+  if (info.Has("extensions") && info.Get("extensions").Has("KHR_texture_transform")) {
+    transform = &info.Get("extensions").Get("KHR_texture_transform");
+  }
+  return {static_cast<int>(number_member(info, "index", -1)),
+          coordinates_of(static_cast<int>(number_member(info, "texCoord", 0)), transform)};
+}
 
 class Converter {
  public:
@@ -28,39 +69,26 @@ class Converter {
 
  private:
   void warn(const std::string& message) { context_.warnings.add("material", name_, message); }
-  void warn_about_ignored(const tinygltf::Material& source);
-  void set_surface(const tinygltf::Material& source, Material& material);
+  MetallicRoughness model_of(const tinygltf::Material& source);
   void set_glass(const tinygltf::Material& source, const MetallicRoughness& model,
                  Material& material);
-  void add_texture(const tinygltf::TextureInfo& info, Material& material);
+  void set_opaque(const tinygltf::Material& source, MetallicRoughness model, Material& material);
+  void set_opacity(const tinygltf::Material& source, bool emits, Material& material);
+  void set_normal_map(const tinygltf::Material& source, Material& material);
   Emission emission_of(const tinygltf::Material& source);
-  std::uint32_t load_texture(int texture);
-  TextureCoordinates coordinates(const tinygltf::TextureInfo& info);
+  std::uint32_t load_texture(int texture, TextureContent content);
+  std::uint32_t surface_texture(const TextureReference& reference, TextureContent content,
+                                const std::string& what);
 
   const tinygltf::Model& model_;
   const AccessorReader& accessors_;
   ImportContext& context_;
   TextureStore textures_;
   std::string name_;
+  std::optional<TextureCoordinates> shared_;  ///< of the material's textures so far
 };
 
-void Converter::warn_about_ignored(const tinygltf::Material& source) {
-  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  if (pbr.metallicRoughnessTexture.index >= 0) {
-    warn("metallic-roughness texture is ignored; its factors are used");
-  }
-  if (source.normalTexture.index >= 0) warn("normal texture is ignored");
-  if (source.occlusionTexture.index >= 0) warn("occlusion texture is ignored");
-  if (source.alphaMode != "OPAQUE")
-    warn("alpha mode " + source.alphaMode + " is treated as opaque");
-  if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
-    if (specular->Has("specularTexture") || specular->Has("specularColorTexture")) {
-      warn("specular textures are ignored; their factors are used");
-    }
-  }
-}
-
-void Converter::set_surface(const tinygltf::Material& source, Material& material) {
+MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   MetallicRoughness model;
   model.base_color = glm::clamp(rgb_of(pbr.baseColorFactor, glm::dvec3(1.0)), 0.0, 1.0);
@@ -76,12 +104,67 @@ void Converter::set_surface(const tinygltf::Material& source, Material& material
     model.specular_color =
         glm::max(vector_member(*specular, "specularColorFactor", glm::dvec3(1.0)), 0.0);
   }
-  if (const auto* extension = find_extension(source.extensions, "KHR_materials_transmission")) {
-    const double transmission = number_member(*extension, "transmissionFactor", 0.0);
-    if (transmission >= glass_transmission) return set_glass(source, model, material);
-    if (transmission > 0.0) warn("transmission below 0.5 is treated as opaque");
+  return model;
+}
+
+void Converter::set_opaque(const tinygltf::Material& source, MetallicRoughness model,
+                           Material& material) {
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  if (pbr.baseColorTexture.index >= 0 && model.base_color != glm::dvec3(0.0)) {
+    material.diffuse_texture = surface_texture(reference_of(pbr.baseColorTexture),
+                                               TextureContent::color, "mid grey (0.5)");
+    if (material.diffuse_texture == none) model.base_color = glm::dvec3(missing_albedo);
+  }
+  model.texture = surface_texture(reference_of(pbr.metallicRoughnessTexture), TextureContent::data,
+                                  "the metallic and roughness factor");
+  if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
+    model.specular_texture = surface_texture(reference_of(*specular, "specularTexture"),
+                                             TextureContent::data, "the specular factor");
+    model.specular_color_texture = surface_texture(reference_of(*specular, "specularColorTexture"),
+                                                   TextureContent::color, "the specular colour");
   }
   set_metallic_roughness(model, material);
+  const bool varies = model.texture != none || model.specular_texture != none ||
+                      model.specular_color_texture != none ||
+                      (material.diffuse_texture != none && model.metallic > 0.0);
+  if (varies && material.interaction == Interaction::opaque) {
+    material.metallic_roughness =
+        static_cast<std::uint32_t>(context_.scene.metallic_roughness.size());
+    context_.scene.metallic_roughness.push_back(model);
+  }
+}
+
+/// Emission knows no holes: what shines stays whole.
+void Converter::set_opacity(const tinygltf::Material& source, bool emits, Material& material) {
+  if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
+  if (material.interaction == Interaction::glass) return;  // transmission says what passes
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  float opacity = 1.0f;
+  if (pbr.baseColorFactor.size() == 4 && std::isfinite(pbr.baseColorFactor[3])) {
+    opacity = static_cast<float>(std::clamp(pbr.baseColorFactor[3], 0.0, 1.0));
+  }
+  std::uint32_t texture = surface_texture(reference_of(pbr.baseColorTexture), TextureContent::color,
+                                          "the alpha factor");
+  if (texture != none && context_.scene.textures[texture].opaque()) texture = none;
+  const bool mask = source.alphaMode == "MASK";
+  const double cutoff = mask && std::isfinite(source.alphaCutoff) ? source.alphaCutoff : 0.0;
+  if (mask && (cutoff <= 0.0 || (texture == none && double{opacity} >= cutoff))) return;
+  if (texture == none && opacity >= 1.0f) return;
+  if (emits) {
+    warn("alpha of a material that emits is ignored; it has no holes");
+    return;
+  }
+  material.opacity = opacity;
+  material.opacity_texture = texture;
+  material.opacity_cutoff = static_cast<float>(cutoff);
+  if (!mask) warn("alpha mode BLEND lets light through by chance, without refraction or tint");
+}
+
+void Converter::set_normal_map(const tinygltf::Material& source, Material& material) {
+  material.normal_texture =
+      surface_texture(reference_of(source.normalTexture), TextureContent::data, "no normal map");
+  const double scale = source.normalTexture.scale;
+  if (std::isfinite(scale)) material.normal_scale = static_cast<float>(scale);
 }
 
 void Converter::set_glass(const tinygltf::Material& source, const MetallicRoughness& model,
@@ -95,9 +178,12 @@ void Converter::set_glass(const tinygltf::Material& source, const MetallicRoughn
   if (model.roughness > mirror_roughness && source.pbrMetallicRoughness.roughnessFactor < 1.0) {
     warn("rough glass is treated as smooth");
   }
+  if (source.pbrMetallicRoughness.baseColorTexture.index >= 0) {
+    warn("base-colour texture of glass is ignored; its factor is used");
+  }
 }
 
-std::uint32_t Converter::load_texture(int texture) {
+std::uint32_t Converter::load_texture(int texture, TextureContent content) {
   if (texture < 0 || static_cast<std::size_t>(texture) >= model_.textures.size()) {
     throw ResourceError(fmt::format("there is no texture {}", texture));
   }
@@ -120,54 +206,55 @@ std::uint32_t Converter::load_texture(int texture) {
   const std::string key =
       fmt::format("image {}{}", source.source, image.name.empty() ? "" : " " + image.name);
   if (image.bufferView >= 0) {
-    return textures_.from_memory(key, accessors_.view(image.bufferView, key));
+    return textures_.from_memory(key, accessors_.view(image.bufferView, key), content);
   }
-  if (!image.image.empty()) return textures_.from_memory(key, image.image);
-  return textures_.from_file(decoded_uri(image.uri));
+  if (!image.image.empty()) return textures_.from_memory(key, image.image, content);
+  return textures_.from_file(decoded_uri(image.uri), content);
 }
 
-void Converter::add_texture(const tinygltf::TextureInfo& info, Material& material) {
+/// A texture of the surface; `none` where the material has none or it cannot be used. `substitute`
+/// says what is used then.
+std::uint32_t Converter::surface_texture(const TextureReference& reference, TextureContent content,
+                                         const std::string& substitute) {
+  if (reference.index < 0) return none;
+  if (shared_ && *shared_ != reference.coordinates) {
+    warn("a texture with other coordinates than the first is ignored; " + substitute +
+         " is used instead");
+    return none;
+  }
   try {
-    material.diffuse_texture = load_texture(info.index);
+    const std::uint32_t texture = load_texture(reference.index, content);
+    shared_ = reference.coordinates;
+    return texture;
   } catch (const ResourceError& error) {
-    use_missing_texture_colour(material);
-    warn(std::string(error.what()) + "; mid grey (0.5) is used instead");
+    warn(std::string(error.what()) + "; " + substitute + " is used instead");
+    return none;
   }
-}
-
-TextureCoordinates Converter::coordinates(const tinygltf::TextureInfo& info) {
-  TextureCoordinates result;
-  result.set = info.texCoord;
-  const auto* transform = find_extension(info.extensions, "KHR_texture_transform");
-  if (transform == nullptr) return result;
-  const glm::dvec3 offset = vector_member(*transform, "offset", glm::dvec3(0.0));
-  const glm::dvec3 scale = vector_member(*transform, "scale", glm::dvec3(1.0));
-  const double angle = number_member(*transform, "rotation", 0.0);
-  // Counter-clockwise as seen in the picture, whose v axis points down.
-  const glm::dmat2 rotation(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
-  result.linear = rotation * glm::dmat2(scale.x, 0.0, 0.0, scale.y);
-  result.offset = {offset.x, offset.y};
-  result.set = static_cast<int>(number_member(*transform, "texCoord", result.set));
-  return result;
 }
 
 MaterialCoordinates Converter::add(const tinygltf::Material& source, const std::string& name) {
   name_ = name;
+  shared_.reset();
   Material material;
   material.name = name;
-  set_surface(source, material);
-  warn_about_ignored(source);
-  const tinygltf::TextureInfo& texture = source.pbrMetallicRoughness.baseColorTexture;
-  if (texture.index >= 0) {
-    if (material.interaction == Interaction::opaque && material.diffuse != glm::vec3(0.0f)) {
-      add_texture(texture, material);
-    } else {
-      warn("base-colour texture of a metal or glass is ignored; its factor is used");
-    }
+  const MetallicRoughness model = model_of(source);
+  double transmission = 0.0;
+  if (const auto* extension = find_extension(source.extensions, "KHR_materials_transmission")) {
+    transmission = number_member(*extension, "transmissionFactor", 0.0);
   }
+  if (transmission >= glass_transmission) {
+    set_glass(source, model, material);
+  } else {
+    if (transmission > 0.0) warn("transmission below 0.5 is treated as opaque");
+    set_opaque(source, model, material);
+  }
+  set_normal_map(source, material);
+  if (source.occlusionTexture.index >= 0) warn("occlusion texture is ignored: light is traced");
+  const Emission emission = emission_of(source);
+  set_opacity(source, emission.radiance != glm::dvec3(0.0), material);
   context_.scene.materials.push_back(std::move(material));
-  context_.emission.push_back(emission_of(source));
-  return {coordinates(texture), coordinates(source.emissiveTexture)};
+  context_.emission.push_back(emission);
+  return {shared_.value_or(TextureCoordinates()), reference_of(source.emissiveTexture).coordinates};
 }
 
 Emission Converter::emission_of(const tinygltf::Material& source) {
@@ -180,7 +267,7 @@ Emission Converter::emission_of(const tinygltf::Material& source) {
   emission.two_sided = source.doubleSided;
   if (source.emissiveTexture.index < 0 || emission.radiance == glm::dvec3(0.0)) return emission;
   try {
-    emission.texture = load_texture(source.emissiveTexture.index);
+    emission.texture = load_texture(source.emissiveTexture.index, TextureContent::color);
   } catch (const ResourceError& error) {
     warn(std::string(error.what()) + "; the emissive factor is used alone");
   }

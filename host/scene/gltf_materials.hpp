@@ -18,11 +18,12 @@ struct TextureCoordinates {
   glm::dvec2 offset{0.0};
 
   glm::dvec2 operator()(const glm::dvec2& uv) const { return linear * uv + offset; }
+  bool operator==(const TextureCoordinates& other) const = default;
 };
 
-/// Those of a material's textures.
+/// Those of a material's emission, and those that its other textures share.
 struct MaterialCoordinates {
-  TextureCoordinates diffuse, emission;
+  TextureCoordinates surface, emission;
 };
 
 /// Converts all materials, in the order of the file, and appends glTF's default material where some

@@ -165,17 +165,17 @@ std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primit
   const std::vector<float> positions = read("POSITION", 3);
   const std::size_t count = positions.size() / 3;
   const MaterialCoordinates& coordinates = coordinates_[material];
-  const auto read_uv = [&](std::uint32_t texture, int set) {
-    if (texture == none) return std::vector<float>();
+  const auto read_uv = [&](bool textured, int set) {
+    if (!textured) return std::vector<float>();
     std::vector<float> uv = read(fmt::format("TEXCOORD_{}", set), 2);
     if (uv.size() == 2 * count) return uv;
     context_.warnings.add("mesh", mesh_name, "has no texture coordinates for its texture");
     return std::vector<float>();
   };
   const std::vector<float> uv =
-      read_uv(context_.scene.materials[material].diffuse_texture, coordinates.diffuse.set);
+      read_uv(context_.scene.materials[material].textured(), coordinates.surface.set);
   const std::vector<float> emission_uv =
-      read_uv(context_.emission[material].texture, coordinates.emission.set);
+      read_uv(context_.emission[material].texture != none, coordinates.emission.set);
   std::vector<float> normals;
   if (needs_.glossy || needs_.specular_paths) normals = read("NORMAL", 3);
   if (normals.size() != 3 * count) normals.clear();
@@ -194,7 +194,7 @@ std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primit
     const auto mapped = [&](const std::vector<float>& values, const TextureCoordinates& map) {
       return values.empty() ? glm::dvec2(0.0) : map(glm::dvec2(values[2 * i], values[2 * i + 1]));
     };
-    corners[i].uv = mapped(uv, coordinates.diffuse);
+    corners[i].uv = mapped(uv, coordinates.surface);
     corners[i].emission_uv = mapped(emission_uv, coordinates.emission);
     if (!normals.empty()) corners[i].normal = cofactor * vector(normals);
   }

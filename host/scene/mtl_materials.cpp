@@ -28,17 +28,15 @@ void warn_about_ignored(const tinyobj::material_t& source, Warnings& warnings) {
   const auto warn = [&](const std::string& message) {
     warnings.add("material", source.name, message);
   };
-  const std::array<std::pair<const std::string*, const char*>, 10> textures{{
+  const std::array<std::pair<const std::string*, const char*>, 8> textures{{
       {&source.specular_texname, "map_Ks"},
       {&source.specular_highlight_texname, "map_Ns"},
       {&source.bump_texname, "bump"},
       {&source.displacement_texname, "disp"},
-      {&source.alpha_texname, "map_d"},
       {&source.reflection_texname, "refl"},
       {&source.roughness_texname, "map_Pr"},
       {&source.metallic_texname, "map_Pm"},
       {&source.sheen_texname, "map_Ps"},
-      {&source.normal_texname, "norm"},
   }};
   for (const auto& [name, statement] : textures) {
     if (!name->empty())
@@ -52,7 +50,7 @@ void warn_about_ignored(const tinyobj::material_t& source, Warnings& warnings) {
 bool is_glass(const tinyobj::material_t& source) {
   constexpr std::array<int, 4> models{4, 6, 7, 9};
   if (std::find(models.begin(), models.end(), source.illum) != models.end()) return true;
-  return source.dissolve < 1 && source.ior > 1;
+  return source.dissolve < 1 && source.ior > 1 && source.alpha_texname.empty();
 }
 
 void set_glass(const tinyobj::material_t& source, Material& material) {
@@ -82,9 +80,6 @@ void set_surface(const tinyobj::material_t& source, Material& material, Warnings
     return;
   }
   if (is_glass(source)) return set_glass(source, material);
-  if (source.dissolve < 1) {
-    warnings.add("material", source.name, "transparency (d, Tr) without Ni is treated as opaque");
-  }
   const glm::vec3 diffuse = reflectance(source.diffuse), specular = reflectance(source.specular);
   const bool reflective_model = source.illum == 3 || source.illum == 5;
   const bool specular_model = source.illum == 2 || reflective_model;
@@ -104,9 +99,51 @@ void set_surface(const tinyobj::material_t& source, Material& material, Warnings
 }
 
 /// A picture that the library names, as written on Windows or elsewhere. Errors: ResourceError.
-std::uint32_t texture_named(std::string path, TextureStore& textures) {
+std::uint32_t texture_named(std::string path, TextureStore& textures,
+                            TextureContent content = TextureContent::color) {
   std::replace(path.begin(), path.end(), '\\', '/');
-  return textures.from_file(path);
+  return textures.from_file(path, content);
+}
+
+/// A texture beside map_Kd; `none` where the material has none or it cannot be had.
+std::uint32_t texture_or_none(const std::string& name, TextureContent content,
+                              const std::string& substitute, const Material& material,
+                              TextureStore& textures, ImportContext& context) {
+  if (name.empty()) return none;
+  try {
+    return texture_named(name, textures, content);
+  } catch (const ResourceError& error) {
+    context.warnings.add("material", material.name,
+                         std::string(error.what()) + "; " + substitute + " is used instead");
+    return none;
+  }
+}
+
+/// d, Tr and map_d. Emission knows no holes: what shines stays whole.
+void set_opacity(const tinyobj::material_t& source, bool emits, TextureStore& textures,
+                 Material& material, ImportContext& context) {
+  if (material.interaction == Interaction::glass) return;
+  // Some programs write Tr as they write d, and what is not there at all would not be in the file.
+  const bool given = source.dissolve > 0 && source.dissolve < 1;
+  const float opacity = given ? static_cast<float>(source.dissolve) : 1.0f;
+  if (!(source.dissolve > 0)) {
+    context.warnings.add("material", material.name, "d 0 (Tr 1) is treated as opaque");
+  }
+  const std::uint32_t texture = texture_or_none(source.alpha_texname, TextureContent::opacity, "d",
+                                                material, textures, context);
+  if (texture == none && opacity >= 1.0f) return;
+  if (emits) {
+    context.warnings.add("material", material.name,
+                         "d, Tr or map_d of a material that emits is ignored; it has no holes");
+    return;
+  }
+  material.opacity = opacity;
+  material.opacity_texture = texture;
+  if (opacity < 1.0f) {
+    context.warnings.add("material", material.name,
+                         "transparency (d, Tr) lets light through by chance, without refraction; "
+                         "an Ni would make it glass");
+  }
 }
 
 Emission emission_of(const tinyobj::material_t& source, TextureStore& textures,
@@ -139,8 +176,13 @@ void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
                            std::string(error.what()) + "; mid grey (0.5) is used instead");
     }
   }
+  material.normal_texture = texture_or_none(source.normal_texname, TextureContent::data,
+                                            "no normal map", material, textures, context);
+  material.normal_scale = static_cast<float>(source.normal_texopt.bump_multiplier);
+  const Emission emission = emission_of(source, textures, context);
+  set_opacity(source, emission.radiance != glm::dvec3(0.0), textures, material, context);
   context.scene.materials.push_back(std::move(material));
-  context.emission.push_back(emission_of(source, textures, context));
+  context.emission.push_back(emission);
 }
 
 void add_missing_material(const std::string& name, ImportContext& context) {

@@ -5,16 +5,38 @@ namespace {
 
 /// Each function names all members, so that it does not compile once there is another.
 void add_material(const Material& material, ContentHash& hash) {
-  const auto& [name, interaction, diffuse, diffuse_texture, specular, roughness, transmission,
-               index_of_refraction, thin] = material;
+  const auto& [name, interaction, diffuse, diffuse_texture, specular, f90, roughness, transmission,
+               index_of_refraction, thin, metallic_roughness, opacity, opacity_texture,
+               opacity_cutoff, normal_texture, normal_scale] = material;
   hash.add(interaction);
   hash.add(diffuse);
   hash.add(diffuse_texture);
   hash.add(specular);
+  hash.add(f90);
   hash.add(roughness);
   hash.add(transmission);
   hash.add(index_of_refraction);
   hash.add(thin);
+  hash.add(metallic_roughness);
+  hash.add(opacity);
+  hash.add(opacity_texture);
+  hash.add(opacity_cutoff);
+  hash.add(normal_texture);
+  hash.add(normal_scale);
+}
+
+void add_metallic_roughness(const MetallicRoughness& model, ContentHash& hash) {
+  const auto& [base_color, metallic, roughness, index_of_refraction, specular_factor,
+               specular_color, texture, specular_texture, specular_color_texture] = model;
+  hash.add(base_color);
+  hash.add(metallic);
+  hash.add(roughness);
+  hash.add(index_of_refraction);
+  hash.add(specular_factor);
+  hash.add(specular_color);
+  hash.add(texture);
+  hash.add(specular_texture);
+  hash.add(specular_color_texture);
 }
 
 void add_light(const Light& light, ContentHash& hash) {
@@ -70,8 +92,8 @@ void add_environment(const EnvironmentMap& map, ContentHash& hash) {
 void add_scene(const Scene& scene, ContentHash& hash) {
   const auto& [source, unit, origin, vertices, triangles, front_side, triangle_material,
                triangle_light, corner_uv, corner_emission_uv, corner_normal, shared_meshes,
-               instances, materials, textures, lights, distributions, environments, cameras,
-               report] = scene;
+               instances, materials, metallic_roughness, textures, lights, distributions,
+               environments, cameras, report] = scene;
   hash.add(unit);
   hash.add(origin);
   hash.add(vertices);
@@ -84,6 +106,8 @@ void add_scene(const Scene& scene, ContentHash& hash) {
   hash.add(corner_normal);
   hash.add(std::uint64_t{materials.size()});
   for (const Material& material : materials) add_material(material, hash);
+  hash.add(std::uint64_t{metallic_roughness.size()});
+  for (const MetallicRoughness& model : metallic_roughness) add_metallic_roughness(model, hash);
   hash.add(std::uint64_t{textures.size()});
   for (const Texture& texture : textures) {
     hash.add(texture.width());
@@ -91,8 +115,8 @@ void add_scene(const Scene& scene, ContentHash& hash) {
     const glm::vec2 size(texture.width(), texture.height());
     for (int y = 0; y < texture.height(); ++y) {
       for (int x = 0; x < texture.width(); ++x) {
-        hash.add(
-            texture.sample((glm::vec2(x, y) + 0.5f) / size));  // in its middle: the texel itself
+        // In its middle: the texel itself.
+        hash.add(texture.sample_data((glm::vec2(x, y) + 0.5f) / size));
       }
     }
   }

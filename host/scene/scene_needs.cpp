@@ -9,10 +9,14 @@ namespace photile {
 namespace {
 
 void add_needs(const Material& material, SceneNeeds& needs) {
-  needs.glossy |= material.glossy();
-  needs.textures |= material.diffuse_texture != none;
+  const bool mapped =
+      material.interaction == Interaction::opaque && material.normal_texture != none;
+  needs.normal_maps |= mapped;
+  needs.glossy |= material.glossy() || mapped;  // both ask where light comes from
+  needs.textures |= material.textured();
   needs.specular_paths |= material.interaction != Interaction::opaque;
-  needs.panes |= material.interaction == Interaction::glass && material.thin;
+  needs.see_through |=
+      material.has_holes() || (material.interaction == Interaction::glass && material.thin);
 }
 
 }  // namespace

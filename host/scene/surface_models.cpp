@@ -26,28 +26,37 @@ double f0_from_index_of_refraction(double index) {
   return ratio * ratio;
 }
 
-void set_metallic_roughness(const MetallicRoughness& model, Material& material) {
+Reflectance reflectance_of(const MetallicRoughness& model) {
   const glm::dvec3 base = glm::clamp(model.base_color, 0.0, 1.0);
   const double metallic = std::clamp(model.metallic, 0.0, 1.0);
-  const double roughness = std::clamp(model.roughness, 0.0, 1.0);
+  const double factor = std::clamp(model.specular_factor, 0.0, 1.0);
   const glm::dvec3 dielectric =
       glm::min(f0_from_index_of_refraction(model.index_of_refraction) * model.specular_color,
                glm::dvec3(1.0)) *
-      std::clamp(model.specular_factor, 0.0, 1.0);
-  const glm::dvec3 specular = glm::clamp(glm::mix(dielectric, base, metallic), 0.0, 1.0);
-  const glm::dvec3 diffuse = base * (1.0 - metallic);
-  const bool no_diffuse = base == glm::dvec3(0.0) || metallic >= mirror_metallic;
-  if (no_diffuse && roughness <= mirror_roughness && specular != glm::dvec3(0.0)) {
+      factor;
+  return {glm::vec3(base * (1.0 - metallic)),
+          glm::vec3(glm::clamp(glm::mix(dielectric, base, metallic), 0.0, 1.0)),
+          static_cast<float>(glm::mix(factor, 1.0, metallic)),
+          ggx_alpha_from_roughness(std::clamp(model.roughness, 0.0, 1.0))};
+}
+
+void set_metallic_roughness(const MetallicRoughness& model, Material& material) {
+  const Reflectance reflectance = reflectance_of(model);
+  const bool no_diffuse = glm::clamp(model.base_color, 0.0, 1.0) == glm::dvec3(0.0) ||
+                          model.metallic >= mirror_metallic;
+  const bool varies = model.texture != none || model.specular_texture != none ||
+                      model.specular_color_texture != none;
+  material.specular = reflectance.f0;
+  material.f90 = reflectance.f90;
+  if (no_diffuse && !varies && material.diffuse_texture == none &&
+      model.roughness <= mirror_roughness && reflectance.f0 != glm::vec3(0.0f)) {
     material.interaction = Interaction::mirror;
     material.diffuse = glm::vec3(0.0f);
-    material.diffuse_texture = none;
-    material.specular = glm::vec3(specular);
     return;
   }
   material.interaction = Interaction::opaque;
-  material.diffuse = glm::vec3(diffuse);
-  material.specular = glm::vec3(specular);
-  material.roughness = ggx_alpha_from_roughness(roughness);
+  material.diffuse = reflectance.albedo;
+  material.roughness = reflectance.alpha;
 }
 
 bool conserve_energy(Material& material) {

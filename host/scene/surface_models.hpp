@@ -27,19 +27,21 @@ float ggx_alpha_from_phong_exponent(double exponent);
 /// Reflectance at normal incidence between air and a dielectric: ((n-1)/(n+1))^2.
 double f0_from_index_of_refraction(double index);
 
-/// What the metallic-roughness factors and the extensions on top of them say.
-struct MetallicRoughness {
-  glm::dvec3 base_color{1.0};
-  double metallic = 1.0;
-  double roughness = 1.0;
-  double index_of_refraction = 1.5;  ///< KHR_materials_ior
-  double specular_factor = 1.0;      ///< KHR_materials_specular
-  glm::dvec3 specular_color{1.0};    ///< KHR_materials_specular
+/// What an opaque surface reflects at a point: the parameters of device/bsdf.h.
+struct Reflectance {
+  glm::vec3 albedo{0.0f};  ///< of the Lambertian base
+  glm::vec3 f0{0.0f};      ///< of the coat
+  float f90 = 1.0f;
+  float alpha = 1.0f;  ///< GGX
 };
 
-/// Sets the diffuse and specular part of `material`; smooth metals become mirrors. White stays
-/// white under its specular lobe, since the reflection model (device/bsdf.h) mixes the two by
-/// Fresnel's law as glTF does.
+/// The model's factors, clamped to what it allows, as albedo, F0, F90 and alpha: glTF 2.0, appendix
+/// B.3.5, and KHR_materials_specular. A dielectric's F0 is that of its index times the specular
+/// colour and factor, its F90 the factor; a metal's are the base colour and 1; between the two they
+/// are mixed. Textures are left out.
+Reflectance reflectance_of(const MetallicRoughness& model);
+
+/// Sets the diffuse and specular part of `material`; smooth metals without textures become mirrors.
 void set_metallic_roughness(const MetallicRoughness& model, Material& material);
 
 /// Scales diffuse and specular together where their sum exceeds 1 in a channel. True if it did.

@@ -1,4 +1,5 @@
 // Texture lookup.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -38,6 +39,21 @@ Neighbours neighbours(float coordinate, int size) {
           texel - floor};
 }
 
+using Texel = std::array<std::uint8_t, 4>;
+
+/// Weighs what `value` makes of the four texels around `uv`.
+template <class Value>
+auto bilinear(const std::vector<Texel>& texels, int width, int height, const glm::vec2& uv,
+              Value value) {
+  const Neighbours x = neighbours(uv.x, width), y = neighbours(uv.y, height);
+  const auto at = [&](std::size_t column, std::size_t row) {
+    return value(texels[row * static_cast<std::size_t>(width) + column]);
+  };
+  const auto upper = glm::mix(at(x.first, y.first), at(x.second, y.first), x.weight);
+  const auto lower = glm::mix(at(x.first, y.second), at(x.second, y.second), x.weight);
+  return glm::mix(upper, lower, y.weight);
+}
+
 }  // namespace
 
 Texture::Texture(std::string name, int width, int height,
@@ -50,15 +66,21 @@ Texture::Texture(std::string name, int width, int height,
 }
 
 glm::vec3 Texture::sample(glm::vec2 uv) const {
-  const Neighbours x = neighbours(uv.x, width_), y = neighbours(uv.y, height_);
   const std::array<float, 256>& linear = linear_of_srgb();
-  const auto texel = [&](std::size_t column, std::size_t row) {
-    const auto& t = texels_[row * static_cast<std::size_t>(width_) + column];
-    return glm::vec3(linear[t[0]], linear[t[1]], linear[t[2]]);
-  };
-  const glm::vec3 upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.weight);
-  const glm::vec3 lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.weight);
-  return glm::mix(upper, lower, y.weight);
+  return bilinear(texels_, width_, height_, uv, [&](const Texel& texel) {
+    return glm::vec3(linear[texel[0]], linear[texel[1]], linear[texel[2]]);
+  });
+}
+
+bool Texture::opaque() const {
+  return std::all_of(texels_.begin(), texels_.end(),
+                     [](const Texel& texel) { return texel[3] == 255; });
+}
+
+glm::vec4 Texture::sample_data(glm::vec2 uv) const {
+  return bilinear(texels_, width_, height_, uv, [](const Texel& texel) {
+    return glm::vec4(texel[0], texel[1], texel[2], texel[3]) / 255.0f;
+  });
 }
 
 }  // namespace photile

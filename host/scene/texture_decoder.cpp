@@ -66,17 +66,22 @@ void check_limits(const OIIO::ImageSpec& spec, std::size_t encoded_bytes) {
   }
 }
 
-std::uint8_t srgb_byte(float linear) {
-  const float c = std::isnan(linear) ? 0.0f : std::clamp(linear, 0.0f, 1.0f);
-  const float encoded = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(encoded * 255.0f + 0.5f);
+std::uint8_t byte_of(float value) {
+  const float c = std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, 1.0f);
+  return static_cast<std::uint8_t>(c * 255.0f + 0.5f);
 }
 
-/// Red, green, blue and alpha of a pixel of 1 (grey), 2 (grey, alpha), 3 or 4 channels.
+std::uint8_t srgb_byte(float linear) {
+  const float c = std::isnan(linear) ? 0.0f : std::clamp(linear, 0.0f, 1.0f);
+  return byte_of(c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f);
+}
+
+/// Red, green, blue and alpha of a pixel of 1 (grey), 2 (grey, alpha), 3 or 4 channels. `alpha` is
+/// that of pixels without one.
 template <typename T>
-std::array<T, 4> rgba(const T* pixel, int channels, T opaque) {
-  if (channels < 3) return {pixel[0], pixel[0], pixel[0], channels == 2 ? pixel[1] : opaque};
-  return {pixel[0], pixel[1], pixel[2], channels == 4 ? pixel[3] : opaque};
+std::array<T, 4> rgba(const T* pixel, int channels, T alpha) {
+  if (channels < 3) return {pixel[0], pixel[0], pixel[0], channels == 2 ? pixel[1] : alpha};
+  return {pixel[0], pixel[1], pixel[2], channels == 4 ? pixel[3] : alpha};
 }
 
 template <typename T>
@@ -103,7 +108,7 @@ class OpenPicture {
     }
     input_->set_ioproxy(&memory_);
     OIIO::ImageSpec spec, config;
-    config["oiio:UnassociatedAlpha"] = 1;  // colours as stored: alpha is not used
+    config["oiio:UnassociatedAlpha"] = 1;  // colours as stored
     if (!input_->open(name, spec, config)) throw ResourceError(input_->geterror());
     check_limits(spec, bytes.size());
   }
@@ -116,22 +121,26 @@ class OpenPicture {
   std::unique_ptr<OIIO::ImageInput> input_;
 };
 
-std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture) {
+std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture, TextureContent content) {
   const OIIO::ImageSpec& spec = picture.spec();
   const int channels = std::min(spec.nchannels, 4);
   const auto stride = static_cast<std::size_t>(channels);
+  const bool alpha_is_first = content == TextureContent::opacity;
   std::vector<std::array<std::uint8_t, 4>> texels(static_cast<std::size_t>(spec.width) *
                                                   static_cast<std::size_t>(spec.height));
   if (spec.format.is_floating_point()) {
+    const auto encoded = content == TextureContent::color ? srgb_byte : byte_of;
     const auto pixels = read_pixels<float>(picture.input(), channels, OIIO::TypeDesc::FLOAT);
     for (std::size_t i = 0; i < texels.size(); ++i) {
-      const std::array<float, 4> pixel = rgba(&pixels[i * stride], channels, 1.0f);
-      for (std::size_t c = 0; c < 4; ++c) texels[i][c] = srgb_byte(pixel[c]);
+      const float* first = &pixels[i * stride];
+      const auto [r, g, b, a] = rgba(first, channels, alpha_is_first ? *first : 1.0f);
+      texels[i] = {encoded(r), encoded(g), encoded(b), byte_of(a)};
     }
   } else {
     const auto pixels = read_pixels<std::uint8_t>(picture.input(), channels, OIIO::TypeDesc::UINT8);
     for (std::size_t i = 0; i < texels.size(); ++i) {
-      texels[i] = rgba<std::uint8_t>(&pixels[i * stride], channels, 255);
+      const std::uint8_t* first = &pixels[i * stride];
+      texels[i] = rgba<std::uint8_t>(first, channels, alpha_is_first ? *first : 255);
     }
   }
   return texels;
@@ -139,10 +148,11 @@ std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture) {
 
 }  // namespace
 
-Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes) {
+Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes,
+                       TextureContent content) {
   try {
     OpenPicture picture(name, bytes);
-    return Texture(name, picture.spec().width, picture.spec().height, decode(picture));
+    return Texture(name, picture.spec().width, picture.spec().height, decode(picture, content));
   } catch (const ResourceError& error) {
     throw ResourceError(fmt::format("texture '{}': {}", name, error.what()));
   }

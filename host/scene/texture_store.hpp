@@ -5,9 +5,11 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "photile/scene.hpp"
 #include "scene/scene_folder.hpp"
+#include "scene/texture_decoder.hpp"
 
 namespace photile::scene_io {
 
@@ -16,18 +18,20 @@ class TextureStore {
   TextureStore(Scene& scene, SceneFolder& folder) : scene_(scene), folder_(folder) {}
 
   /// Index in Scene::textures of a picture file named by the scene. Errors: ResourceError.
-  std::uint32_t from_file(const std::string& name);
+  std::uint32_t from_file(const std::string& name, TextureContent content = TextureContent::color);
 
-  /// The same for a picture inside the scene file; `key` tells it from others. Errors:
+  /// The same for a picture inside the scene file; `name` tells it from others. Errors:
   /// ResourceError.
-  std::uint32_t from_memory(const std::string& key, std::span<const unsigned char> bytes);
+  std::uint32_t from_memory(const std::string& name, std::span<const unsigned char> bytes,
+                            TextureContent content = TextureContent::color);
 
  private:
-  std::uint32_t add(const std::string& name, std::span<const unsigned char> bytes);
+  using Key = std::pair<std::string, TextureContent>;
+  std::uint32_t add(const Key& key, std::span<const unsigned char> bytes);
 
   Scene& scene_;
   SceneFolder& folder_;
-  std::map<std::string, std::uint32_t> index_;
+  std::map<Key, std::uint32_t> index_;
 };
 
 /// Makes the lack of a texture visible but harmless: a mid-grey Lambertian part.

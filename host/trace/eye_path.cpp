@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "photile/device/bsdf.h"
+#include "trace/holes.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/surface.hpp"
@@ -23,21 +23,22 @@ glm::dvec2 stratified(int index, int count, double u1, double u2) {
 
 EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
                std::uint32_t pixel, const glm::vec3& throughput) {
-  const Material& material = material_of(scene, point);
-  const float alpha = std::clamp(material.roughness, PHOTILE_MIN_GGX_ALPHA, 1.0f);
+  const scene_io::Reflectance surface = reflectance(scene, point);
+  const ShadingNormals normals = shading_normals(scene, point, direction);
   return {point.position,
           point.sided_triangle(),
           pixel,
           throughput,
-          diffuse_albedo(scene, point),
+          surface.albedo,
           -direction,
-          {material.specular, alpha, shading_normal(scene, point, direction)}};
+          {surface.f0, surface.alpha, normals.seen, surface.f90, normals.smooth}};
 }
 
 void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
                     EyeRecord& record, const LampTechnique* other) {
   const Scene& scene = *setup.rays->scene;
   const glm::vec3 start = ray.origin;
+  std::uint32_t holes = 0;
   bool straight = true;  // but for panes of thin glass, which looking at lamps sees through
   // Lamps seen in mirrors or through refracting glass are found by following alone.
   const auto weight_against = [&](float found) {
@@ -46,8 +47,9 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
   for (int depth = 0;; ++depth) {
     const bool seen_directly = setup.reflections_only && straight;
     ++record.rays;
-    const auto hit = setup.rays->intersect(ray.origin, ray.direction);
-    if (!hit) {
+    const auto met =
+        next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, holes);
+    if (!met) {
       if (seen_directly) return;
       for (const DistantLight& light : *setup.distant) {
         const glm::vec3 radiance = light.radiance(ray.direction);
@@ -58,7 +60,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
       }
       return;
     }
-    const SurfacePoint point = surface_hit(scene, *hit, ray.direction);
+    const SurfacePoint& point = *met;
     if (emits(scene, point) && !seen_directly) {
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
       const float weight = other ? weight_against(other->lamps.density(start, point)) : 1.0f;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "photile/device/bsdf.h"
 #include "trace/ggx.hpp"
 #include "trace/scatter.hpp"
 
@@ -15,23 +14,31 @@ float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
 }  // namespace
 
-OpaqueBsdf::OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction)
-    : material_(&material_of(scene, point)),
-      albedo_(diffuse_albedo(scene, point)),
-      normal_(point.normal) {
-  if (material_->glossy()) lobe_ = lobe_of(scene, point, direction);
+OpaqueBsdf::OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
+                       PathStart start)
+    : surface_(reflectance(scene, point)), normal_(point.normal), start_(start) {
+  const bool mapped = material_of(scene, point).normal_texture != none;
+  if (surface_.f90 > 0.0f || mapped) lobe_ = lobe_of(scene, point, direction);
 }
 
 OpaqueBsdf::Lobe OpaqueBsdf::lobe_of(const Scene& scene, const SurfacePoint& point,
                                      const glm::vec3& direction) const {
-  const Frame frame(shading_normal(scene, point, direction));
-  const glm::vec3 view = frame.to_local(-direction);
-  const float n_dot_view = std::max(view.z, 1e-6f);
-  const float base = largest(material_->specular);
-  const float specular_albedo = base + (1.0f - base) * photile_schlick(n_dot_view);
-  const float diffuse_albedo = (1.0f - specular_albedo) * largest(albedo_);
-  return {frame, std::clamp(material_->roughness, PHOTILE_MIN_GGX_ALPHA, 1.0f), view, n_dot_view,
-          specular_albedo / (specular_albedo + diffuse_albedo)};
+  const ShadingNormals normals = shading_normals(scene, point, direction);
+  // Where light comes from may lie behind a mapped normal; the eye sees the smooth one there.
+  Lobe lobe{.frame = Frame(start_ == PathStart::light ? normals.mapped : normals.seen)};
+  lobe.mapped = normals.mapped != normals.smooth;
+  lobe.smooth_normal = normals.smooth;
+  lobe.view = lobe.frame.to_local(-direction);
+  lobe.n_dot_view = std::max(lobe.view.z, 1e-6f);
+  photile_albedo_fit(surface_.alpha, &lobe.fit);
+  lobe.diffuse = diffuse_part(surface_, lobe.n_dot_view);
+  float f0_weight = 0, f90_weight = 0;
+  photile_lobe_albedo(&lobe.fit, lobe.n_dot_view, &f0_weight, &f90_weight);
+  const float specular_albedo = largest(surface_.f0) * f0_weight + surface_.f90 * f90_weight;
+  const float diffuse_albedo = largest(diffuse_reflectance(lobe.diffuse, surface_.alpha));
+  const float sum = specular_albedo + diffuse_albedo;
+  lobe.share = sum > 0.0f && lobe.view.z > 0.0f ? specular_albedo / sum : 0.0f;
+  return lobe;
 }
 
 std::optional<glm::vec3> OpaqueBsdf::sample(const RandomBlock& random) const {
@@ -39,7 +46,7 @@ std::optional<glm::vec3> OpaqueBsdf::sample(const RandomBlock& random) const {
   glm::vec3 direction;
   if (lobe_ && random.uniform(choice_word) < lobe_->share) {
     const glm::vec3& view = lobe_->view;
-    const glm::vec3 half = sample_ggx_visible_normal(view, lobe_->alpha, u1, u2);
+    const glm::vec3 half = sample_ggx_visible_normal(view, surface_.alpha, u1, u2);
     direction = glm::normalize(lobe_->frame.to_world(2.0f * glm::dot(view, half) * half - view));
   } else {
     direction = Frame(normal_).to_world(sample_cosine_hemisphere(u1, u2));
@@ -54,21 +61,35 @@ float OpaqueBsdf::density(const glm::vec3& direction) const {
   if (!(cosine > 0.0f)) return 0.0f;
   if (!lobe_) return cosine / PHOTILE_PI;
   const glm::vec3 half = glm::normalize(lobe_->view + lobe_->frame.to_local(direction));
-  return lobe_->share * ggx_reflection_density(lobe_->n_dot_view, half.z, lobe_->alpha) +
+  return lobe_->share * ggx_reflection_density(lobe_->n_dot_view, half.z, surface_.alpha) +
          (1.0f - lobe_->share) * cosine / PHOTILE_PI;
 }
 
 glm::vec3 OpaqueBsdf::reflected(const glm::vec3& direction) const {
   const float cosine = glm::dot(direction, normal_);
   if (!(cosine > 0.0f)) return glm::vec3(0.0f);
-  if (!lobe_) return albedo_ * (cosine / PHOTILE_PI);
+  if (!lobe_) return surface_.albedo * (cosine / PHOTILE_PI);
   const glm::vec3 out = lobe_->frame.to_local(direction);
   const glm::vec3 half = glm::normalize(lobe_->view + out);
-  const float lobe = photile_ggx_lobe(lobe_->n_dot_view, out.z, half.z, lobe_->alpha);
+  const bool behind = lobe_->mapped && !(lobe_->view.z > 0.0f);
+  const float lobe =
+      behind ? 0.0f : photile_ggx_lobe(lobe_->n_dot_view, out.z, half.z, surface_.alpha);
   const float schlick = photile_schlick(glm::dot(lobe_->view, half));
+  float f0_weight = 0, f90_weight = 0;
+  photile_lobe_albedo(&lobe_->fit, out.z, &f0_weight, &f90_weight);
+  float bump = 1.0f;
+  if (lobe_->mapped) {
+    const glm::vec3& light = start_ == PathStart::eye ? out : lobe_->view;
+    bump =
+        photile_bump_weight(light.z, glm::dot(lobe_->frame.to_world(light), lobe_->smooth_normal),
+                            most_bump(surface_.albedo + surface_.f0));
+  }
   glm::vec3 result;
-  for (int c = 0; c < 3; ++c)
-    result[c] = photile_opaque_bsdf(albedo_[c], material_->specular[c], schlick, lobe) * cosine;
+  for (int c = 0; c < 3; ++c) {
+    const float diffuse = bump * photile_diffuse(lobe_->diffuse[0][c], lobe_->diffuse[1][c],
+                                                 lobe_->diffuse[2][c], f0_weight, f90_weight);
+    result[c] = cosine * photile_opaque_bsdf(diffuse, surface_.f0[c], surface_.f90, schlick, lobe);
+  }
   return result;
 }
 

@@ -2,24 +2,33 @@
 // value, directions drawn from it, and their density.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "photile/device/bsdf.h"
+#include "trace/diffuse_part.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/sampling.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
 
+/// Where the rays of a path come from. With a normal map the BSDF is not reciprocal.
+enum class PathStart : std::uint8_t { eye, light };
+
 /// Directions are unit and point away from the surface. Cosines are those to the geometric normal,
-/// as in the radiance estimate; the lobe turns with the shading normal.
+/// as in the radiance estimate; the lobe turns with the shading normal, and with a normal map the
+/// base does, too.
 class OpaqueBsdf {
  public:
   /// `direction`: of the ray that arrives at the point, unit.
-  OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction);
+  OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
+             PathStart start = PathStart::eye);
 
+  /// Whether it is more than a Lambertian lobe.
   bool glossy() const { return lobe_.has_value(); }
-  const glm::vec3& albedo() const { return albedo_; }  ///< of the Lambertian lobe
+  const glm::vec3& albedo() const { return surface_.albedo; }  ///< of the Lambertian lobe
 
   /// A direction from the Lambertian or the GGX lobe, picked in proportion to estimates of their
   /// albedos. Nothing where it would enter the surface. Uses the words `choice_word`,
@@ -34,17 +43,20 @@ class OpaqueBsdf {
 
  private:
   struct Lobe {
-    Frame frame;       ///< of the shading normal
-    float alpha;       ///< GGX
-    glm::vec3 view;    ///< against the ray that arrived, in `frame`
-    float n_dot_view;  ///< kept above 0
-    float share;       ///< of the directions drawn, in [0, 1]
+    Frame frame;           ///< of the shading normal
+    glm::vec3 view{0.0f};  ///< against the ray that arrived, in `frame`
+    float n_dot_view = 0;  ///< kept above 0
+    PhotileAlbedoFit fit{};
+    DiffusePart diffuse{};
+    float share = 0;      ///< of the directions drawn, in [0, 1]
+    bool mapped = false;  ///< there is a normal map
+    glm::vec3 smooth_normal{0.0f};
   };
   Lobe lobe_of(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) const;
 
-  const Material* material_;
-  glm::vec3 albedo_;
+  scene_io::Reflectance surface_;
   glm::vec3 normal_;
+  PathStart start_;
   std::optional<Lobe> lobe_;  ///< none where the surface is Lambertian
 };
 

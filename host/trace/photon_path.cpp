@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "trace/holes.hpp"
 #include "trace/scatter.hpp"
 #include "trace/surface.hpp"
 
@@ -13,6 +14,7 @@ float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
 double luminance_of(const glm::vec3& flux) { return luminance(glm::dvec3(flux)); }
 
+/// One photon of the density that is estimated at this point.
 void store(const PathSetup& setup, const SurfacePoint& point, const glm::vec3& direction,
            const glm::vec3& flux, PathRecord& record) {
   record.position.push_back(point.position);
@@ -38,8 +40,9 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
   const EmittedRay emitted = setup.emitter->emit(random);
   glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
+  std::uint32_t holes = 0;
 
-  for (int bounce = 1;; ++bounce) {
+  for (int bounce = 1;;) {
     const auto hit = setup.rays->intersect(origin, direction);
     if (!hit) {
       record.escaped += luminance_of(flux);
@@ -47,7 +50,13 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     }
     const SurfacePoint point = surface_hit(scene, *hit, direction);
     const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
+    // In holes as well: the density is that of light on the whole triangle, by whose area the
+    // estimate divides, and does not fall where a hole is near.
     if (opaque) store(setup, point, direction, flux, record);
+    if (passes_hole(scene, point, random, Purpose::photon_holes, holes)) {
+      origin = point.origin_towards(direction);
+      continue;
+    }
     if (bounce >= setup.parameters->max_path_length) break;
 
     const RandomBlock numbers = random.block(Purpose::photon_scattering, bounce);
@@ -63,6 +72,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     flux = left;
     direction = scattered->direction;
     origin = point.origin_towards(direction);
+    ++bounce;
   }
   record.absorbed += luminance_of(flux);
 }

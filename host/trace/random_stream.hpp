@@ -16,7 +16,10 @@ enum class Purpose : std::uint32_t {
   path_scattering,
   path_light,
   sensor_direction,
-  sensor_light
+  sensor_light,
+  eye_holes,
+  photon_holes,
+  path_holes
 };
 
 /// Four independent random words.

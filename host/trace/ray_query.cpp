@@ -4,6 +4,20 @@
 #include "trace/scatter.hpp"
 
 namespace photile::trace {
+namespace {
+
+/// What one surface lets through, without a bend.
+glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) {
+  const Material& material = material_of(scene, point);
+  const float there = material.has_holes() ? opacity(scene, point) : 1.0f;
+  glm::vec3 surface(0.0f);
+  if (material.interaction == Interaction::glass && material.thin) {
+    surface = pane_transmittance(material, -glm::dot(direction, point.normal));
+  }
+  return glm::vec3(1.0f - there) + there * surface;
+}
+
+}  // namespace
 
 std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
                                      const glm::vec3& direction) {
@@ -15,7 +29,7 @@ bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) 
 }
 
 glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {
-  if (!rays.needs().panes) return glm::vec3(occluded(rays, from, to) ? 0.0f : 1.0f);
+  if (!rays.needs().see_through) return glm::vec3(occluded(rays, from, to) ? 0.0f : 1.0f);
   const Scene& scene = rays.scene();
   const glm::vec3 direction = glm::normalize(to - from);
   glm::vec3 passed(1.0f), origin = from;
@@ -23,9 +37,8 @@ glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::
     const auto hit = intersect(rays, origin, direction);
     if (!hit) return passed;  // rounding: the last surface ends where the line passes
     const SurfacePoint point = surface_hit(scene, *hit, direction);
-    const Material& material = material_of(scene, point);
-    if (material.interaction != Interaction::glass || !material.thin) return glm::vec3(0.0f);
-    passed *= pane_transmittance(material, -glm::dot(direction, point.normal));
+    passed *= transmittance(scene, point, direction);
+    if (passed == glm::vec3(0.0f)) return passed;
     origin = point.origin_towards(direction);
     if (glm::dot(to - origin, direction) <= 0.0f) return passed;
   }

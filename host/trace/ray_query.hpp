@@ -18,7 +18,8 @@ std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& orig
 bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
 
 /// What the straight line between two points lets through, per channel: black behind a surface that
-/// bends or stops light, the product of their transmittances behind panes of thin glass.
+/// bends or stops light, the product of their transmittances behind panes of thin glass and
+/// surfaces with holes.
 glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
 
 }  // namespace photile::trace

@@ -25,8 +25,8 @@ enum ScatterWord : int { choice_word = 0, direction_word = 1, roulette_word = 3 
 Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
                            const glm::vec3& direction, float choice);
 
-/// A ray scattered by an opaque surface, as OpaqueBsdf samples it, weighted by the density of both
-/// lobes. Nothing where it would enter the surface.
+/// A photon scattered by an opaque surface, as OpaqueBsdf samples it, weighted by the density of
+/// both lobes. Nothing where it would enter the surface.
 std::optional<Scattered> scatter_opaque(const Scene& scene, const SurfacePoint& point,
                                         const glm::vec3& direction, const RandomBlock& random);
 

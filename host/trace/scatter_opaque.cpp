@@ -5,12 +5,11 @@ namespace photile::trace {
 
 std::optional<Scattered> scatter_opaque(const Scene& scene, const SurfacePoint& point,
                                         const glm::vec3& direction, const RandomBlock& random) {
-  const OpaqueBsdf bsdf(scene, point, direction);
+  const OpaqueBsdf bsdf(scene, point, direction, PathStart::light);
   const std::optional<glm::vec3> scattered = bsdf.sample(random);
   if (!scattered) return std::nullopt;
   if (!bsdf.glossy()) return Scattered{*scattered, bsdf.albedo()};  // f x cosine / density, exactly
-  // Photons are traced along the adjoint of the radiance estimate, which multiplies f by flux per
-  // geometric area; f is reciprocal, so rays from the eye scatter alike.
+  // The adjoint of the radiance estimate, which multiplies f by flux per geometric area.
   const float density = bsdf.density(*scattered);
   if (!(density > 0.0f)) return std::nullopt;
   return Scattered{*scattered, bsdf.reflected(*scattered) / density};

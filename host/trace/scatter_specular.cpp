@@ -60,7 +60,7 @@ Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
   const Material& material = material_of(scene, point);
   const bool entering = on_front(scene, point);
   Deflected deflected =
-      deflect(material, entering, direction, shading_normal(scene, point, direction), choice);
+      deflect(material, entering, direction, shading_normals(scene, point, direction).seen, choice);
   // A shading normal far from the geometric one can send the ray to the wrong side of the surface,
   // where it would leak; the geometric normal never does.
   const bool beyond = glm::dot(deflected.direction, point.normal) < 0.0f;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "photile/device/bsdf.h"
+#include "trace/normal_map.hpp"
+
 namespace photile::trace {
 
 namespace {
@@ -35,9 +38,31 @@ Interpolated interpolate(const Scene& scene, const TriangleHit& where) {
               std::max({largest(glm::abs(a)), largest(glm::abs(b)), largest(glm::abs(c))})};
 }
 
-glm::vec3 texel(const Texture& texture, const std::array<glm::vec2, 3>& uv,
-                const TriangleHit& where) {
-  return texture.sample((1.0f - where.u - where.v) * uv[0] + where.u * uv[1] + where.v * uv[2]);
+glm::vec2 interpolate(const std::array<glm::vec2, 3>& uv, const TriangleHit& where) {
+  return (1.0f - where.u - where.v) * uv[0] + where.u * uv[1] + where.v * uv[2];
+}
+
+/// A lookup in a texture of the point's material.
+glm::vec2 texture_coordinates(const Scene& scene, const SurfacePoint& point) {
+  return interpolate(scene.corner_uv[point.where.triangle], point.where);
+}
+
+/// The model with its textures' factors at these coordinates.
+MetallicRoughness textured(const Scene& scene, MetallicRoughness model, std::uint32_t base_color,
+                           const glm::vec2& uv) {
+  if (base_color != none) model.base_color *= glm::dvec3(scene.textures[base_color].sample(uv));
+  if (model.texture != none) {
+    const glm::vec4 factors = scene.textures[model.texture].sample_data(uv);
+    model.roughness *= double{factors.g};
+    model.metallic *= double{factors.b};
+  }
+  if (model.specular_texture != none) {
+    model.specular_factor *= double{scene.textures[model.specular_texture].sample_data(uv).a};
+  }
+  if (model.specular_color_texture != none) {
+    model.specular_color *= glm::dvec3(scene.textures[model.specular_color_texture].sample(uv));
+  }
+  return model;
 }
 
 SurfacePoint on_side(const TriangleHit& where, const Interpolated& at, std::uint32_t side) {
@@ -48,6 +73,20 @@ SurfacePoint on_side(const TriangleHit& where, const Interpolated& at, std::uint
   point.normal = glm::vec3(side == 0 ? at.normal : -at.normal);
   point.clearance = static_cast<float>(at.clearance);
   return point;
+}
+
+glm::vec3 smooth_normal(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) {
+  if (scene.corner_normal.empty()) return point.normal;
+  const auto& corner = scene.corner_normal[point.where.triangle];
+  if (corner[0] == glm::vec3(0.0f) || corner[1] == glm::vec3(0.0f) || corner[2] == glm::vec3(0.0f))
+    return point.normal;
+  const float u = point.where.u, v = point.where.v;
+  glm::vec3 normal = (1.0f - u - v) * corner[0] + u * corner[1] + v * corner[2];
+  if (!on_front(scene, point)) normal = -normal;
+  const float length = glm::length(normal);
+  if (!(length > 0.0f)) return point.normal;
+  normal /= length;
+  return glm::dot(normal, direction) < 0.0f ? normal : point.normal;
 }
 
 }  // namespace
@@ -78,30 +117,46 @@ SurfacePoint surface_hit(const Scene& scene, const TriangleHit& where, const glm
 glm::vec3 emission_texel(const Scene& scene, const SurfacePoint& point) {
   const std::uint32_t light = scene.triangle_light[point.where.triangle];
   if (light == none || scene.lights[light].emission_texture == none) return glm::vec3(1.0f);
-  return texel(scene.textures[scene.lights[light].emission_texture],
-               scene.corner_emission_uv[point.where.triangle], point.where);
+  return scene.textures[scene.lights[light].emission_texture].sample(
+      interpolate(scene.corner_emission_uv[point.where.triangle], point.where));
 }
 
-glm::vec3 diffuse_albedo(const Scene& scene, const SurfacePoint& point) {
+scene_io::Reflectance reflectance(const Scene& scene, const SurfacePoint& point) {
   const Material& material = material_of(scene, point);
-  if (material.diffuse_texture == none || scene.corner_uv.empty()) return material.diffuse;
-  return material.diffuse * texel(scene.textures[material.diffuse_texture],
-                                  scene.corner_uv[point.where.triangle], point.where);
+  const bool textured_here = material.textured() && !scene.corner_uv.empty();
+  if (textured_here && material.metallic_roughness != none) {
+    return scene_io::reflectance_of(
+        textured(scene, scene.metallic_roughness[material.metallic_roughness],
+                 material.diffuse_texture, texture_coordinates(scene, point)));
+  }
+  glm::vec3 albedo = material.diffuse;
+  if (textured_here && material.diffuse_texture != none) {
+    albedo *= scene.textures[material.diffuse_texture].sample(texture_coordinates(scene, point));
+  }
+  if (!material.glossy()) return {albedo, glm::vec3(0.0f), 0.0f, 1.0f};
+  return {albedo, material.specular, material.f90,
+          std::clamp(material.roughness, PHOTILE_MIN_GGX_ALPHA, 1.0f)};
 }
 
-glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point,
-                         const glm::vec3& direction) {
-  if (scene.corner_normal.empty()) return point.normal;
-  const auto& corner = scene.corner_normal[point.where.triangle];
-  if (corner[0] == glm::vec3(0.0f) || corner[1] == glm::vec3(0.0f) || corner[2] == glm::vec3(0.0f))
-    return point.normal;
-  const float u = point.where.u, v = point.where.v;
-  glm::vec3 normal = (1.0f - u - v) * corner[0] + u * corner[1] + v * corner[2];
-  if (!on_front(scene, point)) normal = -normal;
-  const float length = glm::length(normal);
-  if (!(length > 0.0f)) return point.normal;
-  normal /= length;
-  return glm::dot(normal, direction) < 0.0f ? normal : point.normal;
+float opacity(const Scene& scene, const SurfacePoint& point) {
+  const Material& material = material_of(scene, point);
+  float share = material.opacity;
+  if (material.opacity_texture != none && !scene.corner_uv.empty()) {
+    share *=
+        scene.textures[material.opacity_texture].sample_data(texture_coordinates(scene, point)).a;
+  }
+  if (material.opacity_cutoff > 0.0f) return share >= material.opacity_cutoff ? 1.0f : 0.0f;
+  return std::clamp(share, 0.0f, 1.0f);
+}
+
+ShadingNormals shading_normals(const Scene& scene, const SurfacePoint& point,
+                               const glm::vec3& direction) {
+  const glm::vec3 smooth = smooth_normal(scene, point, direction);
+  if (material_of(scene, point).normal_texture == none || scene.corner_uv.empty()) {
+    return {smooth, smooth, smooth};
+  }
+  const glm::vec3 mapped = mapped_normal(scene, point, smooth);
+  return {smooth, mapped, glm::dot(mapped, direction) < 0.0f ? mapped : smooth};
 }
 
 }  // namespace photile::trace

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "photile/scene.hpp"
+#include "scene/surface_models.hpp"
 #include "trace/triangle_hit.hpp"
 
 namespace photile::trace {
@@ -54,11 +55,21 @@ inline bool emits(const Scene& scene, const SurfacePoint& point) {
 /// Texel of the emission of the point's light; white where it has no texture.
 glm::vec3 emission_texel(const Scene& scene, const SurfacePoint& point);
 
-/// Lambertian albedo, textured. Each channel in [0, 1].
-glm::vec3 diffuse_albedo(const Scene& scene, const SurfacePoint& point);
+/// What an opaque surface reflects there, textured. Without a specular lobe F0 and F90 are 0.
+scene_io::Reflectance reflectance(const Scene& scene, const SurfacePoint& point);
 
-/// Unit shading normal on the side of the point; the geometric one where the file has none, or
-/// where a ray of this direction would arrive at the shading normal's back.
-glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction);
+/// Share of the surface that is there, in [0, 1]; 1 where its material has no holes.
+float opacity(const Scene& scene, const SurfacePoint& point);
+
+/// Unit shading normals at a point where a ray arrives, on its side.
+struct ShadingNormals {
+  /// Of the corners; the geometric one where the file has none, or where the ray would arrive at
+  /// the shading normal's back.
+  glm::vec3 smooth;
+  glm::vec3 mapped;  ///< `smooth` as the material's normal map turns it; the same without one
+  glm::vec3 seen;    ///< `mapped`, or `smooth` where the ray would arrive at the mapped one's back
+};
+ShadingNormals shading_normals(const Scene& scene, const SurfacePoint& point,
+                               const glm::vec3& direction);
 
 }  // namespace photile::trace

@@ -14,9 +14,11 @@ namespace photile {
 
 /// Specular lobe at a hit, for the estimate of glossy reflection (device/bsdf.h).
 struct HitLobe {
-  glm::vec3 specular;  ///< F0
-  float roughness;     ///< GGX alpha
-  glm::vec3 normal;    ///< unit shading normal, on the side of the ray
+  glm::vec3 specular;             ///< F0
+  float roughness;                ///< GGX alpha
+  glm::vec3 normal;               ///< unit shading normal, on the side of the ray
+  float f90 = 1.0f;               ///< reflectance at grazing incidence
+  glm::vec3 smooth_normal{0.0f};  ///< `normal` without a normal map; only in scenes that have one
 };
 
 /// Hits on opaque surfaces, after mirrors and glass were followed. Structure of arrays. Sorted by

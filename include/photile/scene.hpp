@@ -31,16 +31,22 @@ enum class PowerUnit {
   watt    ///< radiometric (OBJ): powers in W, picture in W/(m2 sr)
 };
 
-/// A picture used as a texture: 8-bit sRGB texels decoded to linear on lookup.
+/// A picture used as a texture: four bytes a texel, which are sRGB where they are a colour.
 class Texture {
  public:
   Texture() = default;
-  /// `texels`: width x height, row 0 at the top, RGBA in sRGB.
+  /// `texels`: width x height, row 0 at the top, RGBA.
   Texture(std::string name, int width, int height, std::vector<std::array<std::uint8_t, 4>> texels);
 
   /// Bilinear lookup of linear RGB. `uv` (0,0) is the top left corner of the picture, as in glTF;
   /// it repeats outside [0,1).
   glm::vec3 sample(glm::vec2 uv) const;
+
+  /// The same of the bytes as they are, RGBA in [0,1]: alpha, normals and factors are no colours.
+  glm::vec4 sample_data(glm::vec2 uv) const;
+
+  /// Whether every alpha is 1.
+  bool opaque() const;
 
   const std::string& name() const { return name_; }
   int width() const { return width_; }
@@ -59,20 +65,54 @@ enum class Interaction : std::uint8_t {
   glass    ///< smooth dielectric: Fresnel reflection and refraction; nothing is stored
 };
 
-/// Reflection of one surface; the same on both of its sides.
+/// The metallic-roughness model of glTF 2.0 with KHR_materials_ior and KHR_materials_specular,
+/// whose factors textures may multiply.
+struct MetallicRoughness {
+  glm::dvec3 base_color{1.0};  ///< multiplied by Material::diffuse_texture
+  double metallic = 1.0;
+  double roughness = 1.0;                 ///< perceptual: the square root of GGX alpha
+  double index_of_refraction = 1.5;       ///< KHR_materials_ior
+  double specular_factor = 1.0;           ///< KHR_materials_specular
+  glm::dvec3 specular_color{1.0};         ///< KHR_materials_specular
+  std::uint32_t texture = none;           ///< roughness in its green, metallic in its blue channel
+  std::uint32_t specular_texture = none;  ///< the specular factor in its alpha channel
+  std::uint32_t specular_color_texture = none;
+};
+
+/// Reflection of one surface; the same on both of its sides. All textures of a material share the
+/// coordinates in Scene::corner_uv.
 struct Material {
   std::string name;
   Interaction interaction = Interaction::opaque;
   glm::vec3 diffuse{0.0f};  ///< Lambertian albedo in [0,1], multiplied by the texture
   std::uint32_t diffuse_texture = none;
   glm::vec3 specular{0.0f};  ///< reflectance at normal incidence, F0; black = no specular lobe
+  float f90 = 1.0f;          ///< reflectance of the specular lobe at grazing incidence
   /// GGX alpha in [PHOTILE_MIN_GGX_ALPHA, 1]; only where `specular` is not black.
   float roughness = 1.0f;
   glm::vec3 transmission{1.0f};  ///< colour of what passes a glass surface
   float index_of_refraction = 1.5f;
   bool thin = false;  ///< glass without volume: refraction does not bend the ray
+  /// Into Scene::metallic_roughness where textures vary more than the diffuse part, or a metal's
+  /// reflectance; `diffuse`, `specular` and `roughness` are then those of white texels.
+  std::uint32_t metallic_roughness = none;
+
+  /// Share of the surface that is there, times the alpha of a texture.
+  float opacity = 1.0f;
+  std::uint32_t opacity_texture = none;
+  /// Where above 0, all of the surface is there from this opacity on, and nothing below.
+  float opacity_cutoff = 0.0f;
+
+  /// Tangent space normals, red along u, green along -v, blue along the shading normal; or none.
+  std::uint32_t normal_texture = none;
+  float normal_scale = 1.0f;  ///< of red and green
 
   bool glossy() const { return interaction == Interaction::opaque && specular != glm::vec3(0.0f); }
+  bool has_holes() const { return opacity < 1.0f || opacity_texture != none; }
+  bool textured() const {
+    return diffuse_texture != none || metallic_roughness != none || opacity_texture != none ||
+           normal_texture != none;
+  }
 };
 
 enum class LightKind : std::uint8_t { area, point, spot, directional, environment };
@@ -159,8 +199,8 @@ struct Scene {
   std::vector<std::array<glm::vec2, 3>> corner_uv;  ///< empty when nothing is textured
   /// Coordinates of Light::emission_texture; empty when no light has one.
   std::vector<std::array<glm::vec2, 3>> corner_emission_uv;
-  /// Shading normals per corner, on the front side; empty when no material is specular or glossy
-  /// or the file has none. A zero vector means "use the geometric normal".
+  /// Shading normals per corner, on the front side; empty when no material is specular, glossy or
+  /// has a normal map, or the file has none. A zero vector means "use the geometric normal".
   std::vector<std::array<glm::vec3, 3>> corner_normal;
 
   /// What repeats, for the ray tracing structure alone: every triangle is in the arrays above.
@@ -169,6 +209,7 @@ struct Scene {
   std::vector<MeshInstance> instances;
 
   std::vector<Material> materials;
+  std::vector<MetallicRoughness> metallic_roughness;
   std::vector<Texture> textures;
   std::vector<Light> lights;
   std::vector<IntensityDistribution> distributions;

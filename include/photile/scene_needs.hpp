@@ -15,10 +15,11 @@ inline constexpr std::uint32_t max_dense_lights = 8;
 /// records of photons and hits, the buffers of maps and estimates, the symbols that kernels are
 /// compiled with, and what shadow rays look at (docs/kernels.md, "Records").
 struct SceneNeeds {
-  bool glossy = false;            ///< some opaque material has a specular lobe
-  bool textures = false;          ///< some material has a texture
-  bool specular_paths = false;    ///< some material is a mirror or glass
-  bool panes = false;             ///< some material is thin glass, which shadow rays pass
+  bool glossy = false;          ///< some opaque material has a specular lobe or a normal map
+  bool normal_maps = false;     ///< some opaque material has a normal map
+  bool textures = false;        ///< some material has a texture
+  bool specular_paths = false;  ///< some material is a mirror or glass
+  bool see_through = false;  ///< some material is thin glass or has holes, which shadow rays pass
   std::uint32_t light_count = 0;  ///< layers: a group of lights counts as one
 
   /// Whether photons and estimates tell lights apart.

@@ -57,6 +57,19 @@ TEST_CASE("a smooth glTF metal is a mirror, a smooth dielectric keeps the smalle
   CHECK(plastic.roughness == 0.02f);
 }
 
+TEST_CASE("KHR_materials_specular's factor scales F0 and F90 of a dielectric, not of a metal") {
+  const auto with_factor = [](double metallic) {
+    json members = factors(metallic, 0.5);
+    members["extensions"]["KHR_materials_specular"]["specularFactor"] = 0.25;
+    return material(members);
+  };
+  check_rgb(with_factor(0).specular, {0.01, 0.01, 0.01});
+  CHECK(with_factor(0).f90 == 0.25f);
+  CHECK(with_factor(1).f90 == 1.0f);
+  check_rgb(with_factor(1).specular, {0.8, 0.6, 0.4});
+  CHECK(with_factor(0.5).f90 == 0.625f);
+}
+
 TEST_CASE("KHR_materials_specular 0 without metal is purely diffuse") {
   const Material m =
       material({{"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}});
@@ -100,14 +113,16 @@ TEST_CASE("transmission from one half on is glass, thin without a volume, and le
 
 TEST_CASE("what a glTF material approximates is named") {
   Scene scene;
-  material({{"alphaMode", "BLEND"},
-            {"normalTexture", {{"index", 0}}},
-            {"occlusionTexture", {{"index", 0}}},
-            {"emissiveTexture", {{"index", 0}}},
-            {"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}},
-           &scene);
-  for (const std::string word :
-       {"BLEND", "normal", "occlusion", "emissive", "metallic-roughness"}) {
+  material(
+      {{"alphaMode", "BLEND"},
+       {"normalTexture", {{"index", 0}}},
+       {"occlusionTexture", {{"index", 0}}},
+       {"emissiveTexture", {{"index", 0}}},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.8, 0.6, 0.4, 0.5}}, {"metallicRoughnessTexture", {{"index", 0}}}}}},
+      &scene);
+  for (const std::string word : {"alpha of a material that emits", "no normal map", "occlusion",
+                                 "emissive", "roughness factor"}) {
     CHECK(warns(scene, {"'glow'", word}));
   }
 }

@@ -62,9 +62,13 @@ TEST_CASE("MTL glass models and transparency with Ni are glass of that index") {
   CHECK(material("illum 7\n").index_of_refraction == 1.5f);
 }
 
-TEST_CASE("MTL transparency without Ni is opaque with a warning") {
+TEST_CASE("MTL transparency without Ni lets light through by chance, with a warning") {
   Scene scene;
-  CHECK(material("Kd 1 1 1\nd 0.5\n", &scene).interaction == Interaction::opaque);
+  const Material m = material("Kd 1 1 1\nd 0.5\n", &scene);
+  CHECK(m.interaction == Interaction::opaque);
+  CHECK(m.opacity == 0.5f);
+  CHECK(warns(scene, {"'m'", "chance"}));
+  CHECK_FALSE(material("Kd 1 1 1\nd 0\n", &scene).has_holes());
   CHECK(warns(scene, {"'m'", "opaque"}));
 }
 

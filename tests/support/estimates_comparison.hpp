@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <random>
@@ -34,11 +35,63 @@ inline ExpectedEstimates expected_irradiance(const reference::DensityOracle& ora
   return expected;
 }
 
-/// The model of glTF 2.0, appendix B, written down afresh in double precision.
-inline double gltf_bsdf(glm::dvec3 i, glm::dvec3 o, glm::dvec3 n, double albedo, double f0,
-                        double alpha) {
+/// A fraction of the rational fit to the coat's albedo, whose constants are
+/// MaterialX's (mx_ggx_dir_albedo_analytic), in the order of its source: 1, x, y, x y, x^2, y^2,
+/// x^2 y, x y^2, x^2 y^2 of the cosine x and alpha y.
+inline double coat_polynomial(const std::array<double, 9>& c, double x, double y) {
+  return c[0] + c[1] * x + c[2] * y + c[3] * x * y + c[4] * x * x + c[5] * y * y +
+         c[6] * x * x * y + c[7] * x * y * y + c[8] * x * x * y * y;
+}
+
+/// Weights of F0 and F90 in the albedo of one facet's reflection at this cosine.
+inline std::array<double, 2> coat_weights(double cosine, double alpha) {
+  const double x = std::clamp(cosine, 0.0, 1.0);
+  return {
+      std::clamp(
+          coat_polynomial({0.1003, -0.6303, 9.748, -2.038, 29.34, -8.245, -26.44, 19.99, -5.448}, x,
+                          alpha) /
+              coat_polynomial({1.0, -1.765, 8.263, 11.53, 28.96, -7.507, -36.11, 15.86, 33.37}, x,
+                              alpha),
+          0.0, 1.0),
+      std::clamp(
+          coat_polynomial({0.9345, -2.323, 2.229, -3.748, 1.424, -0.7684, 1.436, 0.2913, 0.6286}, x,
+                          alpha) /
+              coat_polynomial({1.0, 0.2281, 15.94, -55.83, 13.08, 41.26, 54.9, 300.2, -285.1}, x,
+                              alpha),
+          0.0, 1.0)};
+}
+
+/// Their means, of the polynomials that photile/device/bsdf.h states.
+inline std::array<double, 2> mean_coat_weights(double a) {
+  return {0.9524 + a * (0.0150 + a * (-1.9283 + a * (2.0736 - a * 0.7034))),
+          0.0505 + a * (-0.1978 + a * (0.3510 + a * (-0.2979 + a * 0.0968)))};
+}
+
+/// Several facets and the base, as the head of photile/device/bsdf.h states them.
+inline double diffuse_bsdf(double n_dot_i, double n_dot_o, double albedo, double f0, double f90,
+                           double alpha) {
+  const auto mean = mean_coat_weights(alpha);
+  const double e1_mean = std::min(1.0, mean[0] + mean[1]);
+  const double f_mean = f0 + (f90 - f0) / 21;
+  const double fm = f_mean * f_mean * e1_mean / (1 - f_mean * (1 - e1_mean));
+  const auto e1 = [](const std::array<double, 2>& w) { return std::min(1.0, w[0] + w[1]); };
+  const auto e = [&](const std::array<double, 2>& w) {
+    return f0 * w[0] + f90 * w[1] + fm * (1 - w[0] - w[1]);
+  };
+  const auto i = coat_weights(n_dot_i, alpha), o = coat_weights(n_dot_o, alpha);
+  const double several =
+      fm * (1 - i[0] - i[1]) * (1 - e1(o)) / (glm::pi<double>() * std::max(0.02, 1 - e1_mean));
+  const double base = albedo * (1 - e(i)) * std::max(0.0, 1 - e(o)) /
+                      (glm::pi<double>() * std::max(0.1, 1 - e(mean)));
+  return std::max(0.0, several + base);
+}
+
+/// The BSDF as the head of photile/device/bsdf.h states it, written down afresh in double
+/// precision.
+inline double coated_bsdf(glm::dvec3 i, glm::dvec3 o, glm::dvec3 n, double albedo, double f0,
+                          double f90, double alpha) {
   const glm::dvec3 h = glm::normalize(i + o);
-  const double fresnel = f0 + (1 - f0) * std::pow(1 - glm::dot(i, h), 5.0);
+  const double fresnel = f0 + (f90 - f0) * std::pow(1 - glm::dot(i, h), 5.0);
   const double ni = glm::dot(n, i), no = glm::dot(n, o), nh = glm::dot(n, h);
   double lobe = 0;
   if (ni > 0 && no > 0) {
@@ -48,7 +101,7 @@ inline double gltf_bsdf(glm::dvec3 i, glm::dvec3 o, glm::dvec3 n, double albedo,
         0.5 / (no * std::sqrt(ni * ni * (1 - a2) + a2) + ni * std::sqrt(no * no * (1 - a2) + a2));
     lobe = d * visibility;
   }
-  return (1 - fresnel) * albedo / glm::pi<double>() + fresnel * lobe;
+  return diffuse_bsdf(ni, no, albedo, f0, f90, alpha) + fresnel * lobe;
 }
 
 /// Radiance of glossy hits: the BSDF summed over the oracle's neighbours.
@@ -71,9 +124,9 @@ inline ExpectedEstimates expected_radiance(const reference::DensityOracle& oracl
       for (int c = 0; c < 3; ++c) {
         sums[lights > 1 ? photons.light[photon] : 0][c] +=
             weight * double{photons.flux[photon][c]} *
-            gltf_bsdf(photons.incoming[photon], hits.outgoing[hit], hits.lobe[hit].normal,
-                      hits.diffuse_albedo[hit][c], hits.lobe[hit].specular[c],
-                      hits.lobe[hit].roughness) /
+            coated_bsdf(photons.incoming[photon], hits.outgoing[hit], hits.lobe[hit].normal,
+                        hits.diffuse_albedo[hit][c], hits.lobe[hit].specular[c], hits.lobe[hit].f90,
+                        hits.lobe[hit].roughness) /
             (glm::pi<double>() * near.squared_radius);
       }
     }

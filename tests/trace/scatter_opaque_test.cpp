@@ -4,6 +4,7 @@
 #include "photile/device/bsdf.h"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
+#include "trace/diffuse_part.hpp"
 #include "trace/scatter.hpp"
 
 using namespace photile;
@@ -35,6 +36,13 @@ template <class G>
 double integral(const Material& material, const glm::dvec3& to_light, const glm::dvec3& normal,
                 G&& g) {
   constexpr int rings = 800, sectors = 800;
+  PhotileAlbedoFit fit;
+  photile_albedo_fit(material.roughness, &fit);
+  float f0_weight = 0, f90_weight = 0;
+  photile_lobe_albedo(&fit, static_cast<float>(glm::dot(normal, to_light)), &f0_weight,
+                      &f90_weight);
+  const scene_io::Reflectance surface{material.diffuse, material.specular, material.f90,
+                                      material.roughness};
   double sum = 0;
   for (int i = 0; i < rings; ++i)
     for (int j = 0; j < sectors; ++j) {
@@ -45,7 +53,9 @@ double integral(const Material& material, const glm::dvec3& to_light, const glm:
       const float lobe = photile_ggx_lobe(
           static_cast<float>(glm::dot(normal, to_light)), static_cast<float>(glm::dot(normal, o)),
           static_cast<float>(glm::dot(normal, h)), material.roughness);
-      sum += photile_opaque_bsdf(material.diffuse.g, material.specular.g,
+      const DiffusePart part = diffuse_part(surface, static_cast<float>(glm::dot(normal, o)));
+      const float diffuse = photile_diffuse(part[0].g, part[1].g, part[2].g, f0_weight, f90_weight);
+      sum += photile_opaque_bsdf(diffuse, material.specular.g, material.f90,
                                  photile_schlick(static_cast<float>(glm::dot(to_light, h))), lobe) *
              g(glm::vec3(o));
     }
@@ -137,7 +147,7 @@ TEST_CASE("The diffuse albedo is the material's colour times the texture at the 
   scene.corner_uv.assign(scene.triangle_count(),
                          {glm::vec2(0.25f, 0.5f), glm::vec2(0.75f, 0.5f), glm::vec2(0.25f, 0.5f)});
   const glm::vec3 down(0, 0, -1);
-  CHECK(glm::length(diffuse_albedo(scene, surface_hit(scene, {0, 0.0f, 0.0f}, down))) < 1e-6f);
-  CHECK(glm::distance(diffuse_albedo(scene, surface_hit(scene, {0, 1.0f, 0.0f}, down)),
+  CHECK(glm::length(reflectance(scene, surface_hit(scene, {0, 0.0f, 0.0f}, down)).albedo) < 1e-6f);
+  CHECK(glm::distance(reflectance(scene, surface_hit(scene, {0, 1.0f, 0.0f}, down)).albedo,
                       glm::vec3(0.5f, 1.0f, 1.0f)) < 1e-6f);
 }
