@@ -90,3 +90,39 @@ TEST_CASE("glossy radiance equals the BSDF summed over the oracle's neighbours i
   const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius);
   CHECK(test::worst_difference(estimates.radiance, expected) <= test::glossy_tolerance(k));
 }
+
+TEST_CASE("radiance under normal maps equals the BSDF summed over the oracle's neighbours") {
+  Scene scene = test::empty_scene(2);
+  scene.materials[0].specular = glm::vec3(0.04f);
+  scene.materials[0].roughness = 0.4f;
+  scene.materials[0].normal_texture = 0;
+  scene.textures.emplace_back("flat", 1, 1,
+                              std::vector<std::array<std::uint8_t, 4>>{{128, 128, 255, 255}});
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  REQUIRE(needs_of(scene).normal_maps);
+  const Photons photons = test::uniform_photons(scene, 5000, 59);
+  PrimaryHits hits = test::uniform_hits(scene, 100, 60);
+  test::add_lobes(hits, scene, 61);
+  std::mt19937_64 random(62);
+  std::uniform_real_distribution<float> tilt(-0.4f, 0.4f);
+  for (HitLobe& lobe : hits.lobe) {
+    lobe.f90 = 0.8f;
+    lobe.smooth_normal = lobe.normal;
+    lobe.normal = glm::normalize(lobe.normal + glm::vec3(tilt(random), tilt(random), tilt(random)));
+  }
+  const double radius = 0.2;
+  const int k = 50;
+  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+                        {radius, 4});
+  const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
+  const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius);
+  for (const EstimateStrategy strategy : all_estimate_strategies) {
+    CAPTURE(static_cast<int>(strategy));
+    EstimateTuning tuning = shipped_tuning(test::device().info());
+    tuning.strategy = strategy;
+    const Estimates estimates =
+        Estimator(maps, scene, {.neighbours = k, .tuning = tuning, .area = AreaMode::disc})
+            .estimate(hits);
+    CHECK(test::worst_difference(estimates.radiance, expected) <= test::glossy_tolerance(k));
+  }
+}

@@ -86,10 +86,20 @@ inline double diffuse_bsdf(double n_dot_i, double n_dot_o, double albedo, double
   return std::max(0.0, several + base);
 }
 
+/// What a normal map multiplies the diffuse part by; 1 where the lobe has none.
+inline double bump_weight(glm::dvec3 i, const HitLobe& lobe, glm::dvec3 albedo) {
+  if (lobe.smooth_normal == glm::vec3(0.0f)) return 1;
+  const glm::dvec3 reflectance = albedo + glm::dvec3(lobe.specular);
+  const double most =
+      1 / std::clamp(std::max({reflectance.r, reflectance.g, reflectance.b}), 1e-3, 1.0);
+  return std::min(most, (std::max(0.0, glm::dot(i, glm::dvec3(lobe.normal))) + 1e-3) /
+                            (std::max(0.0, glm::dot(i, glm::dvec3(lobe.smooth_normal))) + 1e-3));
+}
+
 /// The BSDF as the head of photile/device/bsdf.h states it, written down afresh in double
 /// precision.
 inline double coated_bsdf(glm::dvec3 i, glm::dvec3 o, glm::dvec3 n, double albedo, double f0,
-                          double f90, double alpha) {
+                          double f90, double alpha, double bump = 1) {
   const glm::dvec3 h = glm::normalize(i + o);
   const double fresnel = f0 + (f90 - f0) * std::pow(1 - glm::dot(i, h), 5.0);
   const double ni = glm::dot(n, i), no = glm::dot(n, o), nh = glm::dot(n, h);
@@ -101,7 +111,7 @@ inline double coated_bsdf(glm::dvec3 i, glm::dvec3 o, glm::dvec3 n, double albed
         0.5 / (no * std::sqrt(ni * ni * (1 - a2) + a2) + ni * std::sqrt(no * no * (1 - a2) + a2));
     lobe = d * visibility;
   }
-  return diffuse_bsdf(ni, no, albedo, f0, f90, alpha) + fresnel * lobe;
+  return bump * diffuse_bsdf(ni, no, albedo, f0, f90, alpha) + fresnel * lobe;
 }
 
 /// Radiance of glossy hits: the BSDF summed over the oracle's neighbours.
