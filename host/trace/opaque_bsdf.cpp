@@ -86,9 +86,10 @@ glm::vec3 OpaqueBsdf::reflected(const glm::vec3& direction) const {
   }
   glm::vec3 result;
   for (int c = 0; c < 3; ++c) {
-    const float diffuse = bump * photile_diffuse(lobe_->diffuse[0][c], lobe_->diffuse[1][c],
-                                                 lobe_->diffuse[2][c], f0_weight, f90_weight);
-    result[c] = cosine * photile_opaque_bsdf(diffuse, surface_.f0[c], surface_.f90, schlick, lobe);
+    const float diffuse = photile_diffuse(lobe_->diffuse[0][c], lobe_->diffuse[1][c],
+                                          lobe_->diffuse[2][c], f0_weight, f90_weight);
+    result[c] =
+        bump * cosine * photile_opaque_bsdf(diffuse, surface_.f0[c], surface_.f90, schlick, lobe);
   }
   return result;
 }

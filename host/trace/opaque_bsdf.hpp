@@ -18,8 +18,8 @@ namespace photile::trace {
 enum class PathStart : std::uint8_t { eye, light };
 
 /// Directions are unit and point away from the surface. Cosines are those to the geometric normal,
-/// as in the radiance estimate; the lobe turns with the shading normal, and with a normal map the
-/// base does, too.
+/// as in the radiance estimate; the lobe turns with the shading normal, and a normal map weighs
+/// light by its cosine to the mapped one.
 class OpaqueBsdf {
  public:
   /// `direction`: of the ray that arrives at the point, unit.

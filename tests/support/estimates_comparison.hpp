@@ -45,20 +45,20 @@ inline double coat_polynomial(const std::array<double, 9>& c, double x, double y
 
 /// Weights of F0 and F90 in the albedo of one facet's reflection at this cosine.
 inline std::array<double, 2> coat_weights(double cosine, double alpha) {
-  const double x = std::clamp(cosine, 0.0, 1.0);
-  return {
-      std::clamp(
-          coat_polynomial({0.1003, -0.6303, 9.748, -2.038, 29.34, -8.245, -26.44, 19.99, -5.448}, x,
-                          alpha) /
-              coat_polynomial({1.0, -1.765, 8.263, 11.53, 28.96, -7.507, -36.11, 15.86, 33.37}, x,
-                              alpha),
-          0.0, 1.0),
-      std::clamp(
-          coat_polynomial({0.9345, -2.323, 2.229, -3.748, 1.424, -0.7684, 1.436, 0.2913, 0.6286}, x,
-                          alpha) /
-              coat_polynomial({1.0, 0.2281, 15.94, -55.83, 13.08, 41.26, 54.9, 300.2, -285.1}, x,
-                              alpha),
-          0.0, 1.0)};
+  using Polynomial = std::array<double, 9>;
+  constexpr Polynomial f0_above{0.1003, -0.6303, 9.748, -2.038, 29.34,
+                                -8.245, -26.44,  19.99, -5.448};
+  constexpr Polynomial f0_below{1.0, -1.765, 8.263, 11.53, 28.96, -7.507, -36.11, 15.86, 33.37};
+  constexpr Polynomial f90_above{0.9345,  -2.323, 2.229,  -3.748, 1.424,
+                                 -0.7684, 1.436,  0.2913, 0.6286};
+  constexpr Polynomial f90_below{1.0, 0.2281, 15.94, -55.83, 13.08, 41.26, 54.9, 300.2, -285.1};
+  const auto quotient = [&](const Polynomial& above, const Polynomial& below) {
+    const double x = std::clamp(cosine, 0.0, 1.0);
+    return std::clamp(coat_polynomial(above, x, alpha) / coat_polynomial(below, x, alpha), 0.0,
+                      1.0);
+  };
+  const double of_f90 = quotient(f90_above, f90_below);
+  return {std::min(quotient(f0_above, f0_below), 1 - of_f90), of_f90};
 }
 
 /// Their means, of the polynomials that photile/device/bsdf.h states.
@@ -74,19 +74,18 @@ inline double diffuse_bsdf(double n_dot_i, double n_dot_o, double albedo, double
   const double e1_mean = std::min(1.0, mean[0] + mean[1]);
   const double f_mean = f0 + (f90 - f0) / 21;
   const double fm = f_mean * f_mean * e1_mean / (1 - f_mean * (1 - e1_mean));
-  const auto e1 = [](const std::array<double, 2>& w) { return std::min(1.0, w[0] + w[1]); };
   const auto e = [&](const std::array<double, 2>& w) {
     return f0 * w[0] + f90 * w[1] + fm * (1 - w[0] - w[1]);
   };
   const auto i = coat_weights(n_dot_i, alpha), o = coat_weights(n_dot_o, alpha);
-  const double several =
-      fm * (1 - i[0] - i[1]) * (1 - e1(o)) / (glm::pi<double>() * std::max(0.02, 1 - e1_mean));
+  const double several = fm * (1 - i[0] - i[1]) * (1 - o[0] - o[1]) /
+                         (glm::pi<double>() * std::max(0.01, 1 - e1_mean));
   const double base = albedo * (1 - e(i)) * std::max(0.0, 1 - e(o)) /
                       (glm::pi<double>() * std::max(0.1, 1 - e(mean)));
   return std::max(0.0, several + base);
 }
 
-/// What a normal map multiplies the diffuse part by; 1 where the lobe has none.
+/// What a normal map multiplies the BSDF by; 1 where the lobe has none.
 inline double bump_weight(glm::dvec3 i, const HitLobe& lobe, glm::dvec3 albedo) {
   if (lobe.smooth_normal == glm::vec3(0.0f)) return 1;
   const glm::dvec3 reflectance = albedo + glm::dvec3(lobe.specular);
@@ -111,7 +110,7 @@ inline double coated_bsdf(glm::dvec3 i, glm::dvec3 o, glm::dvec3 n, double albed
         0.5 / (no * std::sqrt(ni * ni * (1 - a2) + a2) + ni * std::sqrt(no * no * (1 - a2) + a2));
     lobe = d * visibility;
   }
-  return bump * diffuse_bsdf(ni, no, albedo, f0, f90, alpha) + fresnel * lobe;
+  return bump * (diffuse_bsdf(ni, no, albedo, f0, f90, alpha) + fresnel * lobe);
 }
 
 /// Radiance of glossy hits: the BSDF summed over the oracle's neighbours.

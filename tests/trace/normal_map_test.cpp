@@ -100,7 +100,8 @@ TEST_CASE("Under a normal map a diffuse surface reflects light by the mapped cos
   }
 }
 
-TEST_CASE("Under a normal map no light is made, from whichever side", "[normal_map]") {
+TEST_CASE("Under a normal map the eye sees no more light than there is, from whichever side",
+          "[normal_map]") {
   const glm::vec3 normal(0.8f, 0, 1);
   for (const Material& material :
        {diffuse(glm::vec3(0.9f)), glossy(glm::vec3(0.9f), glm::vec3(0.04f), 0.3f),
@@ -109,22 +110,20 @@ TEST_CASE("Under a normal map no light is made, from whichever side", "[normal_m
       const Scene scene = mapped_plate(material, normal);
       const glm::vec3 direction = glm::normalize(glm::vec3(tilt, 0, -1));
       const SurfacePoint point = at(scene, direction);
-      for (const PathStart start : {PathStart::eye, PathStart::light}) {
-        const OpaqueBsdf bsdf(scene, point, direction, start);
-        double sum = 0;
-        constexpr int samples = 40'000;
-        for (int i = 0; i < samples; ++i) {
-          const auto drawn = bsdf.sample(
-              RandomStream(5, static_cast<std::uint64_t>(i), 0).block(Purpose::path_scattering, 0));
-          if (!drawn) continue;
-          REQUIRE(drawn->z > 0);
-          const float density = bsdf.density(*drawn);
-          if (density > 0) sum += double{bsdf.reflected(*drawn).g / density} / samples;
-        }
-        CAPTURE(tilt, material.roughness, start == PathStart::eye);
-        CHECK(sum < 1.03);  // the fit to the coat's albedo, and noise
-        CHECK(sum >= 0);
+      const OpaqueBsdf bsdf(scene, point, direction, PathStart::eye);
+      double sum = 0;
+      constexpr int samples = 40'000;
+      for (int i = 0; i < samples; ++i) {
+        const auto drawn = bsdf.sample(
+            RandomStream(5, static_cast<std::uint64_t>(i), 0).block(Purpose::path_scattering, 0));
+        if (!drawn) continue;
+        REQUIRE(drawn->z > 0);
+        const float density = bsdf.density(*drawn);
+        if (density > 0) sum += double{bsdf.reflected(*drawn).g / density} / samples;
       }
+      CAPTURE(tilt, material.roughness);
+      CHECK(sum < 1.03);  // the fit to the coat's albedo, and noise
+      CHECK(sum >= 0);
     }
 }
 

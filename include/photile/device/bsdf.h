@@ -122,8 +122,10 @@ static inline PHOTILE_REAL photile_quotient(const float* above, const float* bel
 static inline void photile_lobe_albedo(const PhotileAlbedoFit* fit, PHOTILE_REAL cosine,
                                        PHOTILE_REAL* f0_weight, PHOTILE_REAL* f90_weight) {
   const PHOTILE_REAL x = photile_unit(cosine);
-  *f0_weight = photile_quotient(fit->f0_above, fit->f0_below, x);
   *f90_weight = photile_quotient(fit->f90_above, fit->f90_below, x);
+  const PHOTILE_REAL most = 1.0f - *f90_weight;
+  const PHOTILE_REAL weight = photile_quotient(fit->f0_above, fit->f0_below, x);
+  *f0_weight = weight < most ? weight : most;
 }
 
 /// The mean over a diffusely lit hemisphere in the same form: twice the integral over the cosine of
@@ -145,9 +147,8 @@ static inline void photile_set_diffuse(float albedo, float f0, float f90, const 
   const float fm = f_mean * f_mean * e1_mean / (1.0f - f_mean * (1.0f - e1_mean));
   // The fit is not good enough to divide by what hardly is: a smooth coat's losses, and the little
   // that coats let through which are nearly white metals.
-  const float lost_mean = 1.0f - e1_mean > 0.02f ? 1.0f - e1_mean : 0.02f;
-  const float lost = o[0] + o[1] < 1.0f ? 1.0f - o[0] - o[1] : 0.0f;
-  const float several = fm * lost / (PHOTILE_PI * lost_mean);
+  const float lost_mean = 1.0f - e1_mean > 0.01f ? 1.0f - e1_mean : 0.01f;
+  const float several = fm * (1.0f - o[0] - o[1]) / (PHOTILE_PI * lost_mean);
   const float passed = 1.0f - fm - (f0 - fm) * o[0] - (f90 - fm) * o[1];
   const float passed_mean = 1.0f - fm - (f0 - fm) * mean[0] - (f90 - fm) * mean[1];
   const float base = albedo / PHOTILE_PI * (passed > 0.0f ? passed : 0.0f) /
@@ -165,10 +166,11 @@ static inline PHOTILE_REAL photile_diffuse(float part0, float part1, float part2
   return diffuse > 0.0f ? diffuse : zero;
 }
 
-/// What a normal map makes of photile_diffuse: the cosine of i to the mapped normal over that to
-/// the smooth one, at most `most`; 1 where the normals are the same. With `most` the inverse of the
-/// largest reflectance, and at least 1, no light is made. f is no longer reciprocal (Veach, "Robust
-/// Monte Carlo methods for light transport simulation", 1997, section 5.3): i is the light's side.
+/// What a normal map multiplies f by: the cosine of i to the mapped normal over that to the smooth
+/// one, at most `most`; 1 where the normals are the same. So the eye sees light by its cosine to
+/// the mapped normal while photons count by area of the true surface, and nothing reflects more
+/// light than the unmapped material would. f is no longer reciprocal (Veach, "Robust Monte Carlo
+/// methods for light transport simulation", 1997, section 5.3): i is the light's side.
 static inline PHOTILE_REAL photile_bump_weight(PHOTILE_REAL mapped_dot_i, PHOTILE_REAL smooth_dot_i,
                                                float most) {
   const PHOTILE_REAL zero = 0.0f, limit = most;
@@ -178,8 +180,8 @@ static inline PHOTILE_REAL photile_bump_weight(PHOTILE_REAL mapped_dot_i, PHOTIL
   return weight < most ? weight : limit;
 }
 
-/// One channel of f, per steradian. `diffuse` is photile_diffuse(...), with a normal map times
-/// photile_bump_weight(...); `schlick` is photile_schlick(i.h), `lobe` is photile_ggx_lobe(...).
+/// One channel of f, per steradian, without the weight of a normal map. `diffuse` is
+/// photile_diffuse(...), `schlick` is photile_schlick(i.h), `lobe` is photile_ggx_lobe(...).
 static inline PHOTILE_REAL photile_opaque_bsdf(PHOTILE_REAL diffuse, float f0, float f90,
                                                PHOTILE_REAL schlick, PHOTILE_REAL lobe) {
   return diffuse + (f0 + (f90 - f0) * schlick) * lobe;
