@@ -133,9 +133,11 @@ inline ExpectedEstimates expected_radiance(const reference::DensityOracle& oracl
       for (int c = 0; c < 3; ++c) {
         sums[lights > 1 ? photons.light[photon] : 0][c] +=
             weight * double{photons.flux[photon][c]} *
-            coated_bsdf(photons.incoming[photon], hits.outgoing[hit], hits.lobe[hit].normal,
-                        hits.diffuse_albedo[hit][c], hits.lobe[hit].specular[c], hits.lobe[hit].f90,
-                        hits.lobe[hit].roughness) /
+            coated_bsdf(
+                photons.incoming[photon], hits.outgoing[hit], hits.lobe[hit].normal,
+                hits.diffuse_albedo[hit][c], hits.lobe[hit].specular[c], hits.lobe[hit].f90,
+                hits.lobe[hit].roughness,
+                bump_weight(photons.incoming[photon], hits.lobe[hit], hits.diffuse_albedo[hit])) /
             (glm::pi<double>() * near.squared_radius);
       }
     }
