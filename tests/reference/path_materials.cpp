@@ -40,7 +40,7 @@ Scene room_with_plate(const Material& plate) {
 }
 
 /// Looks down at the floor, away from its edges by more than the estimates reach; paths and photons
-/// see as much light, within 3%.
+/// see as much light, within 4%.
 void check_agreement(const Scene& scene) {
   const Camera camera =
       Camera::look_at({0.5, 0.5, 0.9}, {0.5, 0.5, 0}, {0, 1, 0}, 2 * std::atan(0.3 / 0.9));
@@ -58,7 +58,7 @@ void check_agreement(const Scene& scene) {
     differences.push_back(photons - paths);
     mean += paths / 16;
   }
-  CHECK_VERDICT(test::mean_is(differences, 0.0, 0.03 * mean));
+  CHECK_VERDICT(test::mean_is(differences, 0.0, 0.04 * mean));
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ TEST_CASE("paths and photon maps agree under a normal map", "[materials]") {
   Material walls = test::glossy(glm::vec3(albedo), glm::vec3(specular), 0.5f);
   walls.normal_texture = 0;
   Scene scene = room(walls);
-  cover(scene, {160, 100, 250, 255});
+  cover(scene, {145, 112, 253, 255});
   CAPTURE(albedo, specular);
   check_agreement(scene);
 }
