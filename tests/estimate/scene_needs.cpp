@@ -167,10 +167,10 @@ TEST_CASE("only what triangles have is needed: unused materials ask for nothing"
     return RayScene(scene).needs();
   };
   const SceneNeeds none = needs_with(0);
-  CHECK_FALSE((none.glossy || none.textures || none.specular_paths || none.panes));
+  CHECK_FALSE((none.glossy || none.textures || none.specular_paths || none.see_through));
   CHECK(none.light_count == 1);
   CHECK(needs_with(1).glossy);
   CHECK_FALSE(needs_with(1).specular_paths);
-  CHECK((needs_with(2).panes && needs_with(2).specular_paths));
-  CHECK((!needs_with(3).panes && needs_with(3).specular_paths));
+  CHECK((needs_with(2).see_through && needs_with(2).specular_paths));
+  CHECK((!needs_with(3).see_through && needs_with(3).specular_paths));
 }
