@@ -82,6 +82,23 @@ void add_view_group(CLI::App& command, RenderOptions& options) {
       ->group("Picture");
 }
 
+void add_direct_group(CLI::App& command, RenderOptions& options) {
+  command
+      .add_option("--direct", options.direct,
+                  "what brings the light straight from lamps; rays: sharp shadows")
+      ->type_name("")
+      ->check(CLI::IsMember({"photons", "rays"}))
+      ->capture_default_str()
+      ->group("Estimate");
+  command
+      .add_option("--direct-rays", options.direct_rays,
+                  "looks at lamps from a hit, with --direct rays")
+      ->type_name("N")
+      ->transform(count_between(1, limits::max_direct_rays))
+      ->capture_default_str()
+      ->group("Estimate");
+}
+
 void add_light_group(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--light", options.lights,
@@ -220,6 +237,7 @@ void add_light_setting_options(CLI::App& command, RenderOptions& options) {
 
 void add_setting_options(CLI::App& command, RenderOptions& options) {
   add_light_setting_options(command, options);
+  add_direct_group(command, options);
   add_view_group(command, options);
 }
 
@@ -294,6 +312,7 @@ void apply_words(RenderOptions& options) {
   options.parameters.area = value_for(areas, options.area);
   options.parameters.kernel = value_for(kernels, options.kernel);
   options.parameters.structure = value_for(structures, options.structure);
+  options.parameters.film.direct_rays = options.direct == "rays" ? options.direct_rays : 0;
   options.parameters.photons.seed = options.parameters.film.seed;
   options.device.use_program_cache = !options.no_cache;
   for (const auto& text : options.lights) options.light_changes.push_back(LightChange::parse(text));

@@ -7,6 +7,7 @@
 
 #include "app/picture_outputs.hpp"
 #include "photile/camera.hpp"
+#include "photile/defaults.hpp"
 #include "photile/device.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/quality_target.hpp"
@@ -29,10 +30,12 @@ struct RenderOptions {
   RenderParameters parameters;
   std::string integrator = "photon-map";  ///< or "path"
   Integrator integrates = Integrator::photon_map;
-  std::string quota;                  ///< "balanced", "power" or "equal"
-  std::string maps;                   ///< "naive", "triangle", "patch" or "auto"
-  std::string area;                   ///< "disc" or "clipped"
-  std::string kernel;                 ///< "constant", "cone" or "epanechnikov"
+  std::string quota;               ///< "balanced", "power" or "equal"
+  std::string maps;                ///< "naive", "triangle", "patch" or "auto"
+  std::string area;                ///< "disc" or "clipped"
+  std::string kernel;              ///< "constant", "cone" or "epanechnikov"
+  std::string direct = "photons";  ///< or "rays": what brings the light straight from lamps
+  int direct_rays = defaults::direct_rays;
   std::string structure;              ///< "uniform-grid", ...
   QualityTarget target;               ///< settings are chosen to meet it
   bool tuned = false;                 ///< use the tuning that `photile devices --tune` stored

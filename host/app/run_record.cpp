@@ -71,6 +71,7 @@ json parameters_json(const RunRecord& record) {
                    {"angle_degrees", parameters.angle_degrees},
                    {"area", name_of(parameters.area_used())},
                    {"kernel", name_of(parameters.kernel)},
+                   {"direct_rays", parameters.film.direct_rays},
                    {"maps", name_of(parameters.maps)},
                    {"photons_per_cell", parameters.photons_per_cell},
                    {"passes", record.passes}});
@@ -89,6 +90,7 @@ void set_photon_attributes(std::map<std::string, std::string>& attributes,
   attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
   attributes["photile.area"] = name_of(parameters.area_used());
   attributes["photile.kernel"] = name_of(parameters.kernel);
+  attributes["photile.direct_rays"] = std::to_string(parameters.film.direct_rays);
   attributes["photile.maps"] = name_of(parameters.maps);
   attributes["photile.passes"] = std::to_string(record.passes);
   attributes["photile.device"] = devices_text(record.devices);

@@ -20,10 +20,11 @@ std::string settings_of(const RenderOptions& options) {
       parameters.radius > 0 ? fmt::format("radius {} m", parameters.radius)
                             : fmt::format("k {}", parameters.neighbours);  // the radius follows it
   const bool global = parameters.structure == MapStructure::kdtree_global;
-  return fmt::format("photile {}, {} photons, quota {}, seed {}, {}, angle {}, maps {}{}",
+  return fmt::format("photile {}, {} photons, quota {}, seed {}, {}, angle {}, maps {}{}{}",
                      version_number(), parameters.photons.emitted_photons, options.quota,
                      parameters.photons.seed, radius, parameters.angle_degrees, options.maps,
-                     global ? ", one tree" : "");
+                     global ? ", one tree" : "",
+                     parameters.film.direct_rays > 0 ? ", direct rays" : "");
 }
 
 }  // namespace

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <optional>
 
-#include "photile/device/bsdf.h"
 #include "trace/holes.hpp"
 #include "trace/opaque_bsdf.hpp"
+#include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 
 namespace photile::reference {
 namespace {
 
-using trace::LightSample;
+using trace::LightWeights;
 using trace::OpaqueBsdf;
 using trace::power_heuristic;
 using trace::Purpose;
@@ -25,48 +25,6 @@ constexpr float largest_survival = 0.99f;
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
-/// What light from a direction counts for the two results.
-struct Weights {
-  glm::vec3 irradiance{1.0f}, radiance{1.0f};
-
-  friend Weights operator*(const Weights& a, const glm::vec3& b) {
-    return {a.irradiance * b, a.radiance * b};
-  }
-};
-
-/// The point where a path starts: light from there is measured twice, by its cosine alone and as it
-/// is reflected. On a glossy surface half of the directions follow the cosine, for a narrow lobe
-/// would find next to nothing of the irradiance.
-class Receiver {
- public:
-  Receiver(const SurfacePoint& point, const OpaqueBsdf& bsdf) : point_(point), bsdf_(bsdf) {}
-
-  float density(const glm::vec3& direction) const {
-    if (!bsdf_.glossy()) return bsdf_.density(direction);
-    return 0.5f * (bsdf_.density(direction) + cosine(direction) / PHOTILE_PI);
-  }
-
-  std::optional<glm::vec3> sample(const RandomBlock& choice, const RandomBlock& random) const {
-    if (!bsdf_.glossy() || choice.bit(0)) return bsdf_.sample(random);
-    return trace::Frame(point_.normal)
-        .to_world(trace::sample_cosine_hemisphere(random.uniform(trace::direction_word),
-                                                  random.uniform(trace::direction_word + 1)));
-  }
-
-  /// Of light from `direction`, per steradian.
-  Weights weights(const glm::vec3& direction) const {
-    return {glm::vec3(cosine(direction)), bsdf_.reflected(direction)};
-  }
-
- private:
-  float cosine(const glm::vec3& direction) const {
-    return std::max(0.0f, glm::dot(direction, point_.normal));
-  }
-
-  const SurfacePoint& point_;
-  const OpaqueBsdf& bsdf_;
-};
-
 class SurfacePath {
  public:
   SurfacePath(const RayScene& rays, const trace::LightSampler& lights, const RandomStream& random,
@@ -75,7 +33,7 @@ class SurfacePath {
 
   void trace(const SurfacePoint& start, const glm::vec3& direction) {
     const OpaqueBsdf bsdf(scene_, start, direction);
-    const Receiver receiver(start, bsdf);
+    const trace::Receiver receiver(start, bsdf);
     look_at_lamp(
         start, [&](const glm::vec3& to) { return receiver.weights(to); },
         [&](const glm::vec3& to) { return receiver.density(to); });
@@ -175,7 +133,7 @@ class SurfacePath {
     return true;
   }
 
-  void add(std::uint32_t layer, const Weights& light) {
+  void add(std::uint32_t layer, const LightWeights& light) {
     found_.push_back({layer, light.irradiance, light.radiance});
   }
 
@@ -185,7 +143,7 @@ class SurfacePath {
   const RandomStream& random_;
   std::vector<PathLight>& found_;
 
-  Weights weights_;       ///< of the radiance that arrives along the path
+  LightWeights weights_;  ///< of the radiance that arrives along the path
   glm::vec3 left_{1.0f};  ///< of the light since the first direction was chosen
   glm::vec3 from_{0.0f};  ///< the last opaque point, metres
   float density_ = 0;     ///< of the direction from there; 0 after a mirror or glass

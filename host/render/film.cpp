@@ -36,6 +36,7 @@ void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estima
   });
   for (const SeenEmission& seen : batch.emission) {
     layers.layers[seen.light].radiance[seen.pixel] += seen.radiance;
+    layers.layers[seen.light].illuminance[seen.pixel] += seen.illuminance;
   }
 }
 

@@ -49,7 +49,7 @@ class Rendering {
         layer_powers_(layer_powers(scene)) {
     costs_.structure.add(stopwatch_.seconds(), rays_.bytes());
     passes_ = parameters.passes > 0 ? parameters.passes
-                                    : automatic_passes(rays_, parameters.photons, progress);
+                                    : automatic_passes(rays_, parameters.photons_used(), progress);
     paths_before_.assign(scene.lights.size(), 0);
   }
 
@@ -63,6 +63,7 @@ class Rendering {
     // Passes share the samples of a pixel: photons of one pass make the errors of neighbouring
     // samples alike, those of another do not.
     film_ = film;
+    film_.direct_rays = parameters_.film.direct_rays;  // as the photons were traced
     film_.passes = passes_;
     film_.samples_per_pixel = passes_ * ((film.samples_per_pixel - 1) / passes_ + 1);
     layers_ = LightLayers(film_.width, film_.height, scene_);
@@ -131,10 +132,7 @@ class Rendering {
     own.photons = prepared ? take(*prepared) : trace(pass);
     const Photons& photons = own.photons;
     if (pass == 0) {
-      first_ = {prepared                 ? prepared->radius
-                : parameters_.radius > 0 ? parameters_.radius
-                                         : automatic_radius(photons, parameters_.neighbours),
-                parameters_.neighbours};
+      first_ = {prepared ? prepared->radius : radius_for(photons), parameters_.neighbours};
       find_groups(photons, prepared);  // once: no later radius is larger
       find_surface(photons);
     }
@@ -165,7 +163,7 @@ class Rendering {
   }
 
   Photons trace(int pass) {
-    PhotonTracerParameters parameters = parameters_.photons;
+    PhotonTracerParameters parameters = parameters_.photons_used();
     const auto until = [&](int p) {  // paths of the passes before p
       return parameters_.photons.emitted_photons / passes_ * p +
              parameters_.photons.emitted_photons % passes_ * p / passes_;
@@ -182,6 +180,13 @@ class Rendering {
   Photons take(PreparedPhotons& prepared) {
     count(prepared.photons, 0);
     return std::move(prepared.photons);
+  }
+
+  double radius_for(const Photons& photons) const {
+    if (parameters_.radius > 0) return parameters_.radius;
+    // Where rays bring all the light there is, no photon is stored, and any radius serves.
+    if (parameters_.film.direct_rays > 0 && photons.size() < 2) return 1;
+    return automatic_radius(photons, parameters_.neighbours);
   }
 
   void count(const Photons& photons, double seconds) {

@@ -119,7 +119,8 @@ void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
         add_hit(batch.hits, hit, estimates, sample_weight, sums);
       }
       for (const std::uint32_t i : emission.of(pixel)) {
-        sums.add(batch.emission[i].light, batch.emission[i].radiance, 0.0f);
+        const SeenEmission& seen = batch.emission[i];
+        sums.add(seen.light, seen.radiance, seen.illuminance);
       }
       sums.move_to(row);
     }

@@ -3,12 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trace/direct_light.hpp"
 #include "trace/holes.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
+
+namespace {
+
+void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
+                      bool lobe_only, const RandomStream& random, EyeRecord& record) {
+  thread_local std::vector<ReceivedLight> found;
+  found.clear();
+  find_direct_light(setup.direct->rays, setup.direct->lamps, point, ray.direction, lobe_only,
+                    setup.direct->count, random, found);
+  const float sample_weight = 1.0f / static_cast<float>(setup.parameters->samples_per_pixel);
+  for (const ReceivedLight& light : found) {
+    record.direct.push_back({ray.pixel, light.layer, ray.throughput * light.radiance,
+                             sample_weight * static_cast<float>(luminance(light.irradiance))});
+  }
+}
+
+}  // namespace
 
 glm::dvec2 stratified(int index, int count, double u1, double u2) {
   // Rows hold count / rows cells each, rounded down or up; a row is as high as its share of cells.
@@ -72,6 +90,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
       if (seen_directly && !material_of(scene, point).glossy()) return;
       record.hits.push_back(eye_hit(scene, point, ray.direction, ray.pixel, ray.throughput));
       if (seen_directly) record.hits.back().diffuse_albedo = glm::vec3(0.0f);
+      if (setup.direct) add_direct_light(setup, point, ray, seen_directly, random, record);
       return;
     }
     if (depth >= setup.parameters->max_specular_depth) return;

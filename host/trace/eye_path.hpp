@@ -29,8 +29,16 @@ struct EyeHit {
 /// What a run of samples saw, in the order pixel, sample.
 struct EyeRecord {
   std::vector<EyeHit> hits;
-  std::vector<SeenEmission> emission;
+  std::vector<SeenEmission> emission;  ///< by light
+  std::vector<SeenEmission> direct;    ///< straight from lamps at the hits, by layer
   std::uint64_t rays = 0;
+};
+
+/// How hits get the light that comes straight from lamps, where it is not left to the photons.
+struct DirectRays {
+  const RayScene& rays;
+  const LightSampler& lamps;
+  int count;  ///< looks per hit
 };
 
 /// What all samples of a picture share.
@@ -40,6 +48,7 @@ struct EyeSetup {
   const PrimaryHitParameters* parameters;
   const std::vector<glm::vec3>* emitted_radiance;  ///< per light, of white texels
   const std::vector<DistantLight>* distant;        ///< what rays that leave the scene see
+  const DirectRays* direct;                        ///< null where photons bring all light
   /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.
   bool reflections_only = false;
 };

@@ -64,13 +64,6 @@ class Photometer {
   Frame frame_;
 };
 
-/// Words of a number in [0, 1), as RandomBlock::uniform_double(0) reads them.
-RandomBlock block_of(double uniform) {
-  const auto bits = static_cast<std::uint64_t>(uniform * 0x1p53) << 11;
-  return RandomBlock(
-      {static_cast<std::uint32_t>(bits >> 32), static_cast<std::uint32_t>(bits), 0, 0});
-}
-
 /// All rays of a row's sensor.
 class Gatherer {
  public:
@@ -114,7 +107,7 @@ class Gatherer {
 
   void look_at_lamp(const RandomStream& random, double choice,
                     std::vector<SeenEmission>& lamps) const {
-    const auto lamp = lamps_.sample(photometer_.origin(), block_of(choice),
+    const auto lamp = lamps_.sample(photometer_.origin(), RandomBlock::of(choice),
                                     random.block(Purpose::sensor_light, 1));
     if (!lamp) return;
     const float density = photometer_.density(lamp->direction);
@@ -141,7 +134,7 @@ PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensor
                             std::span<const std::uint32_t> map_of) {
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
   const std::vector<DistantLight> distant = distant_lights(rays.scene());
-  const EyeSetup setup{&rays.impl(), nullptr, &film, &radiance, &distant};
+  const EyeSetup setup{&rays.impl(), nullptr, &film, &radiance, &distant, nullptr};
   const auto count = static_cast<std::size_t>(last_row - first_row);
   std::vector<EyeRecord> rows(count);
   std::vector<std::vector<SeenEmission>> seen(count);

@@ -13,17 +13,20 @@ namespace {
 /// One record of all rows, in their order.
 EyeRecord concatenate(std::vector<EyeRecord>& rows) {
   EyeRecord all;
-  std::size_t hits = 0, emission = 0;
+  std::size_t hits = 0, emission = 0, direct = 0;
   for (const EyeRecord& row : rows) {
     hits += row.hits.size();
     emission += row.emission.size();
+    direct += row.direct.size();
     all.rays += row.rays;
   }
   all.hits.reserve(hits);
-  all.emission.reserve(emission);
+  all.emission.reserve(emission + direct);
+  all.direct.reserve(direct);
   for (EyeRecord& row : rows) {
     all.hits.insert(all.hits.end(), row.hits.begin(), row.hits.end());
     all.emission.insert(all.emission.end(), row.emission.begin(), row.emission.end());
+    all.direct.insert(all.direct.end(), row.direct.begin(), row.direct.end());
     row = {};
   }
   return all;
@@ -64,6 +67,7 @@ PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
   batch.emission = std::move(all.emission);
   const std::vector<std::uint32_t> layer_of = light_groups_of(rays.scene()).group_of;
   for (SeenEmission& seen : batch.emission) seen.light = layer_of[seen.light];
+  batch.emission.insert(batch.emission.end(), all.direct.begin(), all.direct.end());
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
   batch.hits = sorted(all.hits, rays.impl().bounds, rays.needs().glossy, map_of);

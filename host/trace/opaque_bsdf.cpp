@@ -41,6 +41,11 @@ OpaqueBsdf::Lobe OpaqueBsdf::lobe_of(const Scene& scene, const SurfacePoint& poi
   return lobe;
 }
 
+void OpaqueBsdf::drop_diffuse() {
+  surface_.albedo = glm::vec3(0.0f);
+  if (lobe_) lobe_->diffuse = diffuse_part(surface_, lobe_->n_dot_view);
+}
+
 std::optional<glm::vec3> OpaqueBsdf::sample(const RandomBlock& random) const {
   const float u1 = random.uniform(direction_word), u2 = random.uniform(direction_word + 1);
   glm::vec3 direction;

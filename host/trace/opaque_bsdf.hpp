@@ -26,6 +26,9 @@ class OpaqueBsdf {
   OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
              PathStart start = PathStart::eye);
 
+  /// Leaves the reflection of the base out; directions are drawn as before.
+  void drop_diffuse();
+
   /// Whether it is more than a Lambertian lobe.
   bool glossy() const { return lobe_.has_value(); }
   const glm::vec3& albedo() const { return surface_.albedo; }  ///< of the Lambertian lobe

@@ -41,6 +41,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
   glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
   std::uint32_t holes = 0;
+  bool straight = true;  // but for panes and holes, which looking at lamps sees through
 
   for (int bounce = 1;;) {
     const auto hit = setup.rays->intersect(origin, direction);
@@ -52,7 +53,9 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
     // In holes as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a hole is near.
-    if (opaque) store(setup, point, direction, flux, record);
+    if (opaque && (setup.parameters->store_direct || !straight)) {
+      store(setup, point, direction, flux, record);
+    }
     if (passes_hole(scene, point, random, Purpose::photon_holes, holes)) {
       origin = point.origin_towards(direction);
       continue;
@@ -69,6 +72,8 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
                       numbers.uniform(roulette_word));
     if (!(largest(left) > 0.0f)) break;
     record.absorbed += luminance_of(flux) - luminance_of(left);
+    straight =
+        straight && !opaque && scattered->direction == direction && material_of(scene, point).thin;
     flux = left;
     direction = scattered->direction;
     origin = point.origin_towards(direction);

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <glm/gtc/constants.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
+#include "trace/light_sampler.hpp"
 #include "trace/reflected_hits.hpp"
 
 namespace photile {
@@ -31,6 +33,7 @@ void check(const PrimaryHitParameters& film, int first_row, int last_row) {
   check_range("picture height", film.height, 1, limits::max_image_side);
   check_range("samples per pixel", film.samples_per_pixel, 1, limits::max_samples_per_pixel);
   check_range("specular depth", film.max_specular_depth, 0, 1'000'000);
+  check_range("direct rays", film.direct_rays, 0, limits::max_direct_rays);
   check_range("first row", first_row, 0, film.height);
   check_range("last row", last_row, first_row, film.height);
   check_range("passes", film.passes, 1, limits::max_passes);
@@ -46,8 +49,15 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
   check(parameters, first_row, last_row);
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(ray_scene.scene());
   const std::vector<trace::DistantLight> distant = trace::distant_lights(ray_scene.scene());
+  std::optional<trace::LightSampler> lamps;
+  std::optional<trace::DirectRays> direct;
+  if (parameters.direct_rays > 0) {
+    lamps.emplace(ray_scene.scene());
+    direct.emplace(trace::DirectRays{ray_scene, *lamps, parameters.direct_rays});
+  }
   const trace::EyeSetup setup{&ray_scene.impl(), &camera,  &parameters,
-                              &radiance,         &distant, reflections_only};
+                              &radiance,         &distant, direct ? &*direct : nullptr,
+                              reflections_only};
   std::vector<EyeRecord> rows(static_cast<std::size_t>(last_row - first_row));
   tbb::parallel_for(first_row, last_row, [&](int y) {
     const trace::FlushDenormals flush_denormals;

@@ -19,7 +19,8 @@ enum class Purpose : std::uint32_t {
   sensor_light,
   eye_holes,
   photon_holes,
-  path_holes
+  path_holes,
+  direct_light
 };
 
 /// Four independent random words.
@@ -34,6 +35,13 @@ class RandomBlock {
     return static_cast<double>(bits >> 11) * 0x1p-53;
   }
   bool bit(int word) const { return words_[word] >> 31; }
+
+  /// A block whose uniform_double(0) is `uniform`, in [0, 1), to 2^-53.
+  static RandomBlock of(double uniform) {
+    const auto bits = static_cast<std::uint64_t>(uniform * 0x1p53) << 11;
+    return RandomBlock(
+        {static_cast<std::uint32_t>(bits >> 32), static_cast<std::uint32_t>(bits), 0, 0});
+  }
 
  private:
   PhiloxCounter words_;

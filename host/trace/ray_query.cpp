@@ -4,9 +4,7 @@
 #include "trace/scatter.hpp"
 
 namespace photile::trace {
-namespace {
 
-/// What one surface lets through, without a bend.
 glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) {
   const Material& material = material_of(scene, point);
   const float there = material.has_holes() ? opacity(scene, point) : 1.0f;
@@ -16,8 +14,6 @@ glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm
   }
   return glm::vec3(1.0f - there) + there * surface;
 }
-
-}  // namespace
 
 std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
                                      const glm::vec3& direction) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "photile/ray_scene.hpp"
+#include "trace/surface.hpp"
 #include "trace/triangle_hit.hpp"
 
 namespace photile::trace {
@@ -16,6 +17,10 @@ std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& orig
 
 /// Whether a surface of any material cuts the straight line between two points.
 bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
+
+/// What one surface lets through without a bend, per channel.
+///   direction   of the ray that meets it there, unit
+glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction);
 
 /// What the straight line between two points lets through, per channel: black behind a surface that
 /// bends or stops light, the product of their transmittances behind panes of thin glass and

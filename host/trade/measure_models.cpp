@@ -47,7 +47,7 @@ class Pilot {
     parameters_.photons.seed = parameters_.film.seed = seed;
     SeedPictures result;
     progress.throw_if_cancelled();
-    const PhotonTracerResult traced = trace_photons(rays, parameters_.photons);
+    const PhotonTracerResult traced = trace_photons(rays, parameters_.photons_used());
     result.photon_seconds += traced.seconds;
     const Photons& photons = traced.photons;
 

@@ -90,6 +90,7 @@ class Trade {
     vary("angle", axes_.angles, [](auto& p, double angle) { p.angle_degrees = angle; });
     vary("cell", axes_.photons_per_cell, [](auto& p, float count) { p.photons_per_cell = count; });
     vary("area", axes_.areas, [](auto& p, AreaMode area) { p.area = area; });
+    vary("direct rays", axes_.direct_rays, [](auto& p, int looks) { p.film.direct_rays = looks; });
     vary("kernel", axes_.kernels, [](auto& p, DensityKernel kernel) { p.kernel = kernel; });
     vary("maps", axes_.maps, [](auto& p, MapMode mode) { p.maps = mode; });
     vary("structure", axes_.structures, [](auto& p, MapStructure s) { p.structure = s; });

@@ -36,6 +36,7 @@ inline constexpr float photons_per_cell = 4.0f;  ///< aimed at; about 4 is best 
 
 // Primary rays
 inline constexpr int max_specular_depth = 16;  ///< mirrors and glass followed by a primary ray
+inline constexpr int direct_rays = 1;          ///< looks at lamps from a hit, where rays do that
 
 // The trade between time and error
 inline constexpr int trade_width = 256;         ///< pixels

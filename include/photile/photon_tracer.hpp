@@ -24,6 +24,8 @@ struct PhotonTracerParameters {
   std::uint64_t seed = defaults::seed;
   int max_path_length = defaults::max_path_length;  ///< surface interactions
   int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
+  /// Whether photons that come straight from a lamp, or through panes of thin glass, are stored.
+  bool store_direct = true;
   /// Paths of each light that earlier passes have traced: the first to be traced now. Empty: none.
   std::vector<std::uint64_t> paths_before = {};
 };

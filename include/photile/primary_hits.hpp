@@ -35,11 +35,13 @@ struct PrimaryHits {
   std::size_t size() const { return position.size(); }
 };
 
-/// A lamp seen directly or through mirrors and glass: adds to the layer of its light.
+/// Light that needs no estimate: a lamp seen directly or through mirrors and glass, or what a hit
+/// gets straight from one. Adds to the layer of its light.
 struct SeenEmission {
   std::uint32_t pixel;
-  std::uint32_t light;  ///< layer, into LightGroups::groups
-  glm::vec3 radiance;   ///< throughput x emitted radiance where the layer's power is 1
+  std::uint32_t light;    ///< layer, into LightGroups::groups
+  glm::vec3 radiance;     ///< throughput x radiance where the layer's power is 1
+  float illuminance = 0;  ///< of the surface seen, where the layer's power is 1, lux
 };
 
 struct PrimaryHitParameters {
@@ -51,6 +53,10 @@ struct PrimaryHitParameters {
   /// Only samples pass, pass + passes, pass + 2 passes ... of each pixel are traced.
   int pass = 0;
   int passes = 1;
+  /// > 0: each hit gets the light that comes straight from lamps by so many looks at them, and so
+  /// many directions of its own, and photons have to bring the rest alone
+  /// (PhotonTracerParameters::store_direct).
+  int direct_rays = 0;
 };
 
 struct PrimaryHitBatch {

@@ -39,6 +39,12 @@ struct RenderParameters {
   AreaMode area_used() const { return maps == MapMode::naive ? AreaMode::disc : area; }
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
   PrimaryHitParameters film;
+  /// Without those that film.direct_rays replaces.
+  PhotonTracerParameters photons_used() const {
+    PhotonTracerParameters used = photons;
+    used.store_direct = film.direct_rays == 0;
+    return used;
+  }
   /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
   /// their mean. 0 = as many as the host's memory asks for.
   int passes = 0;

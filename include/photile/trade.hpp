@@ -28,6 +28,7 @@ struct TradeAxes {
   std::vector<int> samples;              ///< per pixel
   std::vector<AreaMode> areas;           ///< disc has dark borders
   std::vector<DensityKernel> kernels;    ///< other noise and blur at the same k
+  std::vector<int> direct_rays;          ///< light straight from lamps not by photons
   std::vector<MapMode> maps;             ///< naive has dark edges
   std::vector<MapStructure> structures;  ///< same picture, other time
 

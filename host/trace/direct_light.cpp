@@ -1,0 +1,118 @@
+#include "trace/direct_light.hpp"
+
+#include "trace/opaque_bsdf.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/receiver.hpp"
+#include "trace/sampling.hpp"
+#include "trace/scatter.hpp"
+
+namespace photile::trace {
+namespace {
+
+/// Panes and holes that a ray may pass on its way to a lamp: each takes it on, but for rounding.
+constexpr int most_passed = 4096;
+
+/// Blocks of random numbers that one look takes.
+enum LookBlock : std::uint32_t { choice_block, place_block, lobe_block, direction_block, blocks };
+
+class DirectLight {
+ public:
+  DirectLight(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
+              const Receiver& receiver, const RandomStream& random, float share,
+              std::vector<ReceivedLight>& found)
+      : rays_(rays),
+        scene_(rays.scene()),
+        lamps_(lamps),
+        point_(point),
+        receiver_(receiver),
+        random_(random),
+        share_(share),
+        found_(found) {}
+
+  /// Choices of lamps are stratified over `count` looks.
+  void look_at_lamp(std::uint32_t look, std::uint32_t count) {
+    const double choice = (look + block(look, choice_block).uniform_double(0)) / count;
+    const auto lamp =
+        lamps_.sample(point_.position, RandomBlock::of(choice), block(look, place_block));
+    if (!lamp || !(glm::dot(lamp->direction, point_.normal) > 0.0f)) return;
+    glm::vec3 arrives =
+        lamp->received * transmittance(rays_, point_.origin_towards(lamp->direction), lamp->target);
+    if (arrives == glm::vec3(0.0f)) return;
+    if (lamp->density > 0.0f) {
+      arrives *= power_heuristic(lamp->density, receiver_.density(lamp->direction));
+    }
+    add(lamp->layer, receiver_.weights(lamp->direction) * arrives);
+  }
+
+  /// Follows a direction through panes and holes until it meets a lamp, or what bends or stops it.
+  void look_around(std::uint32_t look) {
+    const auto direction = receiver_.sample(block(look, lobe_block), block(look, direction_block));
+    if (!direction) return;
+    const float density = receiver_.density(*direction);
+    if (!(density > 0.0f)) return;
+    LightWeights weights = receiver_.weights(*direction) * glm::vec3(1.0f / density);
+    glm::vec3 origin = point_.origin_towards(*direction);
+    for (int surfaces = 0; surfaces <= most_passed; ++surfaces) {
+      const auto hit = intersect(rays_, origin, *direction);
+      if (!hit) {
+        add_what_lies_beyond(*direction, density, weights);
+        return;
+      }
+      const SurfacePoint met = surface_hit(scene_, *hit, *direction);
+      if (emits(scene_, met)) {
+        const std::uint32_t light = scene_.triangle_light[met.where.triangle];
+        const float weight = power_heuristic(density, lamps_.density(point_.position, met));
+        add(lamps_.layer(light), weights * (weight * lamps_.radiance(met)));
+      }
+      const glm::vec3 passes = transmittance(scene_, met, *direction);
+      if (passes == glm::vec3(0.0f)) return;
+      weights = weights * passes;
+      origin = met.origin_towards(*direction);
+    }
+  }
+
+ private:
+  RandomBlock block(std::uint32_t look, LookBlock which) const {
+    return random_.block(Purpose::direct_light, blocks * look + which);
+  }
+
+  void add_what_lies_beyond(const glm::vec3& direction, float density,
+                            const LightWeights& weights) {
+    for (const DistantLight& light : lamps_.distant()) {
+      const glm::vec3 radiance = light.radiance(direction);
+      if (radiance == glm::vec3(0.0f)) continue;
+      const float weight = power_heuristic(density, lamps_.density(light, direction));
+      add(lamps_.layer(light.light()), weights * (weight * radiance));
+    }
+  }
+
+  void add(std::uint32_t layer, const LightWeights& light) {
+    found_.push_back({layer, share_ * light.irradiance, share_ * light.radiance});
+  }
+
+  const RayScene& rays_;
+  const Scene& scene_;
+  const LightSampler& lamps_;
+  const SurfacePoint& point_;
+  const Receiver& receiver_;
+  const RandomStream& random_;
+  float share_;
+  std::vector<ReceivedLight>& found_;
+};
+
+}  // namespace
+
+void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
+                       const glm::vec3& direction, bool lobe_only, int count,
+                       const RandomStream& random, std::vector<ReceivedLight>& found) {
+  OpaqueBsdf bsdf(rays.scene(), point, direction);
+  if (lobe_only) bsdf.drop_diffuse();
+  const Receiver receiver(point, bsdf);
+  DirectLight light(rays, lamps, point, receiver, random, 1.0f / static_cast<float>(count), found);
+  for (std::uint32_t look = 0; look < static_cast<std::uint32_t>(count); ++look) {
+    light.look_at_lamp(look, static_cast<std::uint32_t>(count));
+    light.look_around(look);
+  }
+}
+
+}  // namespace photile::trace

@@ -1,0 +1,49 @@
+// A point of an opaque surface that light is looked for from.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "trace/opaque_bsdf.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+
+/// What light counts for the two things measured at a receiver.
+struct LightWeights {
+  glm::vec3 irradiance{1.0f};
+  glm::vec3 radiance{1.0f};  ///< reflected
+
+  friend LightWeights operator*(const LightWeights& a, const glm::vec3& b) {
+    return {a.irradiance * b, a.radiance * b};
+  }
+};
+
+/// Weighs light by its cosine alone and as it is reflected, and draws directions that serve both:
+/// on a glossy surface half of them follow the cosine, for a narrow lobe would find next to nothing
+/// of the irradiance. References are kept.
+class Receiver {
+ public:
+  Receiver(const SurfacePoint& point, const OpaqueBsdf& bsdf) : point_(point), bsdf_(bsdf) {}
+
+  /// Of light from `direction` (unit, away from the surface), per steradian.
+  LightWeights weights(const glm::vec3& direction) const {
+    return {glm::vec3(cosine(direction)), bsdf_.reflected(direction)};
+  }
+
+  /// A direction, or nothing where it would enter the surface.
+  ///   choice, random   blocks of their own
+  std::optional<glm::vec3> sample(const RandomBlock& choice, const RandomBlock& random) const;
+
+  /// Density of such directions per steradian.
+  float density(const glm::vec3& direction) const;
+
+ private:
+  float cosine(const glm::vec3& direction) const;
+
+  const SurfacePoint& point_;
+  const OpaqueBsdf& bsdf_;
+};
+
+}  // namespace photile::trace
