@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the bundled scenes beside this file: cornell-box/ and living-room/.
+"""Makes the bundled scenes beside this file: cornell-box/, living-room/ and gallery/.
 
 Usage: scenes/make_scenes.py [folder]      (default: the folder of this file)
 
@@ -11,13 +11,14 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from scene_tools import cornell_box, living_room  # noqa: E402 (the path comes first)
+from scene_tools import cornell_box, gallery, living_room  # noqa: E402 (the path comes first)
 
 
 def main():
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).parent
     cornell_box.write(folder / "cornell-box")
     living_room.write(folder / "living-room")
+    gallery.write(folder / "gallery")
 
 
 if __name__ == "__main__":

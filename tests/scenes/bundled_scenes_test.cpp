@@ -82,7 +82,11 @@ Seen look_around(const Scene& scene, const glm::dvec3& origin, int rays) {
 }  // namespace
 
 TEST_CASE("bundled scenes load without a warning or a dropped triangle") {
-  for (const auto& file : {cornell_obj, cornell_gltf, cornell_specular, living_room}) {
+  const auto gallery = [](const char* name) { return folder / "gallery" / name; };
+  for (const auto& file :
+       {cornell_obj, cornell_gltf, cornell_specular, living_room, gallery("glass-sphere.gltf"),
+        gallery("metal-ring.gltf"), gallery("glossy-floor.gltf"), gallery("downlights.gltf"),
+        gallery("coloured-lamps.gltf")}) {
     const Scene scene = load_scene(file);
     INFO(file.filename().string());
     for (const std::string& warning : scene.report.warnings) {

@@ -1,0 +1,131 @@
+#!/usr/bin/python3
+"""Renders the scenes of scenes/gallery by photon maps and by paths and writes docs/gallery.md.
+
+    bench/gallery.py [--photile COMMAND] [--only SCENE] [--quick --results FOLDER]
+
+Takes about ten minutes. Needs the built command and the Debian packages python3-numpy and
+python3-openimageio.
+"""
+
+import argparse
+import dataclasses
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+from report_section import replace_section
+
+try:
+    import numpy as np
+
+    import picture_error
+except ImportError as missing:
+    sys.exit(f"gallery.py: error: {missing}; install the Debian packages python3-numpy and "
+             "python3-openimageio, and run it with /usr/bin/python3")
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SIZE, REFERENCE_SAMPLES = "320x240", 1024
+PHOTONS = ["--photons", "4M", "-k", "150", "--samples", "16"]
+
+
+@dataclasses.dataclass
+class Subject:
+    """One scene: its file's name, what it shows, and the options of its lights and estimate."""
+    name: str
+    caption: str
+    lights: tuple = ()
+    estimate: tuple = ()
+
+
+SUBJECTS = (
+    Subject("glass-sphere", "The caustic of a glass sphere below a small round lamp."),
+    Subject("metal-ring", "The caustic inside a mirroring ring; beside it a band of rough steel."),
+    Subject("glossy-floor", "A window and its reflection in a floor of polished stone. The light "
+            "straight from the window comes by rays: photons are too few for a narrow lobe.",
+            estimate=("--direct", "rays", "--direct-rays", "4")),
+    Subject("sun-and-sky", "A room lit by the sun and a clear sky through a window, "
+            "`--sun 60,40,40000 --sky clear=12000`.",
+            lights=("--sun", "60,40,40000", "--sky", "clear=12000")),
+    Subject("downlights", "Three lamps with an IES file, close to a wall."),
+    Subject("coloured-lamps", "Lamps in red, green and blue, and what their shadows mix."),
+)
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--photile", type=pathlib.Path, default=ROOT / "build/release/photile")
+    parser.add_argument("--only", choices=[subject.name for subject in SUBJECTS],
+                        help="render this alone, the results keep the others")
+    parser.add_argument("--quick", action="store_true", help="tiny pictures: a smoke test")
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/pictures/gallery",
+                        help="where pictures and figures go; default: %(default)s")
+    return parser.parse_args()
+
+
+def render(given, subject, options, picture):
+    """Renders to an EXR file; returns its pixels and the seconds of the whole process."""
+    begin = time.monotonic()
+    subprocess.run([given.photile, "render", ROOT / f"scenes/gallery/{subject.name}.gltf",
+                    *subject.lights, *options, "-o", picture, "--quiet"], check=True)
+    return picture_error.read_picture(picture), time.monotonic() - begin
+
+
+def measure(given, subject, folder):
+    """Renders a scene both ways, writes the two side by side, and returns the figures."""
+    size = "32x24" if given.quick else SIZE
+    photons = ["--photons", "20k", "-k", "20"] if given.quick else PHOTONS
+    samples = "4" if given.quick else str(REFERENCE_SAMPLES)
+    own, seconds = render(given, subject, [*photons, *subject.estimate, "--size", size],
+                          folder / "photons.exr")
+    paths, path_seconds = render(given, subject, ["--integrator", "path", "--samples", samples,
+                                                  "--size", size], folder / "paths.exr")
+    factor = picture_error.exposure(paths)
+    both = [picture_error.displayed(own, factor), np.ones((own.shape[0], 4, 3)),
+            picture_error.displayed(paths, factor)]
+    picture_error.write_png(given.results / f"{subject.name}.png", np.concatenate(both, axis=1))
+    figures = picture_error.measure(own, paths)
+    return {"scene": subject.name, "mean ratio": figures["mean_ratio"],
+            "relMSE": figures["rel_mse"],
+            "relMSE without the worst 5%": figures["rel_mse_without_worst"],
+            "seconds": seconds, "seconds of paths": path_seconds}
+
+
+def section(results):
+    text = ""
+    for subject in SUBJECTS:
+        row = results.get(subject.name)
+        if row is None:
+            continue
+        options = " ".join([*PHOTONS, *subject.estimate])
+        text += (f"## {subject.name.replace('-', ' ').capitalize()}\n\n{subject.caption}\n\n"
+                 f"![By photon maps, and by paths](pictures/gallery/{subject.name}.png)\n\n"
+                 f"Mean ratio {row['mean ratio']:.3f}, relMSE {row['relMSE']:.4f}, without the worst "
+                 f"5% of the pixels {row['relMSE without the worst 5%']:.4f}. `{options}`: "
+                 f"{row['seconds']:.0f} s; paths, {REFERENCE_SAMPLES} a pixel: "
+                 f"{row['seconds of paths']:.0f} s.\n\n")
+    return text + f"{os.cpu_count()} cores; load average at the end {os.getloadavg()[0]:.0f}."
+
+
+def main():
+    given = arguments()
+    given.results.mkdir(parents=True, exist_ok=True)
+    record = given.results / "gallery.json"
+    results = {}
+    if given.only and record.is_file():
+        results = {row["scene"]: row for row in json.loads(record.read_text())}
+    with tempfile.TemporaryDirectory() as name:
+        for subject in SUBJECTS:
+            if given.only in (None, subject.name):
+                results[subject.name] = measure(given, subject, pathlib.Path(name))
+                print(json.dumps(results[subject.name]))
+    record.write_text(json.dumps(list(results.values()), indent=1) + "\n")
+    if not given.quick:
+        replace_section(ROOT / "docs/gallery.md", "gallery.py", section(results))
+
+
+if __name__ == "__main__":
+    main()
