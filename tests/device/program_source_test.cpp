@@ -43,7 +43,7 @@ TEST_CASE("files that include each other end") {
 }
 
 TEST_CASE("every kernel and shared header is embedded byte for byte") {
-  const std::filesystem::path root = test::source_folder();
+  const std::filesystem::path root = photile::test::source_folder();
   std::size_t count = 0;
   const auto compare = [&](const std::filesystem::path& folder, const std::filesystem::path& base) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
