@@ -3,7 +3,7 @@
 
     bench/gallery.py [--photile COMMAND] [--only SCENE] [--quick --results FOLDER]
 
-Takes about ten minutes. Needs the built command and the Debian packages python3-numpy and
+Takes a few minutes. Needs the built command and the Debian packages python3-numpy and
 python3-openimageio.
 """
 
@@ -26,8 +26,8 @@ except ImportError as missing:
              "python3-openimageio, and run it with /usr/bin/python3")
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SIZE, REFERENCE_SAMPLES = "320x240", 512
-PHOTONS = ["--photons", "4M", "-k", "150", "--samples", "16"]
+SIZE, REFERENCE_SAMPLES = "240x180", 256
+PHOTONS = ["--photons", "1M", "-k", "80", "--samples", "16"]
 
 
 @dataclasses.dataclass

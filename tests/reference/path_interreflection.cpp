@@ -6,6 +6,7 @@
 #include "photile/device/bsdf.h"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
+#include "validation/glossy_reflectance.hpp"
 
 using namespace photile;
 
@@ -109,29 +110,8 @@ TEST_CASE("a glossy plate in a furnace reflects the integral of its BSDF, and re
   builder.quad({0.8f, 0.3f, 0.7f}, {1.2f, 0.3f, 0.7f}, {1.2f, 0.7f, 0.7f}, {0.8f, 0.7f, 0.7f},
                plate);
   const Scene scene = builder.build();
-  // Seen from straight above. Integral over half vectors h about the normal: i mirrors the view in
-  // h, dw_i = 4 (v.h) dw_h; the substitution tan^2 = alpha^2 u / (1 - u) follows the lobe.
-  double truth = 0;
-  constexpr int steps = 400'000;
-  for (int i = 0; i < steps; ++i) {
-    const double u = (i + 0.5) / steps, a2 = double{roughness} * roughness;
-    const double c = std::sqrt((1 - u) / (1 + (a2 - 1) * u));  // n.h = v.h
-    const double n_dot_i = 2 * c * c - 1;
-    if (n_dot_i <= 0) continue;
-    const double d = a2 / (pi * std::pow(c * c * (a2 - 1) + 1, 2));
-    const double density = d * c;  // of h per steradian, by that substitution
-    const double s = std::sqrt(1 - a2 + a2 / (n_dot_i * n_dot_i));
-    const double masking =
-        2 / (1 + s);  // G2 with one direction along the normal is G1 of the other
-    const double fresnel = 0.6 + 0.4 * std::pow(1 - c, 5);
-    truth += fresnel * d * masking / (4 * n_dot_i) * n_dot_i * 4 * c / density / steps;
-  }
-  // The Lambertian base below the lobe, over directions by the cosine law.
-  for (int i = 0; i < steps; ++i) {
-    const double n_dot_i = std::sqrt((i + 0.5) / steps);
-    const double h = std::sqrt(0.5 * (1 + n_dot_i));
-    truth += (1 - (0.6 + 0.4 * std::pow(1 - h, 5))) * 0.2 / steps;
-  }
+  // Seen from straight above, by quadrature of the lobe and of the base below it.
+  const double truth = validation::glossy_reflectance(0.2, 0.6, double{roughness});
   std::vector<double> irradiance, radiance;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const auto means = test::path_means(scene, {{{1, 0.5, 0.7}, {0, 0, 1}}}, seed, 40'000);
