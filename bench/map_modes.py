@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Maps of triangles against maps of patches on finely tessellated scenes, as a Markdown table.
 
 Runs photile_bench_modes, in which modes take turns; medians. Usage: bench/map_modes.py [--repeats N]

@@ -13,7 +13,7 @@ class Mutant:
     file: str  # of the repository; the tests of kernels/ need no build
     find: str
     replace: str
-    tests: tuple  # (room of tests/, specification)
+    tests: tuple  # (folder of tests/, specification)
 
     @property
     def in_kernels(self):

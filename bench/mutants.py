@@ -59,15 +59,15 @@ def mutate(folder, mutant):
     return text
 
 
-def run_tests(build, room, specification, kernels=None):
-    """Runs tests of a room, with kernels from a folder if one is given."""
+def run_tests(build, folder, specification, kernels=None):
+    """Runs tests of a folder of tests/, with the kernels of another folder if one is given."""
     environment = dict(os.environ)
     environment.pop("PHOTILE_KERNEL_DIR", None)
     if kernels:
         environment["PHOTILE_KERNEL_DIR"] = str(kernels)
-    program = build / "tests" / room / f"photile_tests_{room}"
+    program = build / "tests" / folder / f"photile_tests_{folder}"
     if not program.is_file():
-        raise CannotRun(f"{program} is missing; build the target photile_tests_{room}")
+        raise CannotRun(f"{program} is missing; build the target photile_tests_{folder}")
     with tempfile.NamedTemporaryFile(suffix=".xml") as report:
         done = subprocess.run([program, specification, "--reporter", "xml", "--out", report.name],
                               env=environment, capture_output=True, text=True, check=False)
@@ -79,13 +79,13 @@ def run_tests(build, room, specification, kernels=None):
     except xml.etree.ElementTree.ParseError:
         return Outcome([], True)
     if not cases:
-        raise CannotRun(f"no test of {room} matches {specification!r}")
+        raise CannotRun(f"no test of {folder} matches {specification!r}")
     failed = [case.get("name") for case in cases
               if case.find("OverallResult").get("success") != "true"]
     return Outcome(failed, done.returncode != 0 and not failed)
 
 
-def build_tree(tree, rooms):
+def build_tree(tree, folders):
     if not (tree / ".git").exists():
         subprocess.run(["git", "-C", ROOT, "worktree", "prune"], check=True)
         subprocess.run(["git", "-C", ROOT, "worktree", "add", "--force", "--detach", tree],
@@ -95,7 +95,7 @@ def build_tree(tree, rooms):
                    capture_output=True)
     done = subprocess.run(["cmake", "--build", "--preset", "release", "--parallel",
                            str(os.cpu_count()), "--target",
-                           *(f"photile_tests_{room}" for room in sorted(rooms))], cwd=tree,
+                           *(f"photile_tests_{folder}" for folder in sorted(folders))], cwd=tree,
                           check=False, capture_output=True, text=True)
     if done.returncode != 0:
         raise CannotRun("it does not compile: " + "".join(done.stdout.splitlines(True)[-20:]))
@@ -105,28 +105,28 @@ def build_tree(tree, rooms):
 class Runner:
     def __init__(self, options):
         self.options = options
-        self.baselines = {}  # (build, room, specification) -> Outcome
+        self.baselines = {}  # (build, folder, specification) -> Outcome
 
-    def _baseline(self, build, room, specification):
-        key = build, room, specification
+    def _baseline(self, build, folder, specification):
+        key = build, folder, specification
         if key not in self.baselines:
-            self.baselines[key] = run_tests(build, room, specification)
+            self.baselines[key] = run_tests(build, folder, specification)
         outcome = self.baselines[key]
         if outcome.failed or outcome.crashed:
             raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
 
     def _tests(self, mutant, build, kernels=None):
         noticed = []
-        for room, specification in mutant.tests:
-            outcome = run_tests(build, room, specification, kernels)
-            noticed += [f"{room}/{name}" for name in outcome.failed]
+        for folder, specification in mutant.tests:
+            outcome = run_tests(build, folder, specification, kernels)
+            noticed += [f"{folder}/{name}" for name in outcome.failed]
             if outcome.crashed:
-                noticed.append(f"{room}: crash")
+                noticed.append(f"{folder}: crash")
         return noticed
 
     def in_kernels(self, mutant):
-        for room, specification in mutant.tests:
-            self._baseline(self.options.build, room, specification)
+        for folder, specification in mutant.tests:
+            self._baseline(self.options.build, folder, specification)
         with tempfile.TemporaryDirectory(prefix="photile-mutant-") as folder:
             copy = pathlib.Path(folder)
             shutil.copytree(ROOT / "kernels", copy / "kernels")
@@ -134,13 +134,13 @@ class Runner:
             return self._tests(mutant, self.options.build, copy / "kernels")
 
     def in_host(self, mutant):
-        rooms = {room for room, _ in mutant.tests}
-        build = build_tree(self.options.tree, rooms)
-        for room, specification in mutant.tests:
-            self._baseline(build, room, specification)
+        folders = {folder for folder, _ in mutant.tests}
+        build = build_tree(self.options.tree, folders)
+        for folder, specification in mutant.tests:
+            self._baseline(build, folder, specification)
         text = mutate(self.options.tree, mutant)
         try:
-            build_tree(self.options.tree, rooms)
+            build_tree(self.options.tree, folders)
             return self._tests(mutant, build)
         finally:
             (self.options.tree / mutant.file).write_text(text, encoding="utf-8")

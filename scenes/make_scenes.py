@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes the bundled scenes beside this file: cornell-box/, living-room/ and gallery/.
 
 Usage: scenes/make_scenes.py [folder]      (default: the folder of this file)

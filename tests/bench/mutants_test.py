@@ -23,11 +23,11 @@ class Texts(unittest.TestCase):
             self.assertNotEqual(mutant.find, mutant.replace)
             self.assertTrue(mutant.tests)
 
-    def test_names_are_unique_and_rooms_exist(self):
+    def test_names_are_unique_and_folders_exist(self):
         self.assertEqual(len({mutant.name for mutant in MUTANTS}), len(MUTANTS))
         for mutant in MUTANTS:
-            for room, _ in mutant.tests:
-                self.assertTrue((ROOT / "tests" / room / "CMakeLists.txt").is_file(), room)
+            for folder, _ in mutant.tests:
+                self.assertTrue((ROOT / "tests" / folder / "CMakeLists.txt").is_file(), folder)
 
 
 class Changes(unittest.TestCase):
