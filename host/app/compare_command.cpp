@@ -14,6 +14,7 @@
 #include "app/signals.hpp"
 #include "app/validators.hpp"
 #include "image/picture_comparison.hpp"
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -104,10 +105,10 @@ void run_compare(const CompareOptions& options) {
                                       options.scale, options.exposure}));
   }
   if (!options.json.empty()) {
-    write_text_file(options.json,
-                    record_of(options, comparison)
-                            .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                        "\n");
+    write_file(options.json,
+               record_of(options, comparison)
+                       .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                   "\n");
   }
   print(comparison);
 }

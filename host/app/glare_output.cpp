@@ -1,6 +1,5 @@
 #include "app/glare_output.hpp"
 
-#include <memory>
 #include <string>
 
 #include "image/glare.hpp"

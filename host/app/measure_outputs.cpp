@@ -14,6 +14,7 @@
 #include "measuring/plan_drawing.hpp"
 #include "measuring/report.hpp"
 #include "measuring/sensor_tables.hpp"
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::app {
@@ -44,14 +45,6 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run) 
   }
   record["grids"] = measuring::measurement_json(measurement);
   return record;
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw OutputError(fmt::format("{}: cannot make this folder; name another", folder.string()));
-  }
 }
 
 /// The options of Radiance's falsecolor, under its names and with its defaults.
@@ -185,23 +178,23 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options,
 void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
   if (!honeybee_.empty()) {
     for (const auto& [name, text] : measuring::honeybee_files(measurement)) {
-      write_text_file(honeybee_ / name, text);
+      write_file(honeybee_ / name, text);
     }
   }
-  for (const auto& file : csv_) write_text_file(file, measuring::measurement_csv(measurement));
+  for (const auto& file : csv_) write_file(file, measuring::measurement_csv(measurement));
   for (const auto& file : json_) {
-    write_text_file(
+    write_file(
         file,
         run_json(measurement, run).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   }
   for (const auto& file : svg_) {
     for (const auto& [name, svg] : plans_of(file, measurement, colours_)) {
-      write_text_file(name, svg);
+      write_file(name, svg);
     }
   }
   const std::string title = run.scene.source.filename().string();
   for (const auto& file : html_) {
-    write_text_file(file, measuring::report_html(measurement, {title, facts_of(run)}, colours_));
+    write_file(file, measuring::report_html(measurement, {title, facts_of(run)}, colours_));
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "image/output_file.hpp"
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::app {
@@ -18,17 +18,19 @@ void check_outputs(std::span<const std::filesystem::path> outputs,
       throw UsageError(
           fmt::format("{}: is the input, too; choose another output", output.string()));
     }
-    const image::OutputFile probe(output);
+    const OutputFile probe(output);
     if (!seen.insert(std::filesystem::weakly_canonical(output)).second) {
       throw UsageError(fmt::format("{}: is named as output twice; remove one", output.string()));
     }
   }
 }
 
-void write_text_file(const std::filesystem::path& file, const std::string& text) {
-  image::OutputFile output(file);
-  output.write(text.data(), text.size());  // a short write is reported by commit
-  output.commit();
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw OutputError(fmt::format("{}: cannot make this folder; name another", folder.string()));
+  }
 }
 
 }  // namespace photile::app

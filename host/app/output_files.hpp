@@ -1,9 +1,8 @@
-// Output files, checked before the long work and written whole.
+// Output files, checked before the long work.
 #pragma once
 
 #include <filesystem>
 #include <span>
-#include <string>
 
 namespace photile::app {
 
@@ -13,7 +12,7 @@ namespace photile::app {
 void check_outputs(std::span<const std::filesystem::path> outputs,
                    const std::filesystem::path& input);
 
-/// Writes `text` to a temporary name and renames it. Errors: OutputError.
-void write_text_file(const std::filesystem::path& file, const std::string& text);
+/// Makes a folder for outputs, and those above it. Errors: OutputError.
+void make_folder(const std::filesystem::path& folder);
 
 }  // namespace photile::app

@@ -24,6 +24,7 @@
 #include "app/tuning_report.hpp"
 #include "device/context.hpp"
 #include "image/live_preview.hpp"
+#include "output_file.hpp"
 #include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
@@ -203,7 +204,7 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   }));
   record.total_seconds = stopwatch.seconds();
   if (!options.statistics.empty()) {
-    write_text_file(
+    write_file(
         options.statistics,
         run_json(record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
-#include "app/number_format.hpp"
 #include "app/output_files.hpp"
 #include "app/render_options.hpp"
 #include "app/signals.hpp"
@@ -20,6 +19,7 @@
 #include "app/trade_report.hpp"
 #include "app/validators.hpp"
 #include "app/version.hpp"
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
@@ -113,19 +113,10 @@ void write_files(const TradeFiles& files, const TradeOptions& options, const Ref
     record["reference_relative_mse"] = reference.relative_mse;
     write_exr(files.reference, reference.picture);
   }
-  write_text_file(files.csv, trade_csv(points));
-  write_text_file(files.plot, trade_plot(points, record["scene"].get<std::string>()));
-  write_text_file(files.json,
-                  record.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw OutputError(
-        fmt::format("{}: cannot make this folder; name another with -o", folder.string()));
-  }
+  write_file(files.csv, trade_csv(points));
+  write_file(files.plot, trade_plot(points, record["scene"].get<std::string>()));
+  write_file(files.json,
+             record.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 void run_trade(TradeOptions& options) {

@@ -17,6 +17,7 @@
 #include "app/threads.hpp"
 #include "app/validation_report.hpp"
 #include "app/validators.hpp"
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/quiet_progress.hpp"
@@ -73,8 +74,8 @@ void run_validate(ValidateOptions& options) {
   progress.end();
   for (const auto& line : validation_table(rows)) std::cout << line << '\n';
   if (!options.json.empty()) {
-    write_text_file(options.json,
-                    validation_json(rows, parameters, devices, stopwatch.seconds()).dump(2) + "\n");
+    write_file(options.json,
+               validation_json(rows, parameters, devices, stopwatch.seconds()).dump(2) + "\n");
   }
   const std::size_t failed = rows_not_within(rows);
   if (failed > 0) {

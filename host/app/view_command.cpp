@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "app/commands.hpp"
 #include "app/render_options.hpp"
@@ -16,7 +15,6 @@
 #include "app/threads.hpp"
 #include "app/validators.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "view/viewer.hpp"
 
 namespace photile::app {

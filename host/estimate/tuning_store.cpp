@@ -11,7 +11,7 @@
 #include "device/program_source.hpp"
 #include "estimate/specialisation.hpp"
 #include "estimate/tuning.hpp"
-#include "image/output_file.hpp"
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 
 namespace photile {
@@ -100,10 +100,7 @@ void write_tuning(const std::filesystem::path& file, const SceneNeeds& needs,
   json variants = read_variants(file);
   variants[variant_name(needs)] = to_json(tuning);
   const json content = {{"kernels", kernels_hash()}, {"variants", variants}};
-  const std::string text = content.dump(2) + "\n";
-  image::OutputFile output(file);
-  output.write(text.data(), text.size());  // a short write is reported by commit
-  output.commit();
+  write_file(file, content.dump(2) + "\n");
 }
 
 std::optional<EstimateTuning> read_tuning(const std::filesystem::path& file,

@@ -2,9 +2,8 @@
 #include <functional>
 
 #include "image/exr_spec.hpp"
-#include "image/output_file.hpp"
 #include "image/write_exr_parts.hpp"
-#include "photile/errors.hpp"
+#include "output_file.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
 
@@ -19,7 +18,7 @@ using FillRows = std::function<void(int first, int end, std::vector<float>& rows
 
 void write_single_part(const std::filesystem::path& file, const PictureHeader& header,
                        const std::vector<std::string>& channels, const FillRows& fill) {
-  image::OutputFile output(file);
+  OutputFile output(file);
   if (header.width < 1 || header.height < 1 || channels.empty()) {
     output.fail("the picture has no pixels");
   }

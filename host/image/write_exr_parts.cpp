@@ -5,7 +5,7 @@
 #include <span>
 
 #include "image/exr_spec.hpp"
-#include "image/output_file.hpp"
+#include "output_file.hpp"
 
 namespace photile::image {
 namespace {

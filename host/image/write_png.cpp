@@ -3,15 +3,14 @@
 #include <array>
 #include <cstdint>
 
-#include "image/output_file.hpp"
 #include "image/srgb.hpp"
-#include "photile/errors.hpp"
+#include "output_file.hpp"
 #include "photile/image.hpp"
 
 namespace photile {
 
 void write_png(const std::filesystem::path& file, const Image& display_referred) {
-  image::OutputFile output(file);
+  OutputFile output(file);
   const std::array<const std::vector<float>*, 3> planes{
       display_referred.find("R"), display_referred.find("G"), display_referred.find("B")};
   if (!planes[0] || !planes[1] || !planes[2]) output.fail("the picture has no channels R, G, B");

@@ -2,17 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <type_traits>
-#include <vector>
 
 #include "content_hash.hpp"
-#include "image/output_file.hpp"
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 #include "saved_maps/check_photons.hpp"
 #include "scene/scene_hash.hpp"
@@ -164,7 +162,7 @@ void save(const std::filesystem::path& file, const Scene& scene, const std::stri
                 [&](const void* bytes, std::uint64_t count) { checksum.add(bytes, count); });
   header.payload = checksum.digest();
 
-  image::OutputFile output(file);
+  OutputFile output(file);
   output.write(&header, sizeof header);
   write_payload(prepared, settings,
                 [&](const void* bytes, std::uint64_t count) { output.write(bytes, count); });

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 #include "scene/light_setting.hpp"
 #include "scene/scene_folder.hpp"
@@ -261,7 +262,7 @@ void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::p
   try {
     Json json = Json::parse(binary ? BinaryFile(bytes).json : bytes);
     Document(json, options, left_out).set(settings);
-    write_copy(copy, binary ? BinaryFile(bytes).joined(json.dump()) : json.dump(2) + "\n");
+    write_file(copy, binary ? BinaryFile(bytes).joined(json.dump()) : json.dump(2) + "\n");
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: its lights cannot be set ({}); export it again",
                                  scene.string(), error.what()));

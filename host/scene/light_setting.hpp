@@ -44,7 +44,4 @@ void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::pa
 /// Errors: OutputError where there is such a file: no copy is written over another file.
 void refuse_taken(const std::filesystem::path& file);
 
-/// Writes a file whole, through a rename. Errors: OutputError.
-void write_copy(const std::filesystem::path& file, const std::string& bytes);
-
 }  // namespace photile::scene_io

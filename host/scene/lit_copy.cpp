@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "image/output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
@@ -62,12 +61,6 @@ std::vector<LightSetting> settings_of(const SourcedScene& sourced, const SceneLo
 }
 
 }  // namespace
-
-void write_copy(const std::filesystem::path& file, const std::string& bytes) {
-  image::OutputFile output(file);
-  output.write(bytes.data(), bytes.size());
-  output.commit();
-}
 
 void refuse_taken(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return;

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "output_file.hpp"
 #include "scene/light_setting.hpp"
 #include "scene/photometric_text.hpp"
 #include "scene/resource_error.hpp"
@@ -116,8 +117,8 @@ void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::pa
       // A library that is missing is a warning when the scene is loaded.
     }
   }
-  write_copy(library, lit_library(lines, settings_of(settings, left_out)));
-  write_copy(copy, text);
+  write_file(library, lit_library(lines, settings_of(settings, left_out)));
+  write_file(copy, text);
 }
 
 }  // namespace photile::scene_io

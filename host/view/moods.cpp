@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "image/output_file.hpp"
 #include "input_text.hpp"
+#include "output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -131,10 +131,7 @@ void Moods::write(const std::map<std::string, Mood>& moods) const {
       if (setting.kelvin > 0) entry["kelvin"] = setting.kelvin;
     }
   }
-  const std::string text = document.dump(2) + "\n";
-  image::OutputFile output(file_);
-  output.write(text.data(), text.size());
-  output.commit();
+  write_file(file_, document.dump(2) + "\n");
 }
 
 }  // namespace photile::view

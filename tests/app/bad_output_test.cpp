@@ -54,6 +54,17 @@ TEST_CASE("an output that is a folder is refused before the work") {
   CHECK_THAT(refusal({"-o", folder / "out.exr"}, failure), Contains("out.exr"));
 }
 
+TEST_CASE("a folder for outputs that cannot be made is refused before the work") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder), below_a_file = folder / "box.mtl/results";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"trade", scene, "-o", below_a_file},
+        std::vector<std::string>{"measure", scene, "--plane", "1", "--honeybee", below_a_file}}) {
+    CHECK_THAT(only_error(run_photile(arguments), failure),
+               Contains("box.mtl/results") && Contains("cannot make this folder"));
+  }
+}
+
 TEST_CASE("statistics to a device that is always full are refused before the work") {
   const FileFolder folder;
   CHECK_THAT(refusal({"-o", folder / "out.exr", "--stats", "/dev/full"}, failure),

@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
-namespace photile::image {
+namespace photile {
 
 /// Written under a temporary name in the folder of its target, then renamed by `commit`. Destroyed
 /// without a commit, it leaves nothing behind and an earlier file under the name untouched. It is
@@ -50,4 +51,7 @@ class OutputFile : public OIIO::Filesystem::IOProxy {
   int write_error_ = 0;  ///< errno of the first failed write
 };
 
-}  // namespace photile::image
+/// Writes a file whole. Errors: those of OutputFile.
+void write_file(const std::filesystem::path& file, std::string_view content);
+
+}  // namespace photile

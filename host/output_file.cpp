@@ -1,4 +1,4 @@
-#include "image/output_file.hpp"
+#include "output_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 
 #include "photile/errors.hpp"
 
-namespace photile::image {
+namespace photile {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,10 @@ std::size_t OutputFile::size() const {
   return ::fstat(descriptor_, &status) == 0 ? static_cast<std::size_t>(status.st_size) : 0;
 }
 
-}  // namespace photile::image
+void write_file(const fs::path& file, std::string_view content) {
+  OutputFile output(file);
+  output.write(content.data(), content.size());  // a short write is reported by commit
+  output.commit();
+}
+
+}  // namespace photile
