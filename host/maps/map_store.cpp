@@ -1,7 +1,5 @@
 #include "maps/map_store.hpp"
 
-#include <algorithm>
-
 namespace photile::maps {
 
 std::vector<std::uint32_t> MapStore::maps_of(const PrimaryHits& hits, std::size_t first,

@@ -1,0 +1,65 @@
+// The steps of the build on the device: each launches kernels over pages of photons.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "device/context.hpp"
+#include "device/kernel_set.hpp"
+#include "maps/map_page.hpp"
+#include "maps/map_store.hpp"
+#include "maps/map_tiling.hpp"
+#include "maps/photon_pages.hpp"
+#include "photile/device/map_shape.h"
+
+namespace photile::maps {
+
+/// Per map: how many photons it holds, and whether their normals may disagree with its triangles'.
+struct MapCounts {
+  device::Buffer<std::uint32_t> photons, mixed;  ///< `mixed` only with patches
+};
+
+/// What every step needs.
+struct Build {
+  device::Context& context;
+  const MapStore& store;
+  device::KernelSet kernels;
+  device::KernelSet tile_kernels;
+  bool patches;         ///< maps may serve several triangles
+  float squared_reach;  ///< square metres: within it of a triangle photons enter its map
+  float radius;         ///< metres, of the search
+  float photons_per_cell;
+  device::Buffer<PhotileMapShape> shapes = {};  ///< per pair of maps
+  device::Buffer<float> crowding = {};          ///< per map
+  device::Buffer<float> corners = {};           ///< 9 floats per triangle that is alone in its maps
+  std::unique_ptr<PhotonPages> photon_pages = {};
+  MapCounts counts = {};
+
+  template <class... Args>
+  void run(const char* kernel, std::size_t size, const Args&... args) const {
+    kernels.run(kernel, size, work_group_size, args...);
+  }
+};
+
+// Errors: DeviceMemoryError, after which a step may be taken again on smaller pages.
+
+/// Counts the photons of `map_count` maps: build.counts.
+void count_photons(Build& build, std::size_t map_count);
+
+/// The whole content of a buffer.
+std::vector<std::uint32_t> read_all(device::Context& context,
+                                    const device::Buffer<std::uint32_t>& buffer);
+
+/// The tiling of a map, with its photons counted.
+MapTiling tiling_of(const Build& build, std::uint32_t map);
+
+/// Grids and cells of the page's maps, whose photons are counted.
+void place_grids(const Build& build, MapPage& page);
+
+/// References to the photons of the page's cells: cell_start, entry_count and entry_photon.
+/// `tile`: cells that the page holds, where it holds a tile; else nothing.
+void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile);
+
+}  // namespace photile::maps
