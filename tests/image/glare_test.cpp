@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "photile/errors.hpp"
+#include "two_lights.hpp"
 
 using namespace photile;
 using namespace photile::image;
@@ -18,15 +19,7 @@ LightLayers even(float a, float b) {
   return layers;
 }
 
-LightMix mix_of(double a, double b) {
-  LightMix mix;
-  mix.lights.resize(2);
-  mix.lights[0].name = "a";
-  mix.lights[0].power = a;
-  mix.lights[1].name = "b";
-  mix.lights[1].power = b;
-  return mix;
-}
+LightMix mix_of(double a, double b) { return test::two_lights("a", a, "b", b); }
 
 }  // namespace
 

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
-#include <random>
 
 #include "instanced_scenes.hpp"
 #include "photile/photon_tracer.hpp"
@@ -11,25 +10,13 @@
 #include "trace/ray_scene_impl.hpp"
 #include "trace/sampling.hpp"
 #include "trace/surface.hpp"
+#include "uniform.hpp"
 
 using namespace photile;
 using namespace photile::test;
 using namespace photile::trace;
 
 namespace {
-
-class Uniform {
- public:
-  explicit Uniform(std::uint64_t seed) : generator_(seed) {}
-  float operator()() { return static_cast<float>(generator_() >> 40) * 0x1p-24f; }
-  glm::vec3 direction() {
-    const float u = (*this)();
-    return sample_sphere(u, (*this)());
-  }
-
- private:
-  std::mt19937_64 generator_;
-};
 
 /// Distance along the ray to the nearest triangle, in double precision and one by one.
 std::optional<double> nearest_distance(const Scene& scene, const glm::dvec3& origin,

@@ -3,34 +3,16 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
-#include <random>
 
 #include "test_scenes.hpp"
 #include "trace/ray_scene_impl.hpp"
 #include "trace/sampling.hpp"
 #include "trace/surface.hpp"
+#include "uniform.hpp"
 
 using namespace photile;
 using namespace photile::test;
 using namespace photile::trace;
-
-namespace {
-
-/// Uniform floats, the same on every platform.
-class Uniform {
- public:
-  explicit Uniform(std::uint64_t seed) : generator_(seed) {}
-  float operator()() { return static_cast<float>(generator_() >> 40) * 0x1p-24f; }
-  glm::vec3 direction() {
-    const float u = (*this)();
-    return sample_sphere(u, (*this)());
-  }
-
- private:
-  std::mt19937_64 generator_;
-};
-
-}  // namespace
 
 TEST_CASE("A ray hits the point of the plate below it, on the side that it comes from") {
   const Scene scene = plate(diffuse(glm::vec3(0.5f)), 2, 8);

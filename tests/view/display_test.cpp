@@ -6,6 +6,7 @@
 #include "image/glare.hpp"
 #include "image/palette.hpp"
 #include "photile/errors.hpp"
+#include "two_lights.hpp"
 
 using namespace photile;
 using namespace photile::view;
@@ -23,15 +24,7 @@ Frame two_pixels() {
   return frame;
 }
 
-LightMix mix_of(double a, double b) {
-  LightMix mix;
-  mix.lights.resize(2);
-  mix.lights[0].name = "a";
-  mix.lights[0].power = a;
-  mix.lights[1].name = "b";
-  mix.lights[1].power = b;
-  return mix;
-}
+LightMix mix_of(double a, double b) { return test::two_lights("a", a, "b", b); }
 
 }  // namespace
 

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "two_lights.hpp"
+
 using namespace photile;
 using view::LightBoard;
 
@@ -10,12 +12,7 @@ namespace {
 
 /// Two lamps of 100 and 300 lm: a white one and one that emits no blue.
 LightMix two_lamps() {
-  LightMix mix;
-  mix.lights.resize(2);
-  mix.lights[0].name = "ceiling";
-  mix.lights[0].power = 100;
-  mix.lights[1].name = "sodium";
-  mix.lights[1].power = 300;
+  LightMix mix = test::two_lights("ceiling", 100, "sodium", 300);
   mix.lights[1].color = {1.3f, 0.9f, 0.0f};
   return mix;
 }

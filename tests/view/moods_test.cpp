@@ -6,6 +6,7 @@
 
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
+#include "two_lights.hpp"
 
 using namespace photile;
 using Catch::Contains;
@@ -14,15 +15,7 @@ using view::Moods;
 
 namespace {
 
-LightMix lamps() {
-  LightMix mix;
-  mix.lights.resize(2);
-  mix.lights[0].name = "ceiling";
-  mix.lights[0].power = 100;
-  mix.lights[1].name = "floor lamp";
-  mix.lights[1].power = 300;
-  return mix;
-}
+LightMix lamps() { return test::two_lights("ceiling", 100, "floor lamp", 300); }
 
 }  // namespace
 
