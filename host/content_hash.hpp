@@ -5,15 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <vector>
 
 namespace photile {
 
 /// Values count with their bytes in this machine's order, texts and arrays with their lengths, so
-/// that
-/// ("ab", "c") and ("a", "bc") differ.
+/// that ("ab", "c") and ("a", "bc") differ.
 class ContentHash {
  public:
   ContentHash();

@@ -213,7 +213,7 @@ class Context {
   }
 
   /// The kernel `name` of the embedded kernel file `file` (path below kernels/, e.g.
-  /// "grid/count.cl"), built with `defines`. Programs are built once per (file, defines), from the
+  /// "grid/build.cl"), built with `defines`. Programs are built once per (file, defines), from the
   /// cache on disk where it holds them. Errors: KernelBuildError with the log.
   Kernel kernel(const std::string& file, const std::string& name, const Defines& defines);
 

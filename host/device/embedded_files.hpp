@@ -7,7 +7,7 @@
 namespace photile::device {
 
 struct EmbeddedFile {
-  std::string_view path;  ///< below kernels/ ("grid/count.cl"), or "photile/device/<name>.h"
+  std::string_view path;  ///< below kernels/ ("grid/build.cl"), or "photile/device/<name>.h"
   std::string_view text;
 };
 

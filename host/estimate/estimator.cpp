@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_batches.hpp"

@@ -6,7 +6,6 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <span>
 
 #include "estimate/hit_buffers.hpp"
 #include "estimate/query.hpp"

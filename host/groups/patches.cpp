@@ -1,6 +1,5 @@
 #include "photile/patches.hpp"
 
-#include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "groups/patch_splitter.hpp"

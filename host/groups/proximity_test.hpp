@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <vector>
 
 #include "photile/scene.hpp"
 

@@ -1,7 +1,5 @@
 #include "photile/light_layers.hpp"
 
-#include <utility>
-
 #include "photile/scene_needs.hpp"
 
 namespace photile {

@@ -3,7 +3,6 @@
 
 #include <set>
 #include <string>
-#include <vector>
 
 #include "photile/image.hpp"
 #include "photile/light_mix.hpp"

@@ -3,8 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <span>
-#include <utility>
 
 #include "image/light_change.hpp"
 #include "image/light_records.hpp"

@@ -1,7 +1,6 @@
 // Two pictures, beside one another and layer by layer.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,5 +1,4 @@
 #include <new>
-#include <utility>
 
 #include "image/picture_file.hpp"
 #include "photile/errors.hpp"

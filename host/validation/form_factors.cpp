@@ -1,6 +1,5 @@
 #include "validation/form_factors.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>

@@ -1,7 +1,6 @@
 // Light that diffuse surfaces reflect.
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 

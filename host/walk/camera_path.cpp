@@ -2,17 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "json_object.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "walk/interpolation.hpp"
 
 namespace photile::walk {
