@@ -145,7 +145,7 @@ def _write_gltf(path, specular):
 
 
 def write(folder):
-    folder.mkdir(exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     _write_obj(folder / "cornell-box.obj")
     _write_gltf(folder / "cornell-box.gltf", specular=False)
     _write_gltf(folder / "cornell-box-specular.gltf", specular=True)

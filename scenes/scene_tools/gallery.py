@@ -136,6 +136,6 @@ SCENES = {"glass-sphere": glass_sphere, "metal-ring": metal_ring, "glossy-floor"
 
 
 def write(folder):
-    folder.mkdir(exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     for name, scene in SCENES.items():
         scene(folder / f"{name}.gltf")

@@ -223,7 +223,7 @@ def _door_and_skirting(room):
 
 
 def write(folder):
-    folder.mkdir(exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     for name, make in TEXTURES.items():
         write_png(folder / name, make())
     room = Room()
