@@ -50,9 +50,10 @@ Scene plate_under(IntensityDistribution lamp, float height, const glm::vec3& x_a
 
 TEST_CASE("photons of a measured lamp go where its intensity says, in every cell of its grid",
           "[intensity]") {
-  // Bilinear between zeros and peaks, turned about two axes.
+  // Bilinear between zeros and peaks, turned about two axes, and not its own mirror image.
   const IntensityDistribution lamp = distribution(4, 180, 6, [](double p, double a) {
-    return (p == 0 || p == 180 ? 5 : 10) + 9 * std::cos(2 * a * pi / 180) * std::sin(p * pi / 180);
+    return (p == 0 || p == 180 ? 5 : 10) +
+           9 * std::cos((2 * a - 50) * pi / 180) * std::sin(p * pi / 180);
   });
   Scene scene = plate(diffuse(glm::vec3(0.0f)), 1.0f);
   Light light = point_light("lamp", glm::vec3(0.0f));
