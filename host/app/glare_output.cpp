@@ -1,5 +1,6 @@
 #include "app/glare_output.hpp"
 
+#include <memory>
 #include <string>
 
 #include "image/glare.hpp"

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/number_format.hpp"
 #include "app/output_files.hpp"
 #include "app/render_options.hpp"
 #include "app/signals.hpp"
