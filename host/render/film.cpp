@@ -2,8 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include <glm/gtc/constants.hpp>
-
+#include "render/reflected_radiance.hpp"
 #include "render/sparse_film.hpp"
 
 namespace photile {
@@ -11,14 +10,12 @@ namespace {
 
 void add_hits(LightLayers::Layer& layer, std::size_t light, std::size_t light_count,
               const PrimaryHits& hits, const Estimates& estimates, float sample_weight) {
-  const bool glossy = !estimates.radiance.empty();
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-    const glm::vec3& irradiance = estimates.irradiance[hit * light_count + light];
-    const glm::vec3 radiance =
-        glossy ? estimates.radiance[hit * light_count + light]
-               : hits.diffuse_albedo[hit] * glm::one_over_pi<float>() * irradiance;
-    layer.radiance[hits.pixel[hit]] += hits.throughput[hit] * radiance;
-    layer.illuminance[hits.pixel[hit]] += sample_weight * static_cast<float>(luminance(irradiance));
+    const std::size_t index = hit * light_count + light;
+    layer.radiance[hits.pixel[hit]] +=
+        hits.throughput[hit] * reflected_radiance(hits, hit, estimates, index);
+    layer.illuminance[hits.pixel[hit]] +=
+        sample_weight * static_cast<float>(luminance(estimates.irradiance[index]));
   }
 }
 

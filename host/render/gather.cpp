@@ -55,6 +55,7 @@ PrimaryHitBatch GatherHits::trace(const RayScene& rays, const PrimaryHitParamete
 RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress) {
+  refuse_final_gather(parameters);
   RenderParameters of_sensors = parameters;
   of_sensors.film = film_of(sensors, gathering, parameters.film.seed);
   RenderResult result = render_hits(scene, GatherHits(scene, sensors, gathering.response), devices,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "photile/errors.hpp"
 #include "trace/reflected_hits.hpp"
 #include "trace/sensor_hits.hpp"
 
@@ -61,8 +62,15 @@ PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParamete
   return batch;
 }
 
+void refuse_final_gather(const RenderParameters& parameters) {
+  if (parameters.final_gather_rays > 0) {
+    throw UsageError("final gathering is for pictures; leave it out where sensors measure");
+  }
+}
+
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress) {
+  refuse_final_gather(parameters);
   RenderParameters one_row = parameters;
   one_row.film = film_of(sensors, 1, parameters.film.seed);
   return render_hits(scene, SensorHits(sensors), devices, one_row, progress);

@@ -90,6 +90,9 @@ class GatherHits : public HitSource {
   trace::LightSampler lamps_;
 };
 
+/// Errors: UsageError where final gathering is asked for: sensors leave no direct light to rays.
+void refuse_final_gather(const RenderParameters& parameters);
+
 /// `render` and `trace_paths` for any hits.
 RenderResult render_hits(const Scene& scene, const HitSource& hits, std::span<Device> devices,
                          const RenderParameters& parameters, Progress& progress);

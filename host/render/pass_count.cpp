@@ -37,8 +37,10 @@ int automatic_passes(const RayScene& rays, const PhotonTracerParameters& paramet
   if (parameters.emitted_photons <= 10 * few) return 1;  // fits wherever a scene does
   PhotonTracerParameters sample = parameters;
   sample.emitted_photons = few;
+  const PhotonTracerResult traced = trace_photons(rays, sample);
   const double stored_per_path =
-      static_cast<double>(trace_photons(rays, sample).photons.size()) / static_cast<double>(few);
+      static_cast<double>(traced.photons.size() + traced.caustics.size()) /
+      static_cast<double>(few);
   const std::uint64_t memory = installed_host_bytes();
   const int passes = passes_within(parameters.emitted_photons, stored_per_path,
                                    bytes_per_stored_photon(rays.needs()), memory);

@@ -6,6 +6,7 @@
 #include "reference/path_estimate.hpp"
 #include "render/film.hpp"
 #include "render/hit_source.hpp"
+#include "render/path_numbers.hpp"
 #include "render/render_costs.hpp"
 
 namespace photile {
@@ -13,25 +14,6 @@ namespace {
 
 /// Paths traced at a time: little enough to stay in memory and to show progress.
 constexpr std::int64_t paths_per_batch = std::int64_t{1} << 18;
-
-/// Numbers for the paths of a batch that do not depend on how the picture is split into batches:
-/// the order of a pixel's own hits does not.
-std::vector<std::uint64_t> path_numbers(const PrimaryHits& hits, const PrimaryHitParameters& film,
-                                        int first_row, int last_row) {
-  const std::uint32_t first_pixel = static_cast<std::uint32_t>(first_row * film.width);
-  std::vector<std::uint32_t> sample(
-      static_cast<std::size_t>(last_row - first_row) * static_cast<std::size_t>(film.width),
-      static_cast<std::uint32_t>(film.pass));
-  std::vector<std::uint64_t> number;
-  number.reserve(hits.size());
-  for (const std::uint32_t pixel : hits.pixel) {
-    std::uint32_t& next = sample[pixel - first_pixel];
-    number.push_back(std::uint64_t{pixel} * static_cast<std::uint64_t>(film.samples_per_pixel) +
-                     next);
-    next += static_cast<std::uint32_t>(film.passes);
-  }
-  return number;
-}
 
 StageStatistics stage(const char* name, const StageCost& cost,
                       std::vector<std::pair<std::string, double>> figures = {}) {
@@ -49,6 +31,7 @@ PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source
   const reference::PathEstimator estimator(rays, parameters.seed);
 
   PrimaryHitParameters film = parameters;
+  film.direct_rays = 0;  // paths find that light themselves
   const std::int64_t row_samples = std::int64_t{film.width} * film.samples_per_pixel;
   film.passes = static_cast<int>(
       std::clamp<std::int64_t>(row_samples / paths_per_batch, 1, film.samples_per_pixel));

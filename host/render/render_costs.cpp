@@ -1,6 +1,7 @@
 #include "render/render_costs.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace photile {
 namespace {
@@ -24,8 +25,8 @@ void StageCost::add(double more_seconds, std::uint64_t more_host_bytes,
 }
 
 void RenderCosts::start_picture() {
-  hits = estimate = film = {};
-  rays = hit_count = 0;
+  hits = gather = estimate = film = {};
+  rays = gather_rays = hit_count = 0;
 }
 
 RunStatistics RenderCosts::statistics() const {
@@ -50,13 +51,19 @@ RunStatistics RenderCosts::statistics() const {
              {"largest map", number(largest_map)},
              {"kernel compilation seconds", compile_seconds}}),
       stage("primary hits", hits,
-            {{"rays", number(rays)}, {"rays per second", number(rays) / hits.seconds}}),
-      stage("radiance estimate", estimate,
-            {{"hits", number(hit_count)},
-             {"microseconds per hit", 1e6 * estimate.seconds / std::max(1.0, number(hit_count))}}),
-      stage("film", film)};
-  auto& figures = stages[6].figures;
-  figures.insert(figures.end(), shares.begin(), shares.end());
+            {{"rays", number(rays)}, {"rays per second", number(rays) / hits.seconds}})};
+  if (gather_rays > 0) {
+    stages.push_back(stage("final gather", gather,
+                           {{"rays", number(gather_rays)},
+                            {"rays per second", number(gather_rays) / gather.seconds},
+                            {"caustic photons", number(caustic_photons)}}));
+  }
+  std::vector<std::pair<std::string, double>> estimate_figures{
+      {"hits", number(hit_count)},
+      {"microseconds per hit", 1e6 * estimate.seconds / std::max(1.0, number(hit_count))}};
+  estimate_figures.insert(estimate_figures.end(), shares.begin(), shares.end());
+  stages.push_back(stage("radiance estimate", estimate, std::move(estimate_figures)));
+  stages.push_back(stage("film", film));
   return stages;
 }
 

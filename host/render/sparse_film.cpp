@@ -4,9 +4,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <glm/gtc/constants.hpp>
 #include <span>
 #include <vector>
+
+#include "render/reflected_radiance.hpp"
 
 namespace photile {
 namespace {
@@ -76,14 +77,9 @@ void add_row(const LightLayers::Row& row, std::size_t x, PixelSums& sums) {
 
 void add_hit(const PrimaryHits& hits, std::size_t hit, const Estimates& estimates,
              float sample_weight, PixelSums& sums) {
-  const bool glossy = !estimates.radiance.empty();
   for (std::uint64_t i = estimates.first[hit]; i < estimates.first[hit + 1]; ++i) {
-    const glm::vec3& irradiance = estimates.irradiance[i];
-    const glm::vec3 radiance =
-        glossy ? estimates.radiance[i]
-               : hits.diffuse_albedo[hit] * glm::one_over_pi<float>() * irradiance;
-    sums.add(estimates.light[i], hits.throughput[hit] * radiance,
-             sample_weight * static_cast<float>(luminance(irradiance)));
+    sums.add(estimates.light[i], hits.throughput[hit] * reflected_radiance(hits, hit, estimates, i),
+             sample_weight * static_cast<float>(luminance(estimates.irradiance[i])));
   }
 }
 

@@ -64,11 +64,12 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
   };
   for (int depth = 0;; ++depth) {
     const bool seen_directly = setup.reflections_only && straight;
+    const bool sees_lamps = setup.emitted_radiance != nullptr && !seen_directly;
     ++record.rays;
     const auto met =
         next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, holes);
     if (!met) {
-      if (seen_directly) return;
+      if (!sees_lamps) return;
       for (const DistantLight& light : *setup.distant) {
         const glm::vec3 radiance = light.radiance(ray.direction);
         if (radiance == glm::vec3(0.0f)) continue;
@@ -79,7 +80,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
       return;
     }
     const SurfacePoint& point = *met;
-    if (emits(scene, point) && !seen_directly) {
+    if (emits(scene, point) && sees_lamps) {
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
       const float weight = other ? weight_against(other->lamps.density(start, point)) : 1.0f;
       record.emission.push_back({ray.pixel, light,

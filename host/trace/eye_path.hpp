@@ -46,9 +46,11 @@ struct EyeSetup {
   const RayScene::Impl* rays;
   const Camera* camera;  ///< null where rays do not start at one
   const PrimaryHitParameters* parameters;
-  const std::vector<glm::vec3>* emitted_radiance;  ///< per light, of white texels
-  const std::vector<DistantLight>* distant;        ///< what rays that leave the scene see
-  const DirectRays* direct;                        ///< null where photons bring all light
+  /// Per light, of white texels, and what rays that leave the scene see. Both null where rays look
+  /// for surfaces alone.
+  const std::vector<glm::vec3>* emitted_radiance;
+  const std::vector<DistantLight>* distant;
+  const DirectRays* direct;  ///< null where photons bring all light
   /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.
   bool reflections_only = false;
 };

@@ -41,9 +41,10 @@ std::vector<T> gather(const std::vector<EyeHit>& hits, const std::vector<std::ui
   return values;
 }
 
-PrimaryHits sorted(const std::vector<EyeHit>& hits, const Box& box, bool glossy,
-                   std::span<const std::uint32_t> map_of) {
-  const std::vector<std::uint32_t> order = sorted_order(hits, box, map_of);
+}  // namespace
+
+PrimaryHits in_order(const std::vector<EyeHit>& hits, const std::vector<std::uint32_t>& order,
+                     bool glossy) {
   PrimaryHits result;
   result.position = gather(hits, order, &EyeHit::position);
   result.sided_triangle = gather(hits, order, &EyeHit::sided_triangle);
@@ -57,8 +58,6 @@ PrimaryHits sorted(const std::vector<EyeHit>& hits, const Box& box, bool glossy,
   return result;
 }
 
-}  // namespace
-
 PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
                          std::span<const std::uint32_t> map_of) {
   EyeRecord all = concatenate(rows);
@@ -70,7 +69,8 @@ PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
   batch.emission.insert(batch.emission.end(), all.direct.begin(), all.direct.end());
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
-  batch.hits = sorted(all.hits, rays.impl().bounds, rays.needs().glossy, map_of);
+  const auto order = sorted_order(all.hits, rays.impl().bounds, map_of);
+  batch.hits = in_order(all.hits, order, rays.needs().glossy);
   return batch;
 }
 

@@ -11,6 +11,12 @@
 
 namespace photile::trace {
 
+/// Hits as PrimaryHits has them.
+///   order   of the result: indices into `hits`
+///   glossy  whether they know their lobes
+PrimaryHits in_order(const std::vector<EyeHit>& hits, const std::vector<std::uint32_t>& order,
+                     bool glossy);
+
 /// The hits of all rows in the order that PrimaryHits asks for, and the emission by layer in place
 /// of light. Does not depend on how samples are split into rows.
 ///   map_of   as in trace_primary_hits

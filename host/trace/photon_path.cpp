@@ -16,11 +16,11 @@ double luminance_of(const glm::vec3& flux) { return luminance(glm::dvec3(flux));
 
 /// One photon of the density that is estimated at this point.
 void store(const PathSetup& setup, const SurfacePoint& point, const glm::vec3& direction,
-           const glm::vec3& flux, PathRecord& record) {
-  record.position.push_back(point.position);
-  record.flux.push_back(flux);
-  if (setup.keep_incoming) record.incoming.push_back(-direction);
-  record.sided_triangle.push_back(point.sided_triangle());
+           const glm::vec3& flux, PhotonRun& run) {
+  run.position.push_back(point.position);
+  run.flux.push_back(flux);
+  if (setup.keep_incoming) run.incoming.push_back(-direction);
+  run.sided_triangle.push_back(point.sided_triangle());
 }
 
 /// Flux after the interaction, black where the path ends. From `roulette_start` on, a path survives
@@ -42,6 +42,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
   std::uint32_t holes = 0;
   bool straight = true;  // but for panes and holes, which looking at lamps sees through
+  bool specular = true;  // scattered by mirrors and glass alone, if at all
 
   for (int bounce = 1;;) {
     const auto hit = setup.rays->intersect(origin, direction);
@@ -54,7 +55,10 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     // In holes as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a hole is near.
     if (opaque && (setup.parameters->store_direct || !straight)) {
-      store(setup, point, direction, flux, record);
+      store(setup, point, direction, flux, record.photons);
+    }
+    if (opaque && setup.parameters->keep_caustics && specular && !straight) {
+      store(setup, point, direction, flux, record.caustics);
     }
     if (passes_hole(scene, point, random, Purpose::photon_holes, holes)) {
       origin = point.origin_towards(direction);
@@ -74,6 +78,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     record.absorbed += luminance_of(flux) - luminance_of(left);
     straight =
         straight && !opaque && scattered->direction == direction && material_of(scene, point).thin;
+    specular = specular && !opaque;
     flux = left;
     direction = scattered->direction;
     origin = point.origin_towards(direction);

@@ -1,6 +1,7 @@
 // One photon's path from its light to its end.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -11,12 +12,20 @@
 
 namespace photile::trace {
 
-/// What a run of paths of one light left, in the order path, bounce. Arrays as in Photons.
-struct PathRecord {
+/// Photons of one light in the order path, bounce. Arrays as in Photons.
+struct PhotonRun {
   std::vector<glm::vec3> position;
   std::vector<glm::vec3> flux;
   std::vector<glm::vec3> incoming;  ///< empty unless `keep_incoming`
   std::vector<std::uint32_t> sided_triangle;
+
+  std::size_t size() const { return position.size(); }
+};
+
+/// What a run of paths of one light left.
+struct PathRecord {
+  PhotonRun photons;
+  PhotonRun caustics;   ///< empty unless PhotonTracerParameters::keep_caustics
   double escaped = 0;   ///< luminance that left the scene
   double absorbed = 0;  ///< luminance that surfaces, or the bound on path length, took
 };

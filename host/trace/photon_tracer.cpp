@@ -19,6 +19,7 @@ namespace photile {
 namespace {
 
 using trace::PathRecord;
+using trace::PhotonRun;
 
 /// Paths of one light that one task traces.
 struct Chunk {
@@ -86,9 +87,10 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
       trace::trace_photon_path(setup, before + path, records[c]);
     // Only what is stored: a path is the same whether its light is in a group or not.
     if (const auto share = static_cast<float>(shares[chunk.light]); share != 1.0f)
-      for (glm::vec3& flux : records[c].flux) flux *= share;
+      for (PhotonRun* run : {&records[c].photons, &records[c].caustics})
+        for (glm::vec3& flux : run->flux) flux *= share;
 
-    const std::uint64_t so_far = stored += records[c].position.size();
+    const std::uint64_t so_far = stored += records[c].photons.size();
     if (so_far > limits::max_stored_photons)
       throw UsageError("emitted photons: " + std::to_string(parameters.emitted_photons) +
                        " leave more than " + std::to_string(limits::max_stored_photons) +
@@ -98,18 +100,35 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
   return records;
 }
 
-/// One array of all records in chunk order. The records' own are freed on the way.
+/// One array of a run of all records, in chunk order. The records' own are freed on the way.
 template <class T>
-std::vector<T> concatenate(std::vector<PathRecord>& records, std::vector<T> PathRecord::*array) {
+std::vector<T> concatenate(std::vector<PathRecord>& records, PhotonRun PathRecord::*run,
+                           std::vector<T> PhotonRun::*array) {
   std::vector<std::size_t> first(records.size() + 1, 0);
   for (std::size_t r = 0; r < records.size(); ++r)
-    first[r + 1] = first[r] + (records[r].*array).size();
+    first[r + 1] = first[r] + (records[r].*run.*array).size();
   std::vector<T> all(first.back());
   tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t r) {
-    const std::vector<T> part = std::move(records[r].*array);
+    const std::vector<T> part = std::move(records[r].*run.*array);
     std::copy(part.begin(), part.end(), all.begin() + static_cast<std::ptrdiff_t>(first[r]));
   });
   return all;
+}
+
+/// The photons of a run of all records. The records' own are freed on the way.
+///   groups   null where photons do not tell lights apart
+Photons photons_of(std::vector<PathRecord>& records, PhotonRun PathRecord::*run,
+                   const std::vector<Chunk>& chunks, const LightGroups* groups,
+                   std::size_t sided_triangle_count) {
+  Photons photons;
+  for (std::size_t c = 0; c < chunks.size() && groups != nullptr; ++c)
+    photons.light.insert(photons.light.end(), (records[c].*run).size(),
+                         static_cast<std::uint16_t>(groups->group_of[chunks[c].light]));
+  photons.position = concatenate(records, run, &PhotonRun::position);
+  photons.flux = concatenate(records, run, &PhotonRun::flux);
+  photons.incoming = concatenate(records, run, &PhotonRun::incoming);
+  photons.sided_triangle = concatenate(records, run, &PhotonRun::sided_triangle);
+  return sort_by_sided_triangle(std::move(photons), sided_triangle_count);
 }
 
 }  // namespace
@@ -123,39 +142,34 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   const std::size_t light_count = scene.lights.size();
 
   PhotonTracerResult result;
-  Photons& photons = result.photons;
-  photons.emitted_per_light =
+  const std::vector<std::uint64_t> paths_per_light =
       photons_per_light(scene, parameters.emitted_photons, parameters.quota);
-  const std::vector<Chunk> chunks = chunks_of(photons.emitted_per_light);
+  const std::vector<Chunk> chunks = chunks_of(paths_per_light);
 
   std::uint64_t paths = 0;
-  for (const std::uint64_t count : photons.emitted_per_light) paths += count;
+  for (const std::uint64_t count : paths_per_light) paths += count;
   progress.begin("trace photons", paths, "paths");
   const LightGroups groups = light_groups_of(scene);
-  std::vector<PathRecord> records =
-      trace_chunks(ray_scene, parameters, chunks, photons.emitted_per_light, groups.share,
-                   needs.glossy, progress);
+  std::vector<PathRecord> records = trace_chunks(ray_scene, parameters, chunks, paths_per_light,
+                                                 groups.share, needs.glossy, progress);
 
   result.stored_per_light.assign(light_count, 0);
   result.escaped_flux_per_light.assign(light_count, 0.0);
   result.absorbed_flux_per_light.assign(light_count, 0.0);
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     const std::uint32_t light = chunks[c].light;
-    result.stored_per_light[light] += records[c].position.size();
+    result.stored_per_light[light] += records[c].photons.size();
     result.escaped_flux_per_light[light] += records[c].escaped;
     result.absorbed_flux_per_light[light] += records[c].absorbed;
   }
-  photons.position = concatenate(records, &PathRecord::position);
-  photons.flux = concatenate(records, &PathRecord::flux);
-  photons.incoming = concatenate(records, &PathRecord::incoming);
-  photons.sided_triangle = concatenate(records, &PathRecord::sided_triangle);
-  if (needs.several_lights()) {
-    photons.light.reserve(photons.size());
-    for (std::size_t light = 0; light < light_count; ++light)
-      photons.light.insert(photons.light.end(), result.stored_per_light[light],
-                           static_cast<std::uint16_t>(groups.group_of[light]));
+  const LightGroups* several = needs.several_lights() ? &groups : nullptr;
+  const std::size_t sided_triangles = 2 * scene.triangle_count();
+  result.photons = photons_of(records, &PathRecord::photons, chunks, several, sided_triangles);
+  result.photons.emitted_per_light = paths_per_light;
+  if (parameters.keep_caustics) {
+    result.caustics = photons_of(records, &PathRecord::caustics, chunks, several, sided_triangles);
+    result.caustics.emitted_per_light = paths_per_light;
   }
-  photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
   progress.end();
   result.seconds = stopwatch.seconds();
   return result;

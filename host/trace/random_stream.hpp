@@ -1,6 +1,7 @@
 // The random numbers of one path: a slice of Philox's counter space that no other path touches.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "trace/philox.hpp"
@@ -20,7 +21,8 @@ enum class Purpose : std::uint32_t {
   eye_holes,
   photon_holes,
   path_holes,
-  direct_light
+  direct_light,
+  gather_direction
 };
 
 /// Four independent random words.
@@ -35,6 +37,13 @@ class RandomBlock {
     return static_cast<double>(bits >> 11) * 0x1p-53;
   }
   bool bit(int word) const { return words_[word] >> 31; }
+
+  /// The same block but for one word: its uniform() is `number`, in [0, 1), to 2^-24.
+  RandomBlock with(int word, double number) const {
+    RandomBlock block = *this;
+    block.words_[word] = static_cast<std::uint32_t>(std::min(number * 0x1p32, 0x1p32 - 1));
+    return block;
+  }
 
   /// A block whose uniform_double(0) is `uniform`, in [0, 1), to 2^-53.
   static RandomBlock of(double uniform) {

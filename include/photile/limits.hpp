@@ -14,8 +14,9 @@ inline constexpr std::uint64_t max_stored_photons = 0xFFFF'FFFEull;
 inline constexpr std::uint64_t max_emitted_photons = 10'000'000'000ull;
 /// Each traces a sample of every pixel at least.
 inline constexpr int max_passes = 65'536;
-inline constexpr int max_neighbours = 1'000'000;  ///< k
-inline constexpr int max_direct_rays = 4096;      ///< looks at lamps from a hit
+inline constexpr int max_neighbours = 1'000'000;    ///< k
+inline constexpr int max_direct_rays = 4096;        ///< looks at lamps from a hit
+inline constexpr int max_final_gather_rays = 4096;  ///< from a hit; each has its random numbers
 
 // Neighbour groups
 /// 4 GB of members; a radius as large as the scene would fill any memory.

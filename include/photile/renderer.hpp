@@ -39,10 +39,20 @@ struct RenderParameters {
   AreaMode area_used() const { return maps == MapMode::naive ? AreaMode::disc : area; }
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
   PrimaryHitParameters film;
-  /// Without those that film.direct_rays replaces.
+  /// > 0: light from other surfaces is gathered by so many rays from each hit, which look photons
+  /// up where they end; at the hit itself only caustics are (docs/final-gathering.md). 0 = all
+  /// light is looked up at the hit.
+  int final_gather_rays = 0;
+  /// Final gathering has no photons for direct light.
+  int direct_rays_used() const {
+    return final_gather_rays > 0 && film.direct_rays == 0 ? defaults::direct_rays
+                                                          : film.direct_rays;
+  }
+  /// Without those that film.direct_rays replaces; where rays gather, those see direct light, too.
   PhotonTracerParameters photons_used() const {
     PhotonTracerParameters used = photons;
-    used.store_direct = film.direct_rays == 0;
+    used.store_direct = film.direct_rays == 0 || final_gather_rays > 0;
+    used.keep_caustics = final_gather_rays > 0;
     return used;
   }
   /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is

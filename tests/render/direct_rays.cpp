@@ -72,7 +72,6 @@ void check_room(const Material& floor, double delta) {
     parameters.radius = 0.15;
     const Means own(render(scene, camera, test::device(), parameters).layers);
     PrimaryHitParameters film = parameters.film;
-    film.direct_rays = 0;
     film.samples_per_pixel = 1024;
     truth = Means(trace_paths(scene, camera, film).layers);
     for (std::size_t layer = 0; layer < 2; ++layer) {
@@ -172,6 +171,15 @@ TEST_CASE("direct rays: layers are the same whatever the powers") {
       render(scene, above(2.6, 2.2, 2.0, 0.4), test::device(), parameters).layers;
   CHECK(dim.layers[0].radiance == bright.layers[0].radiance);
   CHECK(dim.layers[0].illuminance == bright.layers[0].illuminance);
+}
+
+TEST_CASE("direct rays: paths find direct light themselves") {
+  const Scene scene = test::furnished_room();
+  PrimaryHitParameters film = by_rays(2).film;
+  const Means with(trace_paths(scene, above(2.6, 2.2, 2.0, 0.4), film).layers);
+  film.direct_rays = 0;
+  CHECK(with.radiance ==
+        Means(trace_paths(scene, above(2.6, 2.2, 2.0, 0.4), film).layers).radiance);
 }
 
 TEST_CASE("direct rays: more looks than the limit are refused") {

@@ -48,6 +48,18 @@ TEST_CASE("two sub-devices render the bits of one device") {
   CHECK(result.device_shares[0] + result.device_shares[1] == Approx(1));
 }
 
+TEST_CASE("two sub-devices gather the bits of one device") {
+  Scene scene = room(true);
+  scene.materials[1] = test::mirror(glm::vec3(0.9f));  // caustics have maps of their own
+  RenderParameters gathering = parameters();
+  gathering.final_gather_rays = 2;
+  gathering.photons.emitted_photons = 100'000;
+  const auto expected = render(scene, test::room_camera(), test::device(), gathering);
+  std::vector<Device> devices = halves();
+  CHECK(test::same_bits(render(scene, test::room_camera(), devices, gathering).layers,
+                        expected.layers));
+}
+
 TEST_CASE("every strategy estimates the bits of one device on two") {
   // One light: a tile then adds its photons in another order than a hit by itself.
   const Scene scene = test::closed_box(test::diffuse(glm::vec3(0.6f)), 3);

@@ -1,0 +1,55 @@
+#include "render/map_estimators.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "estimate/map_order.hpp"
+#include "render/neighbour_choice.hpp"
+
+namespace photile {
+namespace {
+
+/// The k that hits choose from; just one unless they are to have their own.
+std::vector<int> levels_of(int least, int neighbours) {
+  return least > 0 ? neighbour_levels(std::min(least, neighbours), neighbours)
+                   : std::vector{neighbours};
+}
+
+}  // namespace
+
+MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene,
+                             std::vector<PhotonMaps> maps, int neighbours,
+                             const RenderParameters& parameters,
+                             const std::shared_ptr<const SurfaceIndex>& surface,
+                             std::span<const double> layer_powers)
+    : maps_(std::move(maps)),
+      levels_(levels_of(parameters.least_neighbours, neighbours)),
+      layer_powers_(layer_powers) {
+  for (const int level : levels_) {
+    estimators_.emplace_back(devices, maps_, scene,
+                             EstimateParameters{level, 0, parameters.tuning, parameters.neighbours,
+                                                parameters.area, parameters.kernel, surface});
+  }
+}
+
+Estimates MapEstimators::estimate(const PrimaryHits& hits) {
+  std::vector<std::uint32_t> maps = hits.sided_triangle;
+  if (!map_of().empty()) {
+    for (std::uint32_t& map : maps) map = map_of()[map];
+  }
+  // Hits may have the order of other maps. Devices share runs of hits, which they cut between maps.
+  const std::vector<std::uint32_t> order = estimate::order_by_map(maps);
+  return order.empty() ? estimate_in_order(hits)
+                       : estimate::restored(estimate_in_order(estimate::reordered(hits, 0, order)),
+                                            order, layer_powers_.size());
+}
+
+Estimates MapEstimators::estimate_in_order(const PrimaryHits& hits) {
+  std::vector<Estimates> by_level;
+  for (DeviceEstimators& one : estimators_) by_level.push_back(one.estimate(hits));
+  return by_level.size() == 1
+             ? std::move(by_level.front())
+             : estimates_of_least_error(std::move(by_level), levels_, layer_powers_);
+}
+
+}  // namespace photile

@@ -1,0 +1,46 @@
+// Photon maps of a pass on every device, and the estimates made with them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "photile/renderer.hpp"
+#include "photile/surface_index.hpp"
+#include "render/device_estimators.hpp"
+
+namespace photile {
+
+class MapEstimators {
+ public:
+  /// References are kept.
+  ///   maps           the same on each device
+  ///   neighbours     k, or the most that a hit has where it has its own
+  ///   surface        where areas are clipped, else null
+  ///   layer_powers   by which hits choose their own k
+  /// Errors: as Estimator.
+  MapEstimators(std::span<Device> devices, const Scene& scene, std::vector<PhotonMaps> maps,
+                int neighbours, const RenderParameters& parameters,
+                const std::shared_ptr<const SurfaceIndex>& surface,
+                std::span<const double> layer_powers);
+
+  /// Of hits in any order. Errors: as DeviceEstimators.
+  Estimates estimate(const PrimaryHits& hits);
+
+  /// Per sided triangle, as PhotonMaps has it: the order of hits.
+  std::span<const std::uint32_t> map_of() const { return maps_.front().map_of(); }
+
+  /// Each device's part of all hits so far.
+  std::vector<double> shares() const { return estimators_.back().shares(); }
+
+ private:
+  Estimates estimate_in_order(const PrimaryHits& hits);
+
+  std::vector<PhotonMaps> maps_;  ///< on each device
+  std::vector<int> levels_;       ///< of k
+  std::span<const double> layer_powers_;
+  std::vector<DeviceEstimators> estimators_;  ///< of each level; they keep references to the maps
+};
+
+}  // namespace photile

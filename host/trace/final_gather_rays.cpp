@@ -1,0 +1,126 @@
+#include "trace/final_gather_rays.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "trace/eye_path.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/hit_batch.hpp"
+#include "trace/hit_order.hpp"
+#include "trace/hit_point.hpp"
+#include "trace/opaque_bsdf.hpp"
+#include "trace/scatter.hpp"
+
+namespace photile::trace {
+namespace {
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t hits_per_task = 16;
+
+/// Blocks of random numbers that the direction of a ray takes.
+enum DirectionBlock : std::uint32_t { lobe_block, place_block, stratum_block };
+
+/// What a task's rays found.
+struct TaskRays {
+  std::vector<std::size_t> count;  ///< of each primary hit: rays that ended on a surface
+  std::vector<LightWeights> weight;
+  EyeRecord record;
+};
+
+/// All rays of one primary hit.
+class FinalGatherer {
+ public:
+  FinalGatherer(const EyeSetup& setup, const FinalGatherParameters& parameters,
+                const PrimaryHits& hits, std::size_t hit)
+      : setup_(setup),
+        parameters_(parameters),
+        point_(point_of(*setup.rays->scene, hits, hit)),
+        bsdf_(*setup.rays->scene, point_, arrival_of(hits, hit, point_)) {
+    // Hits that are seen directly, where reflections alone are looked at.
+    if (hits.diffuse_albedo[hit] == glm::vec3(0.0f)) bsdf_.drop_diffuse();
+  }
+
+  void trace(std::uint64_t number, TaskRays& found) const {
+    const Receiver receiver(point_, bsdf_);
+    std::size_t count = 0;
+    for (int ray = 0; ray < parameters_.rays; ++ray) {
+      // A stream for each, apart from the primary ray's, which is 0.
+      const RandomStream random(parameters_.seed, number, static_cast<std::uint32_t>(ray) + 1);
+      const auto direction = receiver.sample(random.block(Purpose::gather_direction, lobe_block),
+                                             place_of(ray, random));
+      if (!direction) continue;
+      const float density = receiver.density(*direction);
+      if (!(density > 0.0f)) continue;
+      const std::size_t before = found.record.hits.size();
+      follow_eye_ray(setup_, {point_.origin_towards(*direction), *direction, glm::vec3(1.0f), 0},
+                     random, found.record);
+      if (found.record.hits.size() == before) continue;
+      const float share = 1.0f / (density * static_cast<float>(parameters_.rays));
+      found.weight.push_back(receiver.weights(*direction) *
+                             (share * found.record.hits.back().throughput));
+      ++count;
+    }
+    found.count.push_back(count);
+  }
+
+ private:
+  /// Numbers for a direction, stratified over the hit's rays.
+  RandomBlock place_of(int ray, const RandomStream& random) const {
+    const RandomBlock within = random.block(Purpose::gather_direction, stratum_block);
+    const glm::dvec2 place =
+        stratified(ray, parameters_.rays, within.uniform_double(0), within.uniform_double(2));
+    return random.block(Purpose::gather_direction, place_block)
+        .with(direction_word, place.x)
+        .with(direction_word + 1, place.y);
+  }
+
+  const EyeSetup& setup_;
+  const FinalGatherParameters& parameters_;
+  SurfacePoint point_;
+  OpaqueBsdf bsdf_;
+};
+
+/// The rays of all tasks, in their order; the tasks' own are freed on the way.
+FinalGatherRays join(const RayScene& rays, std::vector<TaskRays>& tasks,
+                     std::span<const std::uint32_t> map_of) {
+  FinalGatherRays result;
+  result.first.push_back(0);
+  std::vector<EyeHit> ends;
+  for (TaskRays& task : tasks) {
+    for (const std::size_t count : task.count) result.first.push_back(result.first.back() + count);
+    result.weight.insert(result.weight.end(), task.weight.begin(), task.weight.end());
+    ends.insert(ends.end(), task.record.hits.begin(), task.record.hits.end());
+    result.traced += task.record.rays;
+    task = {};
+  }
+  const std::vector<std::uint32_t> order = sorted_order(ends, rays.impl().bounds, map_of);
+  result.ends = in_order(ends, order, rays.needs().glossy);
+  result.end.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    result.end[order[i]] = static_cast<std::uint32_t>(i);
+  }
+  return result;
+}
+
+}  // namespace
+
+FinalGatherRays trace_final_gather(const RayScene& rays, const PrimaryHits& hits, std::size_t first,
+                                   std::size_t count, std::span<const std::uint64_t> number,
+                                   const FinalGatherParameters& parameters,
+                                   std::span<const std::uint32_t> map_of) {
+  PrimaryHitParameters specular;
+  specular.max_specular_depth = parameters.max_specular_depth;
+  const EyeSetup setup{&rays.impl(), nullptr, &specular, nullptr, nullptr, nullptr};
+  std::vector<TaskRays> tasks((count + hits_per_task - 1) / hits_per_task);
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
+    const FlushDenormals flush_denormals;
+    const std::size_t last = std::min(count, (task + 1) * hits_per_task);
+    for (std::size_t i = task * hits_per_task; i < last; ++i) {
+      FinalGatherer(setup, parameters, hits, first + i).trace(number[first + i], tasks[task]);
+    }
+  });
+  return join(rays, tasks, map_of);
+}
+
+}  // namespace photile::trace
