@@ -62,7 +62,8 @@ void add_quality_options(CLI::App& command, QualityTarget& target) {
                           ->type_name("TIME")
                           ->transform(duration())
                           ->group("Quality");
-  for (const char* chosen : {"--neighbours", "--samples", "--radius"}) {
+  // The model of error and time knows nothing of --final-gather.
+  for (const char* chosen : {"--neighbours", "--samples", "--radius", "--final-gather"}) {
     error->excludes(chosen);
     time->excludes(chosen);
   }

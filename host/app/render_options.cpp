@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "app/added_light_options.hpp"
+#include "app/direct_options.hpp"
 #include "app/quality_options.hpp"
 #include "app/scene_options.hpp"
 #include "app/validators.hpp"
@@ -80,23 +81,6 @@ void add_view_group(CLI::App& command, RenderOptions& options) {
       ->transform(count_between(1, limits::max_samples_per_pixel))
       ->capture_default_str()
       ->group("Picture");
-}
-
-void add_direct_group(CLI::App& command, RenderOptions& options) {
-  command
-      .add_option("--direct", options.direct,
-                  "what brings the light straight from lamps; rays: sharp shadows")
-      ->type_name("")
-      ->check(CLI::IsMember({"photons", "rays"}))
-      ->capture_default_str()
-      ->group("Estimate");
-  command
-      .add_option("--direct-rays", options.direct_rays,
-                  "looks at lamps from a hit, with --direct rays")
-      ->type_name("N")
-      ->transform(count_between(1, limits::max_direct_rays))
-      ->capture_default_str()
-      ->group("Estimate");
 }
 
 void add_light_group(CLI::App& command, RenderOptions& options) {
@@ -237,7 +221,7 @@ void add_light_setting_options(CLI::App& command, RenderOptions& options) {
 
 void add_setting_options(CLI::App& command, RenderOptions& options) {
   add_light_setting_options(command, options);
-  add_direct_group(command, options);
+  add_direct_options(command, options);
   add_view_group(command, options);
 }
 
@@ -255,6 +239,7 @@ void add_integrator_option(CLI::App& command, RenderOptions& options) {
 void add_render_options(CLI::App& command, RenderOptions& options) {
   add_picture_options(command, options.pictures);
   add_setting_options(command, options);
+  add_final_gather_option(command, options);
   add_integrator_option(command, options);
   command
       .add_flag("--tuned", options.tuned,
@@ -266,6 +251,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE")
       ->group("Run");
   add_saved_maps_options(command, options);
+  for (const char* without : {"--save-maps", "--load-maps"}) {  // they hold no caustics apart
+    command.get_option("--final-gather")->excludes(command.get_option(without));
+  }
   add_quality_options(command, options.target);
   add_preview_option(command, options, "Output");
   command
@@ -312,7 +300,7 @@ void apply_words(RenderOptions& options) {
   options.parameters.area = value_for(areas, options.area);
   options.parameters.kernel = value_for(kernels, options.kernel);
   options.parameters.structure = value_for(structures, options.structure);
-  options.parameters.film.direct_rays = options.direct == "rays" ? options.direct_rays : 0;
+  apply_direct_words(options);
   options.parameters.photons.seed = options.parameters.film.seed;
   options.device.use_program_cache = !options.no_cache;
   for (const auto& text : options.lights) options.light_changes.push_back(LightChange::parse(text));

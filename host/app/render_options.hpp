@@ -35,6 +35,7 @@ struct RenderOptions {
   std::string area;                ///< "disc" or "clipped"
   std::string kernel;              ///< "constant", "cone" or "epanechnikov"
   std::string direct = "photons";  ///< or "rays": what brings the light straight from lamps
+  bool own_direct = false;         ///< given by the user
   int direct_rays = defaults::direct_rays;
   std::string structure;              ///< "uniform-grid", ...
   QualityTarget target;               ///< settings are chosen to meet it
@@ -77,7 +78,7 @@ void add_integrator_option(CLI::App& command, RenderOptions& options);
 
 /// Sets what `options` holds as words: the integrator, the quota, the maps, the structure, the
 /// area, the light changes and the cache. Errors: UsageError for a light change that is not
-/// understood; CLI11 has checked the other words.
+/// understood, and for --final-gather with --direct photons; CLI11 has checked the other words.
 void apply_words(RenderOptions& options);
 
 /// Errors: UsageError that names an option which was given to `command` although the path tracer

@@ -71,7 +71,8 @@ json parameters_json(const RunRecord& record) {
                    {"angle_degrees", parameters.angle_degrees},
                    {"area", name_of(parameters.area_used())},
                    {"kernel", name_of(parameters.kernel)},
-                   {"direct_rays", parameters.film.direct_rays},
+                   {"direct_rays", parameters.direct_rays_used()},
+                   {"final_gather_rays", parameters.final_gather_rays},
                    {"maps", name_of(parameters.maps)},
                    {"photons_per_cell", parameters.photons_per_cell},
                    {"passes", record.passes}});
@@ -90,7 +91,8 @@ void set_photon_attributes(std::map<std::string, std::string>& attributes,
   attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
   attributes["photile.area"] = name_of(parameters.area_used());
   attributes["photile.kernel"] = name_of(parameters.kernel);
-  attributes["photile.direct_rays"] = std::to_string(parameters.film.direct_rays);
+  attributes["photile.direct_rays"] = std::to_string(parameters.direct_rays_used());
+  attributes["photile.final_gather_rays"] = std::to_string(parameters.final_gather_rays);
   attributes["photile.maps"] = name_of(parameters.maps);
   attributes["photile.passes"] = std::to_string(record.passes);
   attributes["photile.device"] = devices_text(record.devices);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/direct_options.hpp"
 #include "app/number_format.hpp"
 #include "app/output_files.hpp"
 #include "app/render_options.hpp"
@@ -169,6 +170,7 @@ void add_trade_command(CLI::App& photile) {
       ->capture_default_str()
       ->excludes(reference);
   add_setting_options(*command, options->render);
+  add_final_gather_option(*command, options->render);
   command->callback([options] { run_trade(*options); });
 }
 

@@ -31,6 +31,7 @@ constexpr std::array series{Series{"photons and neighbours", "#0072b2"},
                             Series{"area", "#882255"},
                             Series{"kernel", "#332288"},
                             Series{"direct rays", "#aa4499"},
+                            Series{"final gather", "#117733"},
                             Series{"maps", "#d55e00"},
                             Series{"structure", "#999999"}};
 

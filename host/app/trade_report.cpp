@@ -27,7 +27,10 @@ std::string settings_text(const TradePoint& point) {
     text += fmt::format(" --photons-per-cell {}", parameters.photons_per_cell);
   }
   if (point.varied == "area") text += fmt::format(" --area {}", name_of(parameters.area));
-  if (parameters.film.direct_rays > 0) {
+  if (parameters.final_gather_rays > 0) {
+    text += fmt::format(" --final-gather {} --direct-rays {}", parameters.final_gather_rays,
+                        parameters.direct_rays_used());
+  } else if (parameters.film.direct_rays > 0) {
     text += fmt::format(" --direct rays --direct-rays {}", parameters.film.direct_rays);
   }
   if (point.varied == "kernel") text += fmt::format(" --kernel {}", name_of(parameters.kernel));
@@ -71,7 +74,8 @@ nlohmann::ordered_json trade_json(std::span<const TradePoint> points) {
                     {"photons_per_cell", p.parameters.photons_per_cell},
                     {"area", name_of(p.parameters.area_used())},
                     {"kernel", name_of(p.parameters.kernel)},
-                    {"direct_rays", p.parameters.film.direct_rays},
+                    {"direct_rays", p.parameters.direct_rays_used()},
+                    {"final_gather_rays", p.parameters.final_gather_rays},
                     {"maps", name_of(p.parameters.maps)},
                     {"structure", name_of(p.parameters.structure)},
                     {"samples", p.parameters.film.samples_per_pixel},

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/direct_options.hpp"
 #include "app/frame_record.hpp"
 #include "app/output_files.hpp"
 #include "app/render_options.hpp"
@@ -278,6 +279,7 @@ void add_walk_command(CLI::App& photile) {
       ->capture_default_str()
       ->group("Motion");
   add_setting_options(*command, options->render);
+  add_final_gather_option(*command, options->render);
   command->callback([options] { run_walk(*options); });
 }
 

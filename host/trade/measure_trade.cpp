@@ -12,7 +12,8 @@ namespace {
 
 /// Stages of render() that a further frame repeats.
 bool is_of_frame(const std::string& stage) {
-  return stage == "primary hits" || stage == "radiance estimate" || stage == "film";
+  return stage == "primary hits" || stage == "final gather" || stage == "radiance estimate" ||
+         stage == "film";
 }
 
 std::uint64_t programs_built(std::span<const Device> devices) {
@@ -91,6 +92,8 @@ class Trade {
     vary("cell", axes_.photons_per_cell, [](auto& p, float count) { p.photons_per_cell = count; });
     vary("area", axes_.areas, [](auto& p, AreaMode area) { p.area = area; });
     vary("direct rays", axes_.direct_rays, [](auto& p, int looks) { p.film.direct_rays = looks; });
+    vary("final gather", axes_.final_gather_rays,
+         [](auto& p, int rays) { p.final_gather_rays = rays; });
     vary("kernel", axes_.kernels, [](auto& p, DensityKernel kernel) { p.kernel = kernel; });
     vary("maps", axes_.maps, [](auto& p, MapMode mode) { p.maps = mode; });
     vary("structure", axes_.structures, [](auto& p, MapStructure s) { p.structure = s; });

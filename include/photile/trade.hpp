@@ -29,6 +29,7 @@ struct TradeAxes {
   std::vector<AreaMode> areas;           ///< disc has dark borders
   std::vector<DensityKernel> kernels;    ///< other noise and blur at the same k
   std::vector<int> direct_rays;          ///< light straight from lamps not by photons
+  std::vector<int> final_gather_rays;    ///< photons looked up where rays from the hits end
   std::vector<MapMode> maps;             ///< naive has dark edges
   std::vector<MapStructure> structures;  ///< same picture, other time
 
