@@ -2,6 +2,7 @@
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -51,11 +52,18 @@ struct Means {
   }
 };
 
-/// A closed cube of one metre whose walls all emit and reflect, the same everywhere.
-Scene furnace(const Material& wall) {
-  Scene scene = test::closed_box(wall);
+/// A closed cube of one metre whose walls all emit and reflect, the same everywhere. The wall at
+/// x = 1 can be a mirror, in which they go on.
+Scene furnace(double albedo, bool has_mirror) {
+  Scene scene = test::closed_box(test::diffuse(glm::vec3(static_cast<float>(albedo))));
+  scene.materials.push_back(test::mirror(glm::vec3(1.0f)));
   scene.lights = {test::area_light("walls")};
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    const auto [a, b, c] = scene.corners(t);
+    if (has_mirror && std::min({a.x, b.x, c.x}) == 1.0f) {
+      scene.triangle_material[t] = 1;
+      continue;
+    }
     scene.triangle_light[t] = 0;
     scene.lights[0].triangles.push_back(t);
   }
@@ -126,16 +134,19 @@ PhotonTracerResult traced(const Scene& scene, bool keep_caustics) {
 
 }  // namespace
 
-TEST_CASE("final gathering: a furnace reads its closed form, in the middle and in a corner") {
-  constexpr double albedo = 0.5, emitted = 1 / (6 * pi);
-  const Scene scene = furnace(test::diffuse(glm::vec3(albedo)));
-  const double place = GENERATE(0.5, 0.1);
+TEST_CASE("final gathering: a furnace reads its closed form, in a corner and with a mirror, too") {
+  const auto [place, has_mirror] =
+      GENERATE(table<double, bool>({{0.5, false}, {0.1, false}, {0.5, true}}));
+  CAPTURE(place, has_mirror);
+  constexpr double albedo = 0.5;
+  const double emitted = 1 / ((has_mirror ? 5 : 6) * pi);
+  const Scene scene = furnace(albedo, has_mirror);
   std::vector<double> lux, radiance;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     RenderParameters parameters = gathering(16, 20'000, seed);
     parameters.film.samples_per_pixel = 16;
     const RenderResult result =
-        render(scene, above(place, place, 0.3, 0.04), test::device(), parameters);
+        render(scene, above(place, place, 0.3, 0.6 * place), test::device(), parameters);
     lux.push_back(Means(result.layers.layers[0]).illuminance);
     radiance.push_back(Means(result.layers.layers[0]).radiance);
   }
