@@ -15,10 +15,6 @@
 namespace photile::groups {
 namespace {
 
-/// Rounding slack of the normal test, so that normals folded by exactly the angle agree although
-/// their vertices were rounded to float.
-constexpr double cosine_slack = 1e-6;
-
 constexpr std::size_t triangles_per_chunk = 256;
 
 /// Members that one neighbour adds to the group of either side.
@@ -86,15 +82,6 @@ void write_groups(const Chunk& chunk, std::uint32_t* members) {
 }
 
 }  // namespace
-
-std::uint32_t agreeing_sides(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
-  // In single precision, as kernels/kdtree/traverse.clh filters: facets of a cylinder may meet the
-  // angle within rounding, and every structure must decide alike.
-  const glm::vec3 u(a), v(b);
-  const float cosine = (u.x * v.x + u.y * v.y) + u.z * v.z;
-  const float least = static_cast<float>(cos_angle - cosine_slack);
-  return (cosine >= least ? equal_sides : 0) | (-cosine >= least ? opposite_sides : 0);
-}
 
 void check(const NeighbourGroupParameters& parameters) {
   if (!(parameters.radius > 0) || !std::isfinite(parameters.radius)) {

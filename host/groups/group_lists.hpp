@@ -14,8 +14,19 @@ namespace photile::groups {
 // the groups of both sides are written: equal sides agree, opposite sides agree.
 inline constexpr std::uint32_t equal_sides = 1, opposite_sides = 2;
 
-/// The normal test of photile::normals_agree for both pairs of sides.
-std::uint32_t agreeing_sides(const glm::dvec3& a, const glm::dvec3& b, double cos_angle);
+/// Rounding slack of the normal test, so that normals folded by exactly the angle agree although
+/// their vertices were rounded to float.
+inline constexpr double cosine_slack = 1e-6;
+
+/// The normal test of photile::normals_agree for both pairs of sides. In single precision, as
+/// kernels/kdtree/traverse.clh filters: facets of a cylinder may meet the angle within rounding,
+/// and every structure must decide alike.
+inline std::uint32_t agreeing_sides(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
+  const glm::vec3 u(a), v(b);
+  const float cosine = (u.x * v.x + u.y * v.y) + u.z * v.z;
+  const float least = static_cast<float>(cos_angle - cosine_slack);
+  return (cosine >= least ? equal_sides : 0) | (-cosine >= least ? opposite_sides : 0);
+}
 
 /// Appends the neighbours of a triangle, ascending.
 using AppendNeighbours =

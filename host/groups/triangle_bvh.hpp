@@ -48,10 +48,13 @@ class TriangleBvh {
   /// Triangles in leaf order: leaf l holds order()[l * leaf_size] and those after it.
   const std::vector<std::uint32_t>& order() const { return order_; }
 
-  /// Calls visit(first, last) for each leaf at most `radius` metres from `box`: positions in
-  /// order().
-  template <class Visit>
-  void for_each_leaf_within(const Box& box, double radius, Visit&& visit) const {
+  /// Nodes from leaf_count() on are the leaves.
+  std::uint32_t leaf_count() const { return leaf_count_; }
+
+  /// Calls visit(first, last), positions in order(), for leaves at most `radius` metres from `box`,
+  /// until it returns true. Nodes that enter(node) denies are left out with all below them.
+  template <class Enter, class Visit>
+  void visit_within(const Box& box, double radius, Enter&& enter, Visit&& visit) const {
     if (order_.empty()) return;
     // Room for the rounding of squared_distance(), a few parts in 10^7.
     const float limit = static_cast<float>(radius * radius * (1 + 1e-5));
@@ -60,15 +63,27 @@ class TriangleBvh {
     stack[depth++] = 1;
     while (depth != 0) {
       const std::uint32_t node = stack[--depth];
-      if (!(squared_distance(boxes_[node], box) <= limit)) continue;
+      if (!enter(node) || !(squared_distance(boxes_[node], box) <= limit)) continue;
       if (node < leaf_count_) {
         stack[depth++] = 2 * node + 1;
         stack[depth++] = 2 * node;
         continue;
       }
       const std::size_t first = std::size_t{node - leaf_count_} * leaf_size;
-      visit(first, std::min(first + leaf_size, order_.size()));
+      if (visit(first, std::min(first + leaf_size, order_.size()))) return;
     }
+  }
+
+  /// Calls visit(first, last) for each leaf at most `radius` metres from `box`: positions in
+  /// order().
+  template <class Visit>
+  void for_each_leaf_within(const Box& box, double radius, Visit&& visit) const {
+    visit_within(
+        box, radius, [](std::uint32_t) { return true; },
+        [&](std::size_t first, std::size_t last) {
+          visit(first, last);
+          return false;
+        });
   }
 
  private:

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "image/pixel_lights.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "photile/scene.hpp"
@@ -79,12 +80,12 @@ Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
   display.width = scene_referred.width;
   display.height = scene_referred.height;
   for (const char* channel : {"R", "G", "B"}) display.add(channel);
-  for (std::size_t pixel = 0; pixel < root.r.size(); ++pixel) {
+  image::for_each_pixel(root.r.size(), [&](std::size_t pixel) {
     const glm::dvec3 rgb = into_display_range(scale * root[pixel]);
     for (int channel = 0; channel < 3; ++channel) {
       display.channels[static_cast<std::size_t>(channel)][pixel] = static_cast<float>(rgb[channel]);
     }
-  }
+  });
   return display;
 }
 

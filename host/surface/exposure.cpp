@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "groups/group_lists.hpp"
-#include "groups/triangle_bvh.hpp"
 
 namespace photile::surface {
 namespace {
@@ -26,6 +26,20 @@ glm::dvec3 sample_point(const Corners& corners, int i) {
   double v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0);
   if (u + v > 1) u = 1 - u, v = 1 - v;
   return (1 - u - v) * corners[0] + u * corners[1] + v * corners[2];
+}
+
+/// Holds a triangle moved from `low` to `high`; rounded outwards.
+groups::Box box_of_prism(const Corners& corners, const glm::dvec3& low, const glm::dvec3& high) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  groups::Box box;
+  for (const glm::dvec3& corner : corners) {
+    for (const glm::dvec3& point : {corner + low, corner + high}) box.extend(glm::vec3(point));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = std::nextafter(box.lower[axis], -infinity);
+    box.upper[axis] = std::nextafter(box.upper[axis], infinity);
+  }
+  return box;
 }
 
 /// The inside of a triangle's projection along `normal`, whichever way it is wound: three planes.
@@ -64,14 +78,14 @@ class Projection {
 
 class ExposureFinder {
  public:
-  ExposureFinder(const SurfaceMesh& mesh, const Sheets& sheets,
+  ExposureFinder(const SurfaceMesh& mesh, const PlaneTree& planes, const Sheets& sheets,
                  const std::vector<std::uint8_t>& lit, double radius, double angle_degrees)
       : mesh_(mesh),
+        planes_(planes),
         sheets_(sheets),
         lit_(lit),
         radius_(radius),
-        cos_angle_(std::cos(glm::radians(angle_degrees))),
-        tree_(mesh.scene) {}
+        cos_angle_(std::cos(glm::radians(angle_degrees))) {}
 
   float exposure_of(std::uint32_t own) const {
     if (is_dark(own)) return 1;
@@ -101,7 +115,6 @@ class ExposureFinder {
 
   /// Whether a side of the triangle that no light reaches looks against `normal`.
   bool faces_in_the_dark(std::uint32_t triangle, const glm::dvec3& normal) const {
-    if (!mesh_.counts(triangle)) return false;
     const std::uint32_t sides = groups::agreeing_sides(mesh_.normal[triangle], -normal, cos_angle_);
     return ((sides & groups::equal_sides) != 0 && is_dark(sided(triangle, 0))) ||
            ((sides & groups::opposite_sides) != 0 && is_dark(sided(triangle, 1)));
@@ -114,43 +127,41 @@ class ExposureFinder {
                                       const glm::dvec3& normal) const {
     std::vector<Projection> covers;
     const Projection outline(own_corners, normal);
-    const auto add = [&](std::uint32_t triangle) {
-      if (!faces_in_the_dark(triangle, normal)) return;
+    // A cover lies within the slab, and so where it covers within the prism over the triangle.
+    const groups::Box prism =
+        box_of_prism(own_corners, -coincident * radius_ * normal, reach * radius_ * normal);
+    planes_.visit_others(triangle_of(own), prism, 0, [&](std::uint32_t triangle) {
+      constexpr bool enough = false;  // all of them are wanted
+      if (!faces_in_the_dark(triangle, normal)) return enough;
       const Corners corners = corners_of(triangle);
-      if (outline.is_apart_from(corners)) return;
+      if (outline.is_apart_from(corners)) return enough;
       double lowest = reach * radius_, highest = 0;
       for (const glm::dvec3& corner : corners) {
         const double height = glm::dot(corner - own_corners[0], normal);
         lowest = std::min(lowest, height);
         highest = std::max(highest, height);
       }
-      if (lowest < -coincident * radius_ || highest >= reach * radius_) return;
+      if (lowest < -coincident * radius_ || highest >= reach * radius_) return enough;
       const Projection cover(corners, normal);
       if (!cover.is_apart_from(own_corners)) covers.push_back(cover);
-    };
-    tree_.for_each_leaf_within(groups::triangle_box(mesh_.scene, triangle_of(own)), reach * radius_,
-                               [&](std::size_t first, std::size_t last) {
-                                 for (std::size_t i = first; i < last; ++i) {
-                                   const std::uint32_t triangle = tree_.order()[i];
-                                   if (triangle != triangle_of(own)) add(triangle);
-                                 }
-                               });
+      return enough;
+    });
     return covers;
   }
 
   const SurfaceMesh& mesh_;
+  const PlaneTree& planes_;
   const Sheets& sheets_;
   const std::vector<std::uint8_t>& lit_;
   double radius_, cos_angle_;
-  groups::TriangleBvh tree_;
 };
 
 }  // namespace
 
-std::vector<float> find_exposure(const SurfaceMesh& mesh, const Sheets& sheets,
-                                 const std::vector<std::uint8_t>& lit, double radius,
-                                 double angle_degrees) {
-  const ExposureFinder finder(mesh, sheets, lit, radius, angle_degrees);
+std::vector<float> find_exposure(const SurfaceMesh& mesh, const PlaneTree& planes,
+                                 const Sheets& sheets, const std::vector<std::uint8_t>& lit,
+                                 double radius, double angle_degrees) {
+  const ExposureFinder finder(mesh, planes, sheets, lit, radius, angle_degrees);
   std::vector<float> exposure(mesh.original.size(), 1.0f);
   tbb::parallel_for(std::size_t{0}, exposure.size(), [&](std::size_t i) {
     const auto s = static_cast<std::uint32_t>(i);

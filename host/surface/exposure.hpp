@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "surface/plane_tree.hpp"
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
 
@@ -14,8 +15,8 @@ namespace photile::surface {
 /// surface faces it on which no photon landed. 1 where that is half of them or more: surface that
 /// is covered in places counts as open, so that it is right where it is.
 ///   lit   per sheet
-std::vector<float> find_exposure(const SurfaceMesh& mesh, const Sheets& sheets,
-                                 const std::vector<std::uint8_t>& lit, double radius,
-                                 double angle_degrees);
+std::vector<float> find_exposure(const SurfaceMesh& mesh, const PlaneTree& planes,
+                                 const Sheets& sheets, const std::vector<std::uint8_t>& lit,
+                                 double radius, double angle_degrees);
 
 }  // namespace photile::surface

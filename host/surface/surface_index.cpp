@@ -8,6 +8,7 @@
 #include "photile/errors.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"
+#include "surface/plane_tree.hpp"
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
 #include "surface/surface_pieces.hpp"
@@ -70,6 +71,7 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& 
   index.angle_degrees = angle_degrees;
   surface::SurfaceMesh mesh(scene);
   const surface::Facets facets = surface::find_facets(mesh, radius);
+  const surface::PlaneTree planes(mesh, facets);
   const surface::Sheets sheets = surface::find_sheets(mesh, radius, angle_degrees);
   index.sheet = sheets.of;
   index.sheets = sheets.count;
@@ -77,10 +79,10 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& 
   tbb::parallel_for(std::size_t{0}, index.normal.size(), [&](std::size_t s) {
     index.normal[s] = glm::vec3(sided_normal(scene, static_cast<std::uint32_t>(s)));
   });
-  index.exposure =
-      surface::find_exposure(mesh, sheets, lit_sheets(index, landed), radius, angle_degrees);
+  index.exposure = surface::find_exposure(mesh, planes, sheets, lit_sheets(index, landed), radius,
+                                          angle_degrees);
   index.facet = facets.of_triangle;
-  const auto pieces = surface::find_pieces(mesh, facets, radius, angle_degrees);
+  const auto pieces = surface::find_pieces(mesh, facets, planes, radius, angle_degrees);
   index.original = std::move(mesh.original);
   surface::SurfaceTree tree = surface::build_surface_tree(pieces);
   index.nodes = std::move(tree.nodes);

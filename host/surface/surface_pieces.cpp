@@ -12,35 +12,28 @@ namespace {
 /// Tells for a triangle whether another plane of similar normal comes near it.
 class NearbyPlanes {
  public:
-  NearbyPlanes(const SurfaceMesh& mesh, const Facets& facets, double radius, double angle_degrees)
+  NearbyPlanes(const SurfaceMesh& mesh, const PlaneTree& planes, double radius,
+               double angle_degrees)
       : mesh_(mesh),
-        facets_(facets),
+        planes_(planes),
         radius_(radius),
         // Rather a triangle too many than one too few where the kernels round.
-        least_cosine_(std::cos(glm::radians(angle_degrees)) - 1e-5),
-        tree_(mesh.scene) {}
+        least_cosine_(std::cos(glm::radians(angle_degrees)) - 1e-5) {}
 
   bool near(std::uint32_t triangle) const {
     bool found = false;
-    tree_.for_each_leaf_within(groups::triangle_box(mesh_.scene, triangle), radius_,
-                               [&](std::size_t first, std::size_t last) {
-                                 for (std::size_t i = first; i < last && !found; ++i) {
-                                   found = sees(triangle, tree_.order()[i]);
-                                 }
-                               });
+    planes_.visit_others(
+        triangle, groups::triangle_box(mesh_.scene, triangle), radius_, [&](std::uint32_t other) {
+          const double cosine = glm::dot(mesh_.normal[triangle], mesh_.normal[other]);
+          return found = !(std::abs(cosine) < least_cosine_);
+        });
     return found;
   }
 
  private:
-  bool sees(std::uint32_t triangle, std::uint32_t other) const {
-    return mesh_.counts(other) && facets_.plane[other] != facets_.plane[triangle] &&
-           !(std::abs(glm::dot(mesh_.normal[triangle], mesh_.normal[other])) < least_cosine_);
-  }
-
   const SurfaceMesh& mesh_;
-  const Facets& facets_;
+  const PlaneTree& planes_;
   double radius_, least_cosine_;
-  groups::TriangleBvh tree_;
 };
 
 SurfacePiece border_piece(const BorderEdge& edge, std::uint32_t facet) {
@@ -56,14 +49,15 @@ SurfacePiece border_piece(const BorderEdge& edge, std::uint32_t facet) {
 
 }  // namespace
 
-std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets, double radius,
+std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets,
+                                      const PlaneTree& planes, double radius,
                                       double angle_degrees) {
-  const NearbyPlanes planes(mesh, facets, radius, angle_degrees);
+  const NearbyPlanes nearby(mesh, planes, radius, angle_degrees);
   std::vector<std::uint8_t> is_piece(mesh.corner.size(), 0);
   tbb::parallel_for(std::size_t{0}, is_piece.size(), [&](std::size_t i) {
     const auto triangle = static_cast<std::uint32_t>(i);
     if (!mesh.counts(triangle)) return;
-    is_piece[i] = facets.of_triangle[i] == PHOTILE_NO_FACET || planes.near(triangle);
+    is_piece[i] = facets.of_triangle[i] == PHOTILE_NO_FACET || nearby.near(triangle);
   });
   std::vector<SurfacePiece> pieces;
   for (const BorderEdge& edge : facets.borders) {

@@ -6,6 +6,7 @@
 
 #include "groups/triangle_bvh.hpp"
 #include "surface/facets.hpp"
+#include "surface/plane_tree.hpp"
 #include "surface/surface_mesh.hpp"
 
 namespace photile::surface {
@@ -21,7 +22,7 @@ struct SurfacePiece {
 /// All border edges, and those triangles that hits must look at: triangles of small
 /// facets, and those within the radius of a triangle in another plane whose normal agrees with
 /// theirs on one side or the other. The middle of a floor is neither.
-std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets, double radius,
-                                      double angle_degrees);
+std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets,
+                                      const PlaneTree& planes, double radius, double angle_degrees);
 
 }  // namespace photile::surface
