@@ -24,11 +24,16 @@ Camera Camera::look_at(const glm::dvec3& position, const glm::dvec3& target,
   return camera;
 }
 
-glm::dvec3 Camera::direction(double x, double y, int width, int height) const {
-  const double half_height = std::tan(0.5 * vertical_field_of_view);
-  const double half_width = half_height * width / height;
-  return glm::normalize(forward + (2.0 * x / width - 1.0) * half_width * right +
-                        (1.0 - 2.0 * y / height) * half_height * up);
+FilmDirections::FilmDirections(const glm::dvec3& forward, const glm::dvec3& right,
+                               const glm::dvec3& up, double half_height, int width, int height)
+    : forward_(forward),
+      half_right_(half_height * width / height * right),
+      half_up_(half_height * up),
+      width_(width),
+      height_(height) {}
+
+FilmDirections Camera::directions(int width, int height) const {
+  return {forward, right, up, std::tan(0.5 * vertical_field_of_view), width, height};
 }
 
 }  // namespace photile

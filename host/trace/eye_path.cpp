@@ -39,17 +39,15 @@ glm::dvec2 stratified(int index, int count, double u1, double u2) {
   return {(index - first + u1) / cells, (first + cells * u2) / count};
 }
 
-EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
-               std::uint32_t pixel, const glm::vec3& throughput) {
-  const scene_io::Reflectance surface = reflectance(scene, point);
-  const ShadingNormals normals = shading_normals(scene, point, direction);
-  return {point.position,
-          point.sided_triangle(),
-          pixel,
-          throughput,
-          surface.albedo,
-          -direction,
-          {surface.f0, surface.alpha, normals.seen, surface.f90, normals.smooth}};
+void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
+                EyeRecord& record) {
+  const scene_io::Reflectance surface = reflectance(*rays.scene, point);
+  record.hits.push_back(
+      {point.position, point.sided_triangle(), ray.pixel, ray.throughput, surface.albedo});
+  if (!rays.needs.glossy) return;
+  const ShadingNormals normals = shading_normals(*rays.scene, point, ray.direction);
+  record.glossy.push_back(
+      {-ray.direction, {surface.f0, surface.alpha, normals.seen, surface.f90, normals.smooth}});
 }
 
 void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
@@ -89,7 +87,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
     }
     if (material_of(scene, point).interaction == Interaction::opaque) {
       if (seen_directly && !material_of(scene, point).glossy()) return;
-      record.hits.push_back(eye_hit(scene, point, ray.direction, ray.pixel, ray.throughput));
+      append_hit(*setup.rays, point, ray, record);
       if (seen_directly) record.hits.back().diffuse_albedo = glm::vec3(0.0f);
       if (setup.direct) add_direct_light(setup, point, ray, seen_directly, random, record);
       return;
@@ -112,10 +110,8 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   const RandomBlock place = random.block(Purpose::film_position, 0);
   const glm::dvec2 offset =
       stratified(sample, film.samples_per_pixel, place.uniform_double(0), place.uniform_double(2));
-  const EyeRay ray{
-      glm::vec3(setup.camera->position),
-      glm::vec3(setup.camera->direction(x + offset.x, y + offset.y, film.width, film.height)),
-      glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), pixel};
+  const EyeRay ray{setup.eye, glm::vec3((*setup.film)(x + offset.x, y + offset.y)),
+                   glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), pixel};
   follow_eye_ray(setup, ray, random, record);
 }
 

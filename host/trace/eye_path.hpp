@@ -15,13 +15,17 @@
 
 namespace photile::trace {
 
-/// One element of PrimaryHits.
+/// What PrimaryHits keeps of each hit.
 struct EyeHit {
   glm::vec3 position;
   std::uint32_t sided_triangle;
   std::uint32_t pixel;
   glm::vec3 throughput;
   glm::vec3 diffuse_albedo;
+};
+
+/// And what more in scenes with a glossy surface.
+struct GlossyEyeHit {
   glm::vec3 outgoing;
   HitLobe lobe;
 };
@@ -29,6 +33,7 @@ struct EyeHit {
 /// What a run of samples saw, in the order pixel, sample.
 struct EyeRecord {
   std::vector<EyeHit> hits;
+  std::vector<GlossyEyeHit> glossy;    ///< one for each hit; empty unless the scene is glossy
   std::vector<SeenEmission> emission;  ///< by light
   std::vector<SeenEmission> direct;    ///< straight from lamps at the hits, by layer
   std::uint64_t rays = 0;
@@ -44,7 +49,8 @@ struct DirectRays {
 /// What all samples of a picture share.
 struct EyeSetup {
   const RayScene::Impl* rays;
-  const Camera* camera;  ///< null where rays do not start at one
+  const FilmDirections* film;  ///< of the camera; null where rays do not start at one
+  glm::vec3 eye;               ///< where they start
   const PrimaryHitParameters* parameters;
   /// Per light, of white texels, and what rays that leave the scene see. Both null where rays look
   /// for surfaces alone.
@@ -59,10 +65,6 @@ struct EyeSetup {
 /// of `count` cells of equal area, as square as their number allows.
 glm::dvec2 stratified(int index, int count, double u1, double u2);
 
-/// What an eye ray of this direction sees at a point of an opaque surface.
-EyeHit eye_hit(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
-               std::uint32_t pixel, const glm::vec3& throughput);
-
 /// A ray on its way to the eye's first opaque surface.
 struct EyeRay {
   glm::vec3 origin;     ///< metres
@@ -70,6 +72,10 @@ struct EyeRay {
   glm::vec3 throughput;
   std::uint32_t pixel;
 };
+
+/// Appends what a ray that meets an opaque surface sees there.
+void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
+                EyeRecord& record);
 
 /// Looking at lamps, as another technique that finds those which a ray meets at once, or through
 /// panes.

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
@@ -81,24 +82,25 @@ class FinalGatherer {
   OpaqueBsdf bsdf_;
 };
 
-/// The rays of all tasks, in their order; the tasks' own are freed on the way.
-FinalGatherRays join(const RayScene& rays, std::vector<TaskRays>& tasks,
+/// The rays of all tasks, in their order.
+FinalGatherRays join(const RayScene& rays, std::vector<TaskRays> tasks,
                      std::span<const std::uint32_t> map_of) {
   FinalGatherRays result;
   result.first.push_back(0);
-  std::vector<EyeHit> ends;
+  std::vector<EyeRecord> records;
+  std::vector<std::uint32_t> first_of{0};  // end of each task
   for (TaskRays& task : tasks) {
     for (const std::size_t count : task.count) result.first.push_back(result.first.back() + count);
     result.weight.insert(result.weight.end(), task.weight.begin(), task.weight.end());
-    ends.insert(ends.end(), task.record.hits.begin(), task.record.hits.end());
     result.traced += task.record.rays;
-    task = {};
+    first_of.push_back(first_of.back() + static_cast<std::uint32_t>(task.record.hits.size()));
+    records.push_back(std::move(task.record));
   }
-  const std::vector<std::uint32_t> order = sorted_order(ends, rays.impl().bounds, map_of);
-  result.ends = in_order(ends, order, rays.needs().glossy);
-  result.end.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    result.end[order[i]] = static_cast<std::uint32_t>(i);
+  const std::vector<HitPlace> places = sorted_places(records, rays.impl().bounds, map_of);
+  result.ends = hits_at(records, places);
+  result.end.resize(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    result.end[first_of[places[i].record] + places[i].index] = static_cast<std::uint32_t>(i);
   }
   return result;
 }
@@ -111,7 +113,13 @@ FinalGatherRays trace_final_gather(const RayScene& rays, const PrimaryHits& hits
                                    std::span<const std::uint32_t> map_of) {
   PrimaryHitParameters specular;
   specular.max_specular_depth = parameters.max_specular_depth;
-  const EyeSetup setup{&rays.impl(), nullptr, &specular, nullptr, nullptr, nullptr};
+  const EyeSetup setup{.rays = &rays.impl(),
+                       .film = nullptr,
+                       .eye = {},
+                       .parameters = &specular,
+                       .emitted_radiance = nullptr,
+                       .distant = nullptr,
+                       .direct = nullptr};
   std::vector<TaskRays> tasks((count + hits_per_task - 1) / hits_per_task);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
     const FlushDenormals flush_denormals;
@@ -120,7 +128,7 @@ FinalGatherRays trace_final_gather(const RayScene& rays, const PrimaryHits& hits
       FinalGatherer(setup, parameters, hits, first + i).trace(number[first + i], tasks[task]);
     }
   });
-  return join(rays, tasks, map_of);
+  return join(rays, std::move(tasks), map_of);
 }
 
 }  // namespace photile::trace

@@ -134,7 +134,13 @@ PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensor
                             std::span<const std::uint32_t> map_of) {
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
   const std::vector<DistantLight> distant = distant_lights(rays.scene());
-  const EyeSetup setup{&rays.impl(), nullptr, &film, &radiance, &distant, nullptr};
+  const EyeSetup setup{.rays = &rays.impl(),
+                       .film = nullptr,
+                       .eye = {},
+                       .parameters = &film,
+                       .emitted_radiance = &radiance,
+                       .distant = &distant,
+                       .direct = nullptr};
   const auto count = static_cast<std::size_t>(last_row - first_row);
   std::vector<EyeRecord> rows(count);
   std::vector<std::vector<SeenEmission>> seen(count);

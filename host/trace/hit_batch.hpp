@@ -8,14 +8,12 @@
 #include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/eye_path.hpp"
+#include "trace/hit_order.hpp"
 
 namespace photile::trace {
 
-/// Hits as PrimaryHits has them.
-///   order   of the result: indices into `hits`
-///   glossy  whether they know their lobes
-PrimaryHits in_order(const std::vector<EyeHit>& hits, const std::vector<std::uint32_t>& order,
-                     bool glossy);
+/// The hits at these places of the records, in the order of the places.
+PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace> places);
 
 /// The hits of all rows in the order that PrimaryHits asks for, and the emission by layer in place
 /// of light. Does not depend on how samples are split into rows.

@@ -28,10 +28,10 @@ std::uint64_t cell(double position, double low, double high) {
 
 struct Key {
   std::uint32_t map;
-  std::uint32_t index;
+  std::uint32_t number;  ///< of the hit, counted through all records
   std::uint64_t code;
   bool operator<(const Key& other) const {
-    return std::tie(map, code, index) < std::tie(other.map, other.code, other.index);
+    return std::tie(map, code, number) < std::tie(other.map, other.code, other.number);
   }
 };
 
@@ -43,18 +43,29 @@ std::uint64_t morton_code(const glm::vec3& position, const Box& box) {
          spread(cell(position.z, box.low.z, box.high.z)) << 2;
 }
 
-std::vector<std::uint32_t> sorted_order(const std::vector<EyeHit>& hits, const Box& box,
-                                        std::span<const std::uint32_t> map_of) {
-  std::vector<Key> keys(hits.size());
-  tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t i) {
-    const std::uint32_t own = hits[i].sided_triangle;
-    keys[i] = {map_of.empty() ? own : map_of[own], static_cast<std::uint32_t>(i),
-               morton_code(hits[i].position, box)};
+std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const Box& box,
+                                    std::span<const std::uint32_t> map_of) {
+  std::vector<std::uint32_t> first{0};
+  for (const EyeRecord& record : records) {
+    first.push_back(first.back() + static_cast<std::uint32_t>(record.hits.size()));
+  }
+  std::vector<Key> keys(first.back());
+  std::vector<std::uint32_t> record_of(first.back());
+  tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t record) {
+    std::uint32_t number = first[record];
+    for (const EyeHit& hit : records[record].hits) {
+      const std::uint32_t own = hit.sided_triangle;
+      keys[number] = {map_of.empty() ? own : map_of[own], number, morton_code(hit.position, box)};
+      record_of[number++] = static_cast<std::uint32_t>(record);
+    }
   });
   tbb::parallel_sort(keys.begin(), keys.end());
-  std::vector<std::uint32_t> order(hits.size());
-  std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.index; });
-  return order;
+  std::vector<HitPlace> places(keys.size());
+  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
+    const std::uint32_t record = record_of[keys[i].number];
+    places[i] = {record, keys[i].number - first[record]};
+  });
+  return places;
 }
 
 }  // namespace photile::trace

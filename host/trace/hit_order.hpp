@@ -14,9 +14,15 @@ namespace photile::trace {
 /// its border.
 std::uint64_t morton_code(const glm::vec3& position, const Box& box);
 
-/// Indices of the hits in the order map, Morton code within `box`, index.
+/// One of the hits of several records.
+struct HitPlace {
+  std::uint32_t record;
+  std::uint32_t index;  ///< into EyeRecord::hits
+};
+
+/// All hits in the order map, Morton code within `box`, place.
 ///   map_of   per sided triangle; empty where a sided triangle is the map itself
-std::vector<std::uint32_t> sorted_order(const std::vector<EyeHit>& hits, const Box& box,
-                                        std::span<const std::uint32_t> map_of);
+std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const Box& box,
+                                    std::span<const std::uint32_t> map_of);
 
 }  // namespace photile::trace

@@ -55,9 +55,15 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
     lamps.emplace(ray_scene.scene());
     direct.emplace(trace::DirectRays{ray_scene, *lamps, parameters.direct_rays});
   }
-  const trace::EyeSetup setup{&ray_scene.impl(), &camera,  &parameters,
-                              &radiance,         &distant, direct ? &*direct : nullptr,
-                              reflections_only};
+  const FilmDirections directions = camera.directions(parameters.width, parameters.height);
+  const trace::EyeSetup setup{.rays = &ray_scene.impl(),
+                              .film = &directions,
+                              .eye = glm::vec3(camera.position),
+                              .parameters = &parameters,
+                              .emitted_radiance = &radiance,
+                              .distant = &distant,
+                              .direct = direct ? &*direct : nullptr,
+                              .reflections_only = reflections_only};
   std::vector<EyeRecord> rows(static_cast<std::size_t>(last_row - first_row));
   tbb::parallel_for(first_row, last_row, [&](int y) {
     const trace::FlushDenormals flush_denormals;

@@ -6,6 +6,7 @@
 
 #include "photile/errors.hpp"
 #include "trace/eye_path.hpp"
+#include "trace/hit_batch.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 
@@ -14,8 +15,8 @@ namespace photile::trace {
 PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
   constexpr double reach = 1e-3;  // metres
   const Scene& scene = rays.scene();
-  const bool glossy = rays.needs().glossy;
-  PrimaryHits hits;
+  EyeRecord record;
+  std::vector<HitPlace> places;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const Sensor& sensor = sensors[i];
     const glm::vec3 down(-sensor.normal);
@@ -27,18 +28,12 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
           "{}: no opaque surface within {} m of the sensor at ({}, {}, {})", scene.source.string(),
           reach, sensor.position.x, sensor.position.y, sensor.position.z));
     }
-    const EyeHit eye = eye_hit(scene, *point, down, static_cast<std::uint32_t>(i), glm::vec3(1.0f));
-    hits.position.push_back(eye.position);
-    hits.sided_triangle.push_back(eye.sided_triangle);
-    hits.pixel.push_back(eye.pixel);
-    hits.throughput.push_back(eye.throughput);
-    hits.diffuse_albedo.push_back(eye.diffuse_albedo);
-    if (glossy) {
-      hits.outgoing.push_back(eye.outgoing);
-      hits.lobe.push_back(eye.lobe);
-    }
+    append_hit(rays.impl(), *point,
+               {glm::vec3(sensor.position), down, glm::vec3(1.0f), static_cast<std::uint32_t>(i)},
+               record);
+    places.push_back({0, static_cast<std::uint32_t>(i)});
   }
-  return hits;
+  return hits_at({&record, 1}, places);
 }
 
 }  // namespace photile::trace
