@@ -23,8 +23,8 @@ std::uint32_t AreaLights::find_or_add(std::uint64_t object, const std::string& o
                                       std::uint32_t material, const Emission& emission,
                                       const LightTraits& traits) {
   if (luminance(glm::max(emission.radiance, glm::dvec3(0.0))) <= 0.0) return none;
-  const auto [entry, inserted] =
-      index_.try_emplace(std::pair(object, material), static_cast<std::uint32_t>(pending_.size()));
+  const auto [entry, inserted] = index_.try_emplace(std::tuple(object, material, emission.texture),
+                                                    static_cast<std::uint32_t>(pending_.size()));
   if (inserted) {
     if (pending_.size() >= limits::max_lights) {
       throw InputError(fmt::format("{}: more than {} lights; join emissive objects",

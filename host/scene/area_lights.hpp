@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "photile/limits.hpp"
@@ -60,7 +60,8 @@ class AreaLights {
 
   Scene& scene_;
   std::vector<Pending> pending_;
-  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> index_;
+  /// By object, material and texture: a primitive without coordinates loses the texture.
+  std::map<std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>, std::uint32_t> index_;
   std::map<std::uint64_t, int> materials_of_object_;
 };
 

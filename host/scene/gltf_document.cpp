@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -133,6 +134,12 @@ double number_member(const tinygltf::Value& object, const std::string& key, doub
   if (!object.Has(key) || !object.Get(key).IsNumber()) return fallback;
   const double value = object.Get(key).GetNumberAsDouble();
   return std::isfinite(value) ? value : fallback;
+}
+
+int integer_member(const tinygltf::Value& object, const std::string& key, int fallback) {
+  constexpr double smallest = std::numeric_limits<int>::min(),
+                   largest = std::numeric_limits<int>::max();
+  return static_cast<int>(std::clamp(number_member(object, key, fallback), smallest, largest));
 }
 
 std::string string_member(const tinygltf::Value& object, const std::string& key) {

@@ -15,6 +15,11 @@ tinygltf::Model read_gltf(ImportContext& context);
 /// A member of a JSON object: a number, or `fallback` when it is absent or no number.
 double number_member(const tinygltf::Value& object, const std::string& key, double fallback);
 
+/// A member of a JSON object: a number as the nearest int towards zero, or `fallback` when it is
+/// absent or no number. No number is beyond the reach of a cast: the largest int names nothing that
+/// a file can hold.
+int integer_member(const tinygltf::Value& object, const std::string& key, int fallback);
+
 /// A member of a JSON object: up to three numbers; missing ones keep those of `fallback`.
 glm::dvec3 vector_member(const tinygltf::Value& object, const std::string& key,
                          const glm::dvec3& fallback);

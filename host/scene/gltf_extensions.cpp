@@ -12,9 +12,10 @@
 namespace photile::scene_io {
 namespace {
 
-constexpr std::array<std::string_view, 10> understood_extensions{
+constexpr std::array<std::string_view, 11> understood_extensions{
     "EXT_lights_area",
     "EXT_lights_ies",
+    "EXT_lights_image_based",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -34,9 +35,7 @@ constexpr std::array<std::string_view, 4> harmless_extensions{
 };
 
 /// What to do about extensions that files of the wild have.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> remedies{{
-    {"EXT_lights_image_based",
-     "its surroundings are dark; give them as a picture with --environment"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> remedies{{
     {"EXT_mesh_gpu_instancing", "its copies are missing; export them as nodes"},
     {"EXT_meshopt_compression", "export without compression of meshes"},
     {"EXT_texture_webp", "save its textures as PNG or JPEG"},

@@ -8,6 +8,8 @@
 #include "scene/gltf_meshes.hpp"
 #include "scene/gltf_nodes.hpp"
 #include "scene/gltf_origin.hpp"
+#include "scene/gltf_size.hpp"
+#include "scene/gltf_surroundings.hpp"
 
 namespace photile::scene_io {
 
@@ -21,11 +23,12 @@ void import_gltf(ImportContext& context) {
   for (const NodeVisit& visit : visits) {
     context.visited_nodes.push_back(static_cast<std::uint32_t>(visit.node));
   }
-  check_triangle_count(model, accessors, visits, context);
+  check_scene_size(model, accessors, visits, context);
   move_to_origin(model, accessors, visits, context);
   add_gltf_cameras(model, visits, context);
   add_gltf_lights(model, accessors, visits, context);
   add_gltf_meshes(model, accessors, visits, coordinates, context);
+  add_gltf_surroundings(model, accessors, context);
 }
 
 }  // namespace photile::scene_io

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -26,6 +27,15 @@ glm::dvec3 rgb_in(const Json& object, const char* key, const glm::dvec3& fallbac
     rgb[static_cast<int>(c)] = object[key][c].get<double>();
   }
   return rgb;
+}
+
+/// The number of a node, mesh or light that `key` names; -1 where it names none. As an int towards
+/// zero, as the importer reads it, and the largest one in place of those beyond.
+int index_in(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number()) return -1;
+  constexpr double largest = std::numeric_limits<int>::max();
+  return static_cast<int>(std::clamp(found->get<double>(), -1.0, largest));
 }
 
 Json array_of(const glm::dvec3& rgb) { return Json::array({rgb.r, rgb.g, rgb.b}); }
@@ -91,17 +101,17 @@ class Document {
   /// The definition of a node's light in an extension, of its own.
   Json& own_definition(const LightSetting& light, const char* extension) {
     Json& lights = json_["extensions"][extension]["lights"];
-    Json& index = node(light)["extensions"][extension]["light"];
+    Json& own = node(light)["extensions"][extension];
+    const int index = index_in(own, "light");
     std::size_t uses = 0;
     for (Json& other : json_["nodes"]) {
       const Json* reference = extension_of(other, extension);
-      if (reference && reference->value("light", -1) == index.get<int>()) ++uses;
+      if (reference && index_in(*reference, "light") == index) ++uses;
     }
-    if (uses > 1) {
-      lights.push_back(Json(lights.at(index.get<std::size_t>())));
-      index = lights.size() - 1;
-    }
-    return lights.at(index.get<std::size_t>());
+    if (uses == 1) return lights.at(static_cast<std::size_t>(index));
+    lights.push_back(Json(lights.at(static_cast<std::size_t>(index))));
+    own["light"] = lights.size() - 1;
+    return lights.back();
   }
 
   static void set_definition(Json& object, const char* strength_key, const LightSetting& light) {
@@ -143,7 +153,7 @@ class Document {
     materials.push_back(Json(materials.at(light.source.material)));
     const std::size_t own = materials.size() - 1;
     for (Json& primitive : own_mesh(node(light))["primitives"]) {
-      if (primitive.value("material", -1) == static_cast<int>(light.source.material)) {
+      if (index_in(primitive, "material") == static_cast<int>(light.source.material)) {
         primitive["material"] = own;
       }
     }
@@ -153,16 +163,14 @@ class Document {
   /// The mesh of a node, of its own.
   Json& own_mesh(Json& owner) {
     Json& meshes = json_["meshes"];
-    const auto mesh = owner.at("mesh").get<std::size_t>();
+    const int mesh = index_in(owner, "mesh");
     const auto uses =
-        std::count_if(json_["nodes"].begin(), json_["nodes"].end(), [&](const Json& other) {
-          return other.contains("mesh") && other["mesh"].get<std::size_t>() == mesh;
-        });
-    if (uses > 1) {
-      meshes.push_back(Json(meshes.at(mesh)));
-      owner["mesh"] = meshes.size() - 1;
-    }
-    return meshes.at(owner["mesh"].get<std::size_t>());
+        std::count_if(json_["nodes"].begin(), json_["nodes"].end(),
+                      [&](const Json& other) { return index_in(other, "mesh") == mesh; });
+    if (uses == 1) return meshes.at(static_cast<std::size_t>(mesh));
+    meshes.push_back(Json(meshes.at(static_cast<std::size_t>(mesh))));
+    owner["mesh"] = meshes.size() - 1;
+    return meshes.back();
   }
 
   void set_surface(const LightSetting& light) {

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <optional>
 
+#include "photile/limits.hpp"
 #include "scene/gltf_document.hpp"
+#include "scene/gltf_pictures.hpp"
+#include "scene/gltf_texture_reference.hpp"
 #include "scene/resource_error.hpp"
 #include "scene/surface_models.hpp"
 #include "scene/texture_store.hpp"
@@ -16,46 +19,6 @@ namespace {
 
 /// From this transmission factor on a surface counts as glass.
 constexpr double glass_transmission = 0.5;
-
-TextureCoordinates coordinates_of(int set, const tinygltf::Value* transform) {
-  TextureCoordinates result;
-  result.set = set;
-  if (transform == nullptr) return result;
-  const glm::dvec3 offset = vector_member(*transform, "offset", glm::dvec3(0.0));
-  const glm::dvec3 scale = vector_member(*transform, "scale", glm::dvec3(1.0));
-  const double angle = number_member(*transform, "rotation", 0.0);
-  // Counter-clockwise as seen in the picture, whose v axis points down.
-  const glm::dmat2 rotation(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
-  result.linear = rotation * glm::dmat2(scale.x, 0.0, 0.0, scale.y);
-  result.offset = {offset.x, offset.y};
-  result.set = static_cast<int>(number_member(*transform, "texCoord", result.set));
-  return result;
-}
-
-/// A texture as a material names it; index -1 where it names none.
-struct TextureReference {
-  int index = -1;
-  TextureCoordinates coordinates;
-};
-
-/// Of a tinygltf::TextureInfo or NormalTextureInfo.
-template <class Info>
-TextureReference reference_of(const Info& info) {
-  return {info.index,
-          coordinates_of(info.texCoord, find_extension(info.extensions, "KHR_texture_transform"))};
-}
-
-/// Of a member of an extension.
-TextureReference reference_of(const tinygltf::Value& extension, const std::string& name) {
-  if (!extension.Has(name) || !extension.Get(name).IsObject()) return {};
-  const tinygltf::Value& info = extension.Get(name);
-  const tinygltf::Value* transform = nullptr;
-  if (info.Has("extensions") && info.Get("extensions").Has("KHR_texture_transform")) {
-    transform = &info.Get("extensions").Get("KHR_texture_transform");
-  }
-  return {static_cast<int>(number_member(info, "index", -1)),
-          coordinates_of(static_cast<int>(number_member(info, "texCoord", 0)), transform)};
-}
 
 class Converter {
  public:
@@ -72,6 +35,8 @@ class Converter {
   MetallicRoughness model_of(const tinygltf::Material& source);
   void set_glass(const tinygltf::Material& source, const MetallicRoughness& model,
                  Material& material);
+  void warn_about_glass(const tinygltf::Material& source, const MetallicRoughness& model,
+                        const tinygltf::Value* volume);
   void set_opaque(const tinygltf::Material& source, MetallicRoughness model, Material& material);
   void set_opacity(const tinygltf::Material& source, bool emits, Material& material);
   void set_normal_map(const tinygltf::Material& source, Material& material);
@@ -97,7 +62,9 @@ MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
   if (const auto* ior = find_extension(source.extensions, "KHR_materials_ior")) {
     // Values between 0 and 1 are not allowed; 0 itself asks for a reflectance of 1.
     const double index = number_member(*ior, "ior", model.index_of_refraction);
-    if (index == 0.0 || index >= 1.0) model.index_of_refraction = index;
+    if (index == 0.0 || index >= 1.0) {
+      model.index_of_refraction = std::min(index, limits::max_index_of_refraction);
+    }
   }
   if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
     model.specular_factor = number_member(*specular, "specularFactor", 1.0);
@@ -110,7 +77,7 @@ MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
 void Converter::set_opaque(const tinygltf::Material& source, MetallicRoughness model,
                            Material& material) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  if (pbr.baseColorTexture.index >= 0 && model.base_color != glm::dvec3(0.0)) {
+  if (reference_of(pbr.baseColorTexture).given() && model.base_color != glm::dvec3(0.0)) {
     material.diffuse_texture = surface_texture(reference_of(pbr.baseColorTexture),
                                                TextureContent::color, "mid grey (0.5)");
     if (material.diffuse_texture == none) model.base_color = glm::dvec3(missing_albedo);
@@ -147,7 +114,9 @@ void Converter::set_opacity(const tinygltf::Material& source, bool emits, Materi
                                           "the alpha factor");
   if (texture != none && context_.scene.textures[texture].opaque()) texture = none;
   const bool mask = source.alphaMode == "MASK";
-  const double cutoff = mask && std::isfinite(source.alphaCutoff) ? source.alphaCutoff : 0.0;
+  // Above 1 nothing is there, however far above.
+  const double cutoff =
+      mask && std::isfinite(source.alphaCutoff) ? std::min(source.alphaCutoff, 2.0) : 0.0;
   if (mask && (cutoff <= 0.0 || (texture == none && double{opacity} >= cutoff))) return;
   if (texture == none && opacity >= 1.0f) return;
   if (emits) {
@@ -164,7 +133,10 @@ void Converter::set_normal_map(const tinygltf::Material& source, Material& mater
   material.normal_texture =
       surface_texture(reference_of(source.normalTexture), TextureContent::data, "no normal map");
   const double scale = source.normalTexture.scale;
-  if (std::isfinite(scale)) material.normal_scale = static_cast<float>(scale);
+  if (std::isfinite(scale)) {
+    material.normal_scale =
+        static_cast<float>(std::clamp(scale, -limits::max_normal_scale, limits::max_normal_scale));
+  }
 }
 
 void Converter::set_glass(const tinygltf::Material& source, const MetallicRoughness& model,
@@ -175,11 +147,28 @@ void Converter::set_glass(const tinygltf::Material& source, const MetallicRoughn
   material.index_of_refraction = static_cast<float>(std::max(model.index_of_refraction, 1.0));
   const auto* volume = find_extension(source.extensions, "KHR_materials_volume");
   material.thin = volume == nullptr || number_member(*volume, "thicknessFactor", 0.0) <= 0.0;
-  if (model.roughness > mirror_roughness && source.pbrMetallicRoughness.roughnessFactor < 1.0) {
-    warn("rough glass is treated as smooth");
+  warn_about_glass(source, model, volume);
+}
+
+/// What a glass asks for and does not get.
+void Converter::warn_about_glass(const tinygltf::Material& source, const MetallicRoughness& model,
+                                 const tinygltf::Value* volume) {
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  // glTF's roughness is 1 where the file does not give any.
+  if (model.roughness > mirror_roughness) {
+    warn(fmt::format("rough glass (roughness {:.3g}) is treated as smooth", model.roughness));
   }
-  if (source.pbrMetallicRoughness.baseColorTexture.index >= 0) {
+  if (reference_of(pbr.metallicRoughnessTexture).given()) {
+    warn("roughness texture of glass is ignored; it is smooth");
+  }
+  if (reference_of(pbr.baseColorTexture).given()) {
     warn("base-colour texture of glass is ignored; its factor is used");
+  }
+  if (find_extension(source.extensions, "KHR_materials_transmission")->Has("transmissionTexture")) {
+    warn("transmission texture is ignored; all of the surface is glass");
+  }
+  if (volume != nullptr && volume->Has("attenuationDistance")) {
+    warn("attenuation inside glass is ignored");
   }
 }
 
@@ -202,21 +191,15 @@ std::uint32_t Converter::load_texture(int texture, TextureContent content) {
       has_wrap(TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)) {
     warn("texture repeats where the file clamps or mirrors it");
   }
-  const tinygltf::Image& image = model_.images[static_cast<std::size_t>(source.source)];
-  const std::string key =
-      fmt::format("image {}{}", source.source, image.name.empty() ? "" : " " + image.name);
-  if (image.bufferView >= 0) {
-    return textures_.from_memory(key, accessors_.view(image.bufferView, key), content);
-  }
-  if (!image.image.empty()) return textures_.from_memory(key, image.image, content);
-  return textures_.from_file(decoded_uri(image.uri), content);
+  return texture_picture(model_, static_cast<std::size_t>(source.source), accessors_, content,
+                         textures_);
 }
 
 /// A texture of the surface; `none` where the material has none or it cannot be used. `substitute`
 /// says what is used then.
 std::uint32_t Converter::surface_texture(const TextureReference& reference, TextureContent content,
                                          const std::string& substitute) {
-  if (reference.index < 0) return none;
+  if (!reference.given()) return none;
   if (shared_ && *shared_ != reference.coordinates) {
     warn("a texture with other coordinates than the first is ignored; " + substitute +
          " is used instead");
@@ -249,7 +232,8 @@ MaterialCoordinates Converter::add(const tinygltf::Material& source, const std::
     set_opaque(source, model, material);
   }
   set_normal_map(source, material);
-  if (source.occlusionTexture.index >= 0) warn("occlusion texture is ignored: light is traced");
+  if (reference_of(source.occlusionTexture).given())
+    warn("occlusion texture is ignored: light is traced");
   const Emission emission = emission_of(source);
   set_opacity(source, emission.radiance != glm::dvec3(0.0), material);
   context_.scene.materials.push_back(std::move(material));
@@ -265,7 +249,8 @@ Emission Converter::emission_of(const tinygltf::Material& source) {
   }
   emission.radiance *= static_cast<double>(context_.options.emissive_scale);
   emission.two_sided = source.doubleSided;
-  if (source.emissiveTexture.index < 0 || emission.radiance == glm::dvec3(0.0)) return emission;
+  if (!reference_of(source.emissiveTexture).given() || emission.radiance == glm::dvec3(0.0))
+    return emission;
   try {
     emission.texture = load_texture(source.emissiveTexture.index, TextureContent::color);
   } catch (const ResourceError& error) {

@@ -5,19 +5,29 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <optional>
 
-#include "photile/limits.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/gltf_panels.hpp"
 #include "scene/gltf_primitives.hpp"
 #include "scene/instance_recorder.hpp"
 #include "scene/light_traits.hpp"
 #include "scene/material_needs.hpp"
+#include "scene/plain_material.hpp"
 
 namespace photile::scene_io {
 namespace {
+
+bool has_normal_map(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) { return material.normal_texture != none; });
+}
+
+/// What the triangles of a primitive are made of.
+struct Surface {
+  std::uint32_t material;
+  Emission emission;
+};
 
 class MeshImporter {
  public:
@@ -29,9 +39,11 @@ class MeshImporter {
         coordinates_(coordinates),
         context_(context),
         needs_(needs_of_materials(context.scene.materials)),
-        builder_(context.scene, {needs_.textures, has_emission_texture(context),
-                                 needs_.glossy || needs_.specular_paths}),
-        instances_(context.scene) {
+        builder_(context.scene,
+                 {needs_.textures, has_emission_texture(context),
+                  needs_.glossy || needs_.specular_paths, has_normal_map(context.scene)}),
+        instances_(context.scene),
+        plain_materials_(context.scene) {
     for (const NodeVisit& visit : visits) ++uses_[mesh_of(visit)];
   }
 
@@ -48,8 +60,13 @@ class MeshImporter {
   }
   void add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
                      std::uint64_t visit_number, const std::string& mesh_name);
-  std::vector<Corner> read_corners(const tinygltf::Primitive& primitive, std::uint32_t material,
-                                   const glm::dmat4& world, const std::string& mesh_name);
+  std::vector<Corner> read_corners(const tinygltf::Primitive& primitive, const glm::dmat4& world,
+                                   const std::string& mesh_name, Surface& surface);
+  std::vector<float> read_attribute(const tinygltf::Primitive& primitive, const std::string& name,
+                                    int components, const std::string& mesh_name) const;
+  std::vector<float> read_coordinates(const tinygltf::Primitive& primitive, int set,
+                                      std::size_t corner_count, const std::string& mesh_name,
+                                      const std::string& what);
   std::uint32_t material_of(const tinygltf::Primitive& primitive, const std::string& use) const;
 
   const tinygltf::Model& model_;
@@ -61,6 +78,7 @@ class MeshImporter {
   InstanceRecorder instances_;
   std::map<int, std::size_t> uses_;  ///< of each mesh
   std::vector<bool> kept_;           ///< triangles of the visit that the scene took
+  PlainMaterials plain_materials_;
   std::uint32_t panel_material_ = none;
 };
 
@@ -123,7 +141,8 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   }
   const std::string use = fmt::format("mesh '{}'", mesh_name);
   const std::uint32_t material = material_of(primitive, use);
-  const std::vector<Corner> corners = read_corners(primitive, material, visit.world, mesh_name);
+  Surface surface{material, context_.emission[material]};
+  const std::vector<Corner> corners = read_corners(primitive, visit.world, mesh_name, surface);
   const std::vector<std::uint32_t> indices =
       read_indices(primitive, corners.size(), use, accessors_, context_);
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0) {
@@ -133,13 +152,12 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   const bool mirrored = glm::determinant(glm::dmat3(visit.world)) < 0.0;
   const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
   const std::uint32_t light = context_.area_lights.find_or_add(
-      visit_number, node.name.empty() ? mesh_name : node.name, material,
-      context_.emission[material],
+      visit_number, node.name.empty() ? mesh_name : node.name, material, surface.emission,
       light_traits(node.extras, node_name(model_, visit.node), context_.warnings));
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
     const std::array<Corner, 3> triangle{corners[mirrored ? c : a], corners[b],
                                          corners[mirrored ? a : c]};
-    kept_.push_back(builder_.add(triangle, material, light));
+    kept_.push_back(builder_.add(triangle, surface.material, light));
   }
 }
 
@@ -154,31 +172,57 @@ std::uint32_t MeshImporter::material_of(const tinygltf::Primitive& primitive,
   return static_cast<std::uint32_t>(primitive.material);
 }
 
+std::vector<float> MeshImporter::read_attribute(const tinygltf::Primitive& primitive,
+                                                const std::string& name, int components,
+                                                const std::string& mesh_name) const {
+  const int accessor = attribute(primitive, name);
+  if (accessor < 0) return {};
+  return accessors_.floats(accessor, components, fmt::format("{} of mesh '{}'", name, mesh_name));
+}
+
+/// TEXCOORD_`set`; empty, with a warning, where the primitive lacks it. `what` says which texture
+/// wants it and what is used instead.
+std::vector<float> MeshImporter::read_coordinates(const tinygltf::Primitive& primitive, int set,
+                                                  std::size_t corner_count,
+                                                  const std::string& mesh_name,
+                                                  const std::string& what) {
+  const std::string name = fmt::format("TEXCOORD_{}", set);
+  std::vector<float> uv = read_attribute(primitive, name, 2, mesh_name);
+  if (uv.size() == 2 * corner_count) return uv;
+  context_.warnings.add("mesh", mesh_name, fmt::format("has no {} for {}", name, what));
+  return {};
+}
+
+/// What `surface` cannot have for lack of coordinates is taken from it.
 std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primitive,
-                                               std::uint32_t material, const glm::dmat4& world,
-                                               const std::string& mesh_name) {
-  const auto read = [&](const std::string& name, int components) {
-    const int accessor = attribute(primitive, name);
-    if (accessor < 0) return std::vector<float>();
-    return accessors_.floats(accessor, components, fmt::format("{} of mesh '{}'", name, mesh_name));
-  };
-  const std::vector<float> positions = read("POSITION", 3);
+                                               const glm::dmat4& world,
+                                               const std::string& mesh_name, Surface& surface) {
+  const std::vector<float> positions = read_attribute(primitive, "POSITION", 3, mesh_name);
   const std::size_t count = positions.size() / 3;
-  const MaterialCoordinates& coordinates = coordinates_[material];
-  const auto read_uv = [&](bool textured, int set) {
-    if (!textured) return std::vector<float>();
-    std::vector<float> uv = read(fmt::format("TEXCOORD_{}", set), 2);
-    if (uv.size() == 2 * count) return uv;
-    context_.warnings.add("mesh", mesh_name, "has no texture coordinates for its texture");
-    return std::vector<float>();
-  };
-  const std::vector<float> uv =
-      read_uv(context_.scene.materials[material].textured(), coordinates.surface.set);
-  const std::vector<float> emission_uv =
-      read_uv(context_.emission[material].texture != none, coordinates.emission.set);
-  std::vector<float> normals;
-  if (needs_.glossy || needs_.specular_paths) normals = read("NORMAL", 3);
+  const MaterialCoordinates& coordinates = coordinates_[surface.material];
+  const Material& material = context_.scene.materials[surface.material];
+  const std::string name = material.name;
+  std::vector<float> uv, emission_uv, normals, tangents;
+  if (needs_.glossy || needs_.specular_paths)
+    normals = read_attribute(primitive, "NORMAL", 3, mesh_name);
   if (normals.size() != 3 * count) normals.clear();
+  if (material.normal_texture != none && !normals.empty()) {
+    tangents = read_attribute(primitive, "TANGENT", 4, mesh_name);
+  }
+  if (tangents.size() != 4 * count) tangents.clear();
+  if (surface.emission.texture != none) {
+    emission_uv = read_coordinates(
+        primitive, coordinates.emission.set, count, mesh_name,
+        fmt::format("the emission of material '{}'; the emissive factor is used alone", name));
+    if (emission_uv.empty()) surface.emission.texture = none;
+  }
+  if (material.textured()) {
+    uv = read_coordinates(
+        primitive, coordinates.surface.set, count, mesh_name,
+        fmt::format("the textures of material '{}'; {} is used instead", name,
+                    material.diffuse_texture == none ? "what its factors say" : "mid grey (0.5)"));
+    if (uv.empty() && count > 0) surface.material = plain_materials_.of(surface.material);
+  }
 
   const glm::dmat3 linear(world);
   // The cofactor matrix is the inverse transpose times the determinant: it needs no division, and
@@ -187,44 +231,26 @@ std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primit
                             glm::cross(linear[0], linear[1]));
   std::vector<Corner> corners(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto vector = [&](const std::vector<float>& values) {
-      return glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+    const auto vector = [&](const std::vector<float>& values, std::size_t width) {
+      const std::size_t first = width * i;
+      return glm::dvec3(values[first], values[first + 1], values[first + 2]);
     };
-    corners[i].position = glm::dvec3(world * glm::dvec4(vector(positions), 1.0));
+    corners[i].position = glm::dvec3(world * glm::dvec4(vector(positions, 3), 1.0));
     const auto mapped = [&](const std::vector<float>& values, const TextureCoordinates& map) {
       return values.empty() ? glm::dvec2(0.0) : map(glm::dvec2(values[2 * i], values[2 * i + 1]));
     };
     corners[i].uv = mapped(uv, coordinates.surface);
     corners[i].emission_uv = mapped(emission_uv, coordinates.emission);
-    if (!normals.empty()) corners[i].normal = cofactor * vector(normals);
+    if (!normals.empty()) corners[i].normal = cofactor * vector(normals, 3);
+    if (tangents.empty()) continue;
+    corners[i].tangent = linear * vector(tangents, 4);
+    // Of a mirrored node the cofactors turn the normal round, and with it the bitangent.
+    corners[i].handedness = double{tangents[4 * i + 3]};
   }
   return corners;
 }
 
 }  // namespace
-
-void check_triangle_count(const tinygltf::Model& model, const AccessorReader& accessors,
-                          const std::vector<NodeVisit>& visits, const ImportContext& context) {
-  std::uint64_t triangles = 0;
-  for (const NodeVisit& visit : visits) {
-    const int mesh = model.nodes[static_cast<std::size_t>(visit.node)].mesh;
-    if (mesh < 0 || static_cast<std::size_t>(mesh) >= model.meshes.size()) continue;
-    for (const tinygltf::Primitive& primitive :
-         model.meshes[static_cast<std::size_t>(mesh)].primitives) {
-      const std::string use = fmt::format("mesh '{}'", name_of_mesh(model, mesh));
-      if (!is_usable(primitive, use, accessors)) continue;
-      const int counted =
-          primitive.indices >= 0 ? primitive.indices : attribute(primitive, "POSITION");
-      const std::uint64_t count = accessors.count(counted, use);
-      const std::uint64_t per_triangle = primitive.mode == TINYGLTF_MODE_TRIANGLES ? 3 : 1;
-      triangles += std::min(count, 3 * limits::max_triangles) / per_triangle;
-      if (triangles > limits::max_triangles) {
-        throw context.error(
-            fmt::format("more than {} triangles; split the scene", limits::max_triangles));
-      }
-    }
-  }
-}
 
 void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accessors,
                      const std::vector<NodeVisit>& visits,

@@ -11,11 +11,6 @@
 
 namespace photile::scene_io {
 
-/// Refuses scenes whose shared meshes multiply beyond the limit, before any is read. Errors:
-/// InputError.
-void check_triangle_count(const tinygltf::Model& model, const AccessorReader& accessors,
-                          const std::vector<NodeVisit>& visits, const ImportContext& context);
-
 /// Adds the triangles of every visited node's mesh to the scene. Morph targets and skins stay in
 /// their rest pose; points and lines are left out; both with a warning. Errors: InputError.
 void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accessors,

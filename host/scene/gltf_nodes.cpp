@@ -44,36 +44,15 @@ std::string scene_list(const tinygltf::Model& model) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The scene that the user names, else the file's default, else the first. There is one at least.
-std::size_t chosen_scene(const tinygltf::Model& model, ImportContext& context) {
-  const std::string& wanted = context.options.scene;
-  if (!wanted.empty()) {
-    for (std::size_t i = 0; i < model.scenes.size(); ++i) {
-      if (model.scenes[i].name == wanted) return i;
-    }
-    for (std::size_t i = 0; i < model.scenes.size(); ++i) {
-      if (std::to_string(i) == wanted) return i;
-    }
-    throw UsageError(fmt::format("{}: no scene '{}'; its scenes are {}",
-                                 context.folder.scene_file().string(), wanted, scene_list(model)));
-  }
-  const int scene = std::max(model.defaultScene, 0);
-  if (static_cast<std::size_t>(scene) >= model.scenes.size()) {
-    throw context.error(
-        fmt::format("the default scene is {}, but there are only {}; pass --scene or export it "
-                    "again",
-                    scene, model.scenes.size()));
-  }
-  if (model.scenes.size() > 1) {
-    context.warnings.add(
-        fmt::format("of {} scenes only scene {} is loaded; --scene takes another: {}",
-                    model.scenes.size(), scene, scene_list(model)));
-  }
-  return static_cast<std::size_t>(scene);
-}
-
 std::vector<int> root_nodes(const tinygltf::Model& model, ImportContext& context) {
-  if (!model.scenes.empty()) return model.scenes[chosen_scene(model, context)].nodes;
+  if (const std::optional<std::size_t> scene = scene_number(model, context)) {
+    if (model.scenes.size() > 1 && context.options.scene.empty()) {
+      context.warnings.add(
+          fmt::format("of {} scenes only scene {} is loaded; --scene takes another: {}",
+                      model.scenes.size(), *scene, scene_list(model)));
+    }
+    return model.scenes[*scene].nodes;
+  }
   if (!context.options.scene.empty()) {
     throw UsageError(
         fmt::format("{}: no scene '{}'; the file has none, only nodes: leave --scene out",
@@ -202,6 +181,30 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
 }
 
 }  // namespace
+
+std::optional<std::size_t> scene_number(const tinygltf::Model& model,
+                                        const ImportContext& context) {
+  if (model.scenes.empty()) return std::nullopt;
+  const std::string& wanted = context.options.scene;
+  if (!wanted.empty()) {
+    for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+      if (model.scenes[i].name == wanted) return i;
+    }
+    for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+      if (std::to_string(i) == wanted) return i;
+    }
+    throw UsageError(fmt::format("{}: no scene '{}'; its scenes are {}",
+                                 context.folder.scene_file().string(), wanted, scene_list(model)));
+  }
+  const int scene = std::max(model.defaultScene, 0);  // else the first
+  if (static_cast<std::size_t>(scene) >= model.scenes.size()) {
+    throw context.error(
+        fmt::format("the default scene is {}, but there are only {}; pass --scene or export it "
+                    "again",
+                    scene, model.scenes.size()));
+  }
+  return static_cast<std::size_t>(scene);
+}
 
 glm::dmat4 local_transform(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());

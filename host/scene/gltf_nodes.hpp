@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct NodeVisit {
 /// what remains of Blender's area lights, are named in a warning. Errors: InputError for cycles,
 /// wrong node numbers and trees beyond the limits; UsageError where there is no such scene.
 std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& context);
+
+/// The scene that visit_nodes visits; nothing where the file has none.
+std::optional<std::size_t> scene_number(const tinygltf::Model& model, const ImportContext& context);
 
 /// Node to parent space: its matrix, or its translation, rotation and scale.
 glm::dmat4 local_transform(const tinygltf::Node& node);

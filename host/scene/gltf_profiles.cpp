@@ -55,7 +55,7 @@ std::uint32_t GltfProfiles::from_extension(double light, const std::string& node
   const std::string uri = string_member(profile, "uri");
   if (uri.empty()) {
     const std::string key = fmt::format("light {} of {}", light, extension_name);
-    const auto view = static_cast<int>(number_member(profile, "bufferView", -1.0));
+    const auto view = integer_member(profile, "bufferView", -1);
     return find_or_read(key, [&] { return accessors_.view(view, key); });
   }
   if (uri.starts_with("data:")) {

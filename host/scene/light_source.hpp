@@ -14,6 +14,7 @@ struct LightSource {
     node,         ///< KHR_lights_punctual or photometric data at a glTF node
     surface,      ///< an emissive material
     panel,        ///< a luminous rectangle or disc at a glTF node
+    picture,      ///< EXT_lights_image_based of the glTF scene
     surroundings  ///< an option, not the file
   };
   Kind kind = Kind::surroundings;

@@ -51,10 +51,15 @@ std::vector<LightSetting> settings_of(const SourcedScene& sourced, const SceneLo
       setting.material = scene.materials[setting.source.material].name;
     }
     setting.textured = light.emission_texture != none;
-    if (setting.source.kind != LightSource::Kind::surroundings && !set_by_option(light, options)) {
+    const bool is_picture = setting.source.kind == LightSource::Kind::picture;
+    const bool by_option =
+        setting.source.kind == LightSource::Kind::surroundings || set_by_option(light, options);
+    if (!is_picture && !by_option) {
       settings.push_back(setting);
     } else if (setting.changed()) {
-      left_out.push_back(fmt::format("{}: comes from an option; set it by --light", light.name));
+      left_out.push_back(
+          fmt::format("{}: {}; set it by --light", light.name,
+                      is_picture ? "its pictures stay as they are" : "comes from an option"));
     }
   }
   return settings;

@@ -27,6 +27,20 @@ std::size_t hash_of(const std::array<std::uint32_t, 3>& words) {
   return static_cast<std::size_t>(hash ^ (hash >> 32));
 }
 
+/// `vector` as a unit vector; zero where it has no direction.
+glm::dvec3 direction_of(const glm::dvec3& vector) {
+  const double length = glm::length(vector);
+  return std::isfinite(length) && length > 0.0 ? vector / length : glm::dvec3(0.0);
+}
+
+/// What turns the normals of the corners to the front. Files whose winding and normals disagree are
+/// common; the winding says which side is the front.
+double sign_of_normals(const std::array<const Corner*, 3>& corners, const glm::dvec3& front) {
+  glm::dvec3 sum(0.0);
+  for (const Corner* corner : corners) sum += direction_of(corner->normal);
+  return glm::dot(sum, front) < 0.0 ? -1.0 : 1.0;
+}
+
 bool comes_before(const glm::vec3& a, const glm::vec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
@@ -116,7 +130,11 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
                                          glm::vec2(sorted[1]->emission_uv),
                                          glm::vec2(sorted[2]->emission_uv)});
   }
-  if (needs_.normals) add_normals(sorted, front_side == 0 ? normal : -normal);
+  if (needs_.normals || needs_.tangents) {
+    const double sign = sign_of_normals(sorted, front_side == 0 ? normal : -normal);
+    if (needs_.normals) add_normals(sorted, sign);
+    if (needs_.tangents) add_tangents(sorted, sign);
+  }
   return true;
 }
 
@@ -131,25 +149,36 @@ bool MeshBuilder::is_duplicate(std::uint32_t triangle) {
                            scene_.front_side[triangle] == scene_.front_side[*first]);
 }
 
-void MeshBuilder::add_normals(const std::array<const Corner*, 3>& sorted, const glm::dvec3& front) {
-  std::array<glm::dvec3, 3> normals{};
-  glm::dvec3 sum(0.0);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double length = glm::length(sorted[i]->normal);
-    if (!std::isfinite(length) || length <= 0.0) continue;
-    normals[i] = sorted[i]->normal / length;
-    sum += normals[i];
-    any_normal_ = true;
-  }
-  // Files whose winding and normals disagree are common; the winding says which side is the front.
-  const double sign = glm::dot(sum, front) < 0.0 ? -1.0 : 1.0;
+void MeshBuilder::add_normals(const std::array<const Corner*, 3>& sorted, double sign) {
   std::array<glm::vec3, 3> stored;
-  for (std::size_t i = 0; i < 3; ++i) stored[i] = glm::vec3(sign * normals[i]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 normal = direction_of(sorted[i]->normal);
+    any_normal_ |= normal != glm::dvec3(0.0);
+    stored[i] = glm::vec3(sign * normal);
+  }
   scene_.corner_normal.push_back(stored);
+}
+
+/// All three or none: between a tangent and none there is nothing to interpolate, nor between two
+/// of opposite hands.
+void MeshBuilder::add_tangents(const std::array<const Corner*, 3>& sorted, double sign) {
+  std::array<glm::vec4, 3> stored{};
+  bool whole = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 tangent = direction_of(sorted[i]->tangent);
+    const double hand = std::copysign(1.0, sign * sorted[i]->handedness);
+    stored[i] = glm::vec4(glm::dvec4(tangent, hand));
+    // Without a normal there is no frame: glTF 2.0, section 3.7.2.1.
+    whole &= tangent != glm::dvec3(0.0) && direction_of(sorted[i]->normal) != glm::dvec3(0.0) &&
+             stored[i].w == stored[0].w;
+  }
+  any_tangent_ |= whole;
+  scene_.corner_tangent.push_back(whole ? stored : std::array<glm::vec4, 3>{});
 }
 
 void MeshBuilder::finish() {
   if (!any_normal_) scene_.corner_normal.clear();
+  if (!any_tangent_) scene_.corner_tangent.clear();
 }
 
 }  // namespace photile::scene_io

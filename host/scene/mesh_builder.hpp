@@ -16,11 +16,13 @@ struct Corner {
   glm::dvec2 uv{0.0};
   glm::dvec3 normal{0.0};  ///< any length; zero when the file has none
   glm::dvec2 emission_uv{0.0};
+  glm::dvec3 tangent{0.0};  ///< any length; zero when the file has none
+  double handedness = 1.0;  ///< its sign is that of the bitangent along normal x tangent
 };
 
 /// Which attributes of corners some material needs.
 struct CornerNeeds {
-  bool uv = false, emission_uv = false, normals = false;
+  bool uv = false, emission_uv = false, normals = false, tangents = false;
 };
 
 /// Appends triangles to a scene. Positions are rounded to float and welded where their bits agree;
@@ -36,7 +38,7 @@ class MeshBuilder {
   /// Errors: InputError beyond a limit.
   bool add(const std::array<Corner, 3>& corners, std::uint32_t material, std::uint32_t light);
 
-  /// Drops normals when the file turned out to have none.
+  /// Drops normals and tangents when the file turned out to have none.
   void finish();
 
  private:
@@ -56,11 +58,12 @@ class MeshBuilder {
 
   std::uint32_t vertex_index(const glm::vec3& position);
   bool is_duplicate(std::uint32_t triangle);
-  void add_normals(const std::array<const Corner*, 3>& sorted, const glm::dvec3& front);
+  void add_normals(const std::array<const Corner*, 3>& sorted, double sign);
+  void add_tangents(const std::array<const Corner*, 3>& sorted, double sign);
 
   Scene& scene_;
   CornerNeeds needs_;
-  bool any_normal_ = false;
+  bool any_normal_ = false, any_tangent_ = false;
   std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, PositionHash> index_of_position_;
   std::unordered_set<std::uint32_t, TriangleHash, TriangleEqual> distinct_;  ///< triangles
 };

@@ -1,9 +1,12 @@
 #include "scene/mtl_materials.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "photile/limits.hpp"
 #include "scene/resource_error.hpp"
 #include "scene/surface_models.hpp"
 
@@ -53,12 +56,18 @@ bool is_glass(const tinyobj::material_t& source) {
   return source.dissolve < 1 && source.ior > 1 && source.alpha_texname.empty();
 }
 
-void set_glass(const tinyobj::material_t& source, Material& material) {
+void set_glass(const tinyobj::material_t& source, Material& material, Warnings& warnings) {
+  // MTL files have an Ns of 0 or 1 where nobody thought of one.
+  if (source.shininess > 1 && source.shininess < mirror_phong_exponent) {
+    warnings.add("material", source.name,
+                 fmt::format("rough glass (Ns {:.4g}) is treated as smooth", source.shininess));
+  }
   material.interaction = Interaction::glass;
   material.specular = glm::vec3(1.0f);
   const bool has_index = std::isfinite(source.ior) && source.ior > 1;
   material.index_of_refraction =
-      static_cast<float>(has_index ? source.ior : default_index_of_refraction);
+      static_cast<float>(has_index ? std::min(source.ior, limits::max_index_of_refraction)
+                                   : default_index_of_refraction);
   // Tf is black where the file does not give it, and black glass would be of no use.
   const glm::vec3 tint = reflectance(source.transmittance);
   material.transmission = tint == glm::vec3(0.0f) ? glm::vec3(1.0f) : tint;
@@ -79,7 +88,7 @@ void set_surface(const tinyobj::material_t& source, Material& material, Warnings
     set_metallic_roughness(model, material);
     return;
   }
-  if (is_glass(source)) return set_glass(source, material);
+  if (is_glass(source)) return set_glass(source, material, warnings);
   const glm::vec3 diffuse = reflectance(source.diffuse), specular = reflectance(source.specular);
   const bool reflective_model = source.illum == 3 || source.illum == 5;
   const bool specular_model = source.illum == 2 || reflective_model;
@@ -178,7 +187,11 @@ void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
   }
   material.normal_texture = texture_or_none(source.normal_texname, TextureContent::data,
                                             "no normal map", material, textures, context);
-  material.normal_scale = static_cast<float>(source.normal_texopt.bump_multiplier);
+  const double scale = source.normal_texopt.bump_multiplier;
+  if (std::isfinite(scale)) {
+    material.normal_scale =
+        static_cast<float>(std::clamp(scale, -limits::max_normal_scale, limits::max_normal_scale));
+  }
   const Emission emission = emission_of(source, textures, context);
   set_opacity(source, emission.radiance != glm::dvec3(0.0), textures, material, context);
   context.scene.materials.push_back(std::move(material));

@@ -15,6 +15,7 @@
 #include "scene/obj_libraries.hpp"
 #include "scene/obj_reader.hpp"
 #include "scene/obj_text.hpp"
+#include "scene/plain_material.hpp"
 #include "scene/polygon_triangulator.hpp"
 #include "scene/resource_error.hpp"
 #include "scene/scene_origin.hpp"
@@ -77,15 +78,27 @@ Corner corner_of(const ObjFile& file, const tinyobj::index_t& index) {
 }
 
 void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
-              MeshBuilder& builder, ImportContext& context) {
+              MeshBuilder& builder, PlainMaterials& plain_materials, ImportContext& context) {
   std::vector<Corner> corners;
   std::vector<glm::dvec3> positions;
+  bool has_coordinates = true;
   for (std::uint64_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
     corners.push_back(corner_of(file, file.corners[c]));
     positions.push_back(corners.back().position);
+    has_coordinates &= file.corners[c].texcoord_index >= 0;
   }
-  const std::uint32_t light = context.area_lights.find_or_add(
-      face.object, file.objects[face.object], material, context.emission[material]);
+  Emission emission = context.emission[material];
+  const Material& wanted = context.scene.materials[material];
+  const bool grey = !has_coordinates && wanted.textured();
+  if (grey || (!has_coordinates && emission.texture != none)) {
+    context.warnings.add("material", wanted.name,
+                         "faces without texture coordinates have its factors, and mid grey (0.5) "
+                         "in place of map_Kd");
+    emission.texture = none;
+  }
+  const std::uint32_t light =
+      context.area_lights.find_or_add(face.object, file.objects[face.object], material, emission);
+  if (grey) material = plain_materials.of(material);
   if (corners.size() == 3) {
     builder.add({corners[0], corners[1], corners[2]}, material, light);
     return;
@@ -156,9 +169,10 @@ void import_obj(ImportContext& context) {
   const SceneNeeds needs = needs_of_materials(context.scene.materials);
   MeshBuilder builder(context.scene, {needs.textures, has_emission_texture(context),
                                       needs.glossy || needs.specular_paths});
+  PlainMaterials plain_materials(context.scene);
   for (const ObjFace& face : file.faces) {
     const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;
-    add_face(file, face, material_index[name], builder, context);
+    add_face(file, face, material_index[name], builder, plain_materials, context);
   }
   builder.finish();
 }

@@ -91,9 +91,9 @@ void add_environment(const EnvironmentMap& map, ContentHash& hash) {
 
 void add_scene(const Scene& scene, ContentHash& hash) {
   const auto& [source, unit, origin, vertices, triangles, front_side, triangle_material,
-               triangle_light, corner_uv, corner_emission_uv, corner_normal, shared_meshes,
-               instances, materials, metallic_roughness, textures, lights, distributions,
-               environments, cameras, report] = scene;
+               triangle_light, corner_uv, corner_emission_uv, corner_normal, corner_tangent,
+               shared_meshes, instances, materials, metallic_roughness, textures, lights,
+               distributions, environments, cameras, report] = scene;
   hash.add(unit);
   hash.add(origin);
   hash.add(vertices);
@@ -104,6 +104,7 @@ void add_scene(const Scene& scene, ContentHash& hash) {
   hash.add(corner_uv);
   hash.add(corner_emission_uv);
   hash.add(corner_normal);
+  hash.add(corner_tangent);
   hash.add(std::uint64_t{materials.size()});
   for (const Material& material : materials) add_material(material, hash);
   hash.add(std::uint64_t{metallic_roughness.size()});

@@ -22,18 +22,6 @@ double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& opt
   return scene.unit == PowerUnit::lumen ? lux : lux / options.lumen_per_watt;
 }
 
-void add_environment_light(const std::string& name, EnvironmentMap map, Scene& scene) {
-  Light light;
-  light.name = name;
-  light.kind = LightKind::environment;
-  double bright = 0;
-  set_light_color(map.integral(), light, bright);
-  light.power = directional_flux(bright, bounding_sphere(scene).radius);
-  light.environment = static_cast<std::uint32_t>(scene.environments.size());
-  scene.environments.push_back(std::move(map));
-  scene.lights.push_back(std::move(light));
-}
-
 void add_picture(const EnvironmentPicture& picture, Scene& scene) {
   RadiancePicture read = read_radiance_picture(picture.file);
   for (glm::vec3& texel : read.texels) texel *= static_cast<float>(picture.scale);
@@ -74,6 +62,18 @@ void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
 }
 
 }  // namespace
+
+void add_environment_light(const std::string& name, EnvironmentMap map, Scene& scene) {
+  Light light;
+  light.name = name;
+  light.kind = LightKind::environment;
+  double bright = 0;
+  set_light_color(map.integral(), light, bright);
+  light.power = directional_flux(bright, bounding_sphere(scene).radius);
+  light.environment = static_cast<std::uint32_t>(scene.environments.size());
+  scene.environments.push_back(std::move(map));
+  scene.lights.push_back(std::move(light));
+}
 
 void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
   if (!options.environment.file.empty()) add_picture(options.environment, scene);

@@ -174,4 +174,18 @@ RadiancePicture decode_radiance(const std::string& name, std::span<const unsigne
   return result;
 }
 
+RadiancePicture decode_rgbd(const std::string& name, std::span<const unsigned char> bytes) {
+  const Texture encoded = decode_texture(name, bytes);
+  RadiancePicture result{encoded.width(), encoded.height(), {}};
+  const glm::vec2 size(encoded.width(), encoded.height());
+  for (int y = 0; y < encoded.height(); ++y) {
+    for (int x = 0; x < encoded.width(); ++x) {
+      const glm::vec2 middle = (glm::vec2(x, y) + 0.5f) / size;  // the texel itself
+      const float alpha = std::max(encoded.sample_data(middle).a, 1.0f / 255.0f);
+      result.texels.push_back(encoded.sample(middle) / alpha);
+    }
+  }
+  return result;
+}
+
 }  // namespace photile::scene_io

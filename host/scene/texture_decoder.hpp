@@ -27,4 +27,9 @@ Texture decode_texture(const std::string& name, std::span<const unsigned char> b
 /// Errors: ResourceError with the reason, also for a picture of integers.
 RadiancePicture decode_radiance(const std::string& name, std::span<const unsigned char> bytes);
 
+/// Decodes a picture in sRGB to linear values; where it has an alpha channel, values up to 255
+/// packed as RGBD: colour / alpha, an alpha of 0 counting as the least there is. Errors:
+/// ResourceError naming the picture and the reason.
+RadiancePicture decode_rgbd(const std::string& name, std::span<const unsigned char> bytes);
+
 }  // namespace photile::scene_io

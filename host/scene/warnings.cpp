@@ -21,12 +21,11 @@ std::string one_line(std::string text) {
 void Warnings::add(const std::string& message) { add("", "", message); }
 
 void Warnings::add(const std::string& kind, const std::string& name, const std::string& message) {
-  auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& candidate) {
-    return candidate.kind == kind && candidate.message == message;
-  });
-  if (entry == entries_.end()) entry = entries_.insert(entries_.end(), {kind, message, {}});
-  if (std::find(entry->names.begin(), entry->names.end(), name) == entry->names.end()) {
-    entry->names.push_back(name);
+  const auto [known, is_new] = index_.try_emplace({kind, message}, entries_.size());
+  if (is_new) entries_.push_back({kind, message, {}, {}});
+  Entry& entry = entries_[known->second];
+  if (entry.names.insert(name).second && entry.first_names.size() < names_listed) {
+    entry.first_names.push_back(name);
   }
 }
 
@@ -38,9 +37,9 @@ std::vector<std::string> Warnings::lines() const {
       continue;
     }
     std::string line = entry.kind;
-    const std::size_t listed = std::min(entry.names.size(), names_listed);
+    const std::size_t listed = entry.first_names.size();
     for (std::size_t i = 0; i < listed; ++i) {
-      line += fmt::format("{} '{}'", i == 0 ? "" : ",", entry.names[i]);
+      line += fmt::format("{} '{}'", i == 0 ? "" : ",", entry.first_names[i]);
     }
     if (entry.names.size() > listed)
       line += fmt::format(" and {} more", entry.names.size() - listed);

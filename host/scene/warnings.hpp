@@ -1,7 +1,11 @@
 // Warnings of an import, gathered so that a hundred materials with one trouble give one line.
 #pragma once
 
+#include <cstddef>
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace photile::scene_io {
@@ -21,9 +25,11 @@ class Warnings {
  private:
   struct Entry {
     std::string kind, message;
-    std::vector<std::string> names;
+    std::vector<std::string> first_names;
+    std::set<std::string> names;
   };
   std::vector<Entry> entries_;
+  std::map<std::pair<std::string, std::string>, std::size_t> index_;  ///< by kind and message
 };
 
 }  // namespace photile::scene_io

@@ -1,26 +1,53 @@
 #include "trace/normal_map.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace photile::trace {
+namespace {
+
+/// Where the red and green of a normal map point to.
+struct TangentFrame {
+  glm::vec3 tangent;  ///< any length, not perpendicular to the normal yet
+  float handedness;   ///< 1 or -1: the bitangent lies along this times front normal x tangent
+};
+
+/// The frame that the file gives.
+std::optional<TangentFrame> frame_of_corners(const Scene& scene, const TriangleHit& where) {
+  if (scene.corner_tangent.empty()) return std::nullopt;
+  const auto& [a, b, c] = scene.corner_tangent[where.triangle];
+  if (a.w == 0.0f) return std::nullopt;
+  const glm::vec4 tangent = (1.0f - where.u - where.v) * a + where.u * b + where.v * c;
+  return TangentFrame{glm::vec3(tangent), a.w};
+}
+
+/// The frame of a triangle in which the texture's u grows and its v falls.
+std::optional<TangentFrame> frame_of_coordinates(const Scene& scene, std::uint32_t triangle) {
+  const auto& uv = scene.corner_uv[triangle];
+  const auto [a, b, c] = scene.corners(triangle);
+  const glm::vec2 du = uv[1] - uv[0], dv = uv[2] - uv[0];
+  const float determinant = du.x * dv.y - du.y * dv.x;
+  if (determinant == 0.0f || !std::isfinite(determinant)) return std::nullopt;
+  const float sign = std::copysign(1.0f, determinant);  // lengths do not count
+  // The winding of (b - a, c - a) is that of side 0, which need not be the front.
+  return TangentFrame{sign * (dv.y * (b - a) - du.y * (c - a)),
+                      scene.front_side[triangle] == 0 ? -sign : sign};
+}
+
+}  // namespace
 
 glm::vec3 mapped_normal(const Scene& scene, const SurfacePoint& point, const glm::vec3& smooth) {
   const Material& material = material_of(scene, point);
-  const auto& uv = scene.corner_uv[point.where.triangle];
-  const auto [a, b, c] = scene.corners(point.where.triangle);
-  const glm::vec2 du = uv[1] - uv[0], dv = uv[2] - uv[0];
-  const float determinant = du.x * dv.y - du.y * dv.x;
-  if (determinant == 0.0f || !std::isfinite(determinant)) return smooth;
-  const float sign = std::copysign(1.0f, determinant);  // lengths do not count
-  const glm::vec3 along_u = sign * (dv.y * (b - a) - du.y * (c - a));
+  std::optional<TangentFrame> frame = frame_of_corners(scene, point.where);
+  if (!frame) frame = frame_of_coordinates(scene, point.where.triangle);
+  if (!frame) return smooth;
   const glm::vec3 front = on_front(scene, point) ? smooth : -smooth;
-  const glm::vec3 tangent = along_u - glm::dot(front, along_u) * front;
+  const glm::vec3 tangent = frame->tangent - glm::dot(front, frame->tangent) * front;
   const float length = glm::length(tangent);
   if (!(length > 0.0f)) return smooth;
-  // The winding of (b - a, c - a) is that of side 0, which need not be the front.
-  const float v_grows = scene.front_side[point.where.triangle] == 0 ? -sign : sign;
-  const glm::vec3 bitangent = v_grows * glm::cross(front, tangent / length);
+  const glm::vec3 bitangent = frame->handedness * glm::cross(front, tangent / length);
 
+  const auto& uv = scene.corner_uv[point.where.triangle];
   const glm::vec2 where = (1.0f - point.where.u - point.where.v) * uv[0] + point.where.u * uv[1] +
                           point.where.v * uv[2];
   const glm::vec3 texel =

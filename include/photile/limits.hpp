@@ -37,9 +37,17 @@ inline constexpr int max_node_depth = 512;
 inline constexpr std::uint64_t max_nodes = 1'000'000;
 inline constexpr std::uint64_t max_node_visits = 10'000'000;  ///< shared children multiply
 inline constexpr int max_json_depth = 256;  ///< recursive parsers overflow the stack
+/// Triangles that a glTF file places beyond those that its buffers can hold, three bytes each:
+/// nodes may repeat a mesh, and meshes share buffers, so that a file of kilobytes could ask for any
+/// memory.
+inline constexpr std::uint64_t max_repeated_triangles = 50'000'000;
 
 /// Elements of a glTF accessor that has no buffer view: zeros that cost a file nothing.
 inline constexpr std::uint64_t max_implicit_elements = 16'000'000;
+
+// Materials
+inline constexpr double max_index_of_refraction = 1e6;  ///< F0 is 1 within rounding
+inline constexpr double max_normal_scale = 1e6;  ///< bumps are walls, which floats have to hold
 
 // Photometric files (LM-63, EULUMDAT): ten times the finest that goniophotometers write
 inline constexpr std::uint64_t max_photometry_bytes = 64ull << 20;
@@ -54,7 +62,8 @@ inline constexpr double max_sun_diameter_degrees = 90;
 // Pictures
 inline constexpr int max_image_side = 16'384;
 inline constexpr std::uint64_t max_image_pixels = 268'435'456;
-inline constexpr int max_image_channels = 1'024;  ///< of a picture in memory
+inline constexpr int max_cube_map_side = max_image_side / 4;  ///< of a face: four of them go round
+inline constexpr int max_image_channels = 1'024;              ///< of a picture in memory
 /// Of an EXR in a single part, which every program reads. OpenEXR compresses blocks of 16 rows of a
 /// part, two for each thread: with more lights they would take as much memory as the picture, and
 /// from 1,024 channels on other programs refuse the file.

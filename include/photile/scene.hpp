@@ -202,6 +202,11 @@ struct Scene {
   /// Shading normals per corner, on the front side; empty when no material is specular, glossy or
   /// has a normal map, or the file has none. A zero vector means "use the geometric normal".
   std::vector<std::array<glm::vec3, 3>> corner_normal;
+  /// Tangents per corner, of normal maps: unit, the direction of the map's red; w is 1 or -1, and
+  /// green lies along w times normal x tangent, with the normal of the front. Empty when no
+  /// material has a normal map, or the file has none. Zero means "as the texture's coordinates
+  /// run".
+  std::vector<std::array<glm::vec4, 3>> corner_tangent;
 
   /// What repeats, for the ray tracing structure alone: every triangle is in the arrays above.
   /// Instances ascend by first_triangle and do not overlap.

@@ -102,6 +102,16 @@ TEST_CASE("info counts what the import dropped, and says so") {
   CHECK_THAT(text.output, Contains("warning: 1 triangles without area are dropped"));
 }
 
+TEST_CASE("info names rough glass, which it treats as smooth") {
+  const FileFolder folder;
+  folder.write("box.mtl", box_mtl() + "newmtl frosted\nillum 7\nNs 80\n");
+  const std::string scene = folder.write(
+      "box.obj", box_obj() + "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nusemtl frosted\nf -3 -2 -1\n");
+  const Outcome text = run_photile({"info", scene});
+  CHECK_THAT(text.output,
+             Contains("warning: material 'frosted': rough glass (Ns 80) is treated as smooth"));
+}
+
 TEST_CASE(
     "info takes the scene of a glTF file that --scene names, and refuses one that is not there") {
   const FileFolder folder;

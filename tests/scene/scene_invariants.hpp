@@ -19,6 +19,7 @@ inline void check_invariants(const Scene& scene) {
   CHECK((scene.corner_uv.empty() || scene.corner_uv.size() == count));
   CHECK((scene.corner_emission_uv.empty() || scene.corner_emission_uv.size() == count));
   CHECK((scene.corner_normal.empty() || scene.corner_normal.size() == count));
+  CHECK((scene.corner_tangent.empty() || scene.corner_tangent.size() == count));
   std::uint64_t bad = 0;
   for (const glm::vec3& vertex : scene.vertices) {
     bad += !std::isfinite(vertex.x + vertex.y + vertex.z);

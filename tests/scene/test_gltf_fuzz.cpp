@@ -71,6 +71,23 @@ json rich_document() {
                                     {{"count", 2},
                                      {"indices", {{"bufferView", 2}, {"componentType", 5123}}},
                                      {"values", {{"bufferView", 0}, {"byteOffset", 12}}}}}});
+  // A normal map along tangents of any direction.
+  document["materials"][0]["normalTexture"] = {{"index", 0}, {"scale", 0.5}};
+  document["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 64}});
+  document["accessors"].push_back(
+      {{"bufferView", 4}, {"componentType", 5126}, {"count", 4}, {"type", "VEC4"}});
+  document["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = 5;
+  return document;
+}
+
+/// The document in surroundings of six times its picture.
+json surrounded_document() {
+  json document = rich_document();
+  document["extensions"]["EXT_lights_image_based"]["lights"] = {
+      {{"intensity", 20},
+       {"rotation", {0, 0.6, 0, 0.8}},
+       {"specularImages", json::array({{0, 0, 0, 0, 0, 0}})}}};
+  document["scenes"][0]["extensions"]["EXT_lights_image_based"]["light"] = 0;
   return document;
 }
 
@@ -148,7 +165,7 @@ TEST_CASE("the document that is damaged below is sound", "[fuzz]") {
   CHECK(scene.triangle_count() == 6);
   CHECK(scene.report.duplicate_triangles == 1);  // the pane's lies on the leaf
   CHECK(scene.report.degenerate_triangles == 1);
-  CHECK(scene.textures.size() == 1);
+  CHECK(scene.textures.size() == 2);  // one picture, as a colour and as normals
   CHECK(scene.lights.size() == 4);
   CHECK(scene.cameras.size() == 1);
 }
@@ -210,37 +227,60 @@ TEST_CASE("a glTF text cut anywhere is refused", "[fuzz]") {
   CHECK(files.loaded == 0);
 }
 
+void damage(json& document, const json::json_pointer& place, std::mt19937& random) {
+  if (!document.contains(place)) return;
+  if (random() % 4 != 0) {
+    document[place] = wild_value(random);
+    return;
+  }
+  json& parent = document[place.parent_pointer()];
+  if (parent.is_object()) {
+    parent.erase(place.back());
+  } else {
+    parent.erase(static_cast<std::size_t>(std::stoul(place.back())));
+  }
+}
+
 TEST_CASE("glTF values replaced or removed at random give a sound scene or a refusal", "[fuzz]") {
   const json sound = rich_document();
   const std::vector<json::json_pointer> places = places_in(sound);
   std::mt19937 random(12);
   DamagedFiles files;
   files.write("square.bin", square_buffer());
-  const auto damage = [&](json& document, const json::json_pointer& place) {
-    if (!document.contains(place)) return;
-    if (random() % 4 == 0) {
-      json& parent = document[place.parent_pointer()];
-      if (parent.is_object()) {
-        parent.erase(place.back());
-      } else {
-        parent.erase(static_cast<std::size_t>(std::stoul(place.back())));
-      }
-    } else {
-      document[place] = wild_value(random);
-    }
-  };
   for (int trial = 0; trial < 2'500; ++trial) {
     json document = sound;
     // Every place once, then several at a time.
     const auto turn = static_cast<std::size_t>(trial);
-    if (turn < places.size()) damage(document, places[turn]);
+    if (turn < places.size()) damage(document, places[turn], random);
     for (unsigned changes = turn < places.size() ? 0 : 1 + random() % 4; changes > 0; --changes) {
-      damage(document, places[random() % places.size()]);
+      damage(document, places[random() % places.size()], random);
     }
     files.load("values.gltf", document.dump(-1, ' ', false, json::error_handler_t::replace));
   }
   CHECK(files.loaded > 250);
   CHECK(files.refused > 250);
+}
+
+TEST_CASE("glTF surroundings with values replaced or removed give a sound scene or a refusal",
+          "[fuzz]") {
+  const json sound = surrounded_document();
+  CHECK(load_gltf(sound).lights.size() == 5);
+  std::vector<json::json_pointer> places = places_in(sound);
+  std::erase_if(places, [](const json::json_pointer& place) {
+    return place.to_string().find("EXT_lights_image_based") == std::string::npos;
+  });
+  CHECK(places.size() > 15);
+  std::mt19937 random(13);
+  DamagedFiles files;
+  files.write("square.bin", square_buffer());
+  for (int trial = 0; trial < 100; ++trial) {
+    json document = sound;
+    for (unsigned changes = 1 + random() % 2; changes > 0; --changes) {
+      damage(document, places[random() % places.size()], random);
+    }
+    files.load("surroundings.gltf", document.dump(-1, ' ', false, json::error_handler_t::replace));
+  }
+  CHECK(files.loaded > 20);
 }
 
 }  // namespace

@@ -111,6 +111,32 @@ TEST_CASE("transmission from one half on is glass, thin without a volume, and le
   CHECK(warns(scene, {"'glow'", "opaque"}));
 }
 
+TEST_CASE("glass that is not smooth and clear all over is named, with what it becomes") {
+  const auto glass_with = [](json members) {
+    members["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1;
+    json& model = members["pbrMetallicRoughness"];
+    if (!model.contains("roughnessFactor")) model["roughnessFactor"] = 0.05;
+    Scene scene;
+    CHECK(material(members, &scene).interaction == Interaction::glass);
+    return scene;
+  };
+  CHECK(glass_with(json::object()).report.warnings.empty());
+  // A file that does not give its roughness asks for 1.
+  for (const json& roughness : {json(0.06), json(0.4), json(1.0), json(nullptr)}) {
+    json members;
+    members["pbrMetallicRoughness"]["roughnessFactor"] = roughness;
+    CHECK(warns(glass_with(members), {"material 'glow'", "rough glass", "smooth"}));
+  }
+  json members;
+  members["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"] = 0;
+  members["extensions"]["KHR_materials_transmission"]["transmissionTexture"]["index"] = 0;
+  members["extensions"]["KHR_materials_volume"]["attenuationDistance"] = 0.1;
+  const Scene scene = glass_with(members);
+  CHECK(warns(scene, {"material 'glow'", "roughness texture of glass"}));
+  CHECK(warns(scene, {"material 'glow'", "transmission texture"}));
+  CHECK(warns(scene, {"material 'glow'", "attenuation"}));
+}
+
 TEST_CASE("what a glTF material approximates is named") {
   Scene scene;
   material(

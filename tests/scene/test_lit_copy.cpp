@@ -85,6 +85,22 @@ TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a
   CHECK(bytes_in(file) == before);
 }
 
+TEST_CASE("nodes outside the scene may name what no file can hold") {
+  const SceneFolderOnDisk folder;
+  nlohmann::json document = shared_document();
+  for (const nlohmann::json& number : {nlohmann::json(1e300), nlohmann::json(-7)}) {
+    nlohmann::json node{{"name", "stray"}, {"mesh", number}};
+    node["extensions"]["KHR_lights_punctual"]["light"] = number;
+    document["nodes"].push_back(node);
+  }
+  const auto file = write_scene(folder, document);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  photile::apply(mix, {{"lamp", "50"}, {"panel", "x0.25"}});
+  const scene_io::LitCopy copy = scene_io::write_lit_copy(file, {}, mix, "evening");
+  CHECK(copy.left_out.empty());
+  check_reads_back(copy.file, mix);
+}
+
 TEST_CASE("a lamp that is off is written with intensity 0") {
   const SceneFolderOnDisk folder;
   const auto file = write_scene(folder, shared_document());

@@ -1,10 +1,7 @@
 // Textures beside the base colour: metallic-roughness, specular, alpha and normals.
-#include <OpenImageIO/imageio.h>
-
 #include <catch2/catch.hpp>
-#include <functional>
 
-#include "scene_files.hpp"
+#include "textured_square.hpp"
 #include "trace/surface.hpp"
 
 namespace photile {
@@ -12,45 +9,6 @@ namespace {
 
 using namespace tests;
 using nlohmann::json;
-
-void write_texel(const std::filesystem::path& file, const std::vector<std::uint8_t>& texel) {
-  const auto output = OIIO::ImageOutput::create(file.string());
-  REQUIRE(output);
-  OIIO::ImageSpec spec(1, 1, static_cast<int>(texel.size()), OIIO::TypeDesc::UINT8);
-  spec["oiio:UnassociatedAlpha"] = 1;
-  REQUIRE(output->open(file.string(), spec));
-  REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, texel.data()));
-  REQUIRE(output->close());
-}
-
-/// The square with a lamp beside it, so that its material need not shine; its pictures are one
-/// texel each: textures 0, 1, 2 ...
-Scene square_with(const std::vector<std::vector<std::uint8_t>>& texels,
-                  const std::function<void(json& material)>& change) {
-  const SceneFolderOnDisk folder;
-  json document = square_document();
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    const std::string name = "t" + std::to_string(i) + ".png";
-    write_texel(folder.path / name, texels[i]);
-    document["images"].push_back({{"uri", name}});
-    document["textures"].push_back({{"source", i}});
-  }
-  json& material = document["materials"][0];
-  material["emissiveFactor"] = {0, 0, 0};
-  change(material);
-  document["extensionsUsed"] = {"KHR_lights_punctual"};
-  document["extensions"]["KHR_lights_punctual"]["lights"] = {
-      {{"type", "point"}, {"intensity", 10}}};
-  document["nodes"].push_back(
-      {{"name", "lamp"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-  document["scenes"][0]["nodes"] = {0, 1};
-  folder.write("square.bin", square_buffer());
-  return load_scene(folder.write("scene.gltf", document.dump()));
-}
-
-trace::SurfacePoint middle(const Scene& scene) {
-  return trace::surface_hit(scene, {0, 0.3f, 0.3f}, {0, 0, -1});
-}
 
 void check_rgb(const glm::vec3& actual, const glm::dvec3& expected) {
   CHECK(glm::length(glm::dvec3(actual) - expected) < 1e-5);

@@ -62,6 +62,16 @@ TEST_CASE("MTL glass models and transparency with Ni are glass of that index") {
   CHECK(material("illum 7\n").index_of_refraction == 1.5f);
 }
 
+TEST_CASE("MTL glass of a Phong exponent that is no mirror's is named as rough") {
+  Scene scene;
+  material("illum 7\nNs 250\n", &scene);
+  CHECK(warns(scene, {"'m'", "rough glass (Ns 250)", "smooth"}));
+  for (const std::string exponent : {"", "Ns 0\n", "Ns 1\n", "Ns 1000\n"}) {
+    material("illum 7\n" + exponent, &scene);
+    CHECK_FALSE(warns(scene, {"rough"}));
+  }
+}
+
 TEST_CASE("MTL transparency without Ni lets light through by chance, with a warning") {
   Scene scene;
   const Material m = material("Kd 1 1 1\nd 0.5\n", &scene);
