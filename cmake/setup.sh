@@ -29,7 +29,7 @@ libglfw3-dev           | the window of photile view
 libimgui-dev           | its panels
 libgl-dev              | what draws them
 libxxhash-dev          | checksums of the program cache
-fonts-dejavu-core      | the letters of photile compare's pictures
+fonts-dejavu-core      | the letters of legends and of photile compare's pictures
 catch2                 | tests
 libfcl-dev             | tests: an independent triangle distance
 libnanoflann-dev       | tests and benches: an independent nearest-neighbour search

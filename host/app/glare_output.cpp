@@ -1,7 +1,9 @@
 #include "app/glare_output.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "image/glare.hpp"
 #include "image/srgb.hpp"
@@ -16,13 +18,7 @@ void write_glare(const RenderOptions& options, const LightLayers& layers,
   const Image displayed =
       tone_map(mixed_picture(layers, mix)->root(),
                {!options.pictures.no_automatic_exposure, options.pictures.exposure});
-  std::vector<std::uint8_t> rgb(3 * displayed.pixels());
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    const std::vector<float>& plane = *displayed.find(std::string(1, "RGB"[channel]));
-    for (std::size_t pixel = 0; pixel < plane.size(); ++pixel) {
-      rgb[3 * pixel + channel] = image::srgb8_from_linear(plane[pixel]);
-    }
-  }
+  std::vector<std::uint8_t> rgb = image::srgb8_texels(displayed);
   image::draw_marks(glare.marks, rgb);
   view::write_screenshot(options.glare, layers.width, layers.height, rgb);
   const PowerUnit unit = mix.lights.empty() ? PowerUnit::lumen : mix.lights.front().unit;

@@ -8,7 +8,6 @@
 
 #include "app/number_format.hpp"
 #include "app/output_files.hpp"
-#include "app/validators.hpp"
 #include "app/version.hpp"
 #include "measuring/honeybee_files.hpp"
 #include "measuring/plan_drawing.hpp"
@@ -47,46 +46,6 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run) 
   return record;
 }
 
-/// The options of Radiance's falsecolor, under its names and with its defaults.
-void add_false_colour_options(CLI::App& command, MeasureOutputOptions& options) {
-  measuring::FalseColour& colours = options.colours;
-  const char* group = "False colour";
-  command.add_option("-s,--scale", options.scale, "top of the scale in lux, or auto")
-      ->type_name("LUX|auto")
-      ->check(CLI::IsMember({"auto"}) | CLI::PositiveNumber)
-      ->capture_default_str()
-      ->group(group);
-  command.add_option("-l,--label", colours.label, "of the legend")
-      ->type_name("TEXT")
-      ->capture_default_str()
-      ->group(group);
-  command.add_option("-n,--steps", colours.steps, "of the legend, and isolines")
-      ->type_name("N")
-      ->transform(count_between(1, 100))
-      ->capture_default_str()
-      ->group(group);
-  command.add_option("--log", colours.decades, "logarithmic scale over so many decades")
-      ->type_name("DECADES")
-      ->transform(number_between(0.1, 30))
-      ->group(group);
-  command.add_option("--pal", colours.palette, "palette")
-      ->type_name("")
-      ->check(CLI::IsMember(image::Palette::names()))
-      ->capture_default_str()
-      ->group(group);
-  const auto contours = [&](const char* name, measuring::Contours drawn, const char* what) {
-    return command
-        .add_flag_callback(
-            name, [&colours, drawn] { colours.contours = drawn; }, what)
-        ->group(group);
-  };
-  CLI::Option* lines = contours("--cl", measuring::Contours::lines, "isolines alone");
-  CLI::Option* bands =
-      contours("--cb", measuring::Contours::bands, "bands around the isolines alone");
-  CLI::Option* steps =
-      contours("--cp", measuring::Contours::steps, "posterized: one colour for each step");
-  bands->excludes(lines);
-  steps->excludes(lines)->excludes(bands);
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run) {
@@ -149,13 +108,12 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
                   "folder for <grid>.res, grids_info.json and grid_summary.csv")
       ->type_name("FOLDER")
       ->group("Output");
-  add_false_colour_options(command, options);
+  add_false_colour_options(command, options.false_colour);
 }
 
 MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options,
                                const std::filesystem::path& scene)
-    : colours_(options.colours), honeybee_(options.honeybee) {
-  colours_.scale = options.scale == "auto" ? 0 : std::stod(options.scale);
+    : colours_(options.false_colour.of("lux")), honeybee_(options.honeybee) {
   const std::map<std::string, std::vector<std::filesystem::path>*> lists{
       {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}};
   std::vector<std::filesystem::path> all;

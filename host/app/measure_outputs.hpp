@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/false_colour_options.hpp"
 #include "measuring/false_colour.hpp"
 #include "measuring/measure_grids.hpp"
 #include "measuring/measurement.hpp"
@@ -19,9 +20,8 @@ namespace photile::app {
 
 struct MeasureOutputOptions {
   std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg or .html
-  measuring::FalseColour colours;
-  std::string scale = "1000";  ///< lux, or "auto"
-  std::string honeybee;        ///< folder, "" = none
+  FalseColourOptions false_colour;
+  std::string honeybee;  ///< folder, "" = none
 };
 
 /// Adds -o, --honeybee and the options of false colour.

@@ -7,6 +7,8 @@
 #include <cctype>
 
 #include "app/validators.hpp"
+#include "image/sheet.hpp"
+#include "measuring/false_colour_picture.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -18,6 +20,13 @@ std::string lower_case_extension(const std::filesystem::path& file) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
+}
+
+/// Errors: UsageError unless `file` ends in .png.
+void check_png(const std::filesystem::path& file, const char* option) {
+  if (lower_case_extension(file) == ".png") return;
+  throw UsageError(
+      fmt::format("{}: {} writes a file that ends in .png; rename it", file.string(), option));
 }
 
 }  // namespace
@@ -40,10 +49,20 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       .add_flag("--no-auto-exposure", options.no_automatic_exposure,
                 "1 cd/m2 or 1 W/(m2 sr) becomes white, before --exposure")
       ->group("Output");
+  const auto add_drawing = [&](const char* name, std::string& file, const char* what) {
+    command.add_option(name, file, what)->type_name("FILE.png")->group("Output");
+  };
+  add_drawing("--illuminance", options.illuminance,
+              "lux on the surfaces that are seen, in false colour with a legend");
+  add_drawing("--luminance", options.luminance, "cd/m2, in false colour with a legend");
+  add_false_colour_options(command, options.false_colour);
 }
 
 PictureOutputs::PictureOutputs(const PictureOptions& options)
-    : tone_mapping_{!options.no_automatic_exposure, options.exposure} {
+    : illuminance_(options.illuminance),
+      luminance_(options.luminance),
+      tone_mapping_{!options.no_automatic_exposure, options.exposure},
+      false_colour_(options.false_colour) {
   for (const std::string& file : options.outputs) {
     const std::string extension = lower_case_extension(file);
     if (extension != ".exr" && extension != ".png") {
@@ -52,24 +71,46 @@ PictureOutputs::PictureOutputs(const PictureOptions& options)
     (extension == ".exr" ? exr_ : png_).emplace_back(file);
   }
   for (const std::string& file : options.png) {
-    if (lower_case_extension(file) != ".png") {
-      throw UsageError(fmt::format("{}: --png writes a file that ends in .png; rename it", file));
-    }
+    check_png(file, "--png");
     png_.emplace_back(file);
   }
+  if (!illuminance_.empty()) check_png(illuminance_, "--illuminance");
+  if (!luminance_.empty()) check_png(luminance_, "--luminance");
 }
 
 std::vector<std::filesystem::path> PictureOutputs::files() const {
   std::vector<std::filesystem::path> all = exr_;
   all.insert(all.end(), png_.begin(), png_.end());
+  if (!illuminance_.empty()) all.push_back(illuminance_);
+  if (!luminance_.empty()) all.push_back(luminance_);
   return all;
 }
 
-void PictureOutputs::write(const LayeredPicture& picture) const {
+void PictureOutputs::write(const LayeredPicture& picture, Progress& notes) const {
+  // First, for the picture may lack them.
+  std::vector<float> lux, candela;
+  Image root, displayed;
+  if (exr_.size() < files().size()) {
+    root = picture.root();
+    displayed = tone_map(root, tone_mapping_);
+  }
+  if (!illuminance_.empty()) lux = measuring::illuminance_of(picture);
+  if (!luminance_.empty()) candela = measuring::luminance_of(root);
+
   for (const auto& file : exr_) write_exr(file, picture);
-  if (png_.empty()) return;
-  const Image displayed = tone_map(picture.root(), tone_mapping_);
   for (const auto& file : png_) write_png(file, displayed);
+  const auto draw = [&](const std::filesystem::path& file, const std::vector<float>& values,
+                        const char* unit) {
+    if (file.empty()) return;
+    write_png(file, measuring::false_colour_picture(values, displayed, false_colour_.of(unit)));
+    if (image::Sheet::has_font()) return;
+    notes.note(
+        fmt::format("warning: {}: the legend has no numbers without the font DejaVu Sans; "
+                    "install fonts-dejavu-core",
+                    file.string()));
+  };
+  draw(illuminance_, lux, "lux");
+  draw(luminance_, candela, "cd/m2");
 }
 
 }  // namespace photile::app

@@ -9,6 +9,7 @@
 #include "app/output_files.hpp"
 #include "app/picture_outputs.hpp"
 #include "app/signals.hpp"
+#include "app/terminal_progress.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 
@@ -44,7 +45,8 @@ void run_relight(const RelightOptions& options) {
   }
   const std::unique_ptr<LayeredPicture> picture = relit_picture(options.input, changes);
   throw_if_stop_requested();
-  outputs.write(*picture);
+  TerminalProgress notes(false);
+  outputs.write(*picture, notes);
 }
 
 }  // namespace

@@ -199,7 +199,7 @@ void run_render(const CLI::App& command, RenderOptions& options) {
     const std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, record.mix);
     set_camera_attributes(picture->header(), in_world(scene, camera), layers.width, layers.height);
     set_run_attributes(picture->header(), record);
-    outputs.write(*picture);
+    outputs.write(*picture, progress);
     if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
   }));
   record.total_seconds = stopwatch.seconds();

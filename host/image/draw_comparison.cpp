@@ -1,5 +1,3 @@
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 
 #include "image/palette.hpp"
 #include "image/picture_comparison.hpp"
-#include "image/srgb.hpp"
+#include "image/sheet.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
 
@@ -16,7 +14,7 @@ namespace photile::image {
 namespace {
 
 // Sizes in pixels.
-constexpr int gap = 12, title_height = 24, bar_width = 20, legend_width = 90, font_size = 14;
+constexpr int gap = 12, title_height = 24, bar_width = 20, legend_width = 90;
 constexpr int legend_numbers = 5;
 constexpr double percentile = 0.99;
 
@@ -72,53 +70,6 @@ Image tone_mapped(const Image& a, const Image& b, double exposure) {
   return tone_map(both, {true, exposure});
 }
 
-/// The sheet under way: white, display-referred linear values.
-class Sheet {
- public:
-  Sheet(int width, int height) {
-    image_.width = width;
-    image_.height = height;
-    for (const char* channel : {"R", "G", "B"}) {
-      image_.add(channel).assign(image_.pixels(), 1.0f);
-    }
-  }
-
-  void set(int x, int y, const std::array<float, 3>& rgb) {
-    for (std::size_t c = 0; c < 3; ++c) image_.channels[c][index(x, y)] = rgb[c];
-  }
-  void set(int x, int y, const std::array<std::uint8_t, 3>& srgb) {
-    std::array<float, 3> linear{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      linear[c] = static_cast<float>(linear_from_srgb(srgb[c] / 255.0));
-    }
-    set(x, y, linear);
-  }
-
-  /// Black text that ends at `end`, its baseline at y. Nothing without the font.
-  void write(int x, int y, int end, const std::string& text) {
-    OIIO::ImageBuf ink(OIIO::ImageSpec(image_.width, image_.height, 1, OIIO::TypeDesc::FLOAT));
-    if (!OIIO::ImageBufAlgo::render_text(ink, x, y, text, font_size, "DejaVuSans", 1.0f)) {
-      ink.geterror();  // fetched, or OpenImageIO prints it
-      return;
-    }
-    for (int v = std::max(0, y - 2 * font_size); v < std::min(image_.height, y + font_size); ++v) {
-      for (int u = x; u < std::min(image_.width, end); ++u) {
-        const float black = std::clamp(ink.getchannel(u, v, 0, 0), 0.0f, 1.0f);
-        for (auto& channel : image_.channels) channel[index(u, v)] *= 1 - black;
-      }
-    }
-  }
-
-  Image take() { return std::move(image_); }
-
- private:
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
-           static_cast<std::size_t>(x);
-  }
-  Image image_;
-};
-
 void draw_legend(Sheet& sheet, int x, int height, double scale, const Palette& palette) {
   for (int y = 0; y < height; ++y) {
     const double share = 1 - (y + 0.5) / height;
@@ -128,8 +79,8 @@ void draw_legend(Sheet& sheet, int x, int height, double scale, const Palette& p
     const double share = static_cast<double>(i) / (legend_numbers - 1);
     const double value = (2 * share - 1) * scale;
     const int middle = title_height + static_cast<int>((1 - share) * height);
-    const int y =
-        std::clamp(middle + font_size / 3, title_height + font_size, title_height + height);
+    const int y = std::clamp(middle + Sheet::font_size / 3, title_height + Sheet::font_size,
+                             title_height + height);
     sheet.write(x + bar_width + 6, y, x + legend_width, fmt::format("{:+.4g}", value));
   }
 }

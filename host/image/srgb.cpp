@@ -4,6 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <string>
+
+#include "image/pixel_lights.hpp"
 
 namespace photile::image {
 namespace {
@@ -61,6 +64,17 @@ std::uint8_t srgb8_from_linear(float linear) {
   static const CodeTable table;
   if (!(linear > 0.0f)) return 0;  // NaN too
   return table(std::min(linear, 1.0f));
+}
+
+std::vector<std::uint8_t> srgb8_texels(const Image& display_referred) {
+  std::vector<std::uint8_t> texels(3 * display_referred.pixels());
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const std::vector<float>& plane = *display_referred.find(std::string(1, "RGB"[channel]));
+    for_each_pixel(plane.size(), [&](std::size_t pixel) {
+      texels[3 * pixel + channel] = srgb8_from_linear(plane[pixel]);
+    });
+  }
+  return texels;
 }
 
 }  // namespace photile::image

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
+
+#include "photile/image.hpp"
 
 namespace photile::image {
 
@@ -11,5 +14,9 @@ double linear_from_srgb(double encoded);  ///< [0,1] to [0,1]
 /// Nearest 8-bit code value of a linear value; NaN and negative values give 0, more than 1 gives
 /// 255.
 std::uint8_t srgb8_from_linear(float linear);
+
+/// 8-bit texels of display-referred R, G, B, which the picture must have: 3 bytes a pixel, row 0 at
+/// the top. Shared among all cores.
+std::vector<std::uint8_t> srgb8_texels(const Image& display_referred);
 
 }  // namespace photile::image

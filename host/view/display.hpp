@@ -38,13 +38,13 @@ DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySet
 /// Stops by which `render --png` scales this picture of its own accord.
 double automatic_stops(const Frame& frame, const LightMix& mix);
 
-/// Illuminance of the surface that each pixel sees: lux or W/m2.
+/// Illuminance of the surface that each pixel sees, lux.
 std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& mix);
 
 /// What one light gives to a pixel.
 struct LightReading {
   double luminance = 0;    ///< cd/m2 or W/(m2 sr)
-  double illuminance = 0;  ///< lux or W/m2
+  double illuminance = 0;  ///< lux
 };
 
 /// Per light of the mix, at a pixel of the frame. Errors: none; pixels outside read 0.

@@ -41,6 +41,16 @@ TEST_CASE("a reading has each light's part of luminance and illuminance") {
   CHECK(readings_at(two_pixels(), mix_of(10, 100), 2, 0)[1].illuminance == 0);
 }
 
+TEST_CASE("illuminance is in lux where lamps are in watts, too") {
+  LightMix mix = mix_of(10, 100);
+  for (MixedLight& light : mix.lights) light.unit = PowerUnit::watt;
+  mix.lumen_per_watt = 179;
+  CHECK(mixed_illuminance(two_pixels().layers, mix) == std::vector<float>{130 * 179, 200 * 179});
+  const auto readings = readings_at(two_pixels(), mix, 0, 0);
+  CHECK(readings[1].illuminance == Approx(100 * 179));
+  CHECK(readings[1].luminance == Approx(50));  // W/(m2 sr)
+}
+
 TEST_CASE("the picture is scaled by stops and encoded as sRGB") {
   DisplaySettings settings;
   settings.exposure = -1;  // halves
