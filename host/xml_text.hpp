@@ -6,7 +6,8 @@
 
 namespace photile {
 
-/// `text` as content or as an attribute's value in double quotes.
+/// `text` as content or as an attribute's value in double quotes. Control characters, which XML
+/// cannot hold, become question marks.
 inline std::string escaped_xml(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -21,7 +22,7 @@ inline std::string escaped_xml(std::string_view text) {
         result += "&quot;";
         break;
       default:
-        result += c;
+        result += static_cast<unsigned char>(c) < ' ' ? '?' : c;
     }
   }
   return result;

@@ -46,8 +46,6 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run) 
   return record;
 }
 
-}
-
 std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run) {
   const measuring::MeasuringParameters& parameters = run.parameters;
   const bool planar = parameters.gathering.response == SensorResponse::planar;

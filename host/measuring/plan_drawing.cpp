@@ -9,22 +9,32 @@
 #include <vector>
 
 #include "measuring/isolines.hpp"
+#include "measuring/number_text.hpp"
 #include "xml_text.hpp"
 
 namespace photile::measuring {
 namespace {
 
 // Sizes in pixels.
-constexpr double longer_side = 560, margin = 20, title_height = 30, foot_height = 40,
-                 legend_width = 130, bar_width = 22, least_height = 200;
+struct Sizes {
+  double longer_side, legend_width, bar_width, least_height;
+};
+constexpr Sizes whole_sizes{560, 130, 22, 200}, small_sizes{190, 75, 14, 130};
+constexpr double margin = 20, title_height = 48, foot_height = 40;
+constexpr double title_baseline = 20, title_size = 14;
+/// Of a mean letter in ems: what the fonts of screens differ little from.
+constexpr double letter_width = 0.6;
 constexpr std::size_t most_numbered_cells = 400;
 
 /// One drawing under way.
 class Plan {
  public:
-  Plan(const GridValues& values, const LightValues& light, const FalseColour& options)
+  Plan(const GridValues& values, const LightValues& light, const FalseColour& options,
+       PlanSize size)
       : layout_(*values.grid.layout),
         options_(options),
+        small_(size == PlanSize::small),
+        sizes_(small_ ? small_sizes : whole_sizes),
         values_(static_cast<std::size_t>(layout_.columns) * static_cast<std::size_t>(layout_.rows),
                 std::numeric_limits<double>::quiet_NaN()),
         scale_(options, light.statistics.maximum.value) {
@@ -32,22 +42,26 @@ class Plan {
       values_[layout_.cells[i]] = light.sensors[i].value;
     }
     const double u = glm::length(layout_.u), v = glm::length(layout_.v);
-    per_metre_ = longer_side / std::max(u, v);
+    per_metre_ = sizes_.longer_side / std::max(u, v);
     width_ = u * per_metre_;
     height_ = v * per_metre_;
-    title_ = values.grid.name + (light.light.empty() ? "" : ": " + light.light);
+    title_ = light.light.empty() ? values.grid.name
+             : small_            ? light.light
+                                 : values.grid.name + ": " + light.light;
   }
 
   std::string draw() {
-    const double legend_height = std::max(height_, least_height);
-    const double width = margin + width_ + margin + legend_width;
+    const double legend_height = std::max(height_, sizes_.least_height);
+    const double title_width = letter_width * title_size * static_cast<double>(title_.size());
+    const double width =
+        margin + std::max(width_ + margin + sizes_.legend_width, title_width + margin);
     const double height = title_height + legend_height + foot_height;
     add("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
         "width=\"{0:.0f}\" "
         "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
-        "<text x=\"{2}\" y=\"20\" font-size=\"14\">{3}</text>\n",
-        width, height, margin, escaped_xml(title_));
+        "<text x=\"{2}\" y=\"{3}\" font-size=\"{4}\">{5}</text>\n",
+        width, height, margin, title_baseline, title_size, escaped_xml(title_));
     if (options_.contours == Contours::bands) add_bands();  // below the cells' numbers
     add_cells();
     if (options_.contours == Contours::none || options_.contours == Contours::lines) add_isolines();
@@ -74,7 +88,7 @@ class Plan {
 
   void add_cells() {
     const double w = width_ / layout_.columns, h = height_ / layout_.rows;
-    const bool numbered = values_.size() <= most_numbered_cells;
+    const bool numbered = !small_ && values_.size() <= most_numbered_cells;
     for (std::size_t cell = 0; cell < values_.size(); ++cell) {
       if (std::isnan(values_[cell])) continue;
       const auto column = static_cast<double>(cell % static_cast<std::size_t>(layout_.columns));
@@ -93,8 +107,8 @@ class Plan {
   void add_label(const glm::dvec2& middle, double value, int size, const char* weight) {
     add("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{}\" font-weight=\"{}\" "
         "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"2\" stroke-opacity=\"0.7\" "
-        "paint-order=\"stroke\">{:.3g}</text>\n",
-        middle.x, middle.y + 0.35 * size, size, weight, value);
+        "paint-order=\"stroke\">{}</text>\n",
+        middle.x, middle.y + 0.35 * size, size, weight, number_text(value, 3));
   }
 
   bool is_filled() const {
@@ -120,7 +134,7 @@ class Plan {
         add("Z");
       }
       add("\"/>\n");
-      add_label(at(polygons[polygons.size() / 2][0]), levels[i], 11, "bold");
+      if (!small_) add_label(at(polygons[polygons.size() / 2][0]), levels[i], 11, "bold");
     }
   }
 
@@ -135,6 +149,7 @@ class Plan {
         add("M{:.2f} {:.2f}L{:.2f} {:.2f}", a.x, a.y, b.x, b.y);
       }
       add("\"/>\n");
+      if (small_) continue;
       const Segment& labelled = segments[segments.size() / 2];
       add_label(at(0.5 * (labelled[0] + labelled[1])), level, 11, "bold");
     }
@@ -152,19 +167,23 @@ class Plan {
   }
 
   void add_legend(double x, double height) {
-    add("<text x=\"{:.2f}\" y=\"20\">{}</text>\n", x, escaped_xml(options_.label));
+    add("<text x=\"{:.2f}\" y=\"{}\">{}</text>\n", x, title_height - 7,
+        escaped_xml(options_.label));
     const double step = height / options_.steps;
     for (int i = 0; i < options_.steps; ++i) {
       const double value = scale_.value_at((i + 0.5) / options_.steps);
       const double y = title_height + height - (i + 1) * step;
       add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{}\" height=\"{:.2f}\" fill=\"{}\"/>\n"
-          "<text x=\"{:.2f}\" y=\"{:.2f}\">{:.4g}</text>\n",
-          x, y, bar_width, step, scale_.hex(value), x + bar_width + 6, y + 0.5 * step + 4, value);
+          "<text x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n",
+          x, y, sizes_.bar_width, step, scale_.hex(value), x + sizes_.bar_width + 6,
+          y + 0.5 * step + 4, number_text(value, 4));
     }
   }
 
   const PlaneLayout& layout_;
   const FalseColour& options_;
+  const bool small_;
+  const Sizes sizes_;
   std::vector<double> values_;  ///< per cell; NaN without a sensor
   ColourScale scale_;
   std::string title_, text_;
@@ -173,9 +192,9 @@ class Plan {
 
 }  // namespace
 
-std::string plan_svg(const GridValues& values, const LightValues& light,
-                     const FalseColour& options) {
-  return Plan(values, light, options).draw();
+std::string plan_svg(const GridValues& values, const LightValues& light, const FalseColour& options,
+                     PlanSize size) {
+  return Plan(values, light, options, size).draw();
 }
 
 }  // namespace photile::measuring

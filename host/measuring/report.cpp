@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "measuring/number_text.hpp"
 #include "measuring/plan_drawing.hpp"
 #include "xml_text.hpp"
 
@@ -19,22 +20,34 @@ table { border-collapse: collapse; } th, td { padding: 0.15em 0.7em; text-align:
 th { border-bottom: 1px solid #222; } th:first-child, td:first-child { text-align: left; }
 .error { color: #777; font-size: 85%; } .plan svg { max-width: 100%; height: auto; }
 .lights { display: grid; grid-template-columns: repeat(3, 1fr); gap: 0.5em; }
-@page { size: A4; margin: 15mm; } @media print { body { margin: 0; } }
+dl { display: grid; grid-template-columns: repeat(2, auto 1fr); gap: 0.2em 1em; margin: 0; }
+dt { color: #777; } dd { margin: 0; }
+@page { size: A4; margin: 15mm; }
+@media print {
+  body { margin: 0; max-width: none; font-size: 8.5pt; }
+  h2 { break-after: avoid; } .plan, tr { break-inside: avoid; }
+  .plan svg { width: auto; height: 75mm; } .lights svg { height: 36mm; }
+}
 </style>
 )";
 
-std::string cell(const Measured& measured, const char* format) {
-  const std::string value = fmt::format(fmt::runtime(format), measured.value);
-  return fmt::format("<td>{} <span class=\"error\">&#177; {:.2g}</span></td>", value,
-                     measured.standard_error);
+std::string cell(const std::string& value, const Measured& measured) {
+  return fmt::format("<td>{} <span class=\"error\">&#177; {}</span></td>", value,
+                     number_text(measured.standard_error, 2));
+}
+
+std::string lux_cell(const Measured& lux) { return cell(number_text(lux.value, 4), lux); }
+
+std::string ratio_cell(const Measured& ratio) {
+  return cell(fmt::format("{:.3f}", ratio.value), ratio);
 }
 
 std::string table_row(const LightValues& light) {
   const GridStatistics& s = light.statistics;
   return fmt::format("<tr><td>{}</td>{}{}{}{}{}</tr>\n",
                      light.light.empty() ? "all lights" : escaped_xml(light.light),
-                     cell(s.mean, "{:.4g}"), cell(s.minimum, "{:.4g}"), cell(s.maximum, "{:.4g}"),
-                     cell(s.uniformity, "{:.3f}"), cell(s.diversity, "{:.3f}"));
+                     lux_cell(s.mean), lux_cell(s.minimum), lux_cell(s.maximum),
+                     ratio_cell(s.uniformity), ratio_cell(s.diversity));
 }
 
 std::string grid_heading(const SensorGrid& grid) {
@@ -54,8 +67,8 @@ std::string section(const GridValues& values, const FalseColour& colours) {
   const GridStatistics& s = values.total().statistics;
   text += fmt::format(
       "</table>\n<p class=\"error\">Noise pulls the least value down: the true E<sub>min</sub> is "
-      "expected between {:.4g} and {:.4g} lux, up to the errors above.</p>\n",
-      s.minimum.value, s.minimum_at_most);
+      "expected between {} and {} lux, up to the errors above.</p>\n",
+      number_text(s.minimum.value, 4), number_text(s.minimum_at_most, 4));
   if (!values.grid.layout) return text;
   text += "<div class=\"plan\">\n" + plan_svg(values, values.total(), colours) + "</div>\n";
   if (values.lights.size() == 1 || values.lights.size() > most_light_plans + 1) return text;
@@ -63,7 +76,8 @@ std::string section(const GridValues& values, const FalseColour& colours) {
   FalseColour each = colours;
   each.scale = 0;  // its own: a weak lamp would show nothing on the scale of all
   for (std::size_t i = 1; i < values.lights.size(); ++i) {
-    text += "<div class=\"plan\">\n" + plan_svg(values, values.lights[i], each) + "</div>\n";
+    text += "<div class=\"plan\">\n" + plan_svg(values, values.lights[i], each, PlanSize::small) +
+            "</div>\n";
   }
   return text + "</div>\n";
 }
@@ -73,15 +87,15 @@ std::string section(const GridValues& values, const FalseColour& colours) {
 std::string report_html(const Measurement& measurement, const ReportText& text,
                         const FalseColour& colours) {
   std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{0}</title>\n"
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{0}</title>\n"
       "{1}</head>\n<body>\n<h1>Illuminance: {0}</h1>\n",
       escaped_xml(text.title), style);
   for (const GridValues& values : measurement) page += section(values, colours);
-  page += "<h2>How it was measured</h2>\n<table>\n";
+  page += "<h2>How it was measured</h2>\n<dl>\n";
   for (const auto& [name, value] : text.facts) {
-    page += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escaped_xml(name), escaped_xml(value));
+    page += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped_xml(name), escaped_xml(value));
   }
-  return page + "</table>\n</body>\n</html>\n";
+  return page + "</dl>\n</body>\n</html>\n";
 }
 
 }  // namespace photile::measuring

@@ -17,7 +17,7 @@ struct ReportText {
 };
 
 /// An HTML page that needs no other file: the figures of each grid with their errors, false-colour
-/// plans of all lights together and of each, and the facts. Prints on A4.
+/// plans of all lights together and of each, and the facts. Well-formed XML; prints on A4.
 std::string report_html(const Measurement& measurement, const ReportText& text,
                         const FalseColour& colours);
 

@@ -1,0 +1,92 @@
+// Plans of planes whose values are known.
+#include "measuring/plan_drawing.hpp"
+
+#include <catch2/catch.hpp>
+#include <regex>
+
+#include "image/palette.hpp"
+
+using namespace photile;
+using namespace photile::measuring;
+
+namespace {
+
+/// A plane of 3 x 2 cells of a metre, one of them without a sensor.
+GridValues plane(const std::string& name, const std::vector<float>& lux) {
+  PlaneLayout layout;
+  layout.u = {3, 0, 0};
+  layout.v = {0, 2, 0};
+  layout.columns = 3;
+  layout.rows = 2;
+  layout.cells = {0, 1, 2, 3, 5};
+  GridValues values;
+  values.grid = grid_on_plane(name, layout);
+  const std::vector<std::vector<float>> repeats(2, lux);
+  values.lights.push_back({"", means_of(repeats), statistics_of(repeats, 0, lux.size())});
+  return values;
+}
+
+std::string plan(const GridValues& values, const FalseColour& options) {
+  return plan_svg(values, values.total(), options);
+}
+
+/// What the pattern's first group matches, each time.
+std::vector<std::string> all(const std::string& text, const std::string& pattern) {
+  const std::regex expression(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) {
+    found.push_back((*i)[1]);
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("each cell has the colour of its value, and its number") {
+  const std::vector<float> lux{50, 100, 150, 200, 1000};
+  const std::string svg = plan(plane("desk", lux), {.scale = 200});
+  const image::Palette palette("turbo");
+  std::vector<std::string> expected;
+  for (const float value : lux) {
+    expected.push_back(palette.hex(static_cast<double>(value) / 200));
+  }
+  CHECK(all(svg, "fill=\"(#[0-9a-f]+)\" shape-rendering") == expected);
+  CHECK(all(svg, "font-size=\"9\"[^>]*>([^<]*)<") ==
+        std::vector<std::string>{"50", "100", "150", "200", "1000"});
+}
+
+TEST_CASE("the legend has the middles of its steps, the label and the plane's name") {
+  const std::string svg = plan(plane("a <desk> & \"more\"", {1, 2, 3, 4, 5}),
+                               {.scale = 200, .label = "lux", .steps = 4});
+  CHECK_THAT(
+      svg, Catch::Contains("a &lt;desk> &amp; &quot;more&quot;") && Catch::Contains(">lux</text>"));
+  CHECK(all(svg, "<text x=\"[0-9.]+\" y=\"[0-9.]+\">([0-9.]+)</text>") ==
+        std::vector<std::string>{"25", "75", "125", "175"});
+}
+
+TEST_CASE("the isoline of a slope runs where the slope has its level") {
+  // 100, 200, 300 along u in both rows: the level 250 lies at 2 m of 3.
+  PlaneLayout layout = *plane("", {1, 1, 1, 1, 1}).grid.layout;
+  layout.cells = {0, 1, 2, 3, 4, 5};
+  GridValues values;
+  values.grid = grid_on_plane("slope", layout);
+  const std::vector<std::vector<float>> repeats(2, {100, 200, 300, 100, 200, 300});
+  values.lights.push_back({"", means_of(repeats), statistics_of(repeats, 0, 6)});
+  const std::string svg = plan(values, {.scale = 500, .steps = 1});
+  const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
+  REQUIRE(lines.size() == 1);
+  // The plan is 560 pixels wide and begins at 20.
+  for (const std::string& x : all(lines[0], "[ML]([0-9.]+) ")) {
+    CHECK(std::stod(x) == Approx(20 + 2.0 / 3 * 560).margin(0.01));
+  }
+}
+
+TEST_CASE("a narrow plan is as wide as its title") {
+  GridValues values =
+      plane("a plane with a name that is much longer than it is wide", {1, 2, 3, 4, 5});
+  values.grid.layout->u = {0.1, 0, 0};
+  const auto width = all(plan(values, {}), "width=\"([0-9]+)\" height");
+  REQUIRE_FALSE(width.empty());
+  // The narrowest letters of sans-serif fonts are about half as wide as high.
+  CHECK(std::stod(width[0]) > 20 + 0.5 * 14 * 55);
+}
