@@ -73,8 +73,9 @@ SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
   impl_ = std::make_unique<Impl>(scene, devices, parameters, progress);
   if (impl_->passes() > 1) {
     throw UsageError(
-        "photon maps that are kept have to fit in memory at once: use fewer photons, or --passes 1 "
-        "where more memory may be taken");
+        std::to_string(impl_->passes()) +
+        " photon passes: walks, views, saved maps and glare need all photons in memory "
+        "at once; give fewer --photons, or --passes 1 where more memory may be taken");
   }
   impl_->prepare(0, prepared, keep ? &keep : nullptr);
 }

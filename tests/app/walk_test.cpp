@@ -1,4 +1,6 @@
 // `photile walk`: frames, their names, and what a second run leaves alone.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -16,13 +18,14 @@ constexpr const char* path = R"([
     {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
     {"time": 1, "position": [0.5, 0, 0.9], "look_at": [0, 0, -1], "fov": 60}])";
 
-std::vector<std::string> walk(const FileFolder& folder, const std::vector<std::string>& more = {}) {
+std::vector<std::string> walk(const FileFolder& folder, const std::vector<std::string>& more = {},
+                              const std::string& frames_per_second = "3") {
   std::vector<std::string> arguments{"walk",
                                      write_box(folder),
                                      "-o",
                                      folder / "f.##.exr",
                                      "--fps",
-                                     "3",
+                                     frames_per_second,
                                      "--photons",
                                      "20k",
                                      "--size",
@@ -72,6 +75,39 @@ TEST_CASE("a walk writes its frames, PNGs and a contact sheet, and again only th
   folder.write("before.exr", third);
   CHECK(*now.find("G") == *read_image(folder / "before.exr").find("G"));
   CHECK_THAT(done(arguments).errors, Contains("4 of 4 frames are finished"));
+}
+
+TEST_CASE("a walk that is killed keeps its whole frames, and loses the one in progress at most") {
+  constexpr std::size_t frames = 201;
+  const FileFolder folder;
+  const auto file = [&](std::size_t number) { return folder / fmt::format("f.{:02}.exr", number); };
+  Run run;
+  run.arguments = walk(folder, {}, std::to_string(frames - 1));
+  run.terminal = true;
+  run.signal_when = "frames/s";  // the bar, after the first frame
+  run.signal = SIGKILL;
+  CHECK(run_photile(run).exit_code == 128 + SIGKILL);
+  std::size_t finished = 0;
+  while (std::filesystem::exists(file(finished + 1))) {
+    CHECK(read_image(file(++finished)).width == 16);  // whole
+  }
+  REQUIRE(finished >= 1);
+  REQUIRE(finished < frames);
+  for (std::size_t number = finished + 1; number <= frames; ++number) {
+    CHECK_FALSE(std::filesystem::exists(file(number)));
+  }
+  const auto first_written = written(file(1)), last_written = written(file(finished));
+  CHECK_THAT(done(run.arguments).errors,
+             Contains(fmt::format("{} of {} frames are finished", finished, frames)));
+  CHECK(written(file(1)) == first_written);
+  CHECK(written(file(finished)) == last_written);
+  CHECK(read_image(file(frames)).width == 16);
+}
+
+TEST_CASE("photons of a walk need one pass, and the refusal says so") {
+  const FileFolder folder;
+  const std::string error = last_error(run_photile(walk(folder, {"--passes", "2"})), 2);
+  CHECK_THAT(error, Contains("2 photon passes") && Contains("--photons") && Contains("--passes 1"));
 }
 
 TEST_CASE("frames of other settings are not taken for finished") {
