@@ -18,7 +18,8 @@ for maps in naive triangle; do
     --photons 200k --neighbours 1000 --quiet -o "$pictures/$maps.png"
 done
 
-# The window, on a screen in memory: a click reads the light on the table.
+# The window, on a screen in memory: a click reads the light on the table, another shows illuminance.
+# Buttons are held for longer than the window takes to be drawn.
 outputs=$(mktemp -d)
 trap 'rm -rf "$outputs"' EXIT
 export photile outputs
@@ -26,14 +27,18 @@ xvfb-run --auto-servernum --server-args "-screen 0 1280x960x24" bash -c '
   "$photile" view scenes/living-room/living-room.gltf --size 800x600 --samples 4 --photons 2M \
     --neighbours 200 --outputs "$outputs" --quiet &
   until xdotool search --name "4 of 4 samples, 2M"; do sleep 1; done
-  xdotool mousemove 560 470 click 1; sleep 2
-  xdotool key F12; sleep 2
+  for place in "560 470" "108 464"; do
+    xdotool mousemove $place; sleep 0.4
+    xdotool mousedown 1; sleep 0.4
+    xdotool mouseup 1; sleep 2
+    xdotool keydown F12; sleep 0.4; xdotool keyup F12; sleep 2
+  done
   xdotool key ctrl+q
   wait'
 mv "$outputs/screenshot-0001.png" "$pictures/view.png"
+mv "$outputs/screenshot-0002.png" "$pictures/view-illuminance.png"
 
-# The photon map of a triangle of the right wall: few photons, so that they can be told apart. Buttons
-# are held for longer than the window takes to be drawn.
+# The photon map of a triangle of the right wall: few photons, so that they can be told apart.
 xvfb-run --auto-servernum --server-args "-screen 0 1280x960x24" bash -c '
   "$photile" view scenes/cornell-box/cornell-box-specular.gltf --size 640x480 --samples 1 \
     --photons 30k --outputs "$outputs" --quiet &

@@ -25,6 +25,13 @@ ImTextureID id_of(GLuint texture) {
   return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture));
 }
 
+void set_style() {
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 5;
+  style.ChildRounding = style.FrameRounding = style.GrabRounding = 3;
+  style.WindowBorderSize = 0;
+}
+
 }  // namespace
 
 /// GLFW, its window and what is drawn with, released in reverse order.
@@ -50,6 +57,7 @@ struct Window::Impl {
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // panels do not litter the working folder
     ImGui::GetIO().ConfigWindowsMoveFromTitleBarOnly = true;
+    set_style();
     ImGui_ImplGlfw_InitForOpenGL(handle, true);
     ImGui_ImplOpenGL3_Init("#version 130");
     glGenTextures(1, &texture);

@@ -23,6 +23,10 @@ NAME = "cornell-box"
 MOOD = {"photile_moods": 1, "moods": {"dim": {"lamp": {"power": 7, "unit": "lm", "kelvin": 3000}}}}
 SETTINGS = ["--photons", "100k", "--size", "480x360", "--samples", "4", "--quiet"]
 PATIENCE = 120
+# Buttons under "Display", with one lamp, one mood and a line of news.
+PICTURE, ILLUMINANCE = (28, 326), (107, 326)
+# Rows and columns that neither the panel, the reading nor the legend covers.
+BESIDE_PANELS = slice(110, 340), slice(315, 385)
 
 
 def fail(text):
@@ -112,6 +116,14 @@ class Window:
             self.hand("keyup", each)
             time.sleep(0.2)
 
+    def click(self, x, y):
+        self.hand("mousemove", x, y)
+        time.sleep(0.3)
+        self.hand("mousedown", 1)
+        time.sleep(0.5)
+        self.hand("mouseup", 1)
+        time.sleep(1)
+
     def keep(self, key, pattern):
         """Presses a key that keeps a picture, again where it goes unseen, and reads it."""
         before = set(self.folder.glob(pattern))
@@ -145,6 +157,22 @@ def same_exposure(screenshot, picture):
     encoded = np.where(expected <= 0.0031308, 12.92 * expected,
                        1.055 * np.maximum(expected, 1e-9)**(1 / 2.4) - 0.055)
     return np.abs(encoded - screenshot)[unclipped].max() < 2 / 255
+
+
+def shows_illuminance(photile, scene, window):
+    """In false colour, the window shows what `render --illuminance` draws left of its legend."""
+    drawing = window.folder / "lux.png"
+    subprocess.run([photile, "render", scene, "--illuminance", drawing, *SETTINGS], check=True)
+    expected = Picture(drawing).rgb[BESIDE_PANELS]
+    if len(np.unique(expected.reshape(-1, 3), axis=0)) < 100:
+        fail("too few colours to compare")
+
+    def shown():
+        window.click(*ILLUMINANCE)
+        shot = window.keep("F12", "screenshot-*.png")
+        return np.abs(shot.rgb[BESIDE_PANELS] - expected).max() < 0.5 / 255
+    until(shown, "the picture of illuminance")
+    window.click(*PICTURE)
 
 
 def refuses_without_a_display(photile, scene):
@@ -189,6 +217,8 @@ def main():
         if np.allclose(with_panels.rgb[right_top], shot.rgb[right_top]):
             fail("a click shows no reading")
 
+        shows_illuminance(photile, scene, window)
+
         window.hand("keydown", "w")
         time.sleep(0.7)
         window.hand("keyup", "w")
@@ -211,12 +241,7 @@ def main():
         # The mood that was there, under "Moods": its button "to scene".
         written = folder / f"{NAME}.dim.gltf"
         def clicked_to_scene():
-            window.hand("mousemove", 87, 258)
-            time.sleep(0.3)
-            window.hand("mousedown", 1)
-            time.sleep(0.5)
-            window.hand("mouseup", 1)
-            time.sleep(1)
+            window.click(87, 258)
             return written.exists()
         until(clicked_to_scene, "the copy of the scene")
         facts = subprocess.run([photile, "info", written, "--json"], text=True, check=True,
