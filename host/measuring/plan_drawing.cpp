@@ -43,6 +43,7 @@ class Plan {
     }
     const double u = glm::length(layout_.u), v = glm::length(layout_.v);
     per_metre_ = sizes_.longer_side / std::max(u, v);
+    numbered_ = !small_ && values_.size() <= most_numbered_cells;
     width_ = u * per_metre_;
     height_ = v * per_metre_;
     title_ = light.light.empty() ? values.grid.name
@@ -62,6 +63,9 @@ class Plan {
         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
         "<text x=\"{2}\" y=\"{3}\" font-size=\"{4}\">{5}</text>\n",
         width, height, margin, title_baseline, title_size, escaped_xml(title_));
+    for (std::size_t cell = 0; cell < values_.size() && numbered_; ++cell) {
+      if (!std::isnan(values_[cell])) numbers_.push_back(at(middle_of_cell(cell)));
+    }
     if (options_.contours == Contours::bands) add_bands();  // below the cells' numbers
     add_cells();
     if (options_.contours == Contours::none || options_.contours == Contours::lines) add_isolines();
@@ -86,20 +90,24 @@ class Plan {
             title_height + (1 - cells.y / layout_.rows) * height_};
   }
 
+  /// In cells.
+  glm::dvec2 middle_of_cell(std::size_t cell) const {
+    const auto columns = static_cast<std::size_t>(layout_.columns);
+    return {static_cast<double>(cell % columns) + 0.5, static_cast<double>(cell / columns) + 0.5};
+  }
+
   void add_cells() {
     const double w = width_ / layout_.columns, h = height_ / layout_.rows;
-    const bool numbered = !small_ && values_.size() <= most_numbered_cells;
     for (std::size_t cell = 0; cell < values_.size(); ++cell) {
       if (std::isnan(values_[cell])) continue;
-      const auto column = static_cast<double>(cell % static_cast<std::size_t>(layout_.columns));
-      const auto row = static_cast<double>(cell / static_cast<std::size_t>(layout_.columns));
-      const glm::dvec2 corner = at({column, row + 1});
+      const glm::dvec2 middle = middle_of_cell(cell);
+      const glm::dvec2 corner = at(middle + glm::dvec2(-0.5, 0.5));
       if (is_filled()) {
         add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\" "
             "shape-rendering=\"crispEdges\"/>\n",
             corner.x, corner.y, w, h, scale_.hex(values_[cell]));
       }
-      if (numbered) add_label(at({column + 0.5, row + 0.5}), values_[cell], 9, "normal");
+      if (numbered_) add_label(at(middle), values_[cell], 9, "normal");
     }
   }
 
@@ -109,6 +117,40 @@ class Plan {
         "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"2\" stroke-opacity=\"0.7\" "
         "paint-order=\"stroke\">{}</text>\n",
         middle.x, middle.y + 0.35 * size, size, weight, number_text(value, 3));
+  }
+
+  /// The value of a level at that of the places which is farthest from other numbers, or far enough
+  /// and nearest to the middle one. None where there is no room: the legend has it.
+  void add_level(const std::vector<glm::dvec2>& places, double level) {
+    if (small_) return;
+    constexpr double far_enough = 30, too_near = 12;
+    const auto room_at = [&](const glm::dvec2& place) {
+      double room = far_enough;
+      for (const glm::dvec2& number : numbers_) {
+        room = std::min(room, glm::length(place - number));
+      }
+      return room;
+    };
+    const std::size_t middle = places.size() / 2;
+    glm::dvec2 best = places[middle];
+    double most = room_at(best);
+    for (std::size_t away = 1; away <= middle; ++away) {
+      for (const std::size_t i : {middle - away, std::min(middle + away, places.size() - 1)}) {
+        const double room = room_at(places[i]);
+        if (room <= most) continue;
+        most = room;
+        best = places[i];
+      }
+    }
+    if (most < too_near) return;
+    numbers_.push_back(best);
+    add_label(best, level, 11, "bold");
+  }
+
+  static glm::dvec2 middle_of(const Polygon& polygon) {
+    glm::dvec2 sum(0.0);
+    for (const glm::dvec2& corner : polygon) sum += corner;
+    return sum / static_cast<double>(polygon.size());
   }
 
   bool is_filled() const {
@@ -134,7 +176,9 @@ class Plan {
         add("Z");
       }
       add("\"/>\n");
-      if (!small_) add_label(at(polygons[polygons.size() / 2][0]), levels[i], 11, "bold");
+      std::vector<glm::dvec2> middles;
+      for (const Polygon& polygon : polygons) middles.push_back(at(middle_of(polygon)));
+      add_level(middles, levels[i]);
     }
   }
 
@@ -149,9 +193,9 @@ class Plan {
         add("M{:.2f} {:.2f}L{:.2f} {:.2f}", a.x, a.y, b.x, b.y);
       }
       add("\"/>\n");
-      if (small_) continue;
-      const Segment& labelled = segments[segments.size() / 2];
-      add_label(at(0.5 * (labelled[0] + labelled[1])), level, 11, "bold");
+      std::vector<glm::dvec2> middles;
+      for (const auto& [a, b] : segments) middles.push_back(at(0.5 * (a + b)));
+      add_level(middles, level);
     }
   }
 
@@ -188,6 +232,8 @@ class Plan {
   ColourScale scale_;
   std::string title_, text_;
   double per_metre_ = 0, width_ = 0, height_ = 0;  ///< pixels
+  bool numbered_ = false;                          ///< whether cells have their values
+  std::vector<glm::dvec2> numbers_;                ///< places of them, and of levels
 };
 
 }  // namespace

@@ -11,14 +11,15 @@ using namespace photile::measuring;
 
 namespace {
 
-/// A plane of 3 x 2 cells of a metre, one of them without a sensor.
+/// A plane of 3 x 2 cells of a metre; of 5 values, one of them is without a sensor.
 GridValues plane(const std::string& name, const std::vector<float>& lux) {
   PlaneLayout layout;
   layout.u = {3, 0, 0};
   layout.v = {0, 2, 0};
   layout.columns = 3;
   layout.rows = 2;
-  layout.cells = {0, 1, 2, 3, 5};
+  layout.cells = {0, 1, 2, 3, 4, 5};
+  if (lux.size() == 5) layout.cells.erase(layout.cells.begin() + 4);
   GridValues values;
   values.grid = grid_on_plane(name, layout);
   const std::vector<std::vector<float>> repeats(2, lux);
@@ -66,12 +67,7 @@ TEST_CASE("the legend has the middles of its steps, the label and the plane's na
 
 TEST_CASE("the isoline of a slope runs where the slope has its level") {
   // 100, 200, 300 along u in both rows: the level 250 lies at 2 m of 3.
-  PlaneLayout layout = *plane("", {1, 1, 1, 1, 1}).grid.layout;
-  layout.cells = {0, 1, 2, 3, 4, 5};
-  GridValues values;
-  values.grid = grid_on_plane("slope", layout);
-  const std::vector<std::vector<float>> repeats(2, {100, 200, 300, 100, 200, 300});
-  values.lights.push_back({"", means_of(repeats), statistics_of(repeats, 0, 6)});
+  const GridValues values = plane("slope", {100, 200, 300, 100, 200, 300});
   const std::string svg = plan(values, {.scale = 500, .steps = 1});
   const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
   REQUIRE(lines.size() == 1);
@@ -79,6 +75,15 @@ TEST_CASE("the isoline of a slope runs where the slope has its level") {
   for (const std::string& x : all(lines[0], "[ML]([0-9.]+) ")) {
     CHECK(std::stod(x) == Approx(20 + 2.0 / 3 * 560).margin(0.01));
   }
+}
+
+TEST_CASE("a level has its number beside those of cells, or none") {
+  const GridValues values = plane("hill", {200, 100, 100, 100, 100, 100});
+  const auto numbers = [&](double level) {  // the middle of the only step
+    return all(plan(values, {.scale = 2 * level, .steps = 1}), "font-size=\"11\"[^>]*>([^<]*)<");
+  };
+  CHECK(numbers(150) == std::vector<std::string>{"150"});
+  CHECK(numbers(198).empty());  // 4 pixels from the middle of the first cell
 }
 
 TEST_CASE("a narrow plan is as wide as its title") {
