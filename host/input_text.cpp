@@ -15,9 +15,9 @@ std::string read_input_text(const std::filesystem::path& file) {
     throw InputError(fmt::format("{}: no such file", file.string()));
   }
   const auto bytes = std::filesystem::file_size(file, error);
-  if (error || bytes > limits::max_sensor_file_bytes) {
+  if (error || bytes > limits::max_input_text_bytes) {
     throw InputError(fmt::format("{}: larger than {} bytes; split it", file.string(),
-                                 limits::max_sensor_file_bytes));
+                                 limits::max_input_text_bytes));
   }
   std::ifstream stream(file, std::ios::binary);
   std::string text(bytes, '\0');

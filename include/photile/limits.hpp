@@ -80,9 +80,11 @@ inline constexpr int max_samples_per_pixel = 65'536;
 /// Beyond, 2^stops times a bright pixel leaves the range of a float.
 inline constexpr double max_exposure_stops = 64;
 
+/// Of a text beside the scene: points, planes, camera paths, moods.
+inline constexpr std::uint64_t max_input_text_bytes = 256ull << 20;
+
 // Measuring
 inline constexpr std::uint64_t max_sensors = 1'000'000;
-inline constexpr std::uint64_t max_sensor_file_bytes = 256ull << 20;
 inline constexpr int max_repeats = 1'000;  ///< each traces photons of its own
 
 // Walks
