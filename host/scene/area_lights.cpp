@@ -75,7 +75,9 @@ std::vector<AreaLights::Origin> AreaLights::finish(Warnings& warnings) {
   }
   apply_lumens(first_light, sources);
   std::vector<Origin> origins;
-  for (const Pending* pending : sources) origins.push_back({pending->object, pending->material});
+  for (const Pending* pending : sources) {
+    origins.push_back({pending->object, pending->material, pending->traits.lamp});
+  }
   return origins;
 }
 

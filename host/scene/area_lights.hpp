@@ -39,6 +39,7 @@ class AreaLights {
   struct Origin {
     std::uint64_t object;
     std::uint32_t material;
+    std::string lamp;  ///< of the traits
   };
 
   /// Lists each light's triangles and computes its power. Lights that got no triangle are dropped

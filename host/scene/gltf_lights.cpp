@@ -12,6 +12,7 @@
 #include "scene/coordinate_limit.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/gltf_profiles.hpp"
+#include "scene/lamp_instances.hpp"
 #include "scene/light_traits.hpp"
 #include "scene/photometry.hpp"
 
@@ -93,7 +94,8 @@ class LightImporter {
     Warnings& warnings = context_.warnings;
     apply_traits(light_traits(node.extras, node_name(model_, visit.node), warnings), light,
                  warnings);
-    place(visit, light);
+    place(visit, light,
+          lamp_of(node, source != nullptr ? "KHR_lights_punctual" : "EXT_lights_ies"));
   }
 
  private:
@@ -136,7 +138,7 @@ class LightImporter {
     return true;
   }
 
-  void place(const NodeVisit& visit, Light& light) {
+  void place(const NodeVisit& visit, Light& light, const std::string& lamp) {
     const glm::dvec3 position(visit.world[3]);
     if (!std::isfinite(light.power) || light.power <= 0.0 || !within_limit(position) ||
         !set_orientation(visit.world, light)) {
@@ -150,7 +152,7 @@ class LightImporter {
     }
     context_.scene.lights.push_back(std::move(light));
     context_.light_sources.push_back(
-        {LightSource::Kind::node, static_cast<std::uint32_t>(visit.node), none});
+        {LightSource::Kind::node, static_cast<std::uint32_t>(visit.node), none, lamp});
   }
 
   const tinygltf::Model& model_;

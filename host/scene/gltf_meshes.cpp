@@ -11,6 +11,7 @@
 #include "scene/gltf_panels.hpp"
 #include "scene/gltf_primitives.hpp"
 #include "scene/instance_recorder.hpp"
+#include "scene/lamp_instances.hpp"
 #include "scene/light_traits.hpp"
 #include "scene/material_needs.hpp"
 #include "scene/plain_material.hpp"
@@ -122,6 +123,7 @@ void MeshImporter::add_panel(const NodeVisit& visit, std::uint64_t visit_number)
   LightTraits traits = light_traits(model_.nodes[static_cast<std::size_t>(visit.node)].extras, name,
                                     context_.warnings);
   traits.lumens = 0;  // the panel's own say so
+  traits.lamp = lamp_of(model_.nodes[static_cast<std::size_t>(visit.node)], "EXT_lights_area");
   const std::uint32_t light = context_.area_lights.find_or_add(
       first_panel_object + visit_number, name, panel_material_, {panel->radiance, false}, traits);
   for (const auto& corners : panel_triangles(*panel, visit.world)) {
@@ -151,9 +153,10 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   // A mirrored node turns the winding of its triangles round.
   const bool mirrored = glm::determinant(glm::dmat3(visit.world)) < 0.0;
   const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+  LightTraits traits = light_traits(node.extras, node_name(model_, visit.node), context_.warnings);
+  traits.lamp = fmt::format("mesh {}", node.mesh);
   const std::uint32_t light = context_.area_lights.find_or_add(
-      visit_number, node.name.empty() ? mesh_name : node.name, material, surface.emission,
-      light_traits(node.extras, node_name(model_, visit.node), context_.warnings));
+      visit_number, node.name.empty() ? mesh_name : node.name, material, surface.emission, traits);
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
     const std::array<Corner, 3> triangle{corners[mirrored ? c : a], corners[b],
                                          corners[mirrored ? a : c]};

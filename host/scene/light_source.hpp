@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "photile/scene.hpp"
@@ -20,6 +21,7 @@ struct LightSource {
   Kind kind = Kind::surroundings;
   std::uint32_t node = none;      ///< of the glTF file
   std::uint32_t material = none;  ///< of a surface: into Scene::materials, and the glTF file's
+  std::string lamp = {};          ///< what the file has once for all instances; "" = just this one
 };
 
 /// A scene with the source of each of its lights.

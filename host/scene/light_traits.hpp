@@ -14,6 +14,7 @@ struct LightTraits {
   std::string group;  ///< "" = none
   double lumens = 0;  ///< of the node's lights together; 0 = not given
   double kelvin = 0;  ///< 0 = not given
+  std::string lamp;   ///< as LightSource::lamp
 };
 
 /// Traits of the node `name`. Numbers that are none, or out of range, are ignored with a warning.

@@ -14,6 +14,7 @@
 #include "scene/default_camera.hpp"
 #include "scene/gltf_import.hpp"
 #include "scene/import_context.hpp"
+#include "scene/lamp_instances.hpp"
 #include "scene/light_changes.hpp"
 #include "scene/light_grouping.hpp"
 #include "scene/light_names.hpp"
@@ -86,11 +87,11 @@ void finish_directional_lights(const ImportContext& context) {
 /// Objects of a glTF file are its visits, then its panels; those of an OBJ file have no nodes.
 LightSource source_of(const AreaLights::Origin& origin, const ImportContext& context) {
   const std::vector<std::uint32_t>& nodes = context.visited_nodes;
-  if (nodes.empty()) return {LightSource::Kind::surface, none, origin.material};
+  if (nodes.empty()) return {LightSource::Kind::surface, none, origin.material, origin.lamp};
   if (origin.object < nodes.size()) {
-    return {LightSource::Kind::surface, nodes[origin.object], origin.material};
+    return {LightSource::Kind::surface, nodes[origin.object], origin.material, origin.lamp};
   }
-  return {LightSource::Kind::panel, nodes[origin.object - first_panel_object], none};
+  return {LightSource::Kind::panel, nodes[origin.object - first_panel_object], none, origin.lamp};
 }
 
 }  // namespace
@@ -131,6 +132,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
     // The importer libraries throw what they like on malformed files.
     throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
   }
+  group_instances(scene.lights, context.light_sources);
   make_light_names_unique(scene.lights);
   apply_profiles(scene, options.profiles, warnings);
   apply_temperatures(scene, options.temperatures);

@@ -68,6 +68,44 @@ TEST_CASE("photile_group of a node with an emissive mesh is that of its area lig
   CHECK(groups_of(load_gltf(document)) == Names{"ceiling_1"});  // cleaned as names are
 }
 
+TEST_CASE("nodes that place one lamp of the file share a layer") {
+  nlohmann::json document = three_lamps();
+  document["nodes"][2]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  const Scene scene = load_gltf(document);
+  CHECK(groups_of(scene) == Names{"hall_1", "hall_1", ""});
+  const LightGroups groups = light_groups_of(scene);
+  REQUIRE(groups.groups.size() == 2);
+  CHECK(groups.groups[0].power == Approx(20.0));
+  // Who says otherwise is believed.
+  CHECK(groups_of(grouped({"hall_2=other"}, document)) == Names{"hall_1", "other", ""});
+  document["nodes"][2]["extras"]["photile_group"] = "stairs";
+  CHECK(groups_of(load_gltf(document)) == Names{"", "stairs", ""});
+}
+
+TEST_CASE("layers of two lamps that are placed several times keep apart, whatever their names") {
+  nlohmann::json document = three_lamps({"lamp", "lamp", "lamp"});
+  document["nodes"].push_back(document["nodes"][3]);
+  document["scenes"][0]["nodes"].push_back(4);
+  document["nodes"][2]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  CHECK(groups_of(load_gltf(document)) == Names{"lamp", "lamp", "lamp_2", "lamp_2"});
+}
+
+TEST_CASE("instances of an emissive mesh share a layer, its materials do not") {
+  nlohmann::json document = square_document();
+  document["materials"].push_back({{"name", "neon"}, {"emissiveFactor", {0, 1, 0}}});
+  auto& primitives = document["meshes"][0]["primitives"];
+  primitives.push_back(primitives[0]);
+  primitives[1]["material"] = 1;
+  document["nodes"].push_back(
+      {{"name", "second"}, {"mesh", 0}, {"translation", {0, 0, 3}}, {"scale", {2, 2, 2}}});
+  document["scenes"][0]["nodes"] = {0, 1};
+  const Scene scene = load_gltf(document);
+  REQUIRE(scene.lights.size() == 4);
+  CHECK(groups_of(scene) == Names{"panel_glow", "panel_neon", "panel_glow", "panel_neon"});
+  const LightGroups groups = light_groups_of(scene);
+  CHECK(groups.share[2] == Approx(4 * groups.share[0]));  // by area
+}
+
 TEST_CASE("a glob of light names makes a group, and a later one takes from an earlier one") {
   const auto document = three_lamps();
   CHECK(groups_of(grouped({"hall_*=hall"}, document)) == Names{"hall", "hall", ""});
