@@ -28,6 +28,7 @@ libcli11-dev           | command line
 libglfw3-dev           | the window of photile view
 libimgui-dev           | its panels
 libgl-dev              | what draws them
+robin-map-dev          | hash tables, for meshes of millions of triangles
 libxxhash-dev          | checksums of the program cache
 fonts-dejavu-core      | the letters of legends and of photile compare's pictures
 catch2                 | tests

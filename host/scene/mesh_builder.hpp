@@ -1,10 +1,12 @@
 // From loose triangles to the scene's indexed soup in canonical order.
 #pragma once
 
+#include <tsl/robin_map.h>
+#include <tsl/robin_set.h>
+
 #include <array>
 #include <cstdint>
-#include <unordered_map>
-#include <unordered_set>
+#include <memory>
 
 #include "photile/scene.hpp"
 
@@ -64,8 +66,10 @@ class MeshBuilder {
   Scene& scene_;
   CornerNeeds needs_;
   bool any_normal_ = false, any_tangent_ = false;
-  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, PositionHash> index_of_position_;
-  std::unordered_set<std::uint32_t, TriangleHash, TriangleEqual> distinct_;  ///< triangles
+  tsl::robin_map<std::array<std::uint32_t, 3>, std::uint32_t, PositionHash> index_of_position_;
+  /// Triangles, with their hashes: comparing two looks them up.
+  tsl::robin_set<std::uint32_t, TriangleHash, TriangleEqual, std::allocator<std::uint32_t>, true>
+      distinct_;
 };
 
 }  // namespace photile::scene_io
