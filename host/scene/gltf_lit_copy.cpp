@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "output_file.hpp"
 #include "photile/errors.hpp"
@@ -63,8 +64,11 @@ class Document {
     std::vector<LightSetting> settings(all.begin(), all.end());
     recolor_whole_nodes(settings);
     for (const LightSetting& light : settings) {
-      if (light.source.kind == LightSource::Kind::surface) ++lights_of_[light.source.material];
+      if (light.source.kind == LightSource::Kind::surface && is_first_instance(light)) {
+        ++lights_of_[light.source.material];
+      }
     }
+    seen_.clear();
     for (const LightSetting& light : settings) {
       if (!light.changed()) continue;
       if (light.source.kind == LightSource::Kind::node) set_node(light);
@@ -76,6 +80,12 @@ class Document {
 
  private:
   Json& node(const LightSetting& light) { return json_["nodes"].at(light.source.node); }
+
+  /// False for all but the first of lights that share their setting and what defines them.
+  bool is_first_instance(const LightSetting& light) {
+    const LightSource& source = light.source;
+    return !light.shared || seen_.insert({source.kind, source.material, source.lamp}).second;
+  }
 
   /// The number `key` among the extras of a light's node, or null.
   Json* extra(const LightSetting& light, const char* key) {
@@ -108,7 +118,7 @@ class Document {
       const Json* reference = extension_of(other, extension);
       if (reference && index_in(*reference, "light") == index) ++uses;
     }
-    if (uses == 1) return lights.at(static_cast<std::size_t>(index));
+    if (uses == 1 || light.shared) return lights.at(static_cast<std::size_t>(index));
     lights.push_back(Json(lights.at(static_cast<std::size_t>(index))));
     own["light"] = lights.size() - 1;
     return lights.back();
@@ -140,6 +150,7 @@ class Document {
       }
     }
     if (extension_of(node(light), "KHR_lights_punctual")) {
+      if (!is_first_instance(light)) return;
       set_definition(own_definition(light, "KHR_lights_punctual"), "intensity", light);
     } else if (light.recolored) {
       left_out_.push_back(light.name + ": has no colour in the file; its power is set alone");
@@ -152,7 +163,7 @@ class Document {
     if (lights_of_[light.source.material] == 1) return materials.at(light.source.material);
     materials.push_back(Json(materials.at(light.source.material)));
     const std::size_t own = materials.size() - 1;
-    for (Json& primitive : own_mesh(node(light))["primitives"]) {
+    for (Json& primitive : own_mesh(light)["primitives"]) {
       if (index_in(primitive, "material") == static_cast<int>(light.source.material)) {
         primitive["material"] = own;
       }
@@ -160,20 +171,22 @@ class Document {
     return materials[own];
   }
 
-  /// The mesh of a node, of its own.
-  Json& own_mesh(Json& owner) {
+  /// The mesh of a light's node, of its own.
+  Json& own_mesh(const LightSetting& light) {
+    Json& owner = node(light);
     Json& meshes = json_["meshes"];
     const int mesh = index_in(owner, "mesh");
     const auto uses =
         std::count_if(json_["nodes"].begin(), json_["nodes"].end(),
                       [&](const Json& other) { return index_in(other, "mesh") == mesh; });
-    if (uses == 1) return meshes.at(static_cast<std::size_t>(mesh));
+    if (uses == 1 || light.shared) return meshes.at(static_cast<std::size_t>(mesh));
     meshes.push_back(Json(meshes.at(static_cast<std::size_t>(mesh))));
     owner["mesh"] = meshes.size() - 1;
     return meshes.back();
   }
 
   void set_surface(const LightSetting& light) {
+    if (!is_first_instance(light)) return;
     constexpr const char* extension = "KHR_materials_emissive_strength";
     Json& material = own_material(light);
     glm::dvec3 emission = rgb_in(material, "emissiveFactor", glm::dvec3(0.0));
@@ -204,7 +217,7 @@ class Document {
       if (light.recolored) {
         left_out_.push_back(light.name + ": photile_area has no colour; its power is set alone");
       }
-    } else {
+    } else if (is_first_instance(light)) {
       set_definition(own_definition(light, "EXT_lights_area"), "intensity", light);
     }
   }
@@ -231,7 +244,8 @@ class Document {
   Json& json_;
   const SceneLoadOptions& options_;
   std::vector<std::string>& left_out_;
-  std::map<std::uint32_t, int> lights_of_;  ///< of each material
+  std::map<std::uint32_t, int> lights_of_;  ///< of each material; instances of one count once
+  std::set<std::tuple<LightSource::Kind, std::uint32_t, std::string>> seen_;  ///< shared ones
 };
 
 /// A .glb in its parts: JSON, and all that follows its chunk.

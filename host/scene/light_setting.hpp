@@ -23,6 +23,7 @@ struct LightSetting {
   double factor = 1;       ///< of its layer's power; power = old_power x factor x luminance of the
                            ///< tinted old colour
   bool recolored = false;  ///< `color` replaces what the file says
+  bool shared = false;     ///< all instances of its lamp are in its layer, and set as it is
 
   bool changed() const { return recolored || factor != 1; }
   double ratio() const { return power / old_power; }

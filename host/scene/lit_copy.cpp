@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
 
 #include "photile/errors.hpp"
 #include "photile/light_groups.hpp"
@@ -25,11 +28,26 @@ bool colored_by_option(const Light& light, const SceneLoadOptions& options) {
       [&](const LightTemperature& temperature) { return temperature.light == light.name; });
 }
 
+using Lamp = std::tuple<LightSource::Kind, std::uint32_t, std::string>;
+
+Lamp lamp_of(const LightSource& source) { return {source.kind, source.material, source.lamp}; }
+
+/// The layers that instances of each lamp are in.
+std::map<Lamp, std::set<std::uint32_t>> layers_of_lamps(const SourcedScene& sourced,
+                                                        const LightGroups& groups) {
+  std::map<Lamp, std::set<std::uint32_t>> layers;
+  for (std::size_t i = 0; i < sourced.sources.size(); ++i) {
+    layers[lamp_of(sourced.sources[i])].insert(groups.group_of[i]);
+  }
+  return layers;
+}
+
 /// What the mix makes of each light.
 std::vector<LightSetting> settings_of(const SourcedScene& sourced, const SceneLoadOptions& options,
                                       const LightMix& mix, std::vector<std::string>& left_out) {
   const Scene& scene = sourced.scene;
   const LightGroups groups = light_groups_of(scene);
+  const auto layers = layers_of_lamps(sourced, groups);
   std::vector<LightSetting> settings;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -37,6 +55,7 @@ std::vector<LightSetting> settings_of(const SourcedScene& sourced, const SceneLo
     const MixedLight& mixed = mix.lights.at(groups.group_of[i]);
     LightSetting setting;
     setting.source = sourced.sources[i];
+    setting.shared = !setting.source.lamp.empty() && layers.at(lamp_of(setting.source)).size() == 1;
     setting.name = light.name;
     setting.old_power = light.power;
     setting.tint = glm::dvec3(mixed.tint);

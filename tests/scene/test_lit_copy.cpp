@@ -45,8 +45,8 @@ void check_reads_back(const std::filesystem::path& copy, const LightMix& wanted,
   CHECK(read.lights.size() == lit);
 }
 
-/// Two nodes with one mesh, two with one point light.
-nlohmann::json shared_document() {
+/// Two nodes with one mesh, "panel" and "second", two with one point light, "lamp" and "bulb".
+nlohmann::json instances_document() {
   nlohmann::json document = square_document();
   document["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_emissive_strength"};
   document["extensions"]["KHR_lights_punctual"]["lights"] = {
@@ -58,6 +58,13 @@ nlohmann::json shared_document() {
     document["nodes"].push_back(node);
   }
   document["scenes"][0]["nodes"] = {0, 1, 2, 3};
+  return document;
+}
+
+/// The same, each in a group alone.
+nlohmann::json shared_document() {
+  nlohmann::json document = instances_document();
+  for (nlohmann::json& node : document["nodes"]) node["extras"]["photile_group"] = node["name"];
   return document;
 }
 
@@ -83,6 +90,21 @@ TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
   CHECK(bytes_in(file) == before);
+}
+
+TEST_CASE("instances of one lamp stay one in a copy of a glTF file") {
+  const SceneFolderOnDisk folder;
+  nlohmann::json document = instances_document();
+  document["meshes"].push_back(document["meshes"][0]);  // of the same material, set by itself
+  document["nodes"].push_back({{"name", "third"}, {"mesh", 1}, {"translation", {0, 0, 5}}});
+  document["scenes"][0]["nodes"].push_back(4);
+  const auto file = write_scene(folder, document);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  REQUIRE(mix.lights.size() == 3);
+  photile::apply(mix, {{"lamp", "50"}, {"lamp", "2700K"}, {"panel", "x0.25"}});
+  const scene_io::LitCopy copy = scene_io::write_lit_copy(file, {}, mix, "evening");
+  CHECK(copy.left_out.empty());
+  check_reads_back(copy.file, mix);
 }
 
 TEST_CASE("nodes outside the scene may name what no file can hold") {
@@ -112,9 +134,12 @@ TEST_CASE("a lamp that is off is written with intensity 0") {
 TEST_CASE("what photile_lumens and photile_kelvin say follows in a copy") {
   const SceneFolderOnDisk folder;
   nlohmann::json document = shared_document();
-  document["nodes"][0]["extras"] = {{"photile_lumens", 1200}, {"photile_kelvin", 4000}};
-  document["nodes"][2]["extras"] = {{"photile_lumens", 300}, {"photile_kelvin", 3000}};
-  document["nodes"][3]["extras"] = {{"photile_lumens", 300}, {"photile_kelvin", 3000}};
+  document["nodes"][0]["extras"].update(
+      nlohmann::json{{"photile_lumens", 1200}, {"photile_kelvin", 4000}});
+  document["nodes"][2]["extras"].update(
+      nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
+  document["nodes"][3]["extras"].update(
+      nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
   const auto file = write_scene(folder, document);
   LightMix mix = LightMix::of(load_scene(file), 683);
   apply(mix, {{"panel", "500"}, {"panel", "5000K"}, {"lamp", "100"}, {"bulb", "#ff0000"}});
