@@ -15,11 +15,6 @@ namespace {
 /// Paths traced at a time: little enough to stay in memory and to show progress.
 constexpr std::int64_t paths_per_batch = std::int64_t{1} << 18;
 
-StageStatistics stage(const char* name, const StageCost& cost,
-                      std::vector<std::pair<std::string, double>> figures = {}) {
-  return {name, cost.seconds, cost.host_bytes, 0, std::move(figures)};
-}
-
 }  // namespace
 
 PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source,

@@ -6,16 +6,16 @@
 namespace photile {
 namespace {
 
-StageStatistics stage(const char* name, const StageCost& cost,
-                      std::vector<std::pair<std::string, double>> figures = {}) {
-  return {name, cost.seconds, cost.host_bytes, cost.device_bytes, std::move(figures)};
-}
-
 double ratio(std::uint64_t a, std::uint64_t b) {
   return static_cast<double>(a) / static_cast<double>(std::max<std::uint64_t>(1, b));
 }
 
 }  // namespace
+
+StageStatistics stage(const char* name, const StageCost& cost,
+                      std::vector<std::pair<std::string, double>> figures) {
+  return {name, cost.seconds, cost.host_bytes, cost.device_bytes, std::move(figures)};
+}
 
 void StageCost::add(double more_seconds, std::uint64_t more_host_bytes,
                     std::uint64_t more_device_bytes) {

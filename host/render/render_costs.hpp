@@ -19,6 +19,10 @@ struct StageCost {
   void add(double seconds, std::uint64_t host_bytes = 0, std::uint64_t device_bytes = 0);
 };
 
+/// What a stage cost, as a record of a run has it.
+StageStatistics stage(const char* name, const StageCost& cost,
+                      std::vector<std::pair<std::string, double>> figures = {});
+
 /// Counts add up over passes.
 struct RenderCosts {
   StageCost structure, trace, group, surface, build, hits, gather, estimate, film;

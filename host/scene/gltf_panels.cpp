@@ -17,8 +17,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr const char* extension_name = "EXT_lights_area";
-constexpr const char* extra_name = "photile_area";
+constexpr const char* area_extension = "EXT_lights_area";
+constexpr const char* area_extra = "photile_area";
 constexpr int disc_corners = 64;
 
 double area_of(const Panel& panel) {
@@ -33,7 +33,7 @@ glm::dvec3 radiance_of(double lumens, const Panel& panel) {
 /// `photile_area`: [width, height], or the text "WxH".
 std::optional<Panel> size_of(const tinygltf::Value& extras) {
   Panel panel;
-  const tinygltf::Value& value = extras.Get(extra_name);
+  const tinygltf::Value& value = extras.Get(area_extra);
   if (value.IsString()) {
     const std::string text = value.Get<std::string>();
     const std::size_t cross = text.find('x');
@@ -42,7 +42,7 @@ std::optional<Panel> size_of(const tinygltf::Value& extras) {
     panel.width = parse_number(trimmed(view.substr(0, cross))).value_or(0.0);
     panel.height = parse_number(trimmed(view.substr(cross + 1))).value_or(0.0);
   } else {
-    const glm::dvec3 size = vector_member(extras, extra_name, glm::dvec3(0.0));
+    const glm::dvec3 size = vector_member(extras, area_extra, glm::dvec3(0.0));
     panel.width = size.x;
     panel.height = size.y;
   }
@@ -66,7 +66,7 @@ std::optional<Panel> panel_of_extras(const tinygltf::Node& node, const std::stri
 std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
                                         const tinygltf::Value& reference, const std::string& name,
                                         ImportContext& context) {
-  const tinygltf::Value* extension = find_extension(model.extensions, extension_name);
+  const tinygltf::Value* extension = find_extension(model.extensions, area_extension);
   const tinygltf::Value lights = extension != nullptr && extension->Has("lights")
                                      ? extension->Get("lights")
                                      : tinygltf::Value();
@@ -74,7 +74,7 @@ std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
   const std::size_t count = lights.IsArray() ? lights.ArrayLen() : 0;
   if (!(index >= 0.0 && index < static_cast<double>(count))) {
     throw context.error(fmt::format("node '{}': there is no light {} of {}; export it again", name,
-                                    index, extension_name));
+                                    index, area_extension));
   }
   const tinygltf::Value& light = lights.Get(static_cast<int>(index));
   const std::string type = string_member(light, "type");
@@ -93,7 +93,7 @@ std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
         "node", name,
         fmt::format("its light of {} has no size, no light or an unknown type '{}'; "
                     "left out",
-                    extension_name, type));
+                    area_extension, type));
     return std::nullopt;
   }
   return panel;
@@ -101,7 +101,7 @@ std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
 
 }  // namespace
 
-bool has_panel(const tinygltf::Node& node) { return node.extras.Has(extra_name); }
+bool has_panel(const tinygltf::Node& node) { return node.extras.Has(area_extra); }
 
 std::optional<Panel> panel_of(const tinygltf::Model& model, int number, ImportContext& context) {
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(number)];
@@ -113,7 +113,7 @@ std::optional<Panel> panel_of(const tinygltf::Model& model, int number, ImportCo
   }
   const std::string name = node_name(model, number);
   if (has_panel(node)) return panel_of_extras(node, name, context.warnings);
-  if (const auto* reference = find_extension(node.extensions, extension_name)) {
+  if (const auto* reference = find_extension(node.extensions, area_extension)) {
     return panel_of_extension(model, *reference, name, context);
   }
   return std::nullopt;

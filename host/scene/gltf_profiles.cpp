@@ -11,8 +11,8 @@
 namespace photile::scene_io {
 namespace {
 
-constexpr const char* extension_name = "EXT_lights_ies";
-constexpr const char* extra_name = "photile_ies";
+constexpr const char* ies_extension = "EXT_lights_ies";
+constexpr const char* ies_extra = "photile_ies";
 
 /// The content of a data: URI in base64, whatever its media type. tinygltf knows a few types only.
 std::vector<unsigned char> data_uri_content(const std::string& uri) {
@@ -30,7 +30,7 @@ std::vector<unsigned char> data_uri_content(const std::string& uri) {
 }  // namespace
 
 bool has_profile(const tinygltf::Node& node) {
-  return !string_member(node.extras, extra_name).empty();
+  return !string_member(node.extras, ies_extra).empty();
 }
 
 template <class Read>
@@ -42,24 +42,24 @@ std::uint32_t GltfProfiles::find_or_read(const std::string& key, const Read& rea
 }
 
 std::uint32_t GltfProfiles::from_extension(double light, const std::string& node) {
-  const tinygltf::Value* extension = find_extension(model_.extensions, extension_name);
+  const tinygltf::Value* extension = find_extension(model_.extensions, ies_extension);
   const tinygltf::Value lights = extension != nullptr && extension->Has("lights")
                                      ? extension->Get("lights")
                                      : tinygltf::Value();
   const std::size_t count = lights.IsArray() ? lights.ArrayLen() : 0;
   if (!(light >= 0.0 && light < static_cast<double>(count))) {
     throw ResourceError(
-        fmt::format("node '{}': there is no light {} of {}", node, light, extension_name));
+        fmt::format("node '{}': there is no light {} of {}", node, light, ies_extension));
   }
   const tinygltf::Value& profile = lights.Get(static_cast<int>(light));
   const std::string uri = string_member(profile, "uri");
   if (uri.empty()) {
-    const std::string key = fmt::format("light {} of {}", light, extension_name);
+    const std::string key = fmt::format("light {} of {}", light, ies_extension);
     const auto view = integer_member(profile, "bufferView", -1);
     return find_or_read(key, [&] { return accessors_.view(view, key); });
   }
   if (uri.starts_with("data:")) {
-    return find_or_read(fmt::format("light {} of {}", light, extension_name),
+    return find_or_read(fmt::format("light {} of {}", light, ies_extension),
                         [&] { return data_uri_content(uri); });
   }
   const std::string file = decoded_uri(uri);
@@ -69,7 +69,7 @@ std::uint32_t GltfProfiles::from_extension(double light, const std::string& node
 std::optional<NodeProfile> GltfProfiles::of(int number) {
   const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(number)];
   try {
-    if (const auto* extension = find_extension(node.extensions, extension_name)) {
+    if (const auto* extension = find_extension(node.extensions, ies_extension)) {
       NodeProfile profile;
       profile.distribution =
           from_extension(number_member(*extension, "light", -1.0), node_name(model_, number));
@@ -78,7 +78,7 @@ std::optional<NodeProfile> GltfProfiles::of(int number) {
       profile.colored_by_node = true;
       return profile;
     }
-    const std::string file = string_member(node.extras, extra_name);
+    const std::string file = string_member(node.extras, ies_extra);
     if (file.empty()) return std::nullopt;
     NodeProfile profile;
     profile.distribution = find_or_read(file, [&] { return context_.folder.read(file); });

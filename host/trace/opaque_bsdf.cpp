@@ -4,15 +4,10 @@
 #include <cmath>
 
 #include "trace/ggx.hpp"
+#include "trace/largest.hpp"
 #include "trace/scatter.hpp"
 
 namespace photile::trace {
-
-namespace {
-
-float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
-
-}  // namespace
 
 OpaqueBsdf::OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
                        PathStart start)

@@ -3,14 +3,13 @@
 #include <algorithm>
 
 #include "trace/holes.hpp"
+#include "trace/largest.hpp"
 #include "trace/scatter.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
 
 namespace {
-
-float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
 double luminance_of(const glm::vec3& flux) { return luminance(glm::dvec3(flux)); }
 

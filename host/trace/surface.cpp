@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "photile/device/bsdf.h"
+#include "trace/largest.hpp"
 #include "trace/normal_map.hpp"
 
 namespace photile::trace {
@@ -23,8 +24,6 @@ struct Interpolated {
   glm::dvec3 normal;  ///< unit, of side 0
   double clearance;
 };
-
-double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 Interpolated interpolate(const Scene& scene, const TriangleHit& where) {
   const glm::uvec3& t = scene.triangles[where.triangle];

@@ -1,6 +1,5 @@
 // Light straight from lamps.
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "validation/analytic_case.hpp"
 #include "validation/form_factors.hpp"
@@ -9,7 +8,6 @@
 namespace photile::validation {
 namespace {
 
-constexpr double pi = glm::pi<double>();
 const glm::dvec3 up(0, 0, 1);
 
 /// A black floor of 4 x 4 m around the origin, in z = 0.

@@ -1,5 +1,4 @@
 // White furnaces: inside walls that all glow alike, every material has a simple answer.
-#include <glm/gtc/constants.hpp>
 
 #include "validation/analytic_case.hpp"
 #include "validation/glossy_reflectance.hpp"
@@ -8,7 +7,6 @@
 namespace photile::validation {
 namespace {
 
-constexpr double pi = glm::pi<double>();
 constexpr double luminance = 100;  // of the walls' own light, cd/m2
 const glm::dvec3 size(2, 1, 1.5);
 

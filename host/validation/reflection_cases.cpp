@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "validation/analytic_case.hpp"
 #include "validation/form_factors.hpp"
@@ -11,7 +10,6 @@
 namespace photile::validation {
 namespace {
 
-constexpr double pi = glm::pi<double>();
 constexpr double floor_illuminance = 1000;  // lux
 constexpr double floor_reflectance = 0.8;
 constexpr double side = 4;  // of the floor, metres

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "photile/sensors.hpp"
 
 namespace photile::validation {
+
+inline constexpr double pi = glm::pi<double>();
 
 Material diffuse(float albedo);
 

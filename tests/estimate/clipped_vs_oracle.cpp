@@ -112,7 +112,7 @@ TEST_CASE("clipped irradiance on vertices and edges to the last bit equals the o
 }
 
 TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode",
-          "[long]") {
+          "[slow]") {
   const auto [mode, kernel] =
       GENERATE(table<MapMode, DensityKernel>({{MapMode::triangle, DensityKernel::constant},
                                               {MapMode::patch, DensityKernel::constant},
@@ -126,7 +126,7 @@ TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, f
   }
 }
 
-TEST_CASE("clipped irradiance in the living room equals the oracle's") {
+TEST_CASE("clipped irradiance in the living room equals the oracle's", "[slow]") {
   Scene scene = load_scene(test::source_folder() / "scenes/living-room/living-room.gltf");
   for (Material& material : scene.materials) material.specular = glm::vec3(0.0f);  // no lobes
   const Photons photons = test::uniform_photons(scene, 60'000, 51);

@@ -62,7 +62,7 @@ TEST_CASE("maps of patches find the oracle's neighbours on a fine torus", "[long
   check_modes(scene, 20'000, 300, 0.3, every_structure, {1, 50, 400});
 }
 
-TEST_CASE("maps of patches find the oracle's neighbours on a fine sphere", "[long]") {
+TEST_CASE("maps of patches find the oracle's neighbours on a fine sphere", "[slow]") {
   check_modes(sphere(), 20'000, 300, 0.25, every_structure, {16, 50});
 }
 

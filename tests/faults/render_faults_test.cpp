@@ -129,7 +129,8 @@ TEST_CASE("a device that is lost in the middle of a render is reported once") {
   check_failure(failure, (count_calls(failure) + 1) / 2, true);
 }
 
-TEST_CASE("a call that fails on one of two devices ends the render on both, and is told once") {
+TEST_CASE("a call that fails on one of two devices ends the render on both, and is told once",
+          "[slow]") {
   const char* const halves = "/2";
   const Failure failure = out_of_memory();
   const long calls = count_calls(failure, halves);

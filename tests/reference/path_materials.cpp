@@ -71,7 +71,7 @@ TEST_CASE("paths and photon maps agree on a rough metal", "[materials]") {
   check_agreement(room(test::glossy(glm::vec3(0.0f), glm::vec3(0.7f), 0.6f)));
 }
 
-TEST_CASE("paths and photon maps agree under a normal map", "[materials]") {
+TEST_CASE("paths and photon maps agree under a normal map", "[materials][slow]") {
   const auto [albedo, specular] =
       GENERATE(std::pair(0.6f, 0.0f), std::pair(0.5f, 0.04f), std::pair(0.0f, 0.7f));
   Material walls = test::glossy(glm::vec3(albedo), glm::vec3(specular), 0.5f);

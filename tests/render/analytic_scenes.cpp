@@ -79,8 +79,8 @@ TEST_CASE("a point light over a floor: mean illuminance and radiance over a squa
   CHECK(radiance_verdict.passed);
 }
 
-TEST_CASE(
-    "a furnace: inside a sphere that emits L and reflects rho the radiance is L / (1 - rho)") {
+TEST_CASE("a furnace: inside a sphere that emits L and reflects rho the radiance is L / (1 - rho)",
+          "[slow]") {
   // Direct emission is seen as L; what the photon map adds is L rho / (1 - rho). On a sphere the
   // surface within the disc is larger than the disc by (r / 2)^2, under 0.2% here.
   for (const float albedo : {0.5f, 0.8f}) {

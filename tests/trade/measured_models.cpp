@@ -76,7 +76,7 @@ TEST_CASE("a picture by the settings chosen for an error has no larger one") {
   }
 }
 
-TEST_CASE("fewer photons than the choice break the promise that it keeps") {
+TEST_CASE("fewer photons than the choice break the promise that it keeps", "[slow]") {
   // The test above can fail: the same k from a sixteenth of the photons blurs what it must not.
   const View view = cornell_box();
   const LightMix mix = LightMix::of(view.scene, defaults::lumen_per_watt);

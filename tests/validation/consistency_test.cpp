@@ -89,8 +89,8 @@ TEST_CASE("few neighbours are as unbiased as many: k for k - 1 would be seen") {
   CHECK_VERDICT(test::mean_is(values, truth, 0.03 * truth));  // k for k - 1 gives 11% more
 }
 
-TEST_CASE(
-    "the squared error falls as photons to the power -2/3 where k grows as to the power 2/3") {
+TEST_CASE("the squared error falls as photons to the power -2/3 where k grows as to the power 2/3",
+          "[slow]") {
   // The variance is 1 / k and the bias is of the order of k / N, whose square falls faster.
   const Scene scene = evenly_lit_plate();
   const std::vector<Sensor> sensors = square_of_sensors(16, 0.08, {0, 0, 1});
