@@ -7,7 +7,7 @@
 namespace photile::validation {
 namespace {
 
-constexpr double luminance = 100;  // of the walls' own light, cd/m2
+constexpr double wall_luminance = 100;  // of the walls' own light, cd/m2
 const glm::dvec3 size(2, 1, 1.5);
 
 /// A closed box whose walls glow and reflect.
@@ -21,7 +21,7 @@ struct Furnace {
   Scene build() {
     double area = 0;
     for (const Rectangle& wall : walls) area += wall.area();
-    return room.build(pi * luminance * area);
+    return room.build(pi * wall_luminance * area);
   }
 
   Room room;
@@ -38,7 +38,7 @@ AnalyticCase empty_furnace() {
   Furnace furnace("furnace", reflectance);
   return with_readings("furnace, diffuse walls, rho = 0.8", "pi L / (1 - rho) everywhere", furnace,
                        {{"mean over all walls", grid_of_sensors(furnace.walls, 12),
-                         pi * luminance / (1 - double{reflectance})}},
+                         pi * wall_luminance / (1 - double{reflectance})}},
                        0.02);
 }
 
@@ -49,7 +49,7 @@ AnalyticCase furnace_with_ball(const std::string& name, const Material& look) {
   furnace.room.add_ball({0.9, 0.5, 0.7}, 0.35, 12, furnace.room.add_material(look));
   return with_readings("furnace with " + name, "pi L / (1 - rho), as without it", furnace,
                        {{"mean over all walls", grid_of_sensors(furnace.walls, 12),
-                         pi * luminance / (1 - double{reflectance})}},
+                         pi * wall_luminance / (1 - double{reflectance})}},
                        0.02);
 }
 
@@ -64,9 +64,9 @@ AnalyticCase furnace_with_plate() {
   const std::vector<Sensor> sensors = grid_of_sensors({plate}, 15);
   return with_readings("furnace with a glossy plate",
                        "pi L; L x integral of the BSDF, seen along the normal", furnace,
-                       {{"illuminance of the plate", sensors, pi * luminance},
-                        {"luminance of the plate", sensors,
-                         luminance * glossy_reflectance(albedo, f0, alpha), Quantity::luminance}},
+                       {{"illuminance of the plate", sensors, pi * wall_luminance},
+                        {"wall_luminance of the plate", sensors,
+                         wall_luminance * glossy_reflectance(albedo, f0, alpha), Quantity::wall_luminance}},
                        0.5);
 }
 
