@@ -15,7 +15,7 @@ namespace photile::measuring {
 namespace {
 
 /// Surfaces this near to one another count as one crossing: sheets that lie on each other.
-constexpr double gap = 1e-4;  // metres
+constexpr double beyond_hit = 1e-4;  // metres
 constexpr int most_crossings = 1000;
 
 glm::dvec3 place_of(const Scene& scene, const TriangleHit& hit) {
@@ -31,7 +31,7 @@ int crossings(const RayScene& rays, glm::dvec3 from, const glm::dvec3& direction
   for (; count < most_crossings; ++count) {
     const auto hit = trace::intersect(rays, glm::vec3(from), glm::vec3(direction));
     if (!hit) break;
-    from = place_of(rays.scene(), *hit) + gap * direction;
+    from = place_of(rays.scene(), *hit) + beyond_hit * direction;
   }
   return count;
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t hits_per_task = 16;
 
 /// Blocks of random numbers that the direction of a ray takes.
-enum DirectionBlock : std::uint32_t { lobe_block, place_block, stratum_block };
+enum DirectionBlock : std::uint32_t { gather_lobe_block, gather_place_block, gather_stratum_block };
 
 /// What a task's rays found.
 struct TaskRays {
@@ -48,8 +48,8 @@ class FinalGatherer {
     for (int ray = 0; ray < parameters_.rays; ++ray) {
       // A stream for each, apart from the primary ray's, which is 0.
       const RandomStream random(parameters_.seed, number, static_cast<std::uint32_t>(ray) + 1);
-      const auto direction = receiver.sample(random.block(Purpose::gather_direction, lobe_block),
-                                             place_of(ray, random));
+      const auto direction = receiver.sample(
+          random.block(Purpose::gather_direction, gather_lobe_block), place_of(ray, random));
       if (!direction) continue;
       const float density = receiver.density(*direction);
       if (!(density > 0.0f)) continue;
@@ -68,10 +68,10 @@ class FinalGatherer {
  private:
   /// Numbers for a direction, stratified over the hit's rays.
   RandomBlock place_of(int ray, const RandomStream& random) const {
-    const RandomBlock within = random.block(Purpose::gather_direction, stratum_block);
+    const RandomBlock within = random.block(Purpose::gather_direction, gather_stratum_block);
     const glm::dvec2 place =
         stratified(ray, parameters_.rays, within.uniform_double(0), within.uniform_double(2));
-    return random.block(Purpose::gather_direction, place_block)
+    return random.block(Purpose::gather_direction, gather_place_block)
         .with(direction_word, place.x)
         .with(direction_word + 1, place.y);
   }

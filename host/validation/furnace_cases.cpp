@@ -62,12 +62,13 @@ AnalyticCase furnace_with_plate() {
   const Rectangle plate{{0.7, 0.2, 0.7}, {0.6, 0, 0}, {0, 0.6, 0}};
   furnace.room.add(plate, furnace.room.add_material(look));
   const std::vector<Sensor> sensors = grid_of_sensors({plate}, 15);
-  return with_readings("furnace with a glossy plate",
-                       "pi L; L x integral of the BSDF, seen along the normal", furnace,
-                       {{"illuminance of the plate", sensors, pi * wall_luminance},
-                        {"wall_luminance of the plate", sensors,
-                         wall_luminance * glossy_reflectance(albedo, f0, alpha), Quantity::wall_luminance}},
-                       0.5);
+  return with_readings(
+      "furnace with a glossy plate", "pi L; L x integral of the BSDF, seen along the normal",
+      furnace,
+      {{"illuminance of the plate", sensors, pi * wall_luminance},
+       {"luminance of the plate", sensors, wall_luminance * glossy_reflectance(albedo, f0, alpha),
+        Quantity::luminance}},
+      0.5);
 }
 
 Material mirror() {
