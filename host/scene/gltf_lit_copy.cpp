@@ -9,7 +9,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <tuple>
 
 #include "output_file.hpp"
 #include "photile/errors.hpp"
@@ -83,8 +82,7 @@ class Document {
 
   /// False for all but the first of lights that share their setting and what defines them.
   bool is_first_instance(const LightSetting& light) {
-    const LightSource& source = light.source;
-    return !light.shared || seen_.insert({source.kind, source.material, source.lamp}).second;
+    return !light.shared || seen_.insert(light.source.lamp_key()).second;
   }
 
   /// The number `key` among the extras of a light's node, or null.
@@ -245,7 +243,7 @@ class Document {
   const SceneLoadOptions& options_;
   std::vector<std::string>& left_out_;
   std::map<std::uint32_t, int> lights_of_;  ///< of each material; instances of one count once
-  std::set<std::tuple<LightSource::Kind, std::uint32_t, std::string>> seen_;  ///< shared ones
+  std::set<LightSource::LampKey> seen_;     ///< lamps of shared ones
 };
 
 /// A .glb in its parts: JSON, and all that follows its chunk.

@@ -73,18 +73,17 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
     }
   }
   if (triangles > limits::max_triangles) {
-    throw context.error(
-        fmt::format("{} triangles, {} of them by {} places of mesh '{}'; the limit "
-                    "is {}; split the scene",
-                    triangles, most, places[static_cast<std::size_t>(largest)],
-                    name_of_mesh(model, largest), limits::max_triangles));
+    throw context.error(fmt::format(
+        "{} triangles, {} of them by {} places of mesh '{}'; the limit is {}; split the "
+        "scene",
+        triangles, most, places[static_cast<std::size_t>(largest)], name_of_mesh(model, largest),
+        limits::max_triangles));
   }
   const std::uint64_t held = buffer_bytes / least_bytes_per_triangle;
   if (triangles > held && triangles - held > limits::max_repeated_triangles) {
     throw context.error(
         fmt::format("{} triangles from a file that holds no more than {}; the limit is {} repeated "
-                    "ones; repeat "
-                    "fewer: {} are of mesh '{}', in {} places",
+                    "ones; repeat fewer: {} are of mesh '{}', in {} places",
                     triangles, held, limits::max_repeated_triangles, most,
                     name_of_mesh(model, largest), places[static_cast<std::size_t>(largest)]));
   }

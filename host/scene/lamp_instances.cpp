@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <tuple>
 #include <unordered_set>
 
 #include "photile/limits.hpp"
@@ -33,13 +32,12 @@ std::string lamp_of(const tinygltf::Node& node, const std::string& extension) {
 
 void group_instances(std::vector<Light>& lights, std::span<const LightSource> sources) {
   std::unordered_set<std::string> groups;
-  std::map<std::tuple<LightSource::Kind, std::uint32_t, std::string>, std::vector<std::size_t>>
-      instances;
+  std::map<LightSource::LampKey, std::vector<std::size_t>> instances;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (!lights[i].group.empty()) {
       groups.insert(clean_light_name(lights[i].group, limits::max_light_name_bytes));
     } else if (!sources[i].lamp.empty()) {
-      instances[{sources[i].kind, sources[i].material, sources[i].lamp}].push_back(i);
+      instances[sources[i].lamp_key()].push_back(i);
     }
   }
   for (const auto& [lamp, members] : instances) {

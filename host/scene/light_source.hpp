@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "photile/scene.hpp"
@@ -22,6 +23,10 @@ struct LightSource {
   std::uint32_t node = none;      ///< of the glTF file
   std::uint32_t material = none;  ///< of a surface: into Scene::materials, and the glTF file's
   std::string lamp = {};          ///< what the file has once for all instances; "" = just this one
+
+  /// What instances of one lamp have in common, and no other lights.
+  using LampKey = std::tuple<Kind, std::uint32_t, std::string>;
+  LampKey lamp_key() const { return {kind, material, lamp}; }
 };
 
 /// A scene with the source of each of its lights.

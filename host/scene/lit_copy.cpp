@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "photile/errors.hpp"
 #include "photile/light_groups.hpp"
@@ -28,16 +27,12 @@ bool colored_by_option(const Light& light, const SceneLoadOptions& options) {
       [&](const LightTemperature& temperature) { return temperature.light == light.name; });
 }
 
-using Lamp = std::tuple<LightSource::Kind, std::uint32_t, std::string>;
-
-Lamp lamp_of(const LightSource& source) { return {source.kind, source.material, source.lamp}; }
-
 /// The layers that instances of each lamp are in.
-std::map<Lamp, std::set<std::uint32_t>> layers_of_lamps(const SourcedScene& sourced,
-                                                        const LightGroups& groups) {
-  std::map<Lamp, std::set<std::uint32_t>> layers;
+std::map<LightSource::LampKey, std::set<std::uint32_t>> layers_of_lamps(const SourcedScene& sourced,
+                                                                        const LightGroups& groups) {
+  std::map<LightSource::LampKey, std::set<std::uint32_t>> layers;
   for (std::size_t i = 0; i < sourced.sources.size(); ++i) {
-    layers[lamp_of(sourced.sources[i])].insert(groups.group_of[i]);
+    layers[sourced.sources[i].lamp_key()].insert(groups.group_of[i]);
   }
   return layers;
 }
@@ -55,7 +50,8 @@ std::vector<LightSetting> settings_of(const SourcedScene& sourced, const SceneLo
     const MixedLight& mixed = mix.lights.at(groups.group_of[i]);
     LightSetting setting;
     setting.source = sourced.sources[i];
-    setting.shared = !setting.source.lamp.empty() && layers.at(lamp_of(setting.source)).size() == 1;
+    setting.shared =
+        !setting.source.lamp.empty() && layers.at(setting.source.lamp_key()).size() == 1;
     setting.name = light.name;
     setting.old_power = light.power;
     setting.tint = glm::dvec3(mixed.tint);

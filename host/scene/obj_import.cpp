@@ -89,8 +89,8 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
   }
   Emission emission = context.emission[material];
   const Material& wanted = context.scene.materials[material];
-  const bool grey = !has_coordinates && wanted.textured();
-  if (grey || (!has_coordinates && emission.texture != none)) {
+  const bool is_plain = !has_coordinates && wanted.textured();
+  if (is_plain || (!has_coordinates && emission.texture != none)) {
     context.warnings.add("material", wanted.name,
                          "faces without texture coordinates have its factors, and mid grey (0.5) "
                          "in place of map_Kd");
@@ -98,7 +98,7 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
   }
   const std::uint32_t light =
       context.area_lights.find_or_add(face.object, file.objects[face.object], material, emission);
-  if (grey) material = plain_materials.of(material);
+  if (is_plain) material = plain_materials.of(material);
   if (corners.size() == 3) {
     builder.add({corners[0], corners[1], corners[2]}, material, light);
     return;

@@ -16,10 +16,10 @@ folder=$(dirname "$0")
 expected=$cache/expected$(printf -- '-%s' "$@").txt
 if [ ! "$expected" -nt "$fingerprint" ]; then
   mkdir -p "$cache"
-  unfinished=$(mktemp "$expected.XXXXXX")
-  trap 'rm -f "$unfinished"' EXIT
-  "$folder/on_runtime.sh" "$cache" pocl "$fingerprint" "$@" >"$unfinished"
-  mv "$unfinished" "$expected"
+  partial=$(mktemp "$expected.XXXXXX")
+  trap 'rm -f "$partial"' EXIT
+  "$folder/on_runtime.sh" "$cache" pocl "$fingerprint" "$@" >"$partial"
+  mv "$partial" "$expected"
 fi
 lines=$(wc -l <"$expected")
 # Several other runtimes print one fingerprint after another.
