@@ -6,10 +6,12 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "scene/gltf_document.hpp"
 #include "scene/gltf_panels.hpp"
 #include "scene/gltf_primitives.hpp"
+#include "scene/gltf_vertices.hpp"
 #include "scene/instance_recorder.hpp"
 #include "scene/lamp_instances.hpp"
 #include "scene/light_traits.hpp"
@@ -61,8 +63,8 @@ class MeshImporter {
   }
   void add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
                      std::uint64_t visit_number, const std::string& mesh_name);
-  std::vector<Corner> read_corners(const tinygltf::Primitive& primitive, const glm::dmat4& world,
-                                   const std::string& mesh_name, Surface& surface);
+  PlacedVertices read_vertices(const tinygltf::Primitive& primitive, const glm::dmat4& world,
+                               const std::string& mesh_name, Surface& surface);
   std::vector<float> read_attribute(const tinygltf::Primitive& primitive, const std::string& name,
                                     int components, const std::string& mesh_name) const;
   std::vector<float> read_coordinates(const tinygltf::Primitive& primitive, int set,
@@ -144,9 +146,9 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   const std::string use = fmt::format("mesh '{}'", mesh_name);
   const std::uint32_t material = material_of(primitive, use);
   Surface surface{material, context_.emission[material]};
-  const std::vector<Corner> corners = read_corners(primitive, visit.world, mesh_name, surface);
+  const PlacedVertices vertices = read_vertices(primitive, visit.world, mesh_name, surface);
   const std::vector<std::uint32_t> indices =
-      read_indices(primitive, corners.size(), use, accessors_, context_);
+      read_indices(primitive, vertices.size(), use, accessors_, context_);
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0) {
     context_.warnings.add("mesh", mesh_name, "the corners do not fill the last triangle; ignored");
   }
@@ -158,8 +160,8 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   const std::uint32_t light = context_.area_lights.find_or_add(
       visit_number, node.name.empty() ? mesh_name : node.name, material, surface.emission, traits);
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
-    const std::array<Corner, 3> triangle{corners[mirrored ? c : a], corners[b],
-                                         corners[mirrored ? a : c]};
+    const std::array<Corner, 3> triangle{vertices[mirrored ? c : a], vertices[b],
+                                         vertices[mirrored ? a : c]};
     kept_.push_back(builder_.add(triangle, surface.material, light));
   }
 }
@@ -197,15 +199,16 @@ std::vector<float> MeshImporter::read_coordinates(const tinygltf::Primitive& pri
 }
 
 /// What `surface` cannot have for lack of coordinates is taken from it.
-std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primitive,
-                                               const glm::dmat4& world,
-                                               const std::string& mesh_name, Surface& surface) {
-  const std::vector<float> positions = read_attribute(primitive, "POSITION", 3, mesh_name);
+PlacedVertices MeshImporter::read_vertices(const tinygltf::Primitive& primitive,
+                                           const glm::dmat4& world, const std::string& mesh_name,
+                                           Surface& surface) {
+  VertexAttributes vertices;
+  auto& [positions, normals, tangents, uv, emission_uv] = vertices;
+  positions = read_attribute(primitive, "POSITION", 3, mesh_name);
   const std::size_t count = positions.size() / 3;
   const MaterialCoordinates& coordinates = coordinates_[surface.material];
   const Material& material = context_.scene.materials[surface.material];
   const std::string name = material.name;
-  std::vector<float> uv, emission_uv, normals, tangents;
   if (needs_.glossy || needs_.specular_paths)
     normals = read_attribute(primitive, "NORMAL", 3, mesh_name);
   if (normals.size() != 3 * count) normals.clear();
@@ -226,31 +229,7 @@ std::vector<Corner> MeshImporter::read_corners(const tinygltf::Primitive& primit
                     material.diffuse_texture == none ? "what its factors say" : "mid grey (0.5)"));
     if (uv.empty() && count > 0) surface.material = plain_materials_.of(surface.material);
   }
-
-  const glm::dmat3 linear(world);
-  // The cofactor matrix is the inverse transpose times the determinant: it needs no division, and
-  // only the direction of a normal counts. MeshBuilder mends the sign of mirrored ones.
-  const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                            glm::cross(linear[0], linear[1]));
-  std::vector<Corner> corners(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto vector = [&](const std::vector<float>& values, std::size_t width) {
-      const std::size_t first = width * i;
-      return glm::dvec3(values[first], values[first + 1], values[first + 2]);
-    };
-    corners[i].position = glm::dvec3(world * glm::dvec4(vector(positions, 3), 1.0));
-    const auto mapped = [&](const std::vector<float>& values, const TextureCoordinates& map) {
-      return values.empty() ? glm::dvec2(0.0) : map(glm::dvec2(values[2 * i], values[2 * i + 1]));
-    };
-    corners[i].uv = mapped(uv, coordinates.surface);
-    corners[i].emission_uv = mapped(emission_uv, coordinates.emission);
-    if (!normals.empty()) corners[i].normal = cofactor * vector(normals, 3);
-    if (tangents.empty()) continue;
-    corners[i].tangent = linear * vector(tangents, 4);
-    // Of a mirrored node the cofactors turn the normal round, and with it the bitangent.
-    corners[i].handedness = double{tangents[4 * i + 3]};
-  }
-  return corners;
+  return {std::move(vertices), coordinates, world};
 }
 
 }  // namespace
