@@ -7,6 +7,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "morton_code.hpp"
+
 namespace photile::groups {
 namespace {
 
@@ -21,24 +23,12 @@ struct CodedTriangle {
   }
 };
 
-/// Spreads the lowest 20 bits so that two zero bits follow each.
-std::uint64_t spread_bits(std::uint64_t x) {
-  x = (x | (x << 32)) & 0x001F00000000FFFFull;
-  x = (x | (x << 16)) & 0x001F0000FF0000FFull;
-  x = (x | (x << 8)) & 0x100F00F00F00F00Full;
-  x = (x | (x << 4)) & 0x10C30C30C30C30C3ull;
-  x = (x | (x << 2)) & 0x1249249249249249ull;
-  return x;
-}
-
-std::uint64_t morton_code(const glm::dvec3& position, const Box& bounds) {
+std::uint64_t code_of(const glm::dvec3& position, const Box& bounds) {
   const glm::dvec3 lower(bounds.lower);
   const glm::dvec3 extent = glm::max(glm::dvec3(bounds.upper) - lower, glm::dvec3(1e-300));
   const glm::dvec3 cell = glm::clamp((position - lower) / extent, 0.0, 1.0) *
                           static_cast<double>((1u << bits_per_axis) - 1);
-  return spread_bits(static_cast<std::uint64_t>(cell.x)) |
-         spread_bits(static_cast<std::uint64_t>(cell.y)) << 1 |
-         spread_bits(static_cast<std::uint64_t>(cell.z)) << 2;
+  return morton_code(glm::uvec3(cell));
 }
 
 double diagonal(const Box& box) {
@@ -61,9 +51,8 @@ std::vector<std::uint32_t> spatial_order(const std::vector<Box>& triangle_boxes)
   tbb::parallel_for(std::size_t{0}, coded.size(), [&](std::size_t i) {
     const Box& box = triangle_boxes[i];
     const glm::dvec3 centre = 0.5 * (glm::dvec3(box.lower) + glm::dvec3(box.upper));
-    coded[i] = {
-        size_class(diagonal(box), largest) << (3 * bits_per_axis) | morton_code(centre, bounds),
-        static_cast<std::uint32_t>(i)};
+    coded[i] = {size_class(diagonal(box), largest) << (3 * bits_per_axis) | code_of(centre, bounds),
+                static_cast<std::uint32_t>(i)};
   });
   tbb::parallel_sort(coded.begin(), coded.end());
   std::vector<std::uint32_t> order(coded.size());

@@ -89,23 +89,28 @@ TEST_CASE("Hits are sorted by sided triangle, then by Morton code") {
   const PrimaryHits hits =
       trace_primary_hits(rays, camera, {.width = 64, .height = 48}, 0, 48).hits;
   REQUIRE(hits.size() > 10'000);
-  const Box box = rays.impl().bounds;
+  const trace::HitCells cells(rays.impl().bounds);
   const auto key = [&](std::size_t i) {
-    return std::pair{hits.sided_triangle[i], trace::morton_code(hits.position[i], box)};
+    return std::pair{hits.sided_triangle[i], cells.morton_code(hits.position[i])};
   };
   for (std::size_t i = 1; i < hits.size(); ++i) REQUIRE(key(i - 1) <= key(i));
 }
 
 TEST_CASE("The Morton code interleaves the bits of the cells of the three axes") {
-  // Cells of 1 m in a box of 2^21 m.
-  const Box box{glm::vec3(0.0f), glm::vec3(static_cast<float>(1 << 21))};
-  CHECK(trace::morton_code({0.0f, 0.0f, 0.0f}, box) == 0);
-  CHECK(trace::morton_code({1.0f, 0.0f, 0.0f}, box) == 1);
-  CHECK(trace::morton_code({0.0f, 1.0f, 0.0f}, box) == 2);
-  CHECK(trace::morton_code({0.0f, 0.0f, 1.0f}, box) == 4);
-  CHECK(trace::morton_code({5.0f, 3.0f, 0.0f}, box) == 0b001'010'011);
-  CHECK(trace::morton_code(box.high, box) == (1ull << 63) - 1);
-  CHECK(trace::morton_code(box.high + 10.0f, box) == (1ull << 63) - 1);
+  // Cells of 1 m.
+  constexpr float side = 1 << trace::HitCells::bits_per_axis;
+  const trace::HitCells cells({glm::vec3(0.0f), glm::vec3(side)});
+  CHECK(cells.morton_code({0.0f, 0.0f, 0.0f}) == 0);
+  CHECK(cells.morton_code({1.0f, 0.0f, 0.0f}) == 1);
+  CHECK(cells.morton_code({0.0f, 1.0f, 0.0f}) == 2);
+  CHECK(cells.morton_code({0.0f, 0.0f, 1.0f}) == 4);
+  CHECK(cells.morton_code({5.0f, 3.0f, 0.0f}) == 0b001'010'011);
+  constexpr std::uint64_t last = (1ull << 3 * trace::HitCells::bits_per_axis) - 1;
+  CHECK(cells.morton_code(glm::vec3(side)) == last);
+  CHECK(cells.morton_code(glm::vec3(side + 10)) == last);
+  CHECK(cells.morton_code(glm::vec3(-10)) == 0);
+  const trace::HitCells flat({glm::vec3(0.0f), {side, 0.0f, side}});
+  CHECK(flat.morton_code({1.0f, 0.0f, 1.0f}) == 0b101);
 }
 
 TEST_CASE("Glossy scenes tell the direction to the eye and the lobe of each hit") {

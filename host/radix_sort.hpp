@@ -1,0 +1,53 @@
+// Sorting by keys of few bits, whose digits need no comparisons.
+#pragma once
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace photile {
+
+/// Sorts items in ascending order of key_of(item), an unsigned number below 2^bits; equal ones keep
+/// their order. Digits from the lowest on, each shared among all cores: 2 (bits / 8) moves of an
+/// item, and room for all of them once more. (Zagha and Blelloch, "Radix sort for vector
+/// multiprocessors", Supercomputing 1991.)
+template <class Item, class KeyOf>
+void radix_sort(std::vector<Item>& items, int bits, const KeyOf& key_of) {
+  constexpr int digit_bits = 8;  // as many places to write to as caches and TLBs keep at hand
+  constexpr std::size_t digits = std::size_t{1} << digit_bits, least_share = 4096;
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t shares = std::clamp<std::size_t>(items.size() / least_share, 1, threads);
+  const auto begin_of = [&](std::size_t share) { return share * items.size() / shares; };
+
+  std::vector<Item> moved(items.size());
+  std::vector<std::array<std::size_t, digits>> next(shares);  // place of the next item of a digit
+  for (int shift = 0; shift < bits; shift += digit_bits) {
+    const auto digit_of = [&](const Item& item) {
+      return static_cast<std::size_t>(key_of(item) >> shift) & (digits - 1);
+    };
+    tbb::parallel_for(std::size_t{0}, shares, [&](std::size_t share) {
+      next[share].fill(0);
+      for (std::size_t i = begin_of(share); i < begin_of(share + 1); ++i) {
+        ++next[share][digit_of(items[i])];
+      }
+    });
+    std::size_t place = 0;
+    for (std::size_t digit = 0; digit < digits; ++digit) {
+      for (auto& of_share : next) place += std::exchange(of_share[digit], place);
+    }
+    tbb::parallel_for(std::size_t{0}, shares, [&](std::size_t share) {
+      for (std::size_t i = begin_of(share); i < begin_of(share + 1); ++i) {
+        moved[next[share][digit_of(items[i])]++] = items[i];
+      }
+    });
+    items.swap(moved);
+  }
+}
+
+}  // namespace photile
