@@ -35,7 +35,8 @@ Estimates PathEstimator::estimate(const PrimaryHits& hits, std::span<const std::
       const trace::SurfacePoint start = trace::point_of(rays_.scene(), hits, hit);
       const trace::RandomStream random(seed_, number[hit], 0);
       found.clear();
-      trace_surface_path(rays_, lights_, start, trace::arrival_of(hits, hit, start), random, found);
+      const trace::OpaqueBsdf bsdf = trace::bsdf_of(rays_.scene(), hits, hit, start);
+      trace_surface_path(rays_, lights_, start, bsdf, random, found);
       for (const PathLight& light : found) {
         writer.add(light.layer, light.irradiance, light.radiance);
       }

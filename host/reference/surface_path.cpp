@@ -31,8 +31,7 @@ class SurfacePath {
               std::vector<PathLight>& found)
       : rays_(rays), scene_(rays.scene()), lights_(lights), random_(random), found_(found) {}
 
-  void trace(const SurfacePoint& start, const glm::vec3& direction) {
-    const OpaqueBsdf bsdf(scene_, start, direction);
+  void trace(const SurfacePoint& start, const OpaqueBsdf& bsdf) {
     const trace::Receiver receiver(start, bsdf);
     look_at_lamp(
         start, [&](const glm::vec3& to) { return receiver.weights(to); },
@@ -154,9 +153,9 @@ class SurfacePath {
 }  // namespace
 
 void trace_surface_path(const RayScene& rays, const trace::LightSampler& lights,
-                        const SurfacePoint& start, const glm::vec3& direction,
+                        const SurfacePoint& start, const OpaqueBsdf& bsdf,
                         const RandomStream& random, std::vector<PathLight>& found) {
-  SurfacePath(rays, lights, random, found).trace(start, direction);
+  SurfacePath(rays, lights, random, found).trace(start, bsdf);
 }
 
 }  // namespace photile::reference

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trace/light_sampler.hpp"
+#include "trace/opaque_bsdf.hpp"
 #include "trace/ray_query.hpp"
 
 namespace photile::reference {
@@ -23,10 +24,10 @@ struct PathLight {
 /// sampled and a direction is followed; where both can find the same light, the power heuristic
 /// weighs them (Veach and Guibas, "Optimally combining sampling techniques for Monte Carlo
 /// rendering", 1995). Paths end by Russian roulette alone.
-///   start      on an opaque surface
-///   direction  of the ray that arrives there, unit
+///   start   on an opaque surface
+///   bsdf    there, of the light that leaves against the ray that arrived
 void trace_surface_path(const RayScene& rays, const trace::LightSampler& lights,
-                        const trace::SurfacePoint& start, const glm::vec3& direction,
+                        const trace::SurfacePoint& start, const trace::OpaqueBsdf& bsdf,
                         const trace::RandomStream& random, std::vector<PathLight>& found);
 
 }  // namespace photile::reference

@@ -37,10 +37,7 @@ class FinalGatherer {
       : setup_(setup),
         parameters_(parameters),
         point_(point_of(*setup.rays->scene, hits, hit)),
-        bsdf_(*setup.rays->scene, point_, arrival_of(hits, hit, point_)) {
-    // Hits that are seen directly, where reflections alone are looked at.
-    if (hits.diffuse_albedo[hit] == glm::vec3(0.0f)) bsdf_.drop_diffuse();
-  }
+        bsdf_(bsdf_of(*setup.rays->scene, hits, hit, point_)) {}
 
   void trace(std::uint64_t number, TaskRays& found) const {
     const Receiver receiver(point_, bsdf_);
@@ -88,7 +85,7 @@ FinalGatherRays join(const RayScene& rays, std::vector<TaskRays> tasks,
   FinalGatherRays result;
   result.first.push_back(0);
   std::vector<EyeRecord> records;
-  std::vector<std::uint32_t> first_of{0};  // end of each task
+  std::vector<std::uint32_t> first_of{0};  // hit of each task
   for (TaskRays& task : tasks) {
     for (const std::size_t count : task.count) result.first.push_back(result.first.back() + count);
     result.weight.insert(result.weight.end(), task.weight.begin(), task.weight.end());

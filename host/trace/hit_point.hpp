@@ -6,6 +6,7 @@
 
 #include "photile/primary_hits.hpp"
 #include "photile/scene.hpp"
+#include "trace/opaque_bsdf.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
@@ -18,10 +19,15 @@ inline SurfacePoint point_of(const Scene& scene, const PrimaryHits& hits, std::s
       side_of(sided));
 }
 
-/// Unit direction of the ray that arrived there. A Lambertian surface does not ask where it is seen
-/// from: where nothing is glossy, hits do not say it, and any direction serves.
-inline glm::vec3 arrival_of(const PrimaryHits& hits, std::size_t hit, const SurfacePoint& point) {
-  return hits.outgoing.empty() ? -point.normal : -hits.outgoing[hit];
+/// How the surface reflects light against the ray that arrived there. A Lambertian surface does not
+/// ask where it is seen from: where nothing is glossy, hits do not say it, and any direction
+/// serves.
+inline OpaqueBsdf bsdf_of(const Scene& scene, const PrimaryHits& hits, std::size_t hit,
+                          const SurfacePoint& point) {
+  OpaqueBsdf bsdf(scene, point, hits.outgoing.empty() ? -point.normal : -hits.outgoing[hit]);
+  // Hits that are seen directly, where reflections alone are looked at.
+  if (hits.diffuse_albedo[hit] == glm::vec3(0.0f)) bsdf.drop_diffuse();
+  return bsdf;
 }
 
 }  // namespace photile::trace

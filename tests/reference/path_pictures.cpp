@@ -7,6 +7,7 @@
 
 #include "../render/pictures.hpp"
 #include "photile/path_tracer.hpp"
+#include "render/hit_source.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 
@@ -93,4 +94,25 @@ TEST_CASE("a path-traced floor under a point light: mean illuminance and radianc
   CHECK_VERDICT(test::mean_is(illuminance, truth, 0.001 * truth));
   const double reflected = truth * double{albedo} / glm::pi<double>();
   CHECK_VERDICT(test::mean_is(radiance, reflected, 0.001 * reflected));
+}
+
+TEST_CASE("reflections by paths are what the lobe reflects of a lamp, whatever lies below it") {
+  // No light comes back to the plate: with a black base the lobe is all that is seen of it.
+  const auto plate = [](float albedo) {
+    Scene scene = test::plate(test::glossy(glm::vec3(albedo), glm::vec3(0.3f), 0.4f), 4.0f, 3);
+    scene.lights.push_back(test::point_light("lamp", {0.5f, 0, 1}, 10));
+    return scene;
+  };
+  const Camera camera = Camera::look_at({-1, 0, 2}, {0, 0, 0}, {0, 0, 1}, 0.5);
+  const LightLayers black = trace_paths(plate(0.0f), camera, film(16, 12, 4)).layers;
+  const LightLayers white = trace_paths(plate(0.9f), camera, film(16, 12, 4)).layers;
+  const LightLayers lobe =
+      trace_paths_of_hits(plate(0.9f), ReflectedHits(camera), film(16, 12, 4), Progress::none())
+          .layers;
+  for (std::size_t pixel = 0; pixel < lobe.layers[0].radiance.size(); ++pixel) {
+    CHECK(luminance(lobe.layers[0].radiance[pixel]) ==
+          Approx(luminance(black.layers[0].radiance[pixel])).epsilon(1e-5));
+  }
+  CHECK(mean_luminance(lobe.layers[0].radiance) > 0);
+  CHECK(mean_luminance(lobe.layers[0].radiance) < 0.5 * mean_luminance(white.layers[0].radiance));
 }
