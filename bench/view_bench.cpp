@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "photile/scene_renderer.hpp"
 #include "support/bench_record.hpp"
@@ -20,6 +22,7 @@ using namespace photile::bench;
 
 /// Frames a second walk and turn so far.
 constexpr double metres_per_frame = 0.03, radians_per_frame = 0.01;
+constexpr int warm_up_frames = 2;
 
 struct Frames {
   int count = 60;
@@ -49,40 +52,52 @@ double seconds_of_stage(const RunStatistics& statistics, const std::string& stag
   return 0;
 }
 
+PrimaryHitParameters film_of(int side) {
+  PrimaryHitParameters film;
+  film.width = film.height = side;
+  film.samples_per_pixel = 1;
+  return film;
+}
+
 /// The first hits of a frame's rays and nothing else.
 double bare_ray_seconds(const RayScene& rays, const Camera& camera, int side) {
   const Stopwatch stopwatch;
+  const FilmDirections directions = camera.directions(side, side);
   tbb::parallel_for(0, side, [&](int y) {
     const trace::FlushDenormals flush_denormals;
     for (int x = 0; x < side; ++x) {
-      const glm::dvec3 direction = camera.direction(x + 0.5, y + 0.5, side, side);
-      const auto hit = trace::intersect(rays, glm::vec3(camera.position), glm::vec3(direction));
+      const glm::vec3 direction(directions(x + 0.5, y + 0.5));
+      const auto hit = trace::intersect(rays, glm::vec3(camera.position), direction);
       if (hit && hit->triangle >= rays.scene().triangle_count()) std::abort();  // it is used
     }
   });
   return stopwatch.seconds();
 }
 
-/// Renders and displays the frames; the mix is the scene's.
-void time_frames(const Scene& scene, SceneRenderer& renderer, const Frames& frames,
-                 ViewTiming& timing) {
-  const LightMix mix = LightMix::of(scene, defaults::lumen_per_watt);
-  PrimaryHitParameters film;
-  film.width = film.height = frames.side;
-  film.samples_per_pixel = 1;
-  view::DisplaySettings settings;
-  for (int frame = -2; frame < frames.count; ++frame) {  // two to warm up
+/// Renders frames and displays them.
+class FrameTimer {
+ public:
+  FrameTimer(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
+             int side)
+      : mix_(LightMix::of(scene, defaults::lumen_per_watt)),
+        film_(film_of(side)),
+        renderer_(scene, devices, parameters) {}
+
+  /// One frame, added to `timing`. The first says how bright all are shown.
+  void time(const Camera& camera, ViewTiming& timing) {
     view::Frame shown;
-    shown.camera = camera_at(scene, frame);
+    shown.camera = camera;
     const Stopwatch stopwatch;
-    RenderResult result = renderer.render(shown.camera, film);
+    RenderResult result = renderer_.render(camera, film_);
     const double rendered = stopwatch.seconds();
     shown.layers = std::move(result.layers);
-    if (frame == -2) settings.exposure = view::automatic_stops(shown, mix);
+    if (!settings_) {
+      settings_.emplace();
+      settings_->exposure = view::automatic_stops(shown, mix_);
+    }
     const Stopwatch display_watch;
-    view::display(shown, mix, settings);
+    view::display(shown, mix_, *settings_);
     const double displayed = display_watch.seconds();
-    if (frame < 0) continue;
     const double hits = seconds_of_stage(result.statistics, "primary hits");
     const double estimate = seconds_of_stage(result.statistics, "radiance estimate");
     const double added = seconds_of_stage(result.statistics, "film");
@@ -93,7 +108,13 @@ void time_frames(const Scene& scene, SceneRenderer& renderer, const Frames& fram
     timing.display.seconds.push_back(displayed);
     timing.total.seconds.push_back(rendered + displayed);
   }
-}
+
+ private:
+  LightMix mix_;
+  PrimaryHitParameters film_;
+  SceneRenderer renderer_;
+  std::optional<view::DisplaySettings> settings_;
+};
 
 bool run(BenchOptions& options) {
   Frames frames;
@@ -113,27 +134,22 @@ bool run(BenchOptions& options) {
   record.set("frames", frames.count);
   record.set("lights", light_groups_of(scene).groups.size());
 
-  ViewTiming timing;
-  {
-    SceneRenderer renderer(scene, devices, parameters);
-    time_frames(scene, renderer, frames, timing);
-  }
+  FrameTimer frame_timer(scene, devices, parameters, frames.side);
   const RayScene rays(scene);
-  for (int frame = 0; frame < frames.count; ++frame) {
-    timing.bare_rays.seconds.push_back(
-        bare_ray_seconds(rays, camera_at(scene, frame), frames.side));
-  }
   // Kernels are timed by events, which cost the host something: on a device of their own.
   std::vector<Device> profiled;
   profiled.emplace_back(DeviceOptions{.selector = options.device, .profile = true});
-  SceneRenderer renderer(scene, profiled, parameters);
-  PrimaryHitParameters film;
-  film.width = film.height = frames.side;
-  film.samples_per_pixel = 1;
-  for (int frame = -1; frame < frames.count; ++frame) {
-    const double seconds = kernel_seconds_of(
-        profiled.front(), [&] { renderer.render(camera_at(scene, frame), film); });
-    if (frame >= 0) timing.bare_kernels.seconds.push_back(seconds);
+  SceneRenderer profiled_renderer(scene, profiled, parameters);
+  const PrimaryHitParameters film = film_of(frames.side);
+  ViewTiming timing;
+  // In turn, so that whatever else the machine does meets all of them.
+  for (int frame = -warm_up_frames; frame < frames.count; ++frame) {
+    if (frame == 0) timing = {};
+    const Camera camera = camera_at(scene, frame);
+    frame_timer.time(camera, timing);
+    timing.bare_rays.seconds.push_back(bare_ray_seconds(rays, camera, frames.side));
+    timing.bare_kernels.seconds.push_back(
+        kernel_seconds_of(profiled.front(), [&] { profiled_renderer.render(camera, film); }));
   }
   record.add({{"primary hits", to_json(timing.hits)},
               {"radiance estimate", to_json(timing.estimate)},
