@@ -11,9 +11,6 @@ namespace {
 
 using Catch::Contains;
 
-constexpr int failure = 1;
-constexpr int usage = 2;
-
 /// The only line of a render that was refused before it began: no device line came before.
 std::string refusal(const std::vector<std::string>& outputs, int exit_code) {
   const FileFolder folder;

@@ -13,8 +13,6 @@ namespace {
 
 using Catch::Contains;
 
-constexpr int bad_input = 3;
-
 /// What both `info` and `render` say of a bad scene; they must agree. Nothing may be written.
 std::string refusal(const FileFolder& folder, const std::string& scene) {
   const std::string line = only_error(run_photile({"info", scene}), bad_input);

@@ -10,6 +10,9 @@
 
 namespace photile::test {
 
+/// Exit codes of photile (photile/errors.hpp).
+inline constexpr int failure = 1, usage = 2, bad_input = 3, no_device = 4;
+
 struct Run {
   std::vector<std::string> arguments;
   std::map<std::string, std::string> environment;  ///< on top of the test's own

@@ -13,9 +13,9 @@ namespace {
 
 using Catch::Contains;
 
-std::string render(const FileFolder& folder, const std::string& name,
-                   const std::vector<std::string>& options = {},
-                   const std::string& size = "32x32") {
+std::string render_box(const FileFolder& folder, const std::string& name,
+                       const std::vector<std::string>& options = {},
+                       const std::string& size = "32x32") {
   std::vector<std::string> arguments{"render", write_box(folder), "-o", folder / name, "--photons",
                                      "20k",    "--size",          size};
   arguments.insert(arguments.end(), options.begin(), options.end());
@@ -38,7 +38,7 @@ nlohmann::json compare(const FileFolder& folder, const std::string& a, const std
 
 TEST_CASE("a picture is equal to itself, and the drawing shows both and no difference") {
   const FileFolder folder;
-  const std::string picture = render(folder, "a.exr");
+  const std::string picture = render_box(folder, "a.exr");
   const auto record = compare(folder, picture, picture);
   CHECK(record["picture"]["relative_mse"] == 0);
   CHECK(record["picture"]["mean_ratio"] == Approx(1));
@@ -63,8 +63,8 @@ TEST_CASE("a picture is equal to itself, and the drawing shows both and no diffe
 
 TEST_CASE("a light that was doubled doubles its layer, and no other") {
   const FileFolder folder;
-  const auto record =
-      compare(folder, render(folder, "a.exr", {"--light", "left=x2"}), render(folder, "b.exr"));
+  const auto record = compare(folder, render_box(folder, "a.exr", {"--light", "left=x2"}),
+                              render_box(folder, "b.exr"));
   CHECK(record["layers"][0]["light"] == "left");
   CHECK(record["layers"][0]["mean_ratio"] == Approx(2).epsilon(1e-6));
   CHECK(record["layers"][0]["worst_region"] == Approx(1).epsilon(1e-5));
@@ -76,13 +76,13 @@ TEST_CASE("a light that was doubled doubles its layer, and no other") {
 
 TEST_CASE("a layer that is black in the second, or in one picture alone, is told") {
   const FileFolder folder;
-  const std::string whole = render(folder, "a.exr");
+  const std::string whole = render_box(folder, "a.exr");
   const Outcome off =
-      run_photile({"compare", whole, render(folder, "b.exr", {"--light", "left=off"})});
+      run_photile({"compare", whole, render_box(folder, "b.exr", {"--light", "left=off"})});
   CHECK(off.exit_code == 0);
   CHECK_THAT(off.output, Contains("black"));
   const Outcome grouped =
-      run_photile({"compare", whole, render(folder, "c.exr", {"--light-group", "*=both"})});
+      run_photile({"compare", whole, render_box(folder, "c.exr", {"--light-group", "*=both"})});
   CHECK(grouped.exit_code == 0);
   CHECK_THAT(grouped.output,
              Contains("left: only in the first") && Contains("both: only in the second"));
@@ -90,10 +90,10 @@ TEST_CASE("a layer that is black in the second, or in one picture alone, is told
 
 TEST_CASE("compare refuses what it cannot do with one line and the right exit code") {
   const FileFolder folder;
-  const std::string picture = render(folder, "a.exr");
+  const std::string picture = render_box(folder, "a.exr");
   CHECK_THAT(only_error(run_photile({"compare", picture, folder / "none.exr"}), 3),
              Contains("none.exr"));
-  const std::string wide = render(folder, "b.exr", {}, "33x32");
+  const std::string wide = render_box(folder, "b.exr", {}, "33x32");
   CHECK_THAT(only_error(run_photile({"compare", picture, wide}), 2), Contains("33x32"));
   CHECK_THAT(only_error(run_photile({"compare", picture, picture, "-o", folder / "a.jpg"}), 2),
              Contains(".png"));

@@ -13,9 +13,6 @@ namespace {
 
 using Catch::Contains;
 
-constexpr int usage = 2;
-constexpr int no_device = 4;
-
 /// `run` where the OpenCL loader finds no platform.
 Run without_platforms(const FileFolder& folder, std::vector<std::string> arguments) {
   std::filesystem::create_directory(folder / "vendors");

@@ -12,8 +12,8 @@ namespace {
 
 using Catch::Contains;
 
-std::vector<std::string> render(const FileFolder& folder, const std::string& name,
-                                const std::vector<std::string>& more) {
+std::vector<std::string> arguments_of(const FileFolder& folder, const std::string& name,
+                                      const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"render",      write_box(folder), "-o",
                                      folder / name, "--photons",       "20k",
                                      "--size",      "24x16",           "--quiet"};
@@ -26,37 +26,39 @@ std::vector<std::string> render(const FileFolder& folder, const std::string& nam
 TEST_CASE("saved photons give the picture again, in other powers and sizes as well") {
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
-  REQUIRE(run_photile(render(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
+  REQUIRE(run_photile(arguments_of(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
   REQUIRE(std::filesystem::exists(maps));
-  const Outcome loaded = run_photile(render(folder, "b.exr", {"--load-maps", maps}));
+  const Outcome loaded = run_photile(arguments_of(folder, "b.exr", {"--load-maps", maps}));
   INFO(loaded.errors);
   REQUIRE(loaded.exit_code == 0);
-  REQUIRE(run_photile(render(folder, "c.exr", {})).exit_code == 0);
+  REQUIRE(run_photile(arguments_of(folder, "c.exr", {})).exit_code == 0);
   const Image a = read_image(folder / "a.exr");
   CHECK(a.channels == read_image(folder / "b.exr").channels);
   CHECK(a.channels == read_image(folder / "c.exr").channels);
-  CHECK(run_photile(
-            render(folder, "d.exr", {"--load-maps", maps, "--light", "left=x2", "--samples", "1"}))
+  CHECK(run_photile(arguments_of(folder, "d.exr",
+                                 {"--load-maps", maps, "--light", "left=x2", "--samples", "1"}))
             .exit_code == 0);
 }
 
 TEST_CASE("photons of other settings or scenes, and broken files, are refused by name") {
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
-  REQUIRE(run_photile(render(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
+  REQUIRE(run_photile(arguments_of(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
   CHECK_THAT(
-      only_error(run_photile(render(folder, "b.exr", {"--load-maps", maps, "--seed", "2"})), 3),
+      only_error(run_photile(arguments_of(folder, "b.exr", {"--load-maps", maps, "--seed", "2"})),
+                 3),
       Contains("seed 1") && Contains("seed 2"));
-  CHECK_THAT(only_error(run_photile(render(folder, "b.exr", {"--load-maps", folder / "none"})), 3),
-             Contains("none"));
-  CHECK_THAT(only_error(run_photile(render(folder, "b.exr",
-                                           {"--load-maps", folder.write("x.maps", "photons")})),
+  CHECK_THAT(
+      only_error(run_photile(arguments_of(folder, "b.exr", {"--load-maps", folder / "none"})), 3),
+      Contains("none"));
+  CHECK_THAT(only_error(run_photile(arguments_of(
+                            folder, "b.exr", {"--load-maps", folder.write("x.maps", "photons")})),
                         3),
              Contains("x.maps") && Contains("no photon maps"));
-  CHECK_THAT(
-      only_error(
-          run_photile(render(folder, "b.exr", {"--save-maps", maps, "--integrator", "path"})), 2),
-      Contains("photon"));
+  CHECK_THAT(only_error(run_photile(arguments_of(folder, "b.exr",
+                                                 {"--save-maps", maps, "--integrator", "path"})),
+                        2),
+             Contains("photon"));
   CHECK_FALSE(std::filesystem::exists(folder / "b.exr"));
 }
 

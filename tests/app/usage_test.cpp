@@ -11,8 +11,6 @@ namespace {
 
 using Catch::Contains;
 
-constexpr int usage = 2;
-
 /// `photile render` of a good scene with one more option.
 Outcome render_with(const FileFolder& folder, const std::string& option, const std::string& value) {
   return run_photile({"render", write_box(folder), "-o", folder / "out.exr", option + "=" + value});

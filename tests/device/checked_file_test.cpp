@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "file_bytes.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
@@ -19,15 +20,6 @@ using photile::device::write_checked_file;
 
 const CacheKey key = photile::device::hash("the key");
 const std::string payload("binary \0 payload \xff", 18);
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-void put(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
 
 std::size_t files_in(const fs::path& folder) {
   return static_cast<std::size_t>(

@@ -8,7 +8,7 @@
 
 namespace {
 
-ChildResult probe(const std::filesystem::path& vendors, ChildEnvironment environment = {}) {
+ChildResult probe_vendors(const std::filesystem::path& vendors, ChildEnvironment environment = {}) {
   environment["OCL_ICD_VENDORS"] = vendors.string();
   return run_child({PHOTILE_DEVICE_PROBE, "run"}, environment);
 }
@@ -24,17 +24,18 @@ void check_one_device_error(const ChildResult& result, const char* text) {
 
 TEST_CASE("without a runtime the message says what to install") {
   const TemporaryFolder vendors;
-  check_one_device_error(probe(vendors.path), "no OpenCL runtime is installed");
+  check_one_device_error(probe_vendors(vendors.path), "no OpenCL runtime is installed");
 }
 
 TEST_CASE("a runtime whose library is missing counts as none") {
   const TemporaryFolder vendors;
   std::ofstream(vendors.path / "gone.icd") << "libphotile-no-such-runtime.so\n";
-  check_one_device_error(probe(vendors.path), "no OpenCL runtime is installed");
+  check_one_device_error(probe_vendors(vendors.path), "no OpenCL runtime is installed");
 }
 
 TEST_CASE("a platform without devices is named, not opened") {
   const TemporaryFolder vendors;
   std::ofstream(vendors.path / "pocl.icd") << "libpocl.so.2\n";
-  check_one_device_error(probe(vendors.path, {{"POCL_DEVICES", "none-such"}}), "no devices");
+  check_one_device_error(probe_vendors(vendors.path, {{"POCL_DEVICES", "none-such"}}),
+                         "no devices");
 }

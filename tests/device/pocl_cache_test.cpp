@@ -8,15 +8,13 @@
 
 #include "child_process.hpp"
 #include "device/pocl_pack.hpp"
+#include "file_bytes.hpp"
+#include "probe_output.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string right = "last=998001 sum=332833500";  // 999^2, and the sum of i^2 for i < 1000
-const std::string compiled = right + " built=1 cached=0\n";
-const std::string restored = right + " built=0 cached=1\n";
 
 ChildEnvironment cache_in(const fs::path& folder) {
   return {{"XDG_CACHE_HOME", folder.string()},
@@ -44,14 +42,6 @@ std::vector<fs::path> packs(const fs::path& cache) {
 }
 std::vector<fs::path> run_folders(const fs::path& cache) {
   return entries(cache / "photile", "pocl-run-");
-}
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-void put(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
 }
 
 }  // namespace

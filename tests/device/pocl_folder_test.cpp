@@ -5,13 +5,12 @@
 
 #include "child_process.hpp"
 #include "device/cache_folder.hpp"
+#include "probe_output.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string right = "last=998001 sum=332833500";  // 999^2, and the sum of i^2 for i < 1000
 
 ChildResult probe(ChildEnvironment environment) {
   environment["PHOTILE_DEVICE"] = "Portable Computing Language";

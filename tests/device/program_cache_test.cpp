@@ -9,15 +9,12 @@
 #include "child_process.hpp"
 #include "device/cache_key.hpp"
 #include "device/checked_file.hpp"
+#include "probe_output.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string right = "last=998001 sum=332833500";  // 999^2, and the sum of i^2 for i < 1000
-const std::string compiled = right + " built=1 cached=0\n";
-const std::string cached = right + " built=0 cached=1\n";
 
 /// A machine whose only runtime is the simulator, with a cache of its own.
 struct Simulator {
@@ -46,7 +43,7 @@ TEST_CASE("a program is compiled once and loaded by the next process") {
   CHECK(first.output == compiled);
   const auto second = simulator.probe();
   INFO(second.errors);
-  CHECK(second.output == cached);
+  CHECK(second.output == restored);
   CHECK(second.errors.empty());
 }
 
@@ -59,7 +56,7 @@ TEST_CASE("a damaged program file is compiled again, with one warning, and repla
     INFO(size << " bytes: " << result.errors);
     CHECK(result.output == compiled);
     CHECK_THAT(result.errors, Catch::StartsWith("photile: warning: compiled program"));
-    CHECK(simulator.probe().output == cached);
+    CHECK(simulator.probe().output == restored);
   }
 }
 

@@ -16,14 +16,15 @@ namespace {
 constexpr std::uint64_t gib = 1ull << 30;
 
 /// One light: 12 bytes out, 16 in.
-constexpr HitBatchNeeds one_light{.largest_bytes_per_hit = 12, .bytes_per_hit = 28};
+constexpr HitBatchNeeds one_light_needs{.largest_bytes_per_hit = 12, .bytes_per_hit = 28};
 /// 10,000 lights.
-constexpr HitBatchNeeds many_lights{.largest_bytes_per_hit = 120'000, .bytes_per_hit = 120'016};
+constexpr HitBatchNeeds many_lights_needs{.largest_bytes_per_hit = 120'000,
+                                          .bytes_per_hit = 120'016};
 
 }  // namespace
 
 TEST_CASE("with memory to spare a batch is a million hits") {
-  CHECK(plan_hit_batch(one_light, 16 * gib, 64 * gib) == 1u << 20);
+  CHECK(plan_hit_batch(one_light_needs, 16 * gib, 64 * gib) == 1u << 20);
 }
 
 TEST_CASE("no index into a batch's outputs passes 32 bits, however large the device's buffers") {
@@ -37,11 +38,11 @@ TEST_CASE("no index into a batch's outputs passes 32 bits, however large the dev
 }
 
 TEST_CASE("a batch takes a quarter of the memory and no buffer beyond the largest") {
-  const std::uint64_t hits = plan_hit_batch(many_lights, gib / 4, gib);
-  CHECK(hits * many_lights.bytes_per_hit <= gib / 4);
-  CHECK((hits + 1) * many_lights.bytes_per_hit > gib / 4);
-  CHECK(plan_hit_batch(many_lights, 240'000, gib) == 2);
-  CHECK(plan_hit_batch(many_lights, 1, 1) == 1);
+  const std::uint64_t hits = plan_hit_batch(many_lights_needs, gib / 4, gib);
+  CHECK(hits * many_lights_needs.bytes_per_hit <= gib / 4);
+  CHECK((hits + 1) * many_lights_needs.bytes_per_hit > gib / 4);
+  CHECK(plan_hit_batch(many_lights_needs, 240'000, gib) == 2);
+  CHECK(plan_hit_batch(many_lights_needs, 1, 1) == 1);
 }
 
 TEST_CASE("work that fails for want of memory is repeated with half the hits, then stays so") {
@@ -55,18 +56,18 @@ TEST_CASE("work that fails for want of memory is repeated with half the hits, th
     }
     done.emplace_back(first, count);
   };
-  batches.run(100, one_light, work);
+  batches.run(100, one_light_needs, work);
   const std::vector<std::pair<std::size_t, std::size_t>> quarters{
       {0, 25}, {25, 25}, {50, 25}, {75, 25}};
   CHECK(done == quarters);
   CHECK(failures == 2);
-  batches.run(100, one_light, work);
+  batches.run(100, one_light_needs, work);
   CHECK(failures == 2);
 }
 
 TEST_CASE("a single hit that does not fit is an error") {
   HitBatches batches(test::device().context());
-  CHECK_THROWS_AS(
-      batches.run(7, one_light, [](std::size_t, std::size_t) { throw DeviceMemoryError("none"); }),
-      DeviceMemoryError);
+  CHECK_THROWS_AS(batches.run(7, one_light_needs,
+                              [](std::size_t, std::size_t) { throw DeviceMemoryError("none"); }),
+                  DeviceMemoryError);
 }

@@ -8,12 +8,13 @@ using namespace photile::test;
 
 namespace {
 
-const std::vector<std::string> names{"star", "lamp", "glow", "speck"};
+const std::vector<std::string> light_names{"star", "lamp", "glow", "speck"};
 const std::vector<double> powers{1e12, 1e3, 1e-3, 1e-12};
 
 LightMix extreme_mix() {
   LightMix mix;
-  for (std::size_t i = 0; i < names.size(); ++i) mix.lights.push_back(mixed(names[i], powers[i]));
+  for (std::size_t i = 0; i < light_names.size(); ++i)
+    mix.lights.push_back(mixed(light_names[i], powers[i]));
   return mix;
 }
 
@@ -34,9 +35,9 @@ Errors errors_of(const Image& picture, const LightLayers& layers,
     for (int c = 0; c < 3; ++c) {
       const std::string& channel = channels[static_cast<std::size_t>(c)];
       double sum = 0;
-      for (std::size_t i = 0; i < names.size(); ++i) {
+      for (std::size_t i = 0; i < light_names.size(); ++i) {
         const double truth = expected_powers[i] * double{layers.layers[i].radiance[pixel][c]};
-        const double found = (*picture.find("Combined_" + names[i] + "." + channel))[pixel];
+        const double found = (*picture.find("Combined_" + light_names[i] + "." + channel))[pixel];
         if (truth > 0) errors.layer = std::max(errors.layer, std::abs(found / truth - 1));
         sum += truth;
       }
@@ -50,7 +51,7 @@ Errors errors_of(const Image& picture, const LightLayers& layers,
 
 TEST_CASE("extremes: powers of 1e-12 to 1e12 keep their digits in the file and in its sum") {
   const TemporaryFolder folder;
-  const LightLayers layers = random_layers(9, 7, names);
+  const LightLayers layers = random_layers(9, 7, light_names);
   write_exr(folder / "a.exr", mix_layers(layers, extreme_mix()));
   const Errors errors = errors_of(read_image(folder / "a.exr"), layers, powers);
   CHECK(errors.layer <= layer_bound);
@@ -58,7 +59,7 @@ TEST_CASE("extremes: powers of 1e-12 to 1e12 keep their digits in the file and i
 }
 
 TEST_CASE("extremes: with the brightest light off, relighting leaves the others' digits") {
-  const LightLayers layers = random_layers(9, 7, names);
+  const LightLayers layers = random_layers(9, 7, light_names);
   const Image relit = relight(mix_layers(layers, extreme_mix()), {LightChange::parse("star=off")});
   const Errors errors = errors_of(relit, layers, {0, 1e3, 1e-3, 1e-12});
   CHECK(errors.layer <= layer_bound);
@@ -66,7 +67,7 @@ TEST_CASE("extremes: with the brightest light off, relighting leaves the others'
 }
 
 TEST_CASE("extremes: from 1e-12 to 1e12 and back, relighting errs by a few roundings") {
-  const LightLayers layers = random_layers(9, 7, names);
+  const LightLayers layers = random_layers(9, 7, light_names);
   const Image turned =
       relight(mix_layers(layers, extreme_mix()),
               {LightChange::parse("speck=1e12"), LightChange::parse("star=1e-12")});

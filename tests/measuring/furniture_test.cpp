@@ -13,8 +13,8 @@ using namespace photile::measuring;
 namespace {
 
 /// A room of 4 x 6 m with a table, x from 1 to 2, whose top lies at 0.70 to 0.74 m; a solid
-/// cupboard, x from 3 to 3.92, 2 m high, `inwards` if it is wound inside out; a single sheet under the
-/// ceiling, z from 3 on.
+/// cupboard, x from 3 to 3.92, 2 m high, `inwards` if it is wound inside out; a single sheet under
+/// the ceiling, z from 3 on.
 Scene furnished(bool inwards) {
   test::SceneBuilder builder("room");
   const auto white = builder.add(test::diffuse(glm::vec3(0.5f)));

@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-std::vector<measuring::SensorGrid> read(const std::string& text) {
+std::vector<measuring::SensorGrid> planes_in(const std::string& text) {
   const TemporaryFolder folder;
   const auto file = folder.path / "plane.json";
   std::ofstream(file) << text;
@@ -22,7 +22,7 @@ std::vector<measuring::SensorGrid> read(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a plane has its sensors in the middles of its cells, row by row") {
-  const auto grids = read(R"({"name": "desk", "origin": [1, 2, 0.75], "u": [2, 0, 0],
+  const auto grids = planes_in(R"({"name": "desk", "origin": [1, 2, 0.75], "u": [2, 0, 0],
                               "v": [0, 1, 0], "spacing": 0.5})");
   REQUIRE(grids.size() == 1);
   CHECK(grids[0].name == "desk");
@@ -37,7 +37,7 @@ TEST_CASE("a plane has its sensors in the middles of its cells, row by row") {
 }
 
 TEST_CASE("a list of planes, with columns and rows or the spacing of the standard") {
-  const auto grids = read(R"([{"origin": [0,0,0], "u": [0,0,5], "v": [5,0,0]},
+  const auto grids = planes_in(R"([{"origin": [0,0,0], "u": [0,0,5], "v": [5,0,0]},
       {"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "columns": 3, "rows": 2}])");
   REQUIRE(grids.size() == 2);
   CHECK(grids[0].name == "plane1");
@@ -68,6 +68,6 @@ TEST_CASE("what is no plane is refused by file, plane and key") {
       {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "name": 7})", "'name'"},
   }));
   INFO(text);
-  CHECK_THROWS_AS(read(text), InputError);
-  CHECK_THROWS_WITH(read(text), Contains("plane.json") && Contains(expected));
+  CHECK_THROWS_AS(planes_in(text), InputError);
+  CHECK_THROWS_WITH(planes_in(text), Contains("plane.json") && Contains(expected));
 }

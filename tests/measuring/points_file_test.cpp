@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-measuring::SensorGrid read(const std::string& text) {
+measuring::SensorGrid points_in(const std::string& text) {
   const TemporaryFolder folder;
   const auto file = folder.path / "desk.pts";
   std::ofstream(file) << text;
@@ -23,7 +23,7 @@ measuring::SensorGrid read(const std::string& text) {
 
 TEST_CASE("points are read with blanks, tabs, commas, comments and line ends of any kind") {
   const auto grid =
-      read("# sensors\n1 2 0.75 0 0 1\r\n\n 1.5,2,7.5e-1, 0,0,2\n\t+2\t-2\t.75\t1\t0\t-1");
+      points_in("# sensors\n1 2 0.75 0 0 1\r\n\n 1.5,2,7.5e-1, 0,0,2\n\t+2\t-2\t.75\t1\t0\t-1");
   CHECK(grid.name == "desk");
   CHECK_FALSE(grid.layout);
   REQUIRE(grid.sensors.size() == 3);
@@ -39,11 +39,11 @@ TEST_CASE("lines that are no points are refused by file and number") {
       GENERATE("1 2 3", "1 2 3 0 0 1 7", "1 2 x 0 0 1", "1 2 nan 0 0 1", "1 2 inf 0 0 1",
                "1 2 3 0 0 0", "1 2 1e300 0 0 1", "1 2 3,5m 0 0 1");
   INFO(line);
-  CHECK_THROWS_AS(read("0 0 0 0 0 1\n" + line + "\n"), InputError);
-  CHECK_THROWS_WITH(read("0 0 0 0 0 1\n" + line + "\n"), Contains("desk.pts: line 2"));
+  CHECK_THROWS_AS(points_in("0 0 0 0 0 1\n" + line + "\n"), InputError);
+  CHECK_THROWS_WITH(points_in("0 0 0 0 0 1\n" + line + "\n"), Contains("desk.pts: line 2"));
 }
 
 TEST_CASE("a file without points, and one that is not there, are refused") {
-  CHECK_THROWS_WITH(read("# nothing\n"), Contains("no points"));
+  CHECK_THROWS_WITH(points_in("# nothing\n"), Contains("no points"));
   CHECK_THROWS_WITH(measuring::read_points("/nowhere/a.pts"), Contains("no such file"));
 }

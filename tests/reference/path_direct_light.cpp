@@ -1,6 +1,6 @@
 // Light that comes straight from lamps, by the path tracer, against closed forms.
 #include <catch2/catch.hpp>
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 
 #include "path_irradiance.hpp"
 #include "statistical_tests.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 const glm::dvec3 up(0, 0, 1);
 const Material black = test::diffuse(glm::vec3(0.0f));
-constexpr double pi = glm::pi<double>();
+using std::numbers::pi;
 
 double irradiance(const Scene& scene, const glm::dvec3& position) {
   return test::path_means(scene, {{position, up}}, 1, 1).irradiance.at(0);

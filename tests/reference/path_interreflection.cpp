@@ -1,6 +1,7 @@
 // Light between surfaces, by the path tracer, against closed forms.
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
+#include <numbers>
 
 #include "path_irradiance.hpp"
 #include "photile/device/bsdf.h"
@@ -12,7 +13,7 @@ using namespace photile;
 
 namespace {
 
-constexpr double pi = glm::pi<double>();
+using std::numbers::pi;
 
 /// A closed box of 2 x 1 x 1.5 m whose walls reflect `albedo` and all emit the radiance 1.
 test::SceneBuilder glowing_box(float albedo) {

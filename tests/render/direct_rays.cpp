@@ -1,12 +1,13 @@
 // Light straight from lamps by rays, the rest by photons: --direct rays.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 
 #include "photile/errors.hpp"
 #include "photile/path_tracer.hpp"
 #include "photile/photon_tracer.hpp"
 #include "photile/renderer.hpp"
+#include "pictures.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -16,12 +17,7 @@ using namespace photile;
 
 namespace {
 
-constexpr double pi = glm::pi<double>();
-
-/// Looks straight down at a square of `side` metres around a point of the floor.
-Camera above(double x, double y, double height, double side) {
-  return Camera::look_at({x, y, height}, {x, y, 0}, {0, 1, 0}, 2 * std::atan(side / (2 * height)));
-}
+using std::numbers::pi;
 
 RenderParameters by_rays(int looks, std::uint64_t seed = 1) {
   RenderParameters parameters;
@@ -61,7 +57,7 @@ struct Means {
 void check_room(const Material& floor, double delta) {
   Scene scene = test::furnished_room();
   scene.materials[0] = floor;
-  const Camera camera = above(2.6, 2.2, 2.0, 0.4);
+  const Camera camera = test::above(2.6, 2.2, 2.0, 0.4);
   std::vector<std::vector<double>> differences(4);
   Means truth{LightLayers()};
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
@@ -91,7 +87,8 @@ TEST_CASE("direct rays: a point light gives its closed form without noise, and s
   Scene scene = test::plate(test::diffuse(glm::vec3(albedo)), 4.0f, 3);
   scene.lights.push_back(test::point_light("lamp", {0, 0, 1.5f}));
   for (const double x : {0.0, 0.7, 1.6}) {
-    const RenderResult result = render(scene, above(x, 0.2, 1, 1e-4), test::device(), by_rays(1));
+    const RenderResult result =
+        render(scene, test::above(x, 0.2, 1, 1e-4), test::device(), by_rays(1));
     const double squared = x * x + 0.2 * 0.2 + 1.5 * 1.5;
     const double truth = 1.5 / (4 * pi * squared * std::sqrt(squared));
     CHECK(result.stored_photons == 0);
@@ -115,7 +112,7 @@ TEST_CASE("direct rays: close to a large lamp both techniques add up to its form
     RenderParameters parameters = by_rays(4000, seed);
     parameters.film.samples_per_pixel = 4;
     const RenderResult result =
-        render(scene, above(point.x, point.y, 0.4, 1e-4), test::device(), parameters);
+        render(scene, test::above(point.x, point.y, 0.4, 1e-4), test::device(), parameters);
     CHECK(result.stored_photons == 0);
     lux.push_back(result.layers.layers[0].illuminance[0]);
   }
@@ -145,7 +142,8 @@ TEST_CASE("direct rays: light through a pane counts as direct, light by a mirror
       RenderParameters parameters = by_rays(1, seed);
       parameters.film.width = parameters.film.height = 16;
       parameters.photons.emitted_photons = 400'000;
-      const RenderResult result = render(scene, above(0, 0, 0.5, 0.2), test::device(), parameters);
+      const RenderResult result =
+          render(scene, test::above(0, 0, 0.5, 0.2), test::device(), parameters);
       lux.push_back(Means(result.layers).illuminance[0]);
     }
     // Over the square the cosine and distance of either lamp change their light by under 1%.
@@ -153,7 +151,7 @@ TEST_CASE("direct rays: light through a pane counts as direct, light by a mirror
   }
 }
 
-TEST_CASE("direct rays: with photons they see what paths see on a glossy floor", "[long]") {
+TEST_CASE("direct rays: with photons they see what paths see on a glossy floor", "[long][slow]") {
   check_room(test::glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.3f), 0.06);
 }
 
@@ -165,10 +163,10 @@ TEST_CASE("direct rays: layers are the same whatever the powers") {
   // Half of the looks go by power: with one lamp the choice does not depend on it.
   scene.lights.pop_back();
   const LightLayers dim =
-      render(scene, above(2.6, 2.2, 2.0, 0.4), test::device(), parameters).layers;
+      render(scene, test::above(2.6, 2.2, 2.0, 0.4), test::device(), parameters).layers;
   scene.lights[0].power *= 1000;
   const LightLayers bright =
-      render(scene, above(2.6, 2.2, 2.0, 0.4), test::device(), parameters).layers;
+      render(scene, test::above(2.6, 2.2, 2.0, 0.4), test::device(), parameters).layers;
   CHECK(dim.layers[0].radiance == bright.layers[0].radiance);
   CHECK(dim.layers[0].illuminance == bright.layers[0].illuminance);
 }
@@ -176,14 +174,15 @@ TEST_CASE("direct rays: layers are the same whatever the powers") {
 TEST_CASE("direct rays: paths find direct light themselves") {
   const Scene scene = test::furnished_room();
   PrimaryHitParameters film = by_rays(2).film;
-  const Means with(trace_paths(scene, above(2.6, 2.2, 2.0, 0.4), film).layers);
+  const Means with(trace_paths(scene, test::above(2.6, 2.2, 2.0, 0.4), film).layers);
   film.direct_rays = 0;
   CHECK(with.radiance ==
-        Means(trace_paths(scene, above(2.6, 2.2, 2.0, 0.4), film).layers).radiance);
+        Means(trace_paths(scene, test::above(2.6, 2.2, 2.0, 0.4), film).layers).radiance);
 }
 
 TEST_CASE("direct rays: more looks than the limit are refused") {
   Scene scene = test::closed_box(test::diffuse(glm::vec3(0.5f)));
-  CHECK_THROWS_AS(render(scene, above(0.5, 0.5, 0.5, 0.1), test::device(), by_rays(1'000'000)),
-                  UsageError);
+  CHECK_THROWS_AS(
+      render(scene, test::above(0.5, 0.5, 0.5, 0.1), test::device(), by_rays(1'000'000)),
+      UsageError);
 }

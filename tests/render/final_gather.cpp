@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 #include <string>
 
 #include "photile/errors.hpp"
@@ -23,12 +23,7 @@ using namespace photile;
 
 namespace {
 
-constexpr double pi = glm::pi<double>();
-
-/// Looks straight down at a square of `side` metres around a point of the floor.
-Camera above(double x, double y, double height, double side) {
-  return Camera::look_at({x, y, height}, {x, y, 0}, {0, 1, 0}, 2 * std::atan(side / (2 * height)));
-}
+using std::numbers::pi;
 
 RenderParameters gathering(int rays, std::uint64_t photons, std::uint64_t seed = 1) {
   RenderParameters parameters;
@@ -41,10 +36,10 @@ RenderParameters gathering(int rays, std::uint64_t photons, std::uint64_t seed =
 }
 
 /// Means over the picture of one layer.
-struct Means {
+struct LayerMeans {
   double illuminance = 0, radiance = 0;
 
-  explicit Means(const LightLayers::Layer& layer) {
+  explicit LayerMeans(const LightLayers::Layer& layer) {
     for (const float value : layer.illuminance) illuminance += value;
     for (const glm::vec3& value : layer.radiance) radiance += luminance(value);
     illuminance /= static_cast<double>(layer.illuminance.size());
@@ -72,10 +67,10 @@ Scene furnace(double albedo, bool has_mirror) {
 
 /// Whether both layers of a furnished room with a floor of this material are those of the path
 /// tracer, in the mean over a place beside a block.
-void check_room(const Material& floor, double delta) {
+void check_gathered_room(const Material& floor, double delta) {
   Scene scene = test::furnished_room();
   scene.materials[0] = floor;
-  const Camera camera = above(2.6, 2.2, 2.0, 0.4);
+  const Camera camera = test::above(2.6, 2.2, 2.0, 0.4);
   std::vector<std::vector<double>> differences(4);
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     RenderParameters parameters = gathering(8, 50'000, seed);
@@ -86,7 +81,7 @@ void check_room(const Material& floor, double delta) {
     film.samples_per_pixel = 256;
     const LightLayers paths = trace_paths(scene, camera, film).layers;
     for (std::size_t layer = 0; layer < 2; ++layer) {
-      const Means mean(own.layers[layer]), truth(paths.layers[layer]);
+      const LayerMeans mean(own.layers[layer]), truth(paths.layers[layer]);
       differences[2 * layer].push_back(mean.illuminance / truth.illuminance - 1);
       differences[2 * layer + 1].push_back(mean.radiance / truth.radiance - 1);
     }
@@ -101,8 +96,8 @@ std::vector<double> lux_on_floor(const Scene& scene) {
   std::vector<double> lux;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const RenderResult result =
-        render(scene, above(0, 0, 0.4, 0.6), test::device(), gathering(4, 60'000, seed));
-    lux.push_back(Means(result.layers.layers[0]).illuminance);
+        render(scene, test::above(0, 0, 0.4, 0.6), test::device(), gathering(4, 60'000, seed));
+    lux.push_back(LayerMeans(result.layers.layers[0]).illuminance);
   }
   return lux;
 }
@@ -146,9 +141,9 @@ TEST_CASE("final gathering: a furnace reads its closed form, in a corner and wit
     RenderParameters parameters = gathering(16, 20'000, seed);
     parameters.film.samples_per_pixel = 16;
     const RenderResult result =
-        render(scene, above(place, place, 0.3, 0.6 * place), test::device(), parameters);
-    lux.push_back(Means(result.layers.layers[0]).illuminance);
-    radiance.push_back(Means(result.layers.layers[0]).radiance);
+        render(scene, test::above(place, place, 0.3, 0.6 * place), test::device(), parameters);
+    lux.push_back(LayerMeans(result.layers.layers[0]).illuminance);
+    radiance.push_back(LayerMeans(result.layers.layers[0]).radiance);
   }
   const double truth = emitted / (1 - albedo);
   CHECK_VERDICT(test::mean_is(lux, pi * truth, 0.05 * pi * truth));
@@ -156,9 +151,9 @@ TEST_CASE("final gathering: a furnace reads its closed form, in a corner and wit
 }
 
 TEST_CASE("final gathering: layers of a furnished room are those of paths", "[long]") {
-  SECTION("a diffuse floor") { check_room(test::diffuse(glm::vec3(0.7f)), 0.06); }
+  SECTION("a diffuse floor") { check_gathered_room(test::diffuse(glm::vec3(0.7f)), 0.06); }
   SECTION("a glossy floor") {
-    check_room(test::glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.3f), 0.06);
+    check_gathered_room(test::glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.3f), 0.06);
   }
 }
 
@@ -292,18 +287,18 @@ TEST_CASE("final gathering: reflections are what the lobe reflects") {
   Scene scene = test::furnished_room();
   scene.materials[0] = test::glossy(glm::vec3(albedo), glm::vec3(0.3f), 0.3f);
   const RenderParameters parameters = gathering(8, 20'000);
-  const Camera camera = above(2.0, 2.6, 2.0, 0.4);
+  const Camera camera = test::above(2.0, 2.6, 2.0, 0.4);
   SceneRenderer renderer(scene, {&test::device(), 1}, parameters);
   const LightLayers all = renderer.render(camera, parameters.film).layers;
   const LightLayers lobe = renderer.render_reflections(camera, parameters.film).layers;
   CHECK(test::same_bits(all, lobe) == (albedo == 0.0f));
-  CHECK(Means(lobe.layers[0]).radiance <= Means(all.layers[0]).radiance);
-  CHECK(Means(lobe.layers[0]).radiance > 0);
+  CHECK(LayerMeans(lobe.layers[0]).radiance <= LayerMeans(all.layers[0]).radiance);
+  CHECK(LayerMeans(lobe.layers[0]).radiance > 0);
 }
 
 TEST_CASE("final gathering: what it cannot do is refused") {
   const Scene scene = test::closed_box(test::diffuse(glm::vec3(0.5f)));
-  const Camera camera = above(0.5, 0.5, 0.5, 0.1);
+  const Camera camera = test::above(0.5, 0.5, 0.5, 0.1);
   CHECK_THROWS_AS(render(scene, camera, test::device(), gathering(1'000'000, 1000)), UsageError);
   CHECK_THROWS_AS(render(scene, camera, test::device(), gathering(-1, 1000)), UsageError);
   const Sensor sensor{{0.5, 0.5, 0}, {0, 0, 1}};

@@ -1,6 +1,7 @@
 // What the tests of pictures share.
 #pragma once
 
+#include <cmath>
 #include <cstring>
 
 #include "photile/camera.hpp"
@@ -11,6 +12,11 @@ namespace photile::test {
 /// Looks into furnished_room.
 inline Camera room_camera() {
   return Camera::look_at({3.6, 0.4, 1.6}, {1, 2, 0.9}, {0, 0, 1}, 1.1);
+}
+
+/// Looks straight down at a square of `side` metres around a point of the floor.
+inline Camera above(double x, double y, double height, double side) {
+  return Camera::look_at({x, y, height}, {x, y, 0}, {0, 1, 0}, 2 * std::atan(side / (2 * height)));
 }
 
 /// The values, in whichever form either has them.

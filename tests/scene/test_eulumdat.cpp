@@ -14,14 +14,14 @@ namespace {
 using namespace tests;
 using std::numbers::pi;
 
-IntensityDistribution read(const std::string& text) {
+IntensityDistribution read_eulumdat(const std::string& text) {
   scene_io::Warnings warnings;
   return scene_io::read_eulumdat("lamp.ldt", text, warnings);
 }
 
-std::string refusal(const std::string& text) {
+std::string eulumdat_refusal(const std::string& text) {
   try {
-    read(text);
+    read_eulumdat(text);
   } catch (const scene_io::ResourceError& error) {
     return error.what();
   }
@@ -33,9 +33,9 @@ glm::dvec3 level_towards(double c) { return {std::cos(c * pi / 180), std::sin(c 
 TEST_CASE("intensities are per 1000 lm of the lamps, times the conversion factor", "[eulumdat]") {
   EulumdatText file;
   file.intensity = [](double, double) { return 1000 / (4 * pi); };
-  CHECK(read(file.str()).flux() == Approx(2000).epsilon(1e-6));
+  CHECK(read_eulumdat(file.str()).flux() == Approx(2000).epsilon(1e-6));
   file.conversion = 0.5;
-  CHECK(read(file.str()).flux() == Approx(1000).epsilon(1e-6));
+  CHECK(read_eulumdat(file.str()).flux() == Approx(1000).epsilon(1e-6));
 }
 
 TEST_CASE("decimal commas are points", "[eulumdat]") {
@@ -44,9 +44,9 @@ TEST_CASE("decimal commas are points", "[eulumdat]") {
   file.gamma = angles(0, 90, 36);
   file.lamp_flux = 1234.5;
   file.intensity = [](double c, double g) { return c / 360 + std::cos(g * pi / 180); };
-  const double flux = read(file.str()).flux();
+  const double flux = read_eulumdat(file.str()).flux();
   file.commas = true;
-  CHECK(read(file.str()).flux() == flux);
+  CHECK(read_eulumdat(file.str()).flux() == flux);
 }
 
 TEST_CASE("each symmetry leaves out the planes that mirrors give", "[eulumdat]") {
@@ -62,7 +62,7 @@ TEST_CASE("each symmetry leaves out the planes that mirrors give", "[eulumdat]")
       if (symmetry == 3) {  // ascends from C270 through C0
         asked.intensity = [](double angle, double) { return angle < 180 ? angle + 360 : angle; };
       }
-      return read(asked.str()).intensity(level_towards(c));
+      return read_eulumdat(asked.str()).intensity(level_towards(c));
     };
     const double to_half = c <= 180 ? c : 360 - c;
     const double to_quarter = to_half <= 90 ? to_half : 180 - to_half;
@@ -86,36 +86,36 @@ TEST_CASE("of several sets of lamps the first counts, and a warning says so", "[
 
 TEST_CASE("what is wrong with a EULUMDAT file is told with its line", "[eulumdat]") {
   EulumdatText file;
-  CHECK_THAT(refusal(""), Catch::Contains("ends before the symmetry"));
-  CHECK_THAT(refusal("a\nb\nc\n"), Catch::Contains("line 3: no number"));
+  CHECK_THAT(eulumdat_refusal(""), Catch::Contains("ends before the symmetry"));
+  CHECK_THAT(eulumdat_refusal("a\nb\nc\n"), Catch::Contains("line 3: no number"));
   file.symmetry = 5;
-  CHECK_THAT(refusal(file.str()), Catch::Contains("line 3: the symmetry indicator is 5"));
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("line 3: the symmetry indicator is 5"));
   file.symmetry = 4;
   file.planes = 6;
-  CHECK_THAT(refusal(file.str()), Catch::Contains("6 C planes cannot have symmetry 4"));
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("6 C planes cannot have symmetry 4"));
   file = {};
   file.lamp_flux = 0;
-  CHECK_THAT(refusal(file.str()), Catch::Contains("not above 0"));
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("not above 0"));
   file = {};
   file.gamma = {0, 90, 90};
-  CHECK_THAT(refusal(file.str()), Catch::Contains("angles ascend"));
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("angles ascend"));
   file = {};
   file.intensity = [](double, double) { return -1.0; };
-  CHECK_THAT(refusal(file.str()), Catch::Contains("-2 cd"));
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("-2 cd"));
   std::string text = EulumdatText().str();
   text.replace(text.find("\n1\n0\r\n4\r\n"), 9, "\n1\n0\r\n4e9\r");
-  CHECK_THAT(refusal(text), Catch::Contains("4000000000"));
+  CHECK_THAT(eulumdat_refusal(text), Catch::Contains("4000000000"));
 }
 
 TEST_CASE("a EULUMDAT file cut anywhere, or with bytes replaced at random, is read or refused",
           "[eulumdat]") {
   const std::string sound = EulumdatText().str();
   for (std::size_t length = 0; length + 4 < sound.size(); ++length) {
-    REQUIRE_FALSE(refusal(sound.substr(0, length)).empty());
+    REQUIRE_FALSE(eulumdat_refusal(sound.substr(0, length)).empty());
   }
   std::mt19937 random(8);
   for (int trial = 0; trial < 20'000; ++trial) {
-    refusal(damaged(sound, random));  // nothing but a ResourceError
+    eulumdat_refusal(damaged(sound, random));  // nothing but a ResourceError
   }
 }
 

@@ -12,7 +12,7 @@ using namespace tests;
 using std::numbers::pi;
 
 /// A dark square at z = 0, and a node called Area above it.
-nlohmann::json document_with(const nlohmann::json& members) {
+nlohmann::json panel_document(const nlohmann::json& members) {
   nlohmann::json document = square_document();
   document["materials"][0]["emissiveFactor"] = {0, 0, 0};
   nlohmann::json node = {{"name", "Area"}, {"translation", {0.5, 0.5, 2}}};
@@ -23,11 +23,11 @@ nlohmann::json document_with(const nlohmann::json& members) {
 }
 
 nlohmann::json with_extras(const nlohmann::json& extras) {
-  return document_with({{"extras", extras}});
+  return panel_document({{"extras", extras}});
 }
 
 nlohmann::json with_extension(const nlohmann::json& light) {
-  nlohmann::json document = document_with({{"extensions", {{"EXT_lights_area", {{"light", 0}}}}}});
+  nlohmann::json document = panel_document({{"extensions", {{"EXT_lights_area", {{"light", 0}}}}}});
   document["extensionsUsed"] = {"EXT_lights_area"};
   document["extensions"]["EXT_lights_area"]["lights"] = {light};
   return document;
@@ -90,16 +90,17 @@ TEST_CASE("the option --area-light makes one of any node, before its extras", "[
   CHECK(scene.lights[0].power == Approx(800));
   CHECK(area_of(scene, scene.lights[0]) == Approx(0.125));
   CHECK(scene.report.warnings.empty());
-  CHECK(load_gltf(document_with(nlohmann::json::object()), panel_option("Area=1x1,10"))
+  CHECK(load_gltf(panel_document(nlohmann::json::object()), panel_option("Area=1x1,10"))
             .report.warnings.empty());
-  CHECK_THROWS_WITH(load_gltf(document_with(nlohmann::json::object()), panel_option("Aria=1x1,10")),
-                    Catch::Contains("there is no node 'Aria'; there are 'panel', 'Area'"));
+  CHECK_THROWS_WITH(
+      load_gltf(panel_document(nlohmann::json::object()), panel_option("Aria=1x1,10")),
+      Catch::Contains("there is no node 'Aria'; there are 'panel', 'Area'"));
 }
 
 TEST_CASE("an area light turns with its node", "[panels]") {
   const double half = std::sqrt(0.5);  // a quarter turn about x takes -z to y
   const Scene scene =
-      load_gltf(document_with({{"rotation", {half, 0, 0, half}}}), panel_option("Area=1x2,10"));
+      load_gltf(panel_document({{"rotation", {half, 0, 0, half}}}), panel_option("Area=1x2,10"));
   check_place(scene, scene.lights.at(0), {0, 1, 0}, {0, 0.5f, 1}, {1, 0.5f, 3});
 }
 
@@ -137,7 +138,7 @@ TEST_CASE("an area light that cannot shine is named", "[panels]") {
   CHECK(warned(with_extension({{"type", "sphere"}}), "'sphere'"));
   CHECK(warned(with_extension({{"type", "rect"}, {"size", 0}}), "no size"));
   CHECK(warned(with_extension({{"type", "rect"}, {"intensity", 0}}), "no size, no light"));
-  CHECK(warned(document_with(nlohmann::json::object()), "--area-light"));
+  CHECK(warned(panel_document(nlohmann::json::object()), "--area-light"));
   nlohmann::json missing = with_extension({{"type", "rect"}});
   missing["nodes"][1]["extensions"]["EXT_lights_area"]["light"] = 3;
   CHECK_THAT(input_error_of([&] { load_gltf(missing); }), Catch::Contains("there is no light 3"));

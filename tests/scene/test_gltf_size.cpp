@@ -39,7 +39,7 @@ void make_large(json& document) {
 }
 
 /// What the check says, without loading the scene: it may be too large for this machine.
-std::string refusal(const json& document) {
+std::string size_refusal(const json& document) {
   const SceneFolderOnDisk on_disk;
   on_disk.write("square.bin", square_buffer());
   const std::filesystem::path file = on_disk.write("scene.gltf", document.dump());
@@ -70,24 +70,24 @@ TEST_CASE("a file of a kilobyte that asks for terabytes is refused", "[size]") {
 TEST_CASE("meshes are not repeated beyond the limit from files that hold few bytes", "[size]") {
   json document = placed_often(4);
   make_large(document);
-  CHECK_THAT(refusal(document), Catch::Contains(std::to_string(16 * (many / 3))) &&
-                                    Catch::Contains("no more than 46") &&  // 140 bytes
-                                    Catch::Contains("mesh 'square'") &&
-                                    Catch::Contains("in 16 places"));
+  CHECK_THAT(size_refusal(document), Catch::Contains(std::to_string(16 * (many / 3))) &&
+                                         Catch::Contains("no more than 46") &&  // 140 bytes
+                                         Catch::Contains("mesh 'square'") &&
+                                         Catch::Contains("in 16 places"));
   document = placed_often(3);
   make_large(document);
   CHECK(8 * (many / 3) < limits::max_repeated_triangles);
-  CHECK(refusal(document).empty());
+  CHECK(size_refusal(document).empty());
 }
 
 TEST_CASE("vertices that no triangle uses, and primitives without any, count too", "[size]") {
   json document = placed_often(4);
   for (const int accessor : {0, 1, 3}) make_sparse(document["accessors"][accessor], many, 0);
-  CHECK_THAT(refusal(document), Catch::Contains("repeated"));
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
   document = placed_often(16);
   json& primitives = document["meshes"][0]["primitives"];
   for (int i = 0; i < 1'000; ++i) primitives.push_back({{"attributes", {{"TEXCOORD_0", 1}}}});
-  CHECK_THAT(refusal(document), Catch::Contains("repeated"));
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
 }
 
 TEST_CASE("meshes that share a buffer count each", "[size]") {
@@ -98,22 +98,22 @@ TEST_CASE("meshes that share a buffer count each", "[size]") {
     document["nodes"].push_back({{"mesh", i}});
     document["scenes"][0]["nodes"].push_back(i);
   }
-  CHECK_THAT(refusal(document), Catch::Contains("repeated"));
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
 }
 
 TEST_CASE("counts near 2^64 do not wrap", "[size]") {
   json document = placed_often(12);
   document["accessors"][2]["count"] = 0xFFFF'FFFF'FFFF'FFFFull;
-  CHECK_THAT(refusal(document), Catch::Contains("triangles"));
+  CHECK_THAT(size_refusal(document), Catch::Contains("triangles"));
 }
 
 TEST_CASE("the limit is one of triangles beyond those that the buffers hold", "[size]") {
   json document = square_document();
   const std::uint64_t most = limits::max_repeated_triangles + 140 / 3;
   document["accessors"][2]["count"] = 3 * most;  // the reader would not believe it
-  CHECK(refusal(document).empty());
+  CHECK(size_refusal(document).empty());
   document["accessors"][2]["count"] = 3 * most + 3;
-  CHECK_THAT(refusal(document), Catch::Contains("repeated"));
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "photile/light_mix.hpp"
 #include "scene/lit_copy.hpp"
+#include "srgb_oracle.hpp"
 #include "textured_square.hpp"
 
 namespace photile {
@@ -44,10 +45,6 @@ struct ImageBasedScene {
   SceneFolderOnDisk folder;
   json document = square_document();
 };
-
-double linear(double byte) {
-  return byte <= 0.04045 * 255 ? byte / 255 / 12.92 : std::pow((byte / 255 + 0.055) / 1.055, 2.4);
-}
 
 TEST_CASE("six plain faces of L give the flux 4 pi L times the disc, times the intensity",
           "[image_based]") {

@@ -10,7 +10,7 @@ namespace {
 using namespace tests;
 using nlohmann::json;
 
-void check_rgb(const glm::vec3& actual, const glm::dvec3& expected) {
+void check_sampled(const glm::vec3& actual, const glm::dvec3& expected) {
   CHECK(glm::length(glm::dvec3(actual) - expected) < 1e-5);
 }
 
@@ -24,8 +24,8 @@ TEST_CASE("a metallic-roughness texture multiplies both factors, as they are in 
   const auto surface = trace::reflectance(scene, middle(scene));
   const double metallic = 0.1, roughness = 0.3;
   const glm::dvec3 base(0.8, 0.6, 0.4);
-  check_rgb(surface.albedo, base * (1 - metallic));
-  check_rgb(surface.f0, 0.04 * (1 - metallic) + metallic * base);
+  check_sampled(surface.albedo, base * (1 - metallic));
+  check_sampled(surface.f0, 0.04 * (1 - metallic) + metallic * base);
   CHECK(surface.alpha == Approx(roughness * roughness));
   CHECK(needs_of(scene).textures);
 }
@@ -38,8 +38,8 @@ TEST_CASE("a base-colour texture colours a metal's reflection", "[material_textu
   });
   CHECK(scene.materials[0].interaction == Interaction::opaque);
   const auto surface = trace::reflectance(scene, middle(scene));
-  check_rgb(surface.f0, {0.8, 0.6, 0});
-  check_rgb(surface.albedo, {0, 0, 0});
+  check_sampled(surface.f0, {0.8, 0.6, 0});
+  check_sampled(surface.albedo, {0, 0, 0});
   CHECK(surface.alpha == 0.02f);
 }
 
@@ -50,7 +50,7 @@ TEST_CASE("specular textures multiply the factor by alpha, the colour by RGB",
                                                         {"specularColorTexture", {{"index", 1}}}};
   });
   const auto surface = trace::reflectance(scene, middle(scene));
-  check_rgb(surface.f0, {0.04 * 0.2, 0, 0.04 * 0.2});
+  check_sampled(surface.f0, {0.04 * 0.2, 0, 0.04 * 0.2});
   CHECK(surface.f90 == Approx(0.2));
 }
 

@@ -10,18 +10,13 @@
 #include "scene/resource_error.hpp"
 #include "scene/texture_decoder.hpp"
 #include "scene_files.hpp"
+#include "srgb_oracle.hpp"
 
 namespace photile {
 namespace {
 
 using namespace tests;
 using nlohmann::json;
-
-/// sRGB to linear, written out again from IEC 61966-2-1.
-double linear(double byte) {
-  const double c = byte / 255.0;
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
 
 /// Two by two texels: red, green / blue, white.
 Texture four_texels() {

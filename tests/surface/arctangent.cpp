@@ -11,7 +11,7 @@ using namespace photile;
 
 namespace {
 
-constexpr const char* source = R"(
+constexpr const char* arctangent_source = R"(
 #include "shared/arctangent.clh"
 __kernel void angles(__global const float* y, __global const float* x, __global float* angle) {
   const size_t i = get_global_id(0);
@@ -33,7 +33,7 @@ TEST_CASE("the kernels' arctangent is right to 3e-7 in every direction, and 0 at
     y.push_back(scale * narrow * direction(random));
     x.push_back(scale * direction(random));
   }
-  device::register_kernel_source("test/angles.cl", source);
+  device::register_kernel_source("test/angles.cl", arctangent_source);
   device::Context& context = test::device().context();
   const auto y_buffer = context.upload(std::span<const float>(y), "y");
   const auto x_buffer = context.upload(std::span<const float>(x), "x");

@@ -11,7 +11,7 @@ using namespace photile;
 
 namespace {
 
-constexpr const char* source = R"(
+constexpr const char* logarithm_source = R"(
 #include "shared/logarithm.clh"
 __kernel void logarithms(__global const float* x, __global float* logarithm) {
   const size_t i = get_global_id(0);
@@ -29,7 +29,7 @@ TEST_CASE("the kernels' logarithm is right to 2e-7 of itself or of 1 for all nor
     x.push_back(std::exp2(exponent(random)));
     x.push_back(1 + near_one(random));
   }
-  device::register_kernel_source("test/logarithms.cl", source);
+  device::register_kernel_source("test/logarithms.cl", logarithm_source);
   device::Context& context = test::device().context();
   const auto x_buffer = context.upload(std::span<const float>(x), "x");
   const auto buffer = context.allocate<float>(x.size(), "logarithms");

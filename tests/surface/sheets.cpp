@@ -11,10 +11,10 @@ using namespace photile;
 
 namespace {
 
-constexpr double radius = 0.1;
+constexpr double sheet_radius = 0.1;
 
 surface::Sheets sheets_of(const Scene& scene, double angle = 60) {
-  return surface::find_sheets(surface::SurfaceMesh(scene), radius, angle);
+  return surface::find_sheets(surface::SurfaceMesh(scene), sheet_radius, angle);
 }
 
 /// Sheets of the sides that look along +z.

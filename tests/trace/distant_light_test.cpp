@@ -18,7 +18,7 @@ using namespace photile::trace;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const glm::dvec3 up(0, 0, 1);  // of the plates; a map's zenith is y
 
 Scene with_environment(Scene scene, EnvironmentMap map) {

@@ -15,7 +15,7 @@ using namespace photile::trace;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Intensities of a lamp by polar angle and azimuth, in degrees.
 template <class Intensity>

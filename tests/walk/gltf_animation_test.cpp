@@ -69,7 +69,7 @@ struct AnimatedFile {
   }
 };
 
-void check_near(const glm::dvec3& a, const glm::dvec3& b) {
+void check_close(const glm::dvec3& a, const glm::dvec3& b) {
   INFO(a.x << " " << a.y << " " << a.z << " and " << b.x << " " << b.y << " " << b.z);
   CHECK(glm::length(a - b) < 1e-6);
 }
@@ -82,19 +82,19 @@ TEST_CASE("LINEAR translations go straight, in the space of the node above") {
   const auto motion = file.read();
   CHECK(motion.begin == 1);
   CHECK(motion.end == 3);
-  check_near(motion.at(1).position, {0, 1, 0});
-  check_near(motion.at(1.5).position, {1, 1.5, 0});
-  check_near(motion.at(99).position, {4, 3, 0});
-  check_near(motion.at(1.5).forward, {0, 0, -1});
+  check_close(motion.at(1).position, {0, 1, 0});
+  check_close(motion.at(1.5).position, {1, 1.5, 0});
+  check_close(motion.at(99).position, {4, 3, 0});
+  check_close(motion.at(1.5).forward, {0, 0, -1});
 }
 
 TEST_CASE("STEP holds each value until the next key") {
   AnimatedFile file;
   file.animate(1, "translation", "STEP", {0, 1, 2}, {0, 0, 0, 1, 0, 0, 2, 0, 0});
   const auto motion = file.read();
-  check_near(motion.at(0.99).position, {0, 1, 0});
-  check_near(motion.at(1).position, {1, 1, 0});
-  check_near(motion.at(2).position, {2, 1, 0});
+  check_close(motion.at(0.99).position, {0, 1, 0});
+  check_close(motion.at(1).position, {1, 1, 0});
+  check_close(motion.at(2).position, {2, 1, 0});
 }
 
 TEST_CASE("CUBICSPLINE follows Hermite curves with its tangents times the seconds between keys") {
@@ -103,7 +103,7 @@ TEST_CASE("CUBICSPLINE follows Hermite curves with its tangents times the second
   file.animate(1, "translation", "CUBICSPLINE", {0, 2},
                {9, 9, 9, 0, 0, 0, 1, 0, 0, -1, 0, 0, 4, 0, 0, 9, 9, 9});
   // At the middle: 1/2 p0 + 1/8 (2 x 1) + 1/2 p1 - 1/8 (2 x -1).
-  check_near(file.read().at(1).position, {2.5, 1, 0});
+  check_close(file.read().at(1).position, {2.5, 1, 0});
 }
 
 TEST_CASE("rotations turn about the node above as well, along the shortest arc") {
@@ -117,9 +117,9 @@ TEST_CASE("rotations turn about the node above as well, along the shortest arc")
   // About y, 0 to -90 degrees: from -z to +x.
   file.animate(0, "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, half(-90), 0, whole(-90)});
   const auto motion = file.read("walk");
-  check_near(motion.at(1).forward, {1, 0, 0});
-  check_near(motion.at(1.0 / 3).forward,
-             {std::sin(glm::radians(30.0)), 0, -std::cos(glm::radians(30.0))});
+  check_close(motion.at(1).forward, {1, 0, 0});
+  check_close(motion.at(1.0 / 3).forward,
+              {std::sin(glm::radians(30.0)), 0, -std::cos(glm::radians(30.0))});
 }
 
 TEST_CASE("files without such an animation, or with a broken one, are refused") {
