@@ -134,7 +134,7 @@ TEST_CASE("thin plates of 1 to 20 mm read 1 on their faces: their insides count 
   }
 }
 
-TEST_CASE("a curved shell of 5 mm, its inner side dark, reads 1", "[long]") {
+TEST_CASE("a curved shell of 5 mm, its inner side dark, reads 1", "[long][slow]") {
   // A cylinder of radius 20 cm and a smaller one within; on the outer one 1 lm/m2.
   Scene scene = test::empty_scene();
   constexpr int segments = 160;

@@ -92,10 +92,11 @@ TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's
     test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, cells);
     const Photons photons = test::uniform_photons(scene, 6000, 51);
     const PrimaryHits hits = test::uniform_hits(scene, 300, 52);
-    for (const int k : {1, 16, 50, 400}) {
+    check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::constant);
+    if (cells != 3) continue;
+    for (const int k : {1, 16, 400}) {
       check_clipped(scene, photons, hits, 0.2, k, DensityKernel::constant);
     }
-    if (cells != 3) continue;
     check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::cone);
     check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::epanechnikov);
   }

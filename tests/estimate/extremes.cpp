@@ -32,7 +32,7 @@ Photons photons_at(const Scene& scene, const std::vector<glm::vec3>& places, std
 
 }  // namespace
 
-TEST_CASE("extremes: scenes of 1e-6 to 1e6 times the size of a room") {
+TEST_CASE("extremes: scenes of 1e-6 to 1e6 times the size of a room", "[slow]") {
   for (const float factor : {1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f}) {
     Scene scene = corner_with_torus();
     scale(scene.vertices, factor);
@@ -81,7 +81,8 @@ TEST_CASE("extremes: the automatic radius follows the scale") {
   }
 }
 
-TEST_CASE("extremes: needles a million times as long as wide, and the plates beside them") {
+TEST_CASE("extremes: needles a million times as long as wide, and the plates beside them",
+          "[slow]") {
   Scene scene = test::empty_scene();
   // A strip of needles between two plates: level, where every product is exact, and askew.
   const glm::vec3 along = GENERATE(glm::vec3(1, 0, 0), glm::vec3(0.6f, 0.48f, 0.64f),

@@ -88,7 +88,7 @@ TEST_CASE("maps of patches find the oracle's neighbours in the Cornell box") {
   check_modes(scene, 20'000, 300, 0.08, every_structure, {1, 50, 300});
 }
 
-TEST_CASE("maps of patches find the oracle's neighbours in the living room", "[long]") {
+TEST_CASE("maps of patches find the oracle's neighbours in the living room", "[long][slow]") {
   const Scene scene = load_scene(test::source_folder() / "scenes/living-room/living-room.gltf");
   check_modes(scene, 60'000, 400, 0.4, every_structure, {50});
 }

@@ -67,7 +67,7 @@ TEST_CASE("paths and photon maps agree on a coated wall", "[materials]") {
   check_agreement(room(test::glossy(glm::vec3(0.5f), glm::vec3(0.04f), 0.4f)));
 }
 
-TEST_CASE("paths and photon maps agree on a rough metal", "[materials]") {
+TEST_CASE("paths and photon maps agree on a rough metal", "[materials][slow]") {
   check_agreement(room(test::glossy(glm::vec3(0.0f), glm::vec3(0.7f), 0.6f)));
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("paths and photon maps agree under a normal map", "[materials][slow]")
   check_agreement(scene);
 }
 
-TEST_CASE("paths and photon maps agree through holes", "[materials]") {
+TEST_CASE("paths and photon maps agree through holes", "[materials][slow]") {
   Material plate = test::diffuse(glm::vec3(0.4f));
   plate.opacity = GENERATE(0.0f, 0.4f);
   CAPTURE(plate.opacity);

@@ -58,7 +58,7 @@ double error_of_choice(const View& view, const LightMix& mix, const QualityChoic
 
 }  // namespace
 
-TEST_CASE("a picture by the settings chosen for an error has no larger one") {
+TEST_CASE("a picture by the settings chosen for an error has no larger one", "[slow]") {
   const View view = GENERATE(0, 1) == 0 ? cornell_box() : furnished_room();
   const LightMix mix = LightMix::of(view.scene, defaults::lumen_per_watt);
   const Image reference = path_traced(view, mix, 1024);

@@ -117,7 +117,7 @@ TEST_CASE("the squared error falls as photons to the power -2/3 where k grows as
   CHECK_VERDICT(test::mean_is(slopes, -2.0 / 3, 0.1));
 }
 
-TEST_CASE("interreflected light is read without bias in the middle of a wall") {
+TEST_CASE("interreflected light is read without bias in the middle of a wall", "[slow]") {
   // Roulette has to give survivors what it takes from the others. All walls glow and reflect.
   test::SceneBuilder builder;
   const std::uint32_t wall = builder.add(test::diffuse(glm::vec3(0.8f)));
@@ -139,7 +139,7 @@ TEST_CASE("interreflected light is read without bias in the middle of a wall") {
   CHECK_VERDICT(test::mean_is(values, truth, 0.02 * truth));
 }
 
-TEST_CASE("each light of two is read at its own power") {
+TEST_CASE("each light of two is read at its own power", "[slow]") {
   Scene scene = test::plate(test::diffuse(glm::vec3(0.0f)), 2.0f, 2);
   for (const double power : {100.0, 3.0}) {
     Light sun = test::point_light("sun of " + std::to_string(power), {0, 0, 0}, power);
