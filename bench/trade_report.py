@@ -52,7 +52,10 @@ def settings(point):
               "structure": f" --structure {point['structure']}",
               "cell": f" --photons-per-cell {point['photons_per_cell']:g}",
               "area": f" --area {point.get('area')}",
-              "kernel": f" --kernel {point.get('kernel')}"}
+              "kernel": f" --kernel {point.get('kernel')}",
+              "direct rays": f" --direct rays --direct-rays {point.get('direct_rays')}",
+              "final gather": f" --final-gather {point.get('final_gather_rays')}"
+                              f" --direct-rays {point.get('direct_rays')}"}
     return text + varied.get(point["varied"], "") + "`"
 
 
@@ -78,7 +81,25 @@ def table(record):
     return "\n".join(lines)
 
 
-def section(name, record):
+def ways_of_light(record):
+    """What photons, rays to lamps and final gathering give at the same photons and k."""
+    lines = ["| settings | error | worst region | mean ratio | first picture | each frame |",
+             "|---|--:|--:|--:|--:|--:|"]
+    for point in record["renderings"]:
+        if point["varied"] in ("nothing", "direct rays", "final gather"):
+            lines.append(f"| {settings(point)} | {100 * point['relative_error']:.1f}% "
+                         f"| {100 * point['worst_region']:.1f}% | {point['mean_ratio']:.3f} "
+                         f"| {point['first_picture_seconds']:.2f} s "
+                         f"| {1e3 * point['frame_seconds']:.0f} ms |")
+    return "\n".join(lines)
+
+
+def machine(record):
+    return (f"{os.cpu_count()} cores, {record['devices'][0]}; load average at the end "
+            f"{os.getloadavg()[0]:.1f}.")
+
+
+def section(name, record, measured_on):
     size = f"{record['width']}x{record['height']}"
     noise = ""
     if "reference_relative_mse" in record:
@@ -86,8 +107,8 @@ def section(name, record):
         noise = (f" The reference has {record['reference_samples']} paths a pixel and itself an "
                  f"error of {100 * own:.1f}%, which is in all figures.")
     return (f"### {name}\n\n{size} pixels.{noise}\n\n![Error against time](trade/{name}.svg)\n\n"
-            f"{table(record)}\n\n{os.cpu_count()} cores, {record['devices'][0]}; load average at the "
-            f"end {os.getloadavg()[0]:.1f}.\n\n")
+            f"{table(record)}\n\nLight by photons alone, lamps by rays, and final gathering:\n\n"
+            f"{ways_of_light(record)}\n\n{measured_on}\n\n")
 
 
 def sections_by_name(text):
@@ -98,7 +119,7 @@ def sections_by_name(text):
 
 def main():
     options = arguments()
-    if not options.photile.is_file():
+    if not options.redraw and not options.photile.is_file():
         sys.exit(f"trade_report.py: error: {options.photile} is missing; "
                  "build it with cmake/build.sh")
     folder = ROOT / "docs/trade"
@@ -112,7 +133,8 @@ def main():
             subprocess.run([options.photile, "trade", scene, "-o", out, *more], check=True)
         record = json.loads((out / "trade.json").read_text())
         (folder / f"{name}.svg").write_text((out / "trade.svg").read_text())
-        texts[name] = section(name, record)
+        measured_on = texts[name].rstrip().splitlines()[-1] if options.redraw else machine(record)
+        texts[name] = section(name, record, measured_on)
     replace_section(PAGE, "trade_report.py", "".join(texts.values()).rstrip() + "\n")
 
 
