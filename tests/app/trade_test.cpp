@@ -26,7 +26,7 @@ std::size_t lines_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a trade writes its files and prints a row for each wanted error") {
+TEST_CASE("a trade writes its files and prints a row for each wanted error", "[slow]") {
   const FileFolder folder;
   const std::string results = folder / "results";
   const Outcome outcome =

@@ -75,7 +75,7 @@ TEST_CASE("a pack holds what PoCL needs: without recompiling nothing is publishe
   CHECK(fs::last_write_time(pack) == written);
 }
 
-TEST_CASE("a damaged pack of PoCL's files ends in the right result and one warning") {
+TEST_CASE("a damaged pack of PoCL's files ends in the right result and one warning", "[slow]") {
   const TemporaryFolder cache;
   probe(cache.path);
   const auto pack = packs(cache.path).at(0);

@@ -107,7 +107,8 @@ TEST_CASE("every strategy and vector width gives the oracle's irradiance and glo
   glossy().check(tunings({8}));
 }
 
-TEST_CASE("every strategy and vector width gives the oracle's estimates for many lights") {
+TEST_CASE("every strategy and vector width gives the oracle's estimates for many lights",
+          "[slow]") {
   many_lights().check(tunings({8}));
   glossy(12).check(tunings({8}));
 }

@@ -66,7 +66,7 @@ Scene evenly_lit_plate() {
 
 }  // namespace
 
-TEST_CASE("even light is read without bias: a deviation of 1% would be seen") {
+TEST_CASE("even light is read without bias: a deviation of 1% would be seen", "[slow]") {
   const Scene scene = evenly_lit_plate();
   // 20 x 20 discs of some 400 photons, side by side.
   const std::vector<Sensor> sensors = square_of_sensors(20, 0.08, {0, 0, 1});
