@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/output_file.hpp"
 #include "device/cache_folder.hpp"
 #include "device/cache_key.hpp"
 #include "device/program_source.hpp"
 #include "estimate/specialisation.hpp"
 #include "estimate/tuning.hpp"
-#include "output_file.hpp"
 #include "photile/errors.hpp"
 
 namespace photile {

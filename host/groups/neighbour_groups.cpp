@@ -7,9 +7,9 @@
 #include <limits>
 #include <numeric>
 
+#include "geometry/triangle_bvh.hpp"
 #include "groups/group_lists.hpp"
 #include "groups/proximity_test.hpp"
-#include "groups/triangle_bvh.hpp"
 
 namespace photile {
 namespace {

@@ -6,7 +6,7 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
-#include "groups/box_tree.hpp"
+#include "geometry/box_tree.hpp"
 #include "groups/group_lists.hpp"
 #include "groups/proximity_test.hpp"
 #include "photile/neighbour_groups.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "groups/triangle_distance.hpp"
+#include "geometry/triangle_distance.hpp"
 #include "photile/neighbour_groups.hpp"
 
 namespace photile::groups {

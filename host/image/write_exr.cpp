@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <functional>
 
+#include "common/output_file.hpp"
 #include "image/exr_spec.hpp"
 #include "image/write_exr_parts.hpp"
-#include "output_file.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
+#include "common/output_file.hpp"
 #include "image/exr_spec.hpp"
-#include "output_file.hpp"
 
 namespace photile::image {
 namespace {

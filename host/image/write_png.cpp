@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/output_file.hpp"
 #include "image/srgb.hpp"
-#include "output_file.hpp"
 #include "photile/image.hpp"
 
 namespace photile {

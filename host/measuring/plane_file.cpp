@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "json_object.hpp"
+#include "common/json_object.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

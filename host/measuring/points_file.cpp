@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "input_text.hpp"
+#include "common/input_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "reference/path_estimate.hpp"
 #include "render/film.hpp"
 #include "render/hit_source.hpp"
+#include "render/path_estimate.hpp"
 #include "render/path_numbers.hpp"
 #include "render/render_costs.hpp"
 

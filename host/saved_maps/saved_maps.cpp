@@ -9,8 +9,8 @@
 #include <fstream>
 #include <type_traits>
 
-#include "content_hash.hpp"
-#include "output_file.hpp"
+#include "common/content_hash.hpp"
+#include "common/output_file.hpp"
 #include "photile/errors.hpp"
 #include "saved_maps/check_photons.hpp"
 #include "scene/scene_hash.hpp"

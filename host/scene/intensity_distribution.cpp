@@ -9,7 +9,7 @@
 namespace photile {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<double> in_radians(const std::vector<double>& degrees) {
   if (degrees.size() < 2) throw std::invalid_argument("IntensityDistribution: too few angles");

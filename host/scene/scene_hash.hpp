@@ -1,7 +1,7 @@
 // Which scene something was computed from.
 #pragma once
 
-#include "content_hash.hpp"
+#include "common/content_hash.hpp"
 #include "photile/scene.hpp"
 
 namespace photile {

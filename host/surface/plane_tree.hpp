@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "groups/triangle_bvh.hpp"
+#include "geometry/triangle_bvh.hpp"
 #include "surface/facets.hpp"
 #include "surface/surface_mesh.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "groups/box_tree.hpp"
+#include "geometry/box_tree.hpp"
 #include "photile/neighbour_groups.hpp"
 
 namespace photile::surface {

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "groups/triangle_bvh.hpp"
+#include "geometry/triangle_bvh.hpp"
 #include "surface/facets.hpp"
 #include "surface/plane_tree.hpp"
 #include "surface/surface_mesh.hpp"

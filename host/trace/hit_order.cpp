@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "morton_code.hpp"
-#include "radix_sort.hpp"
+#include "geometry/morton_code.hpp"
+#include "geometry/radix_sort.hpp"
 
 namespace photile::trace {
 namespace {

@@ -8,9 +8,9 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
-#include "image/palette.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
+#include "tools/report/palette.hpp"
 
 namespace photile::test {
 namespace {

@@ -3,10 +3,10 @@
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/scene_report.hpp"
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
+#include "tools/command/scene_report.hpp"
 
 namespace photile::test {
 namespace {

@@ -1,5 +1,5 @@
 // Numbers as people read them, at the borders between units.
-#include "app/number_format.hpp"
+#include "tools/command/number_format.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

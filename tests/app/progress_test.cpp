@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "app/progress_bar.hpp"
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
+#include "tools/command/progress_bar.hpp"
 
 namespace photile::test {
 namespace {

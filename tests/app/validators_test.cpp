@@ -1,5 +1,5 @@
 // Counts and sizes as typed.
-#include "app/validators.hpp"
+#include "tools/command/validators.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

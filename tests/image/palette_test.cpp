@@ -1,10 +1,10 @@
 // The palettes of Radiance's falsecolor, from its formulas and tables.
-#include "image/palette.hpp"
+#include "tools/report/palette.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "image/radiance_palettes.hpp"
+#include "tools/report/radiance_palettes.hpp"
 
 using namespace photile::image;
 

@@ -1,5 +1,5 @@
 // What a tev is sent, decoded as tev does.
-#include "image/tev_connection.hpp"
+#include "tools/preview/tev_connection.hpp"
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
@@ -9,8 +9,8 @@
 #include <cstring>
 #include <future>
 
-#include "image/live_preview.hpp"
 #include "photile/errors.hpp"
+#include "tools/preview/live_preview.hpp"
 
 using namespace photile;
 using namespace photile::image;

@@ -1,14 +1,14 @@
 // Pictures in false colour: known lux and cd/m2 in known colours.
-#include "measuring/false_colour_picture.hpp"
+#include "tools/report/false_colour_picture.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "image/palette.hpp"
-#include "image/sheet.hpp"
 #include "image/srgb.hpp"
-#include "measuring/number_text.hpp"
 #include "photile/errors.hpp"
+#include "tools/report/number_text.hpp"
+#include "tools/report/palette.hpp"
+#include "tools/report/sheet.hpp"
 
 using namespace photile;
 using namespace photile::measuring;

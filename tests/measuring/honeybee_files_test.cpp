@@ -1,5 +1,5 @@
 // Files for Honeybee.
-#include "measuring/honeybee_files.hpp"
+#include "tools/report/honeybee_files.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,13 +1,13 @@
 // Isolines against straight lines and circles, and the colours of values.
-#include "measuring/isolines.hpp"
+#include "tools/report/isolines.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "measuring/false_colour.hpp"
 #include "photile/errors.hpp"
+#include "tools/report/false_colour.hpp"
 
 using namespace photile;
 using namespace photile::measuring;

@@ -1,10 +1,10 @@
 // Plans of planes whose values are known.
-#include "measuring/plan_drawing.hpp"
+#include "tools/report/plan_drawing.hpp"
 
 #include <catch2/catch.hpp>
 #include <regex>
 
-#include "image/palette.hpp"
+#include "tools/report/palette.hpp"
 
 using namespace photile;
 using namespace photile::measuring;

@@ -6,7 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 
-#include "scene/cube_map.hpp"
+#include "import/cube_map.hpp"
 
 namespace photile::tests {
 

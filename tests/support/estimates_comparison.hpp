@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "oracle/density_oracle.hpp"
+#include "oracle/kernel_weights.hpp"
 #include "photile/estimator.hpp"
-#include "reference/density_oracle.hpp"
-#include "reference/kernel_weights.hpp"
 
 namespace photile::test {
 

@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "oracle/density_oracle.hpp"
 #include "photile/estimator.hpp"
-#include "reference/density_oracle.hpp"
 
 namespace photile::test {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "photile/ray_scene.hpp"
-#include "reference/path_estimate.hpp"
+#include "render/path_estimate.hpp"
 #include "trace/sensor_hits.hpp"
 
 namespace photile::test {

@@ -1,4 +1,4 @@
-#include "radix_sort.hpp"
+#include "geometry/radix_sort.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

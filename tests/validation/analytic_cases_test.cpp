@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "test_device.hpp"
-#include "validation/validate.hpp"
+#include "tools/validation/validate.hpp"
 
 using namespace photile;
 using namespace photile::validation;

@@ -1,11 +1,11 @@
 // From layers and powers to what the screen shows.
-#include "view/display.hpp"
+#include "tools/view/display.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "image/glare.hpp"
-#include "image/palette.hpp"
 #include "photile/errors.hpp"
+#include "tools/report/palette.hpp"
 #include "two_lights.hpp"
 
 using namespace photile;

@@ -1,5 +1,5 @@
 // What the sliders make of the lamps.
-#include "view/light_board.hpp"
+#include "tools/view/light_board.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // Keyframes of a camera.
-#include "walk/camera_path.hpp"
+#include "import/camera_path.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <glm/gtc/constants.hpp>
 
 #include "photile/errors.hpp"
+#include "scene/interpolation.hpp"
 #include "temporary_folder.hpp"
-#include "walk/interpolation.hpp"
 
 using namespace photile;
 using Catch::Contains;

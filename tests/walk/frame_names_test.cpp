@@ -1,5 +1,5 @@
 // Names of numbered frames.
-#include "walk/frame_names.hpp"
+#include "tools/walk/frame_names.hpp"
 
 #include <catch2/catch.hpp>
 

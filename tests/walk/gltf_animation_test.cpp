@@ -1,6 +1,4 @@
 // Animations of glTF cameras, against values worked out by hand from the specification.
-#include "scene/gltf_animation.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "import/gltf/animation.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 

@@ -1,0 +1,123 @@
+#include "common/output_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "photile/errors.hpp"
+
+namespace photile {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the name stands for once links are followed.
+fs::path resolve(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_symlink(file, error)) return file;
+  const fs::path resolved = fs::weakly_canonical(file, error);
+  return error ? file : resolved;
+}
+
+/// A rename lasts only once the folder that holds the name is on the storage device.
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;  // a folder may be writable without being readable
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const fs::path& file)
+    : IOProxy(file.string(), Write), file_(file), target_(resolve(file)) {
+  struct stat status {};
+  if (::stat(target_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+    throw OutputError(
+        fmt::format("{}: is not a regular file; name a file to be written", file.string()));
+  }
+  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+  temporary_ = folder / fmt::format(".{}.tmp.{}", target_.filename().string(), ::getpid());
+  ::unlink(temporary_.c_str());  // left by a killed process that had the same number
+  descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) {
+    throw OutputError(fmt::format("{}: cannot be created: {}; choose a folder that can be written",
+                                  file.string(), std::strerror(errno)));
+  }
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void OutputFile::fail(const std::string& reason) const { fail_with(write_error_, reason); }
+
+void OutputFile::fail_with(int error, const std::string& reason) const {
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  throw OutputError(fmt::format("{}: cannot be written: {}{}", file_.string(),
+                                error != 0 ? std::strerror(error) : reason,
+                                full ? "; free space or choose another folder" : ""));
+}
+
+void OutputFile::fail_on_behalf(const std::string& reason) const {
+  // More than what a last block may have left free.
+  const std::vector<char> bytes(1 << 20, '\0');
+  if (::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size())) < 0) {
+    fail_with(errno, reason);
+  }
+  fail(reason);
+}
+
+void OutputFile::commit() {
+  if (write_error_ != 0) fail("");
+  if (::fsync(descriptor_) != 0) fail(std::strerror(errno));
+  // Network file systems report a full disk only here.
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail(std::strerror(errno));
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(std::strerror(errno));
+  temporary_.clear();
+  sync_folder(target_.has_parent_path() ? target_.parent_path() : fs::path("."));
+}
+
+std::size_t OutputFile::write(const void* bytes, std::size_t count) {
+  const std::size_t written = pwrite(bytes, count, m_pos);
+  m_pos += static_cast<std::int64_t>(written);
+  return written;
+}
+
+std::size_t OutputFile::pwrite(const void* bytes, std::size_t count, std::int64_t offset) {
+  std::size_t written = 0;
+  while (written < count && write_error_ == 0) {
+    const ssize_t result = ::pwrite(descriptor_, static_cast<const char*>(bytes) + written,
+                                    count - written, offset + static_cast<off_t>(written));
+    if (result > 0) {
+      written += static_cast<std::size_t>(result);
+    } else if (result == 0 || errno != EINTR) {
+      write_error_ = result == 0 ? ENOSPC : errno;
+    }
+  }
+  return written;
+}
+
+bool OutputFile::seek(std::int64_t offset) {
+  m_pos = offset;
+  return true;
+}
+
+std::size_t OutputFile::size() const {
+  struct stat status {};
+  return ::fstat(descriptor_, &status) == 0 ? static_cast<std::size_t>(status.st_size) : 0;
+}
+
+void write_file(const fs::path& file, std::string_view content) {
+  OutputFile output(file);
+  output.write(content.data(), content.size());  // a short write is reported by commit
+  output.commit();
+}
+
+}  // namespace photile

@@ -1,0 +1,67 @@
+// A binary tree over boxes, for "is any of them within R": nearer children first, until told to
+// stop.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "geometry/triangle_bvh.hpp"
+
+namespace photile::groups {
+
+/// Split at the median of the boxes' centres along the longest axis, down to leaves of 4.
+class BoxTree {
+ public:
+  BoxTree() = default;
+  explicit BoxTree(std::span<const Box> boxes);
+
+  /// Calls visit(index of a box) for boxes in leaves at most `limit` (squared metres) from `box`,
+  /// until it returns true.
+  template <class Visit>
+  void visit_within(const Box& box, float limit, Visit&& visit) const {
+    if (nodes_.empty() || !(squared_distance(nodes_[0].box, box) <= limit)) return;
+    std::array<std::uint32_t, 64> stack;  // halves: at most 32 levels
+    std::size_t depth = 0;
+    std::uint32_t node = 0;
+    for (;;) {
+      const Node& here = nodes_[node];
+      if (here.count != 0) {
+        for (std::uint32_t i = here.first; i < here.first + here.count; ++i) {
+          if (visit(order_[i])) return;
+        }
+      } else {
+        std::uint32_t near = node + 1, far = here.first;
+        float near_distance = squared_distance(nodes_[near].box, box);
+        float far_distance = squared_distance(nodes_[far].box, box);
+        if (far_distance < near_distance) {
+          std::swap(near, far);
+          std::swap(near_distance, far_distance);
+        }
+        if (far_distance <= limit) stack[depth++] = far;
+        if (near_distance <= limit) {
+          node = near;
+          continue;
+        }
+      }
+      if (depth == 0) return;
+      node = stack[--depth];
+    }
+  }
+
+ private:
+  struct Node {
+    Box box;
+    std::uint32_t first = 0;  ///< of a leaf's boxes in the order; else the second child
+    std::uint32_t count = 0;  ///< of a leaf's boxes; 0 in inner nodes, whose first child follows
+  };
+
+  void build(std::span<const Box> boxes, std::uint32_t first, std::uint32_t last);
+
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace photile::groups

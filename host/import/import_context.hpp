@@ -1,0 +1,39 @@
+// What the importers share while they fill a scene.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "import/area_lights.hpp"
+#include "import/light_source.hpp"
+#include "import/scene_folder.hpp"
+#include "import/warnings.hpp"
+#include "photile/errors.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::scene_io {
+
+struct ImportContext {
+  Scene& scene;
+  SceneFolder& folder;
+  const SceneLoadOptions& options;
+  Warnings& warnings;
+  AreaLights& area_lights;
+  std::vector<Emission> emission;                 ///< per material of `scene`
+  std::vector<std::uint32_t> visited_nodes = {};  ///< of a glTF file, in the order of visits
+  std::vector<LightSource> light_sources = {};    ///< of the lights of `scene` so far
+
+  /// An error about the scene file; `message` says what was found and the remedy.
+  InputError error(const std::string& message) const {
+    return InputError(folder.scene_file().string() + ": " + message);
+  }
+};
+
+/// Whether some material's emission has a texture.
+inline bool has_emission_texture(const ImportContext& context) {
+  return std::any_of(context.emission.begin(), context.emission.end(),
+                     [](const Emission& emission) { return emission.texture != none; });
+}
+
+}  // namespace photile::scene_io

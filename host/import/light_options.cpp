@@ -1,0 +1,117 @@
+#include "photile/light_options.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "import/photometry/photometric_text.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile {
+namespace {
+
+using scene_io::parse_number;
+
+/// The two sides of an '='. Errors: UsageError with the remedy.
+std::pair<std::string, std::string> sides(const std::string& text, std::size_t equals,
+                                          const char* remedy) {
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw UsageError(fmt::format("'{}': {}", text, remedy));
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+/// The numbers between commas; nothing if one is none.
+std::optional<std::vector<double>> numbers_of(std::string_view text) {
+  std::vector<double> numbers;
+  for (bool more = true; more;) {
+    const std::size_t comma = text.find(',');
+    const auto value = parse_number(text.substr(0, comma));
+    if (!value) return std::nullopt;
+    numbers.push_back(*value);
+    more = comma != std::string_view::npos;
+    if (more) text.remove_prefix(comma + 1);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+LightProfile LightProfile::parse(const std::string& text) {
+  const auto [light, file] =
+      sides(text, text.find('='), "use NAME=FILE, a light and a photometric file (.ies or .ldt)");
+  return {light, file};
+}
+
+Sun Sun::parse(const std::string& text) {
+  const auto numbers = numbers_of(text);
+  if (!numbers || numbers->size() < 3 || numbers->size() > 4) {
+    throw UsageError(fmt::format(
+        "sun '{}': use AZIMUTH,ELEVATION,LUX[,DIAMETER], such as 135,40,80000: degrees from north "
+        "by east, degrees above the horizon, lux on a surface that faces it, degrees of its disc",
+        text));
+  }
+  Sun sun{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+  if (numbers->size() == 4) sun.diameter_degrees = (*numbers)[3];
+  if (std::abs(sun.azimuth_degrees) > 360.0 || std::abs(sun.elevation_degrees) > 90.0 ||
+      !(sun.illuminance > 0.0) || sun.diameter_degrees < 0.0 ||
+      sun.diameter_degrees > limits::max_sun_diameter_degrees) {
+    throw UsageError(fmt::format(
+        "sun '{}': the azimuth lies within -360 and 360 degrees, the elevation within -90 and 90, "
+        "the lux above 0 and the diameter within 0 and {} degrees",
+        text, limits::max_sun_diameter_degrees));
+  }
+  return sun;
+}
+
+Sky Sky::parse(const std::string& text) {
+  constexpr const char* remedy =
+      "use KIND=LUX, such as overcast=10000; the kinds are uniform, overcast and clear";
+  constexpr std::array kinds{std::pair{"uniform", SkyKind::uniform},
+                             std::pair{"overcast", SkyKind::overcast},
+                             std::pair{"clear", SkyKind::clear}};
+  const auto [kind, lux] = sides(text, text.find('='), remedy);
+  const auto illuminance = parse_number(lux);
+  for (const auto& [word, value] : kinds) {
+    if (kind == word && illuminance && *illuminance > 0.0) return {value, *illuminance};
+  }
+  throw UsageError(fmt::format("sky '{}': {}", text, remedy));
+}
+
+LuminousPanel LuminousPanel::parse(const std::string& text) {
+  constexpr const char* remedy =
+      "use NAME=WxH,LUMENS, such as Area.001=1.2x0.6,3000: a node, metres and lumens";
+  const auto [node, size] = sides(text, text.rfind('='), remedy);
+  const std::size_t cross = size.find('x');
+  const auto width = parse_number(std::string_view(size).substr(0, cross));
+  const auto rest = cross == std::string::npos
+                        ? std::nullopt
+                        : numbers_of(std::string_view(size).substr(cross + 1));
+  if (!width || !rest || rest->size() != 2 || !(*width > 0.0) || !((*rest)[0] > 0.0) ||
+      !((*rest)[1] > 0.0)) {
+    throw UsageError(fmt::format("area light '{}': {}", text, remedy));
+  }
+  return {node, *width, (*rest)[0], (*rest)[1]};
+}
+
+LightTemperature LightTemperature::parse(const std::string& text) {
+  constexpr const char* remedy = "use NAME=KELVIN, such as desk_lamp=2700";
+  const auto [light, value] = sides(text, text.rfind('='), remedy);
+  std::string_view digits = value;
+  if (digits.ends_with('K')) digits.remove_suffix(1);
+  const auto kelvin = parse_number(digits);
+  if (!kelvin) throw UsageError(fmt::format("light temperature '{}': {}", text, remedy));
+  if (*kelvin < limits::min_color_temperature || *kelvin > limits::max_color_temperature) {
+    throw UsageError(fmt::format("light temperature '{}': not between {} and {} kelvin", text,
+                                 limits::min_color_temperature, limits::max_color_temperature));
+  }
+  return {light, *kelvin};
+}
+
+}  // namespace photile

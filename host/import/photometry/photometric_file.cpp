@@ -1,0 +1,45 @@
+#include "import/photometry/photometric_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <string_view>
+
+#include "import/photometry/eulumdat_reader.hpp"
+#include "import/photometry/ies_reader.hpp"
+#include "import/resource_error.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::scene_io {
+namespace {
+
+bool is_eulumdat(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".ldt";
+}
+
+}  // namespace
+
+IntensityDistribution read_photometry(const std::string& name, std::span<const unsigned char> bytes,
+                                      Warnings& warnings) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  try {
+    if (bytes.size() > limits::max_photometry_bytes) {
+      throw ResourceError(
+          fmt::format("{} bytes; the limit is {}", bytes.size(), limits::max_photometry_bytes));
+    }
+    IntensityDistribution distribution =
+        is_eulumdat(name) ? read_eulumdat(name, text, warnings) : read_ies(name, text, warnings);
+    if (!(distribution.flux() > 0.0)) throw ResourceError("all intensities are 0");
+    return distribution;
+  } catch (const ResourceError& error) {
+    throw ResourceError(fmt::format(
+        "photometric file '{}': {}; get it again from the maker of the lamp", name, error.what()));
+  }
+}
+
+}  // namespace photile::scene_io

@@ -1,0 +1,95 @@
+#include "import/photometry/photometric_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "import/resource_error.hpp"
+
+namespace photile::scene_io {
+namespace {
+
+constexpr std::string_view separators = " \t\f\v,\x1A";  // old files end with Ctrl-Z
+constexpr std::size_t longest_shown = 20;
+
+/// A token as a message can show it.
+std::string shown(std::string_view token) {
+  std::string text(token.substr(0, longest_shown));
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7E;
+      },
+      '?');
+  return text;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    lines.push_back(text.substr(0, end));
+    const bool two = text.substr(end, 2) == "\r\n";
+    text.remove_prefix(std::min(end + (two ? 2 : 1), text.size()));
+  }
+  return lines;
+}
+
+std::string_view NumberReader::token() {
+  for (; line_ < lines_.size(); ++line_, column_ = 0) {
+    const std::string_view line = lines_[line_];
+    const std::size_t first = line.find_first_not_of(separators, column_);
+    if (first == std::string_view::npos) continue;
+    column_ = std::min(line.find_first_of(separators, first), line.size());
+    return line.substr(first, column_ - first);
+  }
+  return {};
+}
+
+std::string NumberReader::place() const { return fmt::format("line {}", line_ + 1); }
+
+double NumberReader::number(const std::string& what) {
+  const std::string_view text = token();
+  if (text.empty()) throw ResourceError(fmt::format("the file ends before the {}", what));
+  const auto value = parse_number(text);
+  if (!value) {
+    throw ResourceError(
+        fmt::format("{}: '{}' is no number, for the {}", place(), shown(text), what));
+  }
+  return *value;
+}
+
+std::size_t NumberReader::count(const std::string& what, std::uint64_t lowest,
+                                std::uint64_t highest) {
+  const double value = number(what);
+  if (value != std::floor(value) || value < static_cast<double>(lowest) ||
+      value > static_cast<double>(highest)) {
+    throw ResourceError(fmt::format("{}: the {} is {}, not a whole number from {} to {}", place(),
+                                    what, value, lowest, highest));
+  }
+  return static_cast<std::size_t>(value);
+}
+
+std::vector<double> NumberReader::numbers(const std::string& what, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(number(fmt::format("{} {} of {}", what, i + 1, count)));
+  }
+  return values;
+}
+
+}  // namespace photile::scene_io

@@ -1,0 +1,84 @@
+#include "import/surroundings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "import/area_lights.hpp"
+#include "import/radiance_picture.hpp"
+#include "import/sky_map.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "scene/photometry.hpp"
+
+namespace photile::scene_io {
+namespace {
+
+/// What is given in lux, in the scene's unit.
+double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& options) {
+  return scene.unit == PowerUnit::lumen ? lux : lux / options.lumen_per_watt;
+}
+
+void add_picture(const EnvironmentPicture& picture, Scene& scene) {
+  RadiancePicture read = read_radiance_picture(picture.file);
+  for (glm::vec3& texel : read.texels) texel *= static_cast<float>(picture.scale);
+  EnvironmentMap map(picture.file.filename().string(), read.width, read.height,
+                     std::move(read.texels), picture.rotation_degrees);
+  if (!(luminance(map.integral()) > 0.0)) {
+    throw InputError(fmt::format("{}: the environment is black; give another, or a larger scale",
+                                 picture.file.string()));
+  }
+  add_environment_light("environment", std::move(map), scene);
+}
+
+void add_sun(const Sun& sun, const SceneLoadOptions& options, Scene& scene) {
+  const double half = 0.5 * sun.diameter_degrees * std::numbers::pi / 180.0;
+  Light light;
+  light.name = "sun";
+  light.kind = LightKind::directional;
+  light.direction = -glm::vec3(direction_to(sun));
+  light.angular_diameter = static_cast<float>(2.0 * half);
+  // A disc of radiance L makes L pi sin^2 on a surface that faces it, while the flux counts its
+  // solid angle L 2 pi (1 - cos).
+  light.power = directional_flux(in_scene_unit(sun.illuminance, scene, options),
+                                 bounding_sphere(scene).radius) *
+                2.0 / (1.0 + std::cos(half));
+  scene.lights.push_back(std::move(light));
+}
+
+void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
+  glm::dvec3 to_sun(0.0, 1.0, 0.0);
+  if (sky.kind == SkyKind::clear) {
+    if (!options.sun || !(options.sun->elevation_degrees > 0.0)) {
+      throw UsageError("a clear sky needs a sun above the horizon; give --sun, too");
+    }
+    to_sun = direction_to(*options.sun);
+  }
+  add_environment_light(
+      "sky", sky_map(sky.kind, in_scene_unit(sky.illuminance, scene, options), to_sun), scene);
+}
+
+}  // namespace
+
+void add_environment_light(const std::string& name, EnvironmentMap map, Scene& scene) {
+  Light light;
+  light.name = name;
+  light.kind = LightKind::environment;
+  double bright = 0;
+  set_light_color(map.integral(), light, bright);
+  light.power = directional_flux(bright, bounding_sphere(scene).radius);
+  light.environment = static_cast<std::uint32_t>(scene.environments.size());
+  scene.environments.push_back(std::move(map));
+  scene.lights.push_back(std::move(light));
+}
+
+void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
+  if (!options.environment.file.empty()) add_picture(options.environment, scene);
+  if (options.sun) add_sun(*options.sun, options, scene);
+  if (options.sky) add_sky(*options.sky, options, scene);
+}
+
+}  // namespace photile::scene_io

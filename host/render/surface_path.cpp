@@ -1,0 +1,161 @@
+#include "render/surface_path.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "trace/holes.hpp"
+#include "trace/opaque_bsdf.hpp"
+#include "trace/receiver.hpp"
+#include "trace/sampling.hpp"
+#include "trace/scatter.hpp"
+
+namespace photile::reference {
+namespace {
+
+using trace::LightWeights;
+using trace::OpaqueBsdf;
+using trace::power_heuristic;
+using trace::Purpose;
+using trace::RandomBlock;
+using trace::RandomStream;
+using trace::SurfacePoint;
+
+/// Paths between perfect mirrors end as well.
+constexpr float largest_survival = 0.99f;
+
+float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+class SurfacePath {
+ public:
+  SurfacePath(const RayScene& rays, const trace::LightSampler& lights, const RandomStream& random,
+              std::vector<PathLight>& found)
+      : rays_(rays), scene_(rays.scene()), lights_(lights), random_(random), found_(found) {}
+
+  void trace(const SurfacePoint& start, const OpaqueBsdf& bsdf) {
+    const trace::Receiver receiver(start, bsdf);
+    look_at_lamp(
+        start, [&](const glm::vec3& to) { return receiver.weights(to); },
+        [&](const glm::vec3& to) { return receiver.density(to); });
+    const RandomBlock numbers = random_.block(Purpose::path_scattering, 1);
+    const auto first = receiver.sample(random_.block(Purpose::path_scattering, 0), numbers);
+    if (!first) return;
+    density_ = receiver.density(*first);
+    if (!(density_ > 0.0f)) return;
+    weights_ = receiver.weights(*first) * glm::vec3(1.0f / density_);
+    from_ = start.position;
+    std::optional<SurfacePoint> point = start;
+    glm::vec3 way = *first;
+    while ((point = follow(*point, way))) {
+      if (!scatter(*point, way)) return;
+    }
+  }
+
+ private:
+  /// The next surface point in a direction; adds what it emits. Nothing beyond the scene.
+  std::optional<SurfacePoint> follow(const SurfacePoint& from, const glm::vec3& direction) {
+    glm::vec3 origin = from.origin_towards(direction);
+    const auto point =
+        trace::next_surface(rays_, origin, direction, random_, Purpose::path_holes, holes_);
+    if (!point) {
+      add_what_lies_beyond(direction);
+    } else if (trace::emits(scene_, *point)) {
+      const std::uint32_t light = scene_.triangle_light[point->where.triangle];
+      add(lights_.layer(light),
+          weights_ * (weight_against(lights_.density(from_, *point)) * lights_.radiance(*point)));
+    }
+    return point;
+  }
+
+  void add_what_lies_beyond(const glm::vec3& direction) {
+    for (const trace::DistantLight& light : lights_.distant()) {
+      const glm::vec3 radiance = light.radiance(direction);
+      if (radiance == glm::vec3(0.0f)) continue;
+      add(lights_.layer(light.light()),
+          weights_ * (weight_against(lights_.density(light, direction)) * radiance));
+    }
+  }
+
+  /// Of light that the path met, where looking at lamps finds it with density `other`. Lamps seen
+  /// in mirrors or through refracting glass are found by following alone.
+  float weight_against(float other) const {
+    return density_ > 0.0f ? power_heuristic(density_, other) : 1.0f;
+  }
+
+  /// Adds a lamp as seen from the point; goes on in a new direction, written to `direction`, or
+  /// returns false.
+  bool scatter(const SurfacePoint& point, glm::vec3& direction) {
+    const RandomBlock numbers = random_.block(Purpose::path_scattering, ++bounce_);
+    if (trace::material_of(scene_, point).interaction != Interaction::opaque) {
+      const trace::Scattered scattered =
+          trace::scatter_specular(scene_, point, direction, numbers.uniform(trace::choice_word));
+      // A pane of thin glass passes light straight on, and looking at lamps sees through it.
+      const bool straight = scattered.direction == direction;
+      if (!straight || !trace::material_of(scene_, point).thin) density_ = 0.0f;
+      direction = scattered.direction;
+      return survives(scattered.weight, numbers);
+    }
+    const OpaqueBsdf bsdf(scene_, point, direction);
+    look_at_lamp(
+        point, [&](const glm::vec3& to) { return weights_ * bsdf.reflected(to); },
+        [&](const glm::vec3& to) { return bsdf.density(to); });
+    const auto scattered = bsdf.sample(numbers);
+    if (!scattered) return false;
+    density_ = bsdf.density(*scattered);
+    if (!(density_ > 0.0f)) return false;
+    from_ = point.position;
+    direction = *scattered;
+    return survives(bsdf.reflected(*scattered) / density_, numbers);
+  }
+
+  /// Light of one lamp, chosen at random, at a point: `weigh` and `density` of directions there.
+  template <class Weigh, class Density>
+  void look_at_lamp(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
+    const auto lamp =
+        lights_.sample(point.position, random_.block(Purpose::path_light, 2 * bounce_),
+                       random_.block(Purpose::path_light, 2 * bounce_ + 1));
+    if (!lamp || !(glm::dot(lamp->direction, point.normal) > 0.0f)) return;
+    const glm::vec3 origin = point.origin_towards(lamp->direction);
+    glm::vec3 arrives = lamp->received * trace::transmittance(rays_, origin, lamp->target);
+    if (arrives == glm::vec3(0.0f)) return;
+    if (lamp->density > 0.0f) arrives *= power_heuristic(lamp->density, density(lamp->direction));
+    add(lamp->layer, weigh(lamp->direction) * arrives);
+  }
+
+  /// Roulette on what is left of the light, as photons play it.
+  bool survives(const glm::vec3& weight, const RandomBlock& numbers) {
+    const float before = largest(left_);
+    left_ *= weight;
+    const float survival = std::min(largest_survival, largest(left_) / before);
+    if (!(numbers.uniform(trace::roulette_word) < survival)) return false;
+    left_ /= survival;
+    weights_ = weights_ * (weight / survival);
+    return true;
+  }
+
+  void add(std::uint32_t layer, const LightWeights& light) {
+    found_.push_back({layer, light.irradiance, light.radiance});
+  }
+
+  const RayScene& rays_;
+  const Scene& scene_;
+  const trace::LightSampler& lights_;
+  const RandomStream& random_;
+  std::vector<PathLight>& found_;
+
+  LightWeights weights_;  ///< of the radiance that arrives along the path
+  glm::vec3 left_{1.0f};  ///< of the light since the first direction was chosen
+  glm::vec3 from_{0.0f};  ///< the last opaque point, metres
+  float density_ = 0;     ///< of the direction from there; 0 after a mirror or glass
+  std::uint32_t bounce_ = 1;
+  std::uint32_t holes_ = 0;
+};
+
+}  // namespace
+
+void trace_surface_path(const RayScene& rays, const trace::LightSampler& lights,
+                        const SurfacePoint& start, const OpaqueBsdf& bsdf,
+                        const RandomStream& random, std::vector<PathLight>& found) {
+  SurfacePath(rays, lights, random, found).trace(start, bsdf);
+}
+
+}  // namespace photile::reference

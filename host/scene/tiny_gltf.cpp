@@ -1,3 +1,0 @@
-// The one place where tinygltf is compiled; a system header, so its warnings stay its own.
-#define TINYGLTF_IMPLEMENTATION
-#include "scene/tiny_gltf.hpp"

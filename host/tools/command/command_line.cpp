@@ -1,0 +1,76 @@
+#include "tools/command/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "photile/errors.hpp"
+#include "tools/command/commands.hpp"
+#include "tools/command/terminal.hpp"
+#include "tools/command/version.hpp"
+
+namespace photile::app {
+namespace {
+
+void define(CLI::App& photile) {
+  photile.set_version_flag("--version", version_text());
+  photile.require_subcommand(1);
+  add_render_command(photile);
+  add_relight_command(photile);
+  add_compare_command(photile);
+  add_measure_command(photile);
+  add_trade_command(photile);
+  add_devices_command(photile);
+  add_info_command(photile);
+  add_validate_command(photile);
+  add_walk_command(photile);
+  add_view_command(photile);
+}
+
+/// The command whose --help knows more about a usage error.
+std::string help_command(const CLI::App& photile) {
+  const auto chosen = photile.get_subcommands();
+  return chosen.empty() ? "photile --help" : "photile " + chosen.front()->get_name() + " --help";
+}
+
+/// Standard output may be a file on a full disk: what was lost there is an error, too.
+void flush_standard_output() {
+  std::cout.flush();
+  if (!std::cout) throw OutputError("standard output: cannot write (disk full?)");
+}
+
+ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const* arguments) {
+  try {
+    photile.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
+      throw UsageError(std::string(error.what()) + "; see " + help_command(photile));
+    }
+    photile.exit(error);  // prints the help or the version that was asked for
+  }
+  flush_standard_output();
+  return ExitCode::success;
+}
+
+}  // namespace
+
+int run_command_line(int argument_count, const char* const* arguments) {
+  ExitCode code = ExitCode::failure;
+  try {
+    CLI::App photile("Photon mapping on OpenCL devices, one photon map per triangle.", "photile");
+    define(photile);
+    code = parse_and_run(photile, argument_count, arguments);
+  } catch (const Error& error) {
+    print_error(error.what());
+    code = error.exit_code();
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory; render fewer photons, fewer pixels or a smaller scene");
+  } catch (const std::exception& error) {
+    print_error(std::string("internal error: ") + error.what());
+  }
+  return static_cast<int>(code);
+}
+
+}  // namespace photile::app

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "photile/defaults.hpp"
+#include "photile/device.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "tools/command/commands.hpp"
+#include "tools/command/number_format.hpp"
+#include "tools/command/signals.hpp"
+#include "tools/command/terminal_progress.hpp"
+#include "tools/command/tuning_report.hpp"
+#include "tools/command/validators.hpp"
+
+namespace photile::app {
+namespace {
+
+using nlohmann::json;
+
+struct DevicesOptions {
+  std::string selector;
+  bool json = false;
+  bool tune = false;
+  int neighbours = defaults::neighbours;
+};
+
+const char* type_name(DeviceType type) {
+  switch (type) {
+    case DeviceType::cpu:
+      return "cpu";
+    case DeviceType::gpu:
+      return "gpu";
+    case DeviceType::accelerator:
+      return "accelerator";
+    case DeviceType::other:
+      return "other";
+  }
+  return "";
+}
+
+json device_json(const DeviceInfo& device, bool selected) {
+  return {{"id", device.id},
+          {"name", device.name},
+          {"platform", device.platform},
+          {"vendor", device.vendor},
+          {"type", type_name(device.type)},
+          {"version", device.version},
+          {"driver_version", device.driver_version},
+          {"platform_version", device.platform_version},
+          {"compute_units", device.compute_units},
+          {"global_memory_bytes", device.global_memory_bytes},
+          {"max_allocation_bytes", device.max_allocation_bytes},
+          {"local_memory_bytes", device.local_memory_bytes},
+          {"max_work_group_size", device.max_work_group_size},
+          {"native_float_width", device.native_float_width},
+          {"selected", selected}};
+}
+
+std::string device_line(const DeviceInfo& device, bool selected) {
+  return fmt::format("{} {:<5} {:<4} {} ({}), {}, {} compute units, {}, largest buffer {}",
+                     selected ? '*' : ' ', device.id, type_name(device.type), device.name,
+                     device.platform, device.version, device.compute_units,
+                     format_bytes(device.global_memory_bytes),
+                     format_bytes(device.max_allocation_bytes));
+}
+
+void run_tuning(const DevicesOptions& options) {
+  handle_signals();
+  TerminalProgress progress(false);
+  Device device({.selector = options.selector});
+  tune_device(device, options.neighbours, progress);
+}
+
+void run_devices(const DevicesOptions& options) {
+  if (options.tune) return run_tuning(options);
+  // Opening the device asks the very code that `render` asks; without any device it says so.
+  std::set<std::string> selected;
+  for (const Device& device : open_devices({.selector = options.selector})) {
+    const DeviceInfo& info = device.info();
+    selected.insert(info.parent.empty() ? info.id : info.parent);
+  }
+  json list = json::array();
+  for (const DeviceInfo& device : list_devices()) {
+    const bool is_selected = selected.contains(device.id);
+    if (options.json) {
+      list.push_back(device_json(device, is_selected));
+    } else {
+      std::cout << device_line(device, is_selected) << '\n';
+    }
+  }
+  if (options.json) {
+    std::cout << list.dump(2, ' ', false, json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << "* = what photile render uses; choose with --device or PHOTILE_DEVICE\n";
+  }
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& photile) {
+  auto options = std::make_shared<DevicesOptions>();
+  CLI::App* command = photile.add_subcommand("devices", "List the OpenCL devices");
+  CLI::Option* json = command->add_flag("--json", options->json, "as JSON");
+  command
+      ->add_option("--device", options->selector,
+                   "mark those, or tune the one, that this selector chooses, as in photile render")
+      ->type_name("SELECTOR");
+  CLI::Option* tune =
+      command
+          ->add_flag("--tune", options->tune,
+                     "find and store the fastest kernels of the device, for photile render --tuned")
+          ->excludes(json);
+  command->add_option("-k,--neighbours", options->neighbours, "photons of an estimate to tune for")
+      ->type_name("N")
+      ->transform(count_between(1, limits::max_neighbours))
+      ->capture_default_str()
+      ->needs(tune);
+  command->callback([options] { run_devices(*options); });
+}
+
+}  // namespace photile::app

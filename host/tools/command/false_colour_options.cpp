@@ -1,0 +1,62 @@
+#include "tools/command/false_colour_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/command/validators.hpp"
+
+namespace photile::app {
+
+FalseColourOptions::FalseColourOptions() : scale(fmt::format("{}", colours.scale)) {
+  colours.label.clear();
+}
+
+measuring::FalseColour FalseColourOptions::of(const std::string& unit) const {
+  measuring::FalseColour result = colours;
+  if (result.label.empty()) result.label = unit;
+  result.scale = scale == "auto" ? 0 : std::stod(scale);
+  return result;
+}
+
+void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
+  measuring::FalseColour& colours = options.colours;
+  const char* group = "False colour";
+  command.add_option("-s,--scale", options.scale, "top of the scale, or auto: the largest value")
+      ->type_name("X|auto")
+      ->check(CLI::IsMember({"auto"}) | CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("-l,--label", colours.label, "of the legend; default: the unit")
+      ->type_name("TEXT")
+      ->group(group);
+  command.add_option("-n,--steps", colours.steps, "of the legend, and isolines")
+      ->type_name("N")
+      ->transform(count_between(1, 100))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--log", colours.decades, "logarithmic scale over so many decades")
+      ->type_name("DECADES")
+      ->transform(number_between(0.1, 30))
+      ->group(group);
+  command.add_option("--pal", colours.palette, "palette")
+      ->type_name("")
+      ->check(CLI::IsMember(image::Palette::names()))
+      ->capture_default_str()
+      ->group(group);
+  const auto contours = [&](const char* name, measuring::Contours drawn, const char* what) {
+    return command
+        .add_flag_callback(
+            name, [&colours, drawn] { colours.contours = drawn; }, what)
+        ->group(group);
+  };
+  CLI::Option* lines = contours("--cl", measuring::Contours::lines, "isolines alone");
+  CLI::Option* bands =
+      contours("--cb", measuring::Contours::bands, "bands around the isolines alone");
+  CLI::Option* steps =
+      contours("--cp", measuring::Contours::steps, "posterized: one colour for each step");
+  bands->excludes(lines);
+  steps->excludes(lines)->excludes(bands);
+}
+
+}  // namespace photile::app

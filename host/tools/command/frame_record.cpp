@@ -1,0 +1,60 @@
+#include "tools/command/frame_record.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "common/content_hash.hpp"
+#include "photile/errors.hpp"
+#include "scene/scene_hash.hpp"
+
+namespace photile::app {
+namespace {
+
+constexpr const char* attribute = "photile.settings";
+
+}  // namespace
+
+std::string digest_of(const Scene& scene) {
+  ContentHash hash;
+  add_scene(scene, hash);
+  return hash.hex();
+}
+
+std::string frame_settings(const std::string& scene_digest, const RunRecord& record,
+                           const Camera& camera) {
+  nlohmann::json settings = run_json(record);
+  for (const char* cost : {"devices", "stages", "total_seconds", "peak_host_bytes"}) {
+    settings.erase(cost);
+  }
+  ContentHash hash;
+  hash.add(scene_digest);
+  hash.add(settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  const RenderParameters& parameters = record.parameters;
+  hash.add(parameters.radius);
+  hash.add(parameters.photons.quota);
+  hash.add(parameters.structure);
+  hash.add(parameters.passes);
+  hash.add(parameters.film.samples_per_pixel);
+  for (const glm::dvec3& v : {camera.position, camera.forward, camera.up, camera.right}) {
+    hash.add(v);
+  }
+  hash.add(camera.vertical_field_of_view);
+  return hash.hex();
+}
+
+void set_settings(PictureHeader& picture, const std::string& settings) {
+  picture.attributes[attribute] = settings;
+}
+
+bool has_settings(const std::filesystem::path& picture, const std::string& settings) {
+  std::error_code error;
+  if (!std::filesystem::exists(picture, error)) return false;
+  try {
+    const PictureHeader header = read_header(picture);
+    const auto found = header.attributes.find(attribute);
+    return found != header.attributes.end() && found->second == settings;
+  } catch (const Error&) {
+    return false;  // another program's file, or none that can be read: made anew
+  }
+}
+
+}  // namespace photile::app

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "measuring/furniture.hpp"
+#include "measuring/measure_grids.hpp"
+#include "measuring/plane_file.hpp"
+#include "measuring/points_file.hpp"
+#include "measuring/working_plane.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "tools/command/commands.hpp"
+#include "tools/command/measure_outputs.hpp"
+#include "tools/command/render_options.hpp"
+#include "tools/command/run_notes.hpp"
+#include "tools/command/signals.hpp"
+#include "tools/command/terminal_progress.hpp"
+#include "tools/command/threads.hpp"
+#include "tools/command/validators.hpp"
+#include "tools/report/sensor_tables.hpp"
+
+namespace photile::app {
+namespace {
+
+struct MeasureOptions {
+  RenderOptions render;
+  MeasureOutputOptions outputs;
+  measuring::MeasuringParameters parameters;
+  std::vector<std::string> planes;  ///< files
+  std::vector<std::string> points;  ///< files
+  std::string height;               ///< of the working plane; "" = none
+  double wall_band = defaults::wall_band;
+  double spacing = 0;  ///< metres; 0 = that of EN 12464-1
+  std::string up = "y";
+  double clearance = 0;  ///< metres; 0 = furniture is not looked for
+  bool cylindrical = false;
+};
+
+/// Errors: UsageError where no point is left.
+void leave_out_furniture(const Scene& scene, double clearance, measuring::SensorGrid& grid,
+                         Progress& progress) {
+  const std::size_t all = grid.sensors.size();
+  const std::size_t left_out = measuring::leave_out_furniture(scene, clearance, grid);
+  if (grid.sensors.empty()) {
+    throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
+                                 clearance, all, grid.name));
+  }
+  if (left_out > 0) {
+    progress.note(
+        fmt::format("{}: {} of {} points lie in furniture, or less than {} m from some; "
+                    "they are left out",
+                    grid.name, left_out, all, clearance));
+  }
+}
+
+/// Everything that the command line asks to be measured.
+std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const Scene& scene,
+                                            Progress& progress) {
+  std::vector<measuring::SensorGrid> grids;
+  for (const auto& file : options.planes) {
+    for (auto& grid : measuring::read_planes(file)) grids.push_back(std::move(grid));
+  }
+  for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
+  if (!options.height.empty()) {
+    measuring::WorkingPlane plane = measuring::parse_working_plane(options.height);
+    plane.wall_band = options.wall_band;
+    plane.spacing = options.spacing;
+    plane.up = options.up[0] - 'x';
+    grids.push_back(measuring::working_plane_grid(scene, plane));
+  }
+  if (options.clearance > 0) {
+    for (auto& grid : grids) leave_out_furniture(scene, options.clearance, grid, progress);
+  }
+  std::size_t sensors = 0;
+  for (const auto& grid : grids) sensors += grid.sensors.size();
+  if (sensors > limits::max_sensors) {
+    throw UsageError(fmt::format("{} points together, more than {}; measure fewer", sensors,
+                                 limits::max_sensors));
+  }
+  return grids;
+}
+
+void warn(const Scene& scene, const std::vector<measuring::SensorGrid>& grids, Progress& progress) {
+  if (has_unseen_caustics(scene)) {
+    progress.note(
+        "warning: what mirrors and glass throw onto sensors from point, spot and directional "
+        "lights is missing; lamps with an area are seen in them");
+  }
+  const std::size_t covered = measuring::covered_sensors(scene, grids);
+  if (covered > 0) {
+    progress.note(
+        fmt::format("warning: {} points have a surface less than 1 cm before them; they may lie in "
+                    "furniture or just below a top",
+                    covered));
+  }
+}
+
+void run_measure(const CLI::App& command, MeasureOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  apply_words(render);
+  if (render.integrates == Integrator::path) refuse_photon_map_options(command);
+  if (options.planes.empty() && options.points.empty() && options.height.empty()) {
+    throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
+  }
+  const MeasureOutputs outputs(options.outputs, render.scene);
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  const Scene scene = load_scene(render.scene, render.load);
+  const LightMix mix = mix_of(scene, render);
+  const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
+  std::vector<Device> devices = devices_for(render, progress);
+  tell_scene(scene, mix, progress);
+  warn(scene, grids, progress);
+
+  measuring::MeasuringParameters& parameters = options.parameters;
+  parameters.photons = render.parameters;
+  parameters.by_paths = render.integrates == Integrator::path;
+  if (options.cylindrical) parameters.gathering.response = SensorResponse::cylindrical;
+  const measuring::Readings readings =
+      measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
+  const measuring::Measurement measurement = measuring::measurement_of(grids, readings);
+  outputs.write(measurement, {scene, mix, parameters});
+  for (const auto& line : measuring::measurement_lines(measurement)) std::cout << line << '\n';
+}
+
+void add_places(CLI::App& command, MeasureOptions& options) {
+  const auto files = [&](const char* name, std::vector<std::string>& names, const char* what) {
+    command.add_option(name, names, what)
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->group("Places");
+  };
+  files("--grid", options.planes, "planes of points as JSON; repeatable");
+  files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
+  command
+      .add_option("--plane", options.height,
+                  "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
+      ->type_name("HEIGHT")
+      ->group("Places");
+  command.add_option("--wall-band", options.wall_band, "metres left out along the walls")
+      ->type_name("M")
+      ->transform(number_between(0, limits::max_coordinate))
+      ->capture_default_str()
+      ->group("Places");
+  command.add_option("--spacing", options.spacing, "metres; default: that of EN 12464-1")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Places");
+  command
+      .add_option("--clearance", options.clearance,
+                  "leaves out points inside furniture, or with a surface less than M before or "
+                  "behind them")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Places");
+  command.add_option("--up", options.up, "axis that points up, for --plane")
+      ->type_name("")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str()
+      ->group("Places");
+}
+
+void add_measuring(CLI::App& command, MeasureOptions& options) {
+  measuring::MeasuringParameters& parameters = options.parameters;
+  command
+      .add_flag("--cylindrical", options.cylindrical,
+                "cylindrical illuminance round each point's direction, which points up")
+      ->group("Measuring");
+  command
+      .add_option("--maintenance", parameters.maintenance,
+                  "factor of all values for ageing and dirt, above 0 up to 1")
+      ->type_name("X")
+      ->transform(share_up_to(1))
+      ->capture_default_str()
+      ->group("Measuring");
+  command.add_option("--rays", parameters.gathering.rays, "of each point and repeat")
+      ->type_name("N")
+      ->transform(count_between(1, limits::max_samples_per_pixel))
+      ->capture_default_str()
+      ->group("Measuring");
+  command
+      .add_option("--repeats", parameters.repeats,
+                  "measurements with photons of their own, whose scatter is the standard error")
+      ->type_name("N")
+      ->transform(count_between(2, limits::max_repeats))
+      ->capture_default_str()
+      ->group("Measuring");
+}
+
+}  // namespace
+
+void add_measure_command(CLI::App& photile) {
+  auto options = std::make_shared<MeasureOptions>();
+  CLI::App* command =
+      photile.add_subcommand("measure", "Illuminance at points, in lux, with standard errors");
+  add_measure_output_options(*command, options->outputs);
+  add_places(*command, *options);
+  add_measuring(*command, *options);
+  add_light_setting_options(*command, options->render);
+  add_integrator_option(*command, options->render);
+  command->callback([command, options] { run_measure(*command, *options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,157 @@
+#include "tools/command/measure_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "common/output_file.hpp"
+#include "photile/errors.hpp"
+#include "tools/command/number_format.hpp"
+#include "tools/command/output_files.hpp"
+#include "tools/command/version.hpp"
+#include "tools/report/honeybee_files.hpp"
+#include "tools/report/plan_drawing.hpp"
+#include "tools/report/report.hpp"
+#include "tools/report/sensor_tables.hpp"
+
+namespace photile::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json run_json(const measuring::Measurement& measurement, const MeasureRun& run) {
+  const measuring::MeasuringParameters& parameters = run.parameters;
+  const bool planar = parameters.gathering.response == SensorResponse::planar;
+  Json record{{"photile", version_number()},
+              {"scene", run.scene.source.filename().string()},
+              {"unit", "lux"},
+              {"response", planar ? "planar" : "cylindrical"},
+              {"maintenance_factor", parameters.maintenance},
+              {"integrator", parameters.by_paths ? "path" : "photon-map"},
+              {"seed", parameters.photons.film.seed},
+              {"repeats", parameters.repeats},
+              {"rays", parameters.gathering.rays}};
+  if (!parameters.by_paths) {
+    record["photons"] = parameters.photons.photons.emitted_photons;
+    record["neighbours"] = parameters.photons.neighbours;
+  }
+  record["lumen_per_watt"] = run.mix.lumen_per_watt;
+  for (const MixedLight& light : run.mix.lights) {
+    record["lights"].push_back(
+        {{"name", light.name}, {"power", light.power}, {"unit", unit_symbol(light.unit)}});
+  }
+  record["grids"] = measuring::measurement_json(measurement);
+  return record;
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run) {
+  const measuring::MeasuringParameters& parameters = run.parameters;
+  const bool planar = parameters.gathering.response == SensorResponse::planar;
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"illuminance", planar ? "planar" : "cylindrical"},
+      {"maintenance factor", fmt::format("{:g}", parameters.maintenance)},
+      {"measured",
+       fmt::format("{} times with {} rays a point", parameters.repeats, parameters.gathering.rays)},
+      {"light by", parameters.by_paths
+                       ? "path tracing"
+                       : fmt::format("photon maps, {} photons, k = {}",
+                                     format_count(static_cast<double>(
+                                         parameters.photons.photons.emitted_photons)),
+                                     parameters.photons.neighbours)},
+      {"errors", "standard errors of the mean of the repeats"}};
+  for (const MixedLight& light : run.mix.lights) {
+    facts.emplace_back("light " + light.name,
+                       format_power_in_both(light.power, light.unit, run.mix.lumen_per_watt));
+  }
+  facts.emplace_back("program", "photile " + version_number());
+  return facts;
+}
+
+/// The planes' plans under their files' names.
+std::map<std::filesystem::path, std::string> plans_of(const std::filesystem::path& file,
+                                                      const measuring::Measurement& measurement,
+                                                      const measuring::FalseColour& colours) {
+  std::vector<const measuring::GridValues*> planes;
+  for (const auto& values : measurement) {
+    if (values.grid.layout) planes.push_back(&values);
+  }
+  if (planes.empty()) {
+    throw UsageError(fmt::format("{}: points have no plan; measure a plane, by --plane or --grid",
+                                 file.string()));
+  }
+  std::map<std::filesystem::path, std::string> plans;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    std::filesystem::path name = file;
+    if (planes.size() > 1) {
+      name.replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i + 1));
+    }
+    plans[name] = measuring::plan_svg(*planes[i], planes[i]->total(), colours);
+  }
+  return plans;
+}
+
+}  // namespace
+
+void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options) {
+  command
+      .add_option("-o,--output", options.outputs,
+                  "table (.csv, .json), plan (.svg) or report (.html) to write; repeatable")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group("Output");
+  command
+      .add_option("--honeybee", options.honeybee,
+                  "folder for <grid>.res, grids_info.json and grid_summary.csv")
+      ->type_name("FOLDER")
+      ->group("Output");
+  add_false_colour_options(command, options.false_colour);
+}
+
+MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options,
+                               const std::filesystem::path& scene)
+    : colours_(options.false_colour.of("lux")), honeybee_(options.honeybee) {
+  const std::map<std::string, std::vector<std::filesystem::path>*> lists{
+      {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}};
+  std::vector<std::filesystem::path> all;
+  for (const std::filesystem::path file : options.outputs) {
+    const auto list = lists.find(file.extension().string());
+    if (list == lists.end()) {
+      throw UsageError(fmt::format("{}: an output ends in .csv, .json, .svg or .html; rename it",
+                                   file.string()));
+    }
+    list->second->push_back(file);
+    all.push_back(file);
+  }
+  if (!honeybee_.empty()) {
+    make_folder(honeybee_);
+    all.push_back(honeybee_ / "grids_info.json");
+  }
+  check_outputs(all, scene);
+}
+
+void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
+  if (!honeybee_.empty()) {
+    for (const auto& [name, text] : measuring::honeybee_files(measurement)) {
+      write_file(honeybee_ / name, text);
+    }
+  }
+  for (const auto& file : csv_) write_file(file, measuring::measurement_csv(measurement));
+  for (const auto& file : json_) {
+    write_file(
+        file,
+        run_json(measurement, run).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+  for (const auto& file : svg_) {
+    for (const auto& [name, svg] : plans_of(file, measurement, colours_)) {
+      write_file(name, svg);
+    }
+  }
+  const std::string title = run.scene.source.filename().string();
+  for (const auto& file : html_) {
+    write_file(file, measuring::report_html(measurement, {title, facts_of(run)}, colours_));
+  }
+}
+
+}  // namespace photile::app

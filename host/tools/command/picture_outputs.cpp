@@ -1,0 +1,116 @@
+#include "tools/command/picture_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "tools/command/validators.hpp"
+#include "tools/report/false_colour_picture.hpp"
+#include "tools/report/sheet.hpp"
+
+namespace photile::app {
+namespace {
+
+std::string lower_case_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+/// Errors: UsageError unless `file` ends in .png.
+void check_png(const std::filesystem::path& file, const char* option) {
+  if (lower_case_extension(file) == ".png") return;
+  throw UsageError(
+      fmt::format("{}: {} writes a file that ends in .png; rename it", file.string(), option));
+}
+
+}  // namespace
+
+void add_picture_options(CLI::App& command, PictureOptions& options) {
+  command.add_option("-o,--output", options.outputs, "picture to write, .exr or .png; repeatable")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group("Output");
+  command.add_option("--png", options.png, "tone-mapped picture to write")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group("Output");
+  command.add_option("--exposure", options.exposure, "stops, for PNG only")
+      ->type_name("STOPS")
+      ->transform(number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
+      ->capture_default_str()
+      ->group("Output");
+  command
+      .add_flag("--no-auto-exposure", options.no_automatic_exposure,
+                "1 cd/m2 or 1 W/(m2 sr) becomes white, before --exposure")
+      ->group("Output");
+  const auto add_drawing = [&](const char* name, std::string& file, const char* what) {
+    command.add_option(name, file, what)->type_name("FILE.png")->group("Output");
+  };
+  add_drawing("--illuminance", options.illuminance,
+              "lux on the surfaces that are seen, in false colour with a legend");
+  add_drawing("--luminance", options.luminance, "cd/m2, in false colour with a legend");
+  add_false_colour_options(command, options.false_colour);
+}
+
+PictureOutputs::PictureOutputs(const PictureOptions& options)
+    : illuminance_(options.illuminance),
+      luminance_(options.luminance),
+      tone_mapping_{!options.no_automatic_exposure, options.exposure},
+      false_colour_(options.false_colour) {
+  for (const std::string& file : options.outputs) {
+    const std::string extension = lower_case_extension(file);
+    if (extension != ".exr" && extension != ".png") {
+      throw UsageError(fmt::format("{}: an output ends in .exr or .png; rename it", file));
+    }
+    (extension == ".exr" ? exr_ : png_).emplace_back(file);
+  }
+  for (const std::string& file : options.png) {
+    check_png(file, "--png");
+    png_.emplace_back(file);
+  }
+  if (!illuminance_.empty()) check_png(illuminance_, "--illuminance");
+  if (!luminance_.empty()) check_png(luminance_, "--luminance");
+}
+
+std::vector<std::filesystem::path> PictureOutputs::files() const {
+  std::vector<std::filesystem::path> all = exr_;
+  all.insert(all.end(), png_.begin(), png_.end());
+  if (!illuminance_.empty()) all.push_back(illuminance_);
+  if (!luminance_.empty()) all.push_back(luminance_);
+  return all;
+}
+
+void PictureOutputs::write(const LayeredPicture& picture, Progress& notes) const {
+  // First, for the picture may lack them.
+  std::vector<float> lux, candela;
+  Image root, displayed;
+  if (exr_.size() < files().size()) {
+    root = picture.root();
+    displayed = tone_map(root, tone_mapping_);
+  }
+  if (!illuminance_.empty()) lux = measuring::illuminance_of(picture);
+  if (!luminance_.empty()) candela = measuring::luminance_of(root);
+
+  for (const auto& file : exr_) write_exr(file, picture);
+  for (const auto& file : png_) write_png(file, displayed);
+  const auto draw = [&](const std::filesystem::path& file, const std::vector<float>& values,
+                        const char* unit) {
+    if (file.empty()) return;
+    write_png(file, measuring::false_colour_picture(values, displayed, false_colour_.of(unit)));
+    if (image::Sheet::has_font()) return;
+    notes.note(
+        fmt::format("warning: {}: the legend has no numbers without the font DejaVu Sans; "
+                    "install fonts-dejavu-core",
+                    file.string()));
+  };
+  draw(illuminance_, lux, "lux");
+  draw(luminance_, candela, "cd/m2");
+}
+
+}  // namespace photile::app

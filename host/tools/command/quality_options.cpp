@@ -1,0 +1,94 @@
+#include "tools/command/quality_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "tools/command/number_format.hpp"
+#include "tools/command/validators.hpp"
+
+namespace photile::app {
+namespace {
+
+std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); }
+
+std::string milliseconds(double seconds) { return fmt::format("{:.0f} ms", 1e3 * seconds); }
+
+/// What a picture by the chosen settings is expected to err by, cause by cause.
+std::string causes(const ErrorModel& model, const QualityChoice& choice) {
+  const auto photons = static_cast<double>(choice.photons);
+  const double noise = model.noise / std::max(choice.neighbours - 2.0, 0.5);
+  const double sampling = model.sampling / choice.samples_per_pixel;
+  const double bias = model.bias * std::pow(choice.neighbours / photons, model.exponent);
+  return fmt::format("noise of the photons {}, of the samples {}, blur {}",
+                     percent(std::sqrt(noise)), percent(std::sqrt(sampling)),
+                     percent(std::sqrt(bias)));
+}
+
+void tell(const QualityTarget& target, const QualityModels& models, const QualityChoice& choice,
+          Progress& progress) {
+  progress.note(fmt::format("chosen: --photons {} -k {} --samples {}, from quick pictures of {}",
+                            choice.photons, choice.neighbours, choice.samples_per_pixel,
+                            format_seconds(models.seconds)));
+  progress.note(fmt::format("expected: error {} ({}); first picture {}, each further frame {}",
+                            percent(choice.expected_error), causes(models.error, choice),
+                            format_seconds(choice.expected_first_picture_seconds),
+                            milliseconds(choice.expected_frame_seconds)));
+  if (choice.reached) return;
+  std::string wanted;
+  if (target.relative_error > 0) wanted = "an error of " + percent(target.relative_error);
+  if (target.frame_seconds > 0) {
+    wanted += (wanted.empty() ? "" : " and ") +
+              fmt::format("frames of {}", milliseconds(target.frame_seconds));
+  }
+  progress.note(fmt::format("warning: {} is not within reach here; this is the nearest", wanted));
+}
+
+}  // namespace
+
+void add_quality_options(CLI::App& command, QualityTarget& target) {
+  CLI::Option* error =
+      command
+          .add_option("--target-error", target.relative_error,
+                      "choose photons, k and samples for this root mean square relative error")
+          ->type_name("PERCENT")
+          ->transform(share_up_to(1))
+          ->group("Quality");
+  CLI::Option* time = command
+                          .add_option("--time-budget", target.frame_seconds,
+                                      "choose k and samples for pictures of this time, once the "
+                                      "photon maps are there")
+                          ->type_name("TIME")
+                          ->transform(duration())
+                          ->group("Quality");
+  // The model of error and time knows nothing of --final-gather.
+  for (const char* chosen : {"--neighbours", "--samples", "--radius", "--final-gather"}) {
+    error->excludes(chosen);
+    time->excludes(chosen);
+  }
+  error->excludes("--photons");
+}
+
+bool is_wanted(const QualityTarget& target) {
+  return target.relative_error > 0 || target.frame_seconds > 0;
+}
+
+StageStatistics choose_quality(const QualityTarget& target, const Scene& scene,
+                               const Camera& camera, Device& device, const LightMix& mix,
+                               RenderParameters& parameters, Progress& progress) {
+  const QualityModels models = measure_models(scene, camera, device, mix, parameters, progress);
+  const QualityChoice choice =
+      choose_settings(target, models.error, models.time, parameters.photons.emitted_photons);
+  tell(target, models, choice, progress);
+  parameters.photons.emitted_photons = choice.photons;
+  parameters.neighbours = choice.neighbours;
+  parameters.film.samples_per_pixel = choice.samples_per_pixel;
+  return {.stage = "choose settings",
+          .seconds = models.seconds,
+          .figures = {{"expected relative error", choice.expected_error},
+                      {"expected frame seconds", choice.expected_frame_seconds},
+                      {"expected first picture seconds", choice.expected_first_picture_seconds}}};
+}
+
+}  // namespace photile::app

@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "tools/command/commands.hpp"
+#include "tools/command/number_format.hpp"
+#include "tools/command/output_files.hpp"
+#include "tools/command/picture_outputs.hpp"
+#include "tools/command/signals.hpp"
+#include "tools/command/terminal_progress.hpp"
+
+namespace photile::app {
+namespace {
+
+struct RelightOptions {
+  std::string input;
+  std::vector<std::string> lights;
+  PictureOptions pictures;
+};
+
+void print_lights(const LightMix& mix) {
+  for (const MixedLight& light : mix.lights) {
+    std::cout << fmt::format("{}: {}: {}\n", light.members.empty() ? "light" : "group", light.name,
+                             format_power_in_both(light.power, light.unit, mix.lumen_per_watt));
+  }
+}
+
+void run_relight(const RelightOptions& options) {
+  handle_signals();
+  std::vector<LightChange> changes;
+  for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
+  const PictureOutputs outputs(options.pictures);
+  if (outputs.empty() && !changes.empty()) {
+    throw UsageError("no output; give -o FILE.exr or -o FILE.png");
+  }
+  check_outputs(outputs.files(), options.input);
+
+  if (outputs.empty()) {
+    print_lights(read_light_mix(read_header(options.input)));
+    return;
+  }
+  const std::unique_ptr<LayeredPicture> picture = relit_picture(options.input, changes);
+  throw_if_stop_requested();
+  TerminalProgress notes(false);
+  outputs.write(*picture, notes);
+}
+
+}  // namespace
+
+void add_relight_command(CLI::App& photile) {
+  auto options = std::make_shared<RelightOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "relight", "Change the lights of a rendered EXR; without --light and -o, list them");
+  command->add_option("PICTURE", options->input, "EXR with a layer per light")
+      ->required()
+      ->type_name("");
+  command
+      ->add_option("--light", options->lights,
+                   "power in the light's unit, a factor (x2), a colour or off; repeatable")
+      ->type_name("NAME=POWER|xFACTOR|#RRGGBB|KELVINK|off")
+      ->allow_extra_args(false);
+  add_picture_options(*command, options->pictures);
+  command->callback([options] { run_relight(*options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,224 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/output_file.hpp"
+#include "device/context.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/path_tracer.hpp"
+#include "render/hit_source.hpp"
+#include "tools/command/commands.hpp"
+#include "tools/command/glare_output.hpp"
+#include "tools/command/number_format.hpp"
+#include "tools/command/output_files.hpp"
+#include "tools/command/quality_options.hpp"
+#include "tools/command/render_options.hpp"
+#include "tools/command/run_notes.hpp"
+#include "tools/command/run_record.hpp"
+#include "tools/command/saved_maps_option.hpp"
+#include "tools/command/signals.hpp"
+#include "tools/command/summary.hpp"
+#include "tools/command/terminal_progress.hpp"
+#include "tools/command/threads.hpp"
+#include "tools/command/tuning_report.hpp"
+#include "tools/preview/live_preview.hpp"
+
+namespace photile::app {
+namespace {
+
+PictureOutputs check_outputs_of(const RenderOptions& options) {
+  PictureOutputs outputs(options.pictures);
+  if (outputs.empty() && options.glare.empty()) {
+    throw UsageError("no output; give -o FILE.exr or -o FILE.png");
+  }
+  if (!options.glare.empty() && std::filesystem::path(options.glare).extension() != ".png") {
+    throw UsageError(
+        fmt::format("{}: --glare writes a file that ends in .png; rename it", options.glare));
+  }
+  auto files = outputs.files();
+  if (!options.statistics.empty()) files.emplace_back(options.statistics);
+  if (!options.glare.empty()) files.emplace_back(options.glare);
+  if (!options.save_maps.empty()) files.emplace_back(options.save_maps);
+  check_outputs(files, options.scene);
+  return outputs;
+}
+
+/// What `photile devices --tune` found for these devices and such scenes. A tuning is of one kind
+/// of device. Errors: UsageError when there are several kinds.
+void use_stored_tuning(RenderOptions& options, std::span<const Device> devices, const Scene& scene,
+                       Progress& progress) {
+  const DeviceInfo& device = devices.front().info();
+  for (const Device& other : devices) {
+    if (other.info().name != device.name || other.info().platform != device.platform) {
+      throw UsageError(
+          fmt::format("--tuned: {} and {} have tunings of their own; choose one device "
+                      "or leave out --tuned",
+                      device.name, other.info().name));
+    }
+  }
+  RenderParameters& parameters = options.parameters;
+  parameters.tuning = stored_tuning(device, needs_of(scene));
+  if (!parameters.tuning) {
+    progress.note(fmt::format(
+        "warning: no tuning is stored for {} and such scenes; photile devices --tune makes one",
+        device.name));
+    return;
+  }
+  if (!options.own_photons_per_cell) {
+    parameters.photons_per_cell = parameters.tuning->photons_per_cell;
+  }
+  progress.note("tuning: " + tuning_words(*parameters.tuning));
+}
+
+/// Runs `work` as a stage of its own and returns what it cost.
+template <class Work>
+StageStatistics timed_stage(const char* name, Progress& progress, const Work& work) {
+  progress.throw_if_cancelled();
+  progress.begin(name, 0, "");
+  const Stopwatch stopwatch;
+  work();
+  progress.end();
+  StageStatistics cost;
+  cost.stage = name;
+  cost.seconds = stopwatch.seconds();
+  return cost;
+}
+
+void tell_kernels(Device& device, bool profile, Progress& progress) {
+  progress.note(fmt::format("kernels of {}: {} compiled, {} from the cache, {}", device.info().id,
+                            device.programs_built(), device.programs_from_cache(),
+                            format_seconds(device.compile_seconds())));
+  if (!profile) return;
+  for (const auto& line : kernel_table(device.context().kernel_times())) progress.note(line);
+}
+
+/// What is rendered: the picture and, where --glare asks for it, what came by reflection.
+struct Views {
+  const HitSource& picture;
+  LightLayers* reflections;  ///< is filled; may be null
+};
+
+/// What the camera sees; with --preview its picture is shown while it grows.
+std::unique_ptr<HitSource> hits_of(const Camera& camera, const RenderOptions& options,
+                                   const RunRecord& record, Progress& progress) {
+  if (options.preview.empty()) return std::make_unique<CameraHits>(camera);
+  auto preview =
+      std::make_shared<image::LivePreview>(options.preview, record.scene, record.mix, progress);
+  return std::make_unique<WatchedHits>(
+      camera, [preview](const LightLayers& layers, int first, int last, double share) {
+        preview->rows(layers, first, last, share);
+      });
+}
+
+/// The layers by photon maps. Fills in what `record` tells of them.
+LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
+                              RenderOptions& options, const Views& views, RunRecord& record,
+                              Progress& progress) {
+  if (options.tuned) use_stored_tuning(options, devices, scene, progress);
+  if (is_wanted(options.target)) {
+    record.stages.push_back(choose_quality(options.target, scene, camera, devices.front(),
+                                           record.mix, options.parameters, progress));
+  }
+  const bool keeps_maps =
+      !options.save_maps.empty() || !options.load_maps.empty() || views.reflections;
+  RenderResult result =
+      keeps_maps ? render_with_kept_maps(scene, camera, views.picture, devices, options,
+                                         views.reflections, progress)
+                 : render_hits(scene, views.picture, devices, options.parameters, progress);
+  record.parameters = options.parameters;
+  for (const Device& device : devices) record.devices.push_back(device.info());
+  record.device_shares = result.device_shares;
+  record.radius = result.radius;
+  record.stored_photons = result.stored_photons;
+  record.passes = result.passes;
+  record.samples_per_pixel = result.samples_per_pixel;
+  record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
+  return std::move(result.layers);
+}
+
+/// The layers by path tracing.
+LightLayers render_by_paths(const Scene& scene, const Camera& camera, const Views& views,
+                            RunRecord& record, Progress& progress) {
+  if (has_unseen_caustics(scene)) {
+    progress.note(
+        "warning: paths do not find what mirrors and glass throw from point, spot and directional "
+        "lights; photon maps do");
+  }
+  PathTracerResult result =
+      trace_paths_of_hits(scene, views.picture, record.parameters.film, progress);
+  if (views.reflections) {
+    PathTracerResult reflected =
+        trace_paths_of_hits(scene, ReflectedHits(camera), record.parameters.film, progress);
+    *views.reflections = std::move(reflected.layers);
+  }
+  record.samples_per_pixel = record.parameters.film.samples_per_pixel;
+  record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
+  return std::move(result.layers);
+}
+
+void run_render(const CLI::App& command, RenderOptions& options) {
+  handle_signals();
+  const Stopwatch stopwatch;
+  apply_words(options);
+  if (options.integrates == Integrator::path) refuse_photon_map_options(command);
+  const PictureOutputs outputs = check_outputs_of(options);
+
+  const ThreadLimit threads(options.threads);
+  TerminalProgress progress(options.quiet);
+  std::vector<Device> devices = devices_for(options, progress);
+
+  Scene scene;
+  RunRecord record;
+  record.stages.push_back(timed_stage("load scene", progress,
+                                      [&] { scene = load_scene(options.scene, options.load); }));
+  record.mix = mix_of(scene, options);
+  tell_scene(scene, record.mix, progress);
+  const Camera& camera = choose_camera(scene, options.camera);
+  set_film_size(options.parameters.film, options.size, camera);
+  record.scene = scene.source.filename().string();
+  record.camera = camera.name;
+  record.integrator = options.integrator;
+  record.parameters = options.parameters;
+
+  const std::unique_ptr<HitSource> hits = hits_of(camera, options, record, progress);
+  LightLayers reflections;
+  const Views views{*hits, options.glare.empty() ? nullptr : &reflections};
+  const LightLayers layers =
+      options.integrates == Integrator::path
+          ? render_by_paths(scene, camera, views, record, progress)
+          : render_by_photons(scene, camera, devices, options, views, record, progress);
+  record.stages.push_back(timed_stage("write pictures", progress, [&] {
+    const std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, record.mix);
+    set_camera_attributes(picture->header(), in_world(scene, camera), layers.width, layers.height);
+    set_run_attributes(picture->header(), record);
+    outputs.write(*picture, progress);
+    if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
+  }));
+  record.total_seconds = stopwatch.seconds();
+  if (!options.statistics.empty()) {
+    write_file(
+        options.statistics,
+        run_json(record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+  for (const auto& line : summary_table(record)) progress.note(line);
+  for (Device& device : devices) tell_kernels(device, options.device.profile, progress);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& photile) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = photile.add_subcommand("render", "Render a scene to an EXR and a PNG");
+  add_render_options(*command, *options);
+  command->callback([command, options] { run_render(*command, *options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,145 @@
+#include "tools/command/run_record.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "tools/command/number_format.hpp"
+#include "tools/command/version.hpp"
+
+namespace photile::app {
+namespace {
+
+using nlohmann::json;
+
+/// Names in the order of the run, unlike the sorted keys of a plain json object.
+using ordered = nlohmann::ordered_json;
+
+std::string times_text(const RunStatistics& stages) {
+  ordered times = ordered::object();
+  for (const StageStatistics& stage : stages) times[stage.stage] = stage.seconds;
+  return times.dump();
+}
+
+json stage_json(const StageStatistics& stage) {
+  json entry{{"stage", stage.stage},
+             {"seconds", stage.seconds},
+             {"host_bytes", stage.host_bytes},
+             {"device_bytes", stage.device_bytes},
+             {"figures", json::object()}};
+  for (const auto& [name, value] : stage.figures) entry["figures"][name] = value;
+  return entry;
+}
+
+json devices_json(const RunRecord& record) {
+  json list = json::array();
+  for (std::size_t i = 0; i < record.devices.size(); ++i) {
+    const DeviceInfo& device = record.devices[i];
+    list.push_back({{"id", device.id},
+                    {"name", device.name},
+                    {"platform", device.platform},
+                    {"driver_version", device.driver_version},
+                    {"share", record.device_shares[i]}});
+  }
+  return list;
+}
+
+std::string devices_text(std::span<const DeviceInfo> devices) {
+  std::string text;
+  for (const DeviceInfo& device : devices) {
+    text += fmt::format("{}{} ({}, driver {})", text.empty() ? "" : "; ", device.name,
+                        device.platform, device.driver_version);
+  }
+  return text;
+}
+
+json parameters_json(const RunRecord& record) {
+  const RenderParameters& parameters = record.parameters;
+  json result{{"integrator", record.integrator},
+              {"seed", parameters.film.seed},
+              {"width", parameters.film.width},
+              {"height", parameters.film.height},
+              {"samples_per_pixel", record.samples_per_pixel}};
+  if (record.has_photons()) {
+    result.update({{"photons_emitted", parameters.photons.emitted_photons},
+                   {"neighbours", parameters.neighbours},
+                   {"least_neighbours", parameters.least_neighbours},
+                   {"radius", record.radius},
+                   {"angle_degrees", parameters.angle_degrees},
+                   {"area", name_of(parameters.area_used())},
+                   {"kernel", name_of(parameters.kernel)},
+                   {"direct_rays", parameters.direct_rays_used()},
+                   {"final_gather_rays", parameters.final_gather_rays},
+                   {"maps", name_of(parameters.maps)},
+                   {"photons_per_cell", parameters.photons_per_cell},
+                   {"passes", record.passes}});
+  }
+  return result;
+}
+
+void set_photon_attributes(std::map<std::string, std::string>& attributes,
+                           const RunRecord& record) {
+  const RenderParameters& parameters = record.parameters;
+  attributes["photile.photons_emitted"] = std::to_string(parameters.photons.emitted_photons);
+  attributes["photile.photons_stored"] = std::to_string(record.stored_photons);
+  attributes["photile.neighbours"] = std::to_string(parameters.neighbours);
+  attributes["photile.least_neighbours"] = std::to_string(parameters.least_neighbours);
+  attributes["photile.radius"] = fmt::format("{} m", record.radius);
+  attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
+  attributes["photile.area"] = name_of(parameters.area_used());
+  attributes["photile.kernel"] = name_of(parameters.kernel);
+  attributes["photile.direct_rays"] = std::to_string(parameters.direct_rays_used());
+  attributes["photile.final_gather_rays"] = std::to_string(parameters.final_gather_rays);
+  attributes["photile.maps"] = name_of(parameters.maps);
+  attributes["photile.passes"] = std::to_string(record.passes);
+  attributes["photile.device"] = devices_text(record.devices);
+}
+
+}  // namespace
+
+void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
+  auto& attributes = picture.attributes;
+  attributes["photile.version"] = version_number();
+  attributes["photile.scene"] = record.scene;
+  attributes["photile.camera"] = record.camera;
+  attributes["photile.integrator"] = record.integrator;
+  attributes["photile.seed"] = std::to_string(record.parameters.film.seed);
+  attributes["photile.samples_per_pixel"] = std::to_string(record.samples_per_pixel);
+  attributes["photile.times"] = times_text(record.stages);
+  if (record.has_photons()) set_photon_attributes(attributes, record);
+}
+
+json run_json(const RunRecord& record) {
+  json result{{"photile", version_number()},
+              {"scene", record.scene},
+              {"camera", record.camera},
+              {"devices", devices_json(record)},
+              {"parameters", parameters_json(record)},
+              {"lumen_per_watt", record.mix.lumen_per_watt},
+              {"lights", json::array()},
+              {"stages", json::array()},
+              {"total_seconds", record.total_seconds},
+              {"peak_host_bytes", peak_host_bytes()}};
+  if (record.has_photons()) result["photons_stored"] = record.stored_photons;
+  for (const MixedLight& light : record.mix.lights) {
+    result["lights"].push_back({{"name", light.name},
+                                {"power", light.power},
+                                {"unit", unit_symbol(light.unit)},
+                                {"tint", {light.tint.r, light.tint.g, light.tint.b}}});
+  }
+  for (const StageStatistics& stage : record.stages) {
+    result["stages"].push_back(stage_json(stage));
+  }
+  return result;
+}
+
+std::uint64_t peak_host_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+}
+
+}  // namespace photile::app

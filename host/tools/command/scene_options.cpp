@@ -1,0 +1,34 @@
+#include "tools/command/scene_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "tools/command/validators.hpp"
+
+namespace photile::app {
+
+void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::string& group) {
+  command
+      .add_option("--scene", options.scene,
+                  "of the scenes in a glTF file; default: the file's own default, else the first")
+      ->type_name("NAME|INDEX")
+      ->group(group);
+  command
+      .add_option("--lumen-per-watt,--efficacy", options.lumen_per_watt, "683 or, as Radiance, 179")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--emissive-scale", options.emissive_scale,
+                  "multiplies emissive materials; 683 mends files from Blender")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_flag("--allow-outside", options.allow_outside,
+                "the scene may name files outside its folder")
+      ->group(group);
+}
+
+}  // namespace photile::app

@@ -1,0 +1,201 @@
+#include "tools/command/validators.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "photile/limits.hpp"
+
+namespace photile::app {
+namespace {
+
+/// The number that all of `text` spells; nothing if something else is left over.
+template <class Number>
+std::optional<Number> parse_number(std::string_view text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || rest != end) return std::nullopt;
+  return value;
+}
+
+std::optional<double> parse_finite(std::string_view text) {
+  const auto value = parse_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+/// A number that is whole but for rounding (1.1M is) and fits 64 bits.
+std::optional<std::uint64_t> whole(double number) {
+  const double value = std::round(number * 1e3) / 1e3;
+  constexpr double beyond = 18446744073709551616.0;  // 2^64
+  if (value < 0 || value >= beyond || value != std::floor(value)) return std::nullopt;
+  return static_cast<std::uint64_t>(value);
+}
+
+/// 1000 for "k" and so on; 0 if `suffix` is no suffix.
+double factor_of(char suffix) {
+  switch (suffix) {
+    case 'k':
+    case 'K':
+      return 1e3;
+    case 'm':
+    case 'M':
+      return 1e6;
+    case 'g':
+    case 'G':
+      return 1e9;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> parse_count(std::string_view text) {
+  // Digits alone keep all 64 bits; a double would round a large seed.
+  if (const auto digits = parse_number<std::uint64_t>(text)) return digits;
+  double factor = 1;
+  if (!text.empty() && factor_of(text.back()) != 0) {
+    factor = factor_of(text.back());
+    text.remove_suffix(1);
+  }
+  const auto number = parse_finite(text);
+  if (!number) return std::nullopt;
+  return whole(*number * factor);
+}
+
+std::optional<std::uint64_t> parse_bytes(std::string_view text) {
+  static constexpr std::array units{std::pair{"KiB", 0x1p10}, std::pair{"MiB", 0x1p20},
+                                    std::pair{"GiB", 0x1p30}, std::pair{"TiB", 0x1p40},
+                                    std::pair{"kB", 1e3},     std::pair{"MB", 1e6},
+                                    std::pair{"GB", 1e9},     std::pair{"TB", 1e12}};
+  double factor = 1;
+  for (const auto& [unit, bytes] : units) {
+    if (!text.ends_with(unit)) continue;
+    factor = bytes;
+    text.remove_suffix(std::string_view(unit).size());
+    break;
+  }
+  const auto number = parse_finite(text);
+  if (!number) return std::nullopt;
+  return whole(*number * factor);
+}
+
+std::optional<double> parse_share(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  const auto number = parse_finite(text);
+  if (!number || *number <= 0) return std::nullopt;
+  return percent ? *number / 100 : *number;
+}
+
+std::optional<double> parse_duration(std::string_view text) {
+  // "min" before "s" and "ms": the first that matches is taken.
+  static constexpr std::array units{std::pair{"min", 60.0}, std::pair{"ms", 1e-3},
+                                    std::pair{"s", 1.0}};
+  for (const auto& [unit, seconds] : units) {
+    if (!text.ends_with(unit)) continue;
+    const auto number = parse_finite(text.substr(0, text.size() - std::string_view(unit).size()));
+    if (!number || *number <= 0) return std::nullopt;
+    return *number * seconds;
+  }
+  return std::nullopt;
+}
+
+std::optional<PixelSize> parse_size(std::string_view text) {
+  const auto separator = text.find('x');
+  if (separator == std::string_view::npos) return std::nullopt;
+  const auto width = parse_number<int>(text.substr(0, separator));
+  const auto height = parse_number<int>(text.substr(separator + 1));
+  if (!width || !height) return std::nullopt;
+  return PixelSize{*width, *height};
+}
+
+CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest) {
+  const std::string range = highest == std::numeric_limits<std::uint64_t>::max()
+                                ? fmt::format("a whole number from {}", lowest)
+                                : fmt::format("a whole number from {} to {}", lowest, highest);
+  const auto check = [=](std::string& text) -> std::string {
+    const auto count = parse_count(text);
+    if (!count || *count < lowest || *count > highest) {
+      return fmt::format("'{}' is not {}", text, range);
+    }
+    text = std::to_string(*count);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator byte_size() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto bytes = parse_bytes(text);
+    if (!bytes || *bytes == 0) return fmt::format("'{}' is no size such as 512MiB or 2GiB", text);
+    text = std::to_string(*bytes);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator share_up_to(double highest) {
+  const auto check = [=](std::string& text) -> std::string {
+    const auto share = parse_share(text);
+    if (!share || *share > highest) {
+      return fmt::format("'{}' is not a share above 0, up to {:.0f}%, such as 2% or 0.02", text,
+                         100 * highest);
+    }
+    text = fmt::format("{}", *share);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator duration() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto seconds = parse_duration(text);
+    if (!seconds) return fmt::format("'{}' is no time such as 33ms or 2s", text);
+    text = fmt::format("{}", *seconds);
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator number_between(double lowest, double highest) {
+  const auto check = [=](std::string& text) -> std::string {
+    const auto number = parse_finite(text);
+    if (!number || *number < lowest || *number > highest) {
+      return fmt::format("'{}' is not a number from {} to {}", text, lowest, highest);
+    }
+    return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator positive_number() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto number = parse_finite(text);
+    // What is zero or infinite as a float would come back as one from the kernels.
+    const bool usable = number && *number >= std::numeric_limits<float>::min() &&
+                        *number <= std::numeric_limits<float>::max();
+    return usable ? std::string{} : fmt::format("'{}' is not a number greater than 0", text);
+  };
+  return {check, ""};
+}
+
+CLI::Validator picture_size() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto size = parse_size(text);
+    const auto fits = [](int side) { return side >= 1 && side <= limits::max_image_side; };
+    if (!size || !fits(size->width) || !fits(size->height)) {
+      return fmt::format("'{}' is not WIDTHxHEIGHT with sides from 1 to {}", text,
+                         limits::max_image_side);
+    }
+    return {};
+  };
+  return {check, ""};
+}
+
+}  // namespace photile::app

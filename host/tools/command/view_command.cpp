@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "photile/errors.hpp"
+#include "tools/command/commands.hpp"
+#include "tools/command/render_options.hpp"
+#include "tools/command/run_notes.hpp"
+#include "tools/command/saved_maps_option.hpp"
+#include "tools/command/signals.hpp"
+#include "tools/command/terminal_progress.hpp"
+#include "tools/command/threads.hpp"
+#include "tools/command/validators.hpp"
+#include "tools/view/viewer.hpp"
+
+namespace photile::app {
+namespace {
+
+struct ViewOptions {
+  RenderOptions render;
+  double frames_per_second = defaults::view_frames_per_second;
+  std::string outputs = ".";
+};
+
+void run_view(ViewOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  apply_words(render);
+  if (!std::filesystem::is_directory(options.outputs)) {
+    throw UsageError(
+        fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
+  }
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  const Scene scene = load_scene(render.scene, render.load);
+  const LightMix mix = mix_of(scene, render);
+  const Camera& camera = choose_camera(scene, render.camera);
+  set_film_size(render.parameters.film, render.size, camera);
+  tell_scene(scene, mix, progress);
+
+  view::ViewerParameters parameters;
+  parameters.render = render.parameters;
+  parameters.frames_per_second = options.frames_per_second;
+  parameters.outputs = options.outputs;
+  parameters.prepared = load_maps(scene, render, progress);
+  // Progress is shown in the window from here on.
+  parameters.keep = keep_maps(scene, render, Progress::none());
+  parameters.load = render.load;
+  parameters.preview = render.preview;
+  parameters.notes = &progress;
+  parameters.interrupted = [&progress] { return progress.cancelled(); };
+  view::run_viewer(
+      scene, camera, mix, [&render] { return open_devices(render.device); }, std::move(parameters));
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& photile) {
+  auto options = std::make_shared<ViewOptions>();
+  options->render.parameters.film.samples_per_pixel = defaults::view_samples_per_pixel;
+  CLI::App* command =
+      photile.add_subcommand("view", "Walk through a scene in a window, and set its lamps");
+  command
+      ->add_option("--frame-rate", options->frames_per_second,
+                   "frames per second aimed at while moving: pictures become smaller for it")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Window");
+  command->add_option("--outputs", options->outputs, "folder of what F12 and Ctrl+S keep")
+      ->type_name("FOLDER")
+      ->capture_default_str()
+      ->group("Window");
+  add_preview_option(*command, options->render, "Window");
+  add_setting_options(*command, options->render);
+  add_saved_maps_options(*command, options->render);
+  command->callback([options] { run_view(*options); });
+}
+
+}  // namespace photile::app

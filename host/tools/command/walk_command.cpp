@@ -1,0 +1,286 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "import/camera_path.hpp"
+#include "import/gltf/animation.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/limits.hpp"
+#include "photile/quiet_progress.hpp"
+#include "photile/scene_renderer.hpp"
+#include "tools/command/commands.hpp"
+#include "tools/command/direct_options.hpp"
+#include "tools/command/frame_record.hpp"
+#include "tools/command/output_files.hpp"
+#include "tools/command/render_options.hpp"
+#include "tools/command/run_notes.hpp"
+#include "tools/command/run_record.hpp"
+#include "tools/command/signals.hpp"
+#include "tools/command/terminal_progress.hpp"
+#include "tools/command/threads.hpp"
+#include "tools/command/validators.hpp"
+#include "tools/walk/contact_sheet.hpp"
+#include "tools/walk/frame_names.hpp"
+
+namespace photile::app {
+namespace {
+
+struct WalkOptions {
+  RenderOptions render;
+  std::string path;       ///< file; "" = the scene's animation
+  std::string animation;  ///< name or index, "" = the first
+  std::string output;     ///< EXR pattern
+  std::string png;        ///< PNG pattern, "" = none
+  std::string sheet;      ///< file, "" = none
+  double frames_per_second = 24;
+  int first_number = 1;
+};
+
+walk::CameraMotion motion_of(const WalkOptions& options, const Camera& camera) {
+  if (!options.path.empty()) return walk::read_camera_path(options.path, camera);
+  return scene_io::read_camera_animation(options.render.scene, options.render.load, camera,
+                                         options.animation);
+}
+
+int count_of(const walk::CameraMotion& motion, double frames_per_second) {
+  const double count = std::floor((motion.end - motion.begin) * frames_per_second + 1e-6) + 1;
+  if (count > limits::max_frames) {
+    throw UsageError(fmt::format("{:.0f} frames are more than {}; give fewer with --fps", count,
+                                 limits::max_frames));
+  }
+  return static_cast<int>(count);
+}
+
+/// All frames of a walk, rendered or found finished.
+class Walk {
+ public:
+  Walk(WalkOptions& options, const Scene& scene, const LightMix& mix, const Camera& camera,
+       std::span<Device> devices, TerminalProgress& progress)
+      : options_(options),
+        scene_(scene),
+        mix_(mix),
+        motion_(motion_of(options, camera)),
+        count_(count_of(motion_, options.frames_per_second)),
+        names_(options.output),
+        devices_(devices),
+        progress_(progress),
+        scene_digest_(digest_of(scene)) {
+    if (!options.png.empty()) png_names_.emplace(options.png);
+    if (!options.sheet.empty()) {
+      const PrimaryHitParameters& film = options.render.parameters.film;
+      sheet_.emplace(std::min(count_, most_on_sheet), film.width, film.height);
+    }
+  }
+
+  void run() {
+    int kept = 0;
+    for (int frame = 0; frame < count_; ++frame) kept += is_finished(frame) ? 1 : 0;
+    if (kept > 0) {
+      progress_.note(
+          fmt::format("{} of {} frames are finished, with these settings", kept, count_));
+    }
+    if (kept < count_) make_maps();
+    progress_.begin("render frames", static_cast<std::uint64_t>(count_ - kept), "frames");
+    for (int frame = 0; frame < count_; ++frame) {
+      progress_.throw_if_cancelled();
+      std::optional<Image> root;
+      if (!is_finished(frame)) {
+        root = render(frame);
+        progress_.advance(1);
+      }
+      show(frame, root);
+    }
+    progress_.end();
+    if (sheet_) write_png(options_.sheet, sheet_->image());
+  }
+
+ private:
+  static constexpr int most_on_sheet = 100;
+
+  int number(int frame) const { return options_.first_number + frame; }
+
+  /// In the scene's coordinates.
+  Camera camera_at(int frame) const {
+    Camera camera = motion_.at(motion_.begin + frame / options_.frames_per_second);
+    camera.position -= scene_.origin;
+    return camera;
+  }
+
+  RunRecord record_of(const Camera& camera) const {
+    RunRecord record;
+    record.scene = scene_.source.filename().string();
+    record.camera = camera.name;
+    record.integrator = "photon-map";
+    record.parameters = options_.render.parameters;
+    record.mix = mix_;
+    for (const Device& device : devices_) record.devices.push_back(device.info());
+    record.device_shares.assign(devices_.size(), 0.0);
+    return record;
+  }
+
+  std::string settings_of(const Camera& camera) const {
+    return frame_settings(scene_digest_, record_of(camera), camera);
+  }
+
+  bool is_finished(int frame) const {
+    return has_settings(names_.of(number(frame)), settings_of(camera_at(frame)));
+  }
+
+  void make_maps() {
+    renderer_.emplace(scene_, devices_, options_.render.parameters, nullptr, KeepPhotons(),
+                      progress_);
+  }
+
+  /// Renders a frame to its file and returns its R, G, B.
+  Image render(int frame) {
+    const Camera camera = camera_at(frame);
+    QuietProgress quiet(progress_);
+    const PrimaryHitParameters& film = options_.render.parameters.film;
+    RenderResult result = renderer_->render(camera, film, quiet);
+    RunRecord record = record_of(camera);
+    const std::string settings = frame_settings(scene_digest_, record, camera);
+    record.radius = result.radius;
+    record.stored_photons = result.stored_photons;
+    record.passes = result.passes;
+    record.samples_per_pixel = result.samples_per_pixel;
+    record.stages = result.statistics;
+    const auto picture = mixed_picture(result.layers, mix_);
+    set_camera_attributes(picture->header(), in_world(scene_, camera), film.width, film.height);
+    set_run_attributes(picture->header(), record);
+    set_settings(picture->header(), settings);
+    write_exr(names_.of(number(frame)), *picture);
+    return picture->root();
+  }
+
+  /// The frame as PNG and on the contact sheet, all with the exposure of the first.
+  void show(int frame, std::optional<Image>& root) {
+    const bool on_sheet = sheet_ && place_on_sheet(frame) >= 0;
+    const bool to_png =
+        png_names_ && (root || !std::filesystem::exists(png_names_->of(number(frame))));
+    if (!on_sheet && !to_png && exposure_) return;
+    if (!exposure_ && !sheet_ && !png_names_) return;
+    if (!root) root = read_image(names_.of(number(frame)));
+    if (!exposure_) exposure_ = std::log2(automatic_exposure(*root));
+    if (!on_sheet && !to_png) return;
+    const Image displayed =
+        tone_map(*root, {false, *exposure_ + options_.render.pictures.exposure});
+    if (to_png) write_png(png_names_->of(number(frame)), displayed);
+    if (on_sheet) sheet_->add(place_on_sheet(frame), displayed);
+  }
+
+  /// Of a long walk the sheet shows frames at even distances. -1: not this one.
+  int place_on_sheet(int frame) const {
+    if (count_ <= most_on_sheet) return frame;
+    const auto place = static_cast<int>(std::int64_t{frame} * most_on_sheet / count_);
+    const bool first = frame == 0 || std::int64_t{frame - 1} * most_on_sheet / count_ < place;
+    return first ? place : -1;
+  }
+
+  const WalkOptions& options_;
+  const Scene& scene_;
+  const LightMix& mix_;
+  const walk::CameraMotion motion_;
+  const int count_;
+  const walk::FrameNames names_;
+  std::optional<walk::FrameNames> png_names_;
+  std::span<Device> devices_;
+  TerminalProgress& progress_;
+  const std::string scene_digest_;
+  std::optional<SceneRenderer> renderer_;
+  std::optional<walk::ContactSheet> sheet_;
+  std::optional<double> exposure_;  ///< stops
+};
+
+void check_names(const WalkOptions& options) {
+  const auto ends_in = [](const std::string& file, const char* extension) {
+    if (std::filesystem::path(file).extension() != extension) {
+      throw UsageError(fmt::format("{}: has to end in {}; rename it", file, extension));
+    }
+  };
+  ends_in(options.output, ".exr");
+  std::vector<std::filesystem::path> files{walk::FrameNames(options.output).of(0)};
+  if (!options.png.empty()) {
+    ends_in(options.png, ".png");
+    files.push_back(walk::FrameNames(options.png).of(0));
+  }
+  if (!options.sheet.empty()) {
+    ends_in(options.sheet, ".png");
+    files.emplace_back(options.sheet);
+  }
+  check_outputs(files, options.render.scene);
+}
+
+void run_walk(WalkOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  apply_words(render);
+  check_names(options);
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  const Scene scene = load_scene(render.scene, render.load);
+  const LightMix mix = mix_of(scene, render);
+  const Camera& camera = choose_camera(scene, render.camera);
+  set_film_size(render.parameters.film, render.size, camera);
+  const Camera base = in_world(scene, camera);
+  std::vector<Device> devices = devices_for(render, progress);
+  tell_scene(scene, mix, progress);
+  Walk(options, scene, mix, base, devices, progress).run();
+}
+
+}  // namespace
+
+void add_walk_command(CLI::App& photile) {
+  auto options = std::make_shared<WalkOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "walk", "Render the frames of a moving camera from one set of photon maps");
+  command->add_option("-o,--output", options->output, "frames to write, such as frame.####.exr")
+      ->required()
+      ->type_name("PATTERN.exr")
+      ->group("Output");
+  command->add_option("--png", options->png, "frames as PNG, with the exposure of the first")
+      ->type_name("PATTERN.png")
+      ->group("Output");
+  command->add_option("--exposure", options->render.pictures.exposure, "stops, for PNG only")
+      ->type_name("STOPS")
+      ->transform(number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
+      ->capture_default_str()
+      ->group("Output");
+  command->add_option("--contact-sheet", options->sheet, "all frames on one PNG")
+      ->type_name("FILE")
+      ->group("Output");
+  CLI::Option* path = command
+                          ->add_option("--camera-path", options->path,
+                                       "keyframes as JSON; default: the scene's animation")
+                          ->type_name("FILE")
+                          ->group("Motion");
+  command
+      ->add_option("--animation", options->animation,
+                   "of a glTF scene, name or index; default: the first that moves the camera")
+      ->type_name("NAME|INDEX")
+      ->excludes(path)
+      ->group("Motion");
+  command->add_option("--fps", options->frames_per_second, "frames per second of the motion")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Motion");
+  command->add_option("--first-number", options->first_number, "of the first frame")
+      ->type_name("N")
+      ->transform(count_between(0, limits::max_frames))
+      ->capture_default_str()
+      ->group("Motion");
+  add_setting_options(*command, options->render);
+  add_final_gather_option(*command, options->render);
+  command->callback([options] { run_walk(*options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,55 @@
+#include "tools/report/honeybee_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "photile/errors.hpp"
+
+namespace photile::measuring {
+namespace {
+
+/// As honeybee cleans identifiers: letters, digits, '.', '_' and '-'.
+std::string identifier_of(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    const bool kept = std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' ||
+                      (c == '.' && !result.empty());
+    result += kept ? c : '_';
+  }
+  return result;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> honeybee_files(const Measurement& measurement) {
+  std::map<std::string, std::string> files;
+  nlohmann::ordered_json grids = nlohmann::ordered_json::array();
+  std::string summary = "Sensor Grid,Sensor Grid ID,Mean,Minimum,Maximum,Uniformity Ratio\n";
+  for (const GridValues& values : measurement) {
+    const std::string identifier = identifier_of(values.grid.name);
+    std::string lines;
+    for (const Measured& sensor : values.total().sensors) {
+      lines += fmt::format("{:.6g}\n", sensor.value);
+    }
+    if (!files.emplace(identifier + ".res", lines).second) {
+      throw UsageError(fmt::format("two grids are named '{}'; rename one", values.grid.name));
+    }
+    grids.push_back({{"name", values.grid.name},
+                     {"identifier", identifier},
+                     {"full_id", identifier},
+                     {"group", ""},
+                     {"count", values.grid.sensors.size()}});
+    const GridStatistics& statistics = values.total().statistics;
+    summary += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.4g}\n", identifier, identifier,
+                           statistics.mean.value, statistics.minimum.value,
+                           statistics.maximum.value, 100 * statistics.uniformity.value);
+  }
+  files["grids_info.json"] =
+      grids.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  files["grid_summary.csv"] = summary;
+  return files;
+}
+
+}  // namespace photile::measuring

@@ -1,0 +1,101 @@
+#include "tools/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+#include "common/xml_text.hpp"
+#include "tools/report/number_text.hpp"
+#include "tools/report/plan_drawing.hpp"
+
+namespace photile::measuring {
+namespace {
+
+constexpr std::size_t most_light_plans = 6;  ///< more do not fit on a page
+
+constexpr const char* style = R"(<style>
+body { font-family: sans-serif; font-size: 10pt; margin: 2em auto; max-width: 60em; color: #222; }
+h1 { font-size: 16pt; } h2 { font-size: 12pt; margin-bottom: 0.3em; }
+table { border-collapse: collapse; } th, td { padding: 0.15em 0.7em; text-align: right; }
+th { border-bottom: 1px solid #222; } th:first-child, td:first-child { text-align: left; }
+.error { color: #777; font-size: 85%; } .plan svg { max-width: 100%; height: auto; }
+.lights { display: grid; grid-template-columns: repeat(3, 1fr); gap: 0.5em; }
+dl { display: grid; grid-template-columns: repeat(2, auto 1fr); gap: 0.2em 1em; margin: 0; }
+dt { color: #777; } dd { margin: 0; }
+@page { size: A4; margin: 15mm; }
+@media print {
+  body { margin: 0; max-width: none; font-size: 8.5pt; }
+  h2 { break-after: avoid; } .plan, tr { break-inside: avoid; }
+  .plan svg { width: auto; height: 75mm; } .lights svg { height: 36mm; }
+}
+</style>
+)";
+
+std::string cell(const std::string& value, const Measured& measured) {
+  return fmt::format("<td>{} <span class=\"error\">&#177; {}</span></td>", value,
+                     number_text(measured.standard_error, 2));
+}
+
+std::string lux_cell(const Measured& lux) { return cell(number_text(lux.value, 4), lux); }
+
+std::string ratio_cell(const Measured& ratio) {
+  return cell(fmt::format("{:.3f}", ratio.value), ratio);
+}
+
+std::string table_row(const LightValues& light) {
+  const GridStatistics& s = light.statistics;
+  return fmt::format("<tr><td>{}</td>{}{}{}{}{}</tr>\n",
+                     light.light.empty() ? "all lights" : escaped_xml(light.light),
+                     lux_cell(s.mean), lux_cell(s.minimum), lux_cell(s.maximum),
+                     ratio_cell(s.uniformity), ratio_cell(s.diversity));
+}
+
+std::string grid_heading(const SensorGrid& grid) {
+  std::string text = fmt::format("{}: {} points", escaped_xml(grid.name), grid.sensors.size());
+  if (!grid.layout) return text;
+  const PlaneLayout& layout = *grid.layout;
+  return text + fmt::format(", {:.2f} x {:.2f} m, {:.2f} m apart", glm::length(layout.u),
+                            glm::length(layout.v), layout.spacing());
+}
+
+std::string section(const GridValues& values, const FalseColour& colours) {
+  std::string text = fmt::format(
+      "<h2>{}</h2>\n<table>\n<tr><th></th><th>E<sub>m</sub> lux</th><th>E<sub>min</sub></th>"
+      "<th>E<sub>max</sub></th><th>U<sub>o</sub></th><th>U<sub>d</sub></th></tr>\n",
+      grid_heading(values.grid));
+  for (const LightValues& light : values.lights) text += table_row(light);
+  const GridStatistics& s = values.total().statistics;
+  text += fmt::format(
+      "</table>\n<p class=\"error\">Noise pulls the least value down: the true E<sub>min</sub> is "
+      "expected between {} and {} lux, up to the errors above.</p>\n",
+      number_text(s.minimum.value, 4), number_text(s.minimum_at_most, 4));
+  if (!values.grid.layout) return text;
+  text += "<div class=\"plan\">\n" + plan_svg(values, values.total(), colours) + "</div>\n";
+  if (values.lights.size() == 1 || values.lights.size() > most_light_plans + 1) return text;
+  text += "<div class=\"lights\">\n";
+  FalseColour each = colours;
+  each.scale = 0;  // its own: a weak lamp would show nothing on the scale of all
+  for (std::size_t i = 1; i < values.lights.size(); ++i) {
+    text += "<div class=\"plan\">\n" + plan_svg(values, values.lights[i], each, PlanSize::small) +
+            "</div>\n";
+  }
+  return text + "</div>\n";
+}
+
+}  // namespace
+
+std::string report_html(const Measurement& measurement, const ReportText& text,
+                        const FalseColour& colours) {
+  std::string page = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{0}</title>\n"
+      "{1}</head>\n<body>\n<h1>Illuminance: {0}</h1>\n",
+      escaped_xml(text.title), style);
+  for (const GridValues& values : measurement) page += section(values, colours);
+  page += "<h2>How it was measured</h2>\n<dl>\n";
+  for (const auto& [name, value] : text.facts) {
+    page += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped_xml(name), escaped_xml(value));
+  }
+  return page + "</dl>\n</body>\n</html>\n";
+}
+
+}  // namespace photile::measuring

@@ -1,0 +1,101 @@
+#include "tools/view/display.hpp"
+
+#include <cmath>
+
+#include "image/glare.hpp"
+#include "image/pixel_lights.hpp"
+#include "image/srgb.hpp"
+#include "photile/image.hpp"
+#include "tools/report/false_colour_picture.hpp"
+
+namespace photile::view {
+
+using image::for_each_light;
+using image::for_each_pixel;
+
+namespace {
+
+/// The mixed picture, as tone mapping takes it.
+Image root_of(const Frame& frame, const LightMix& mix) {
+  Image image;
+  image.width = frame.layers.width;
+  image.height = frame.layers.height;
+  std::vector<glm::vec3> rgb(image.pixels());
+  combine_layers(frame.layers, mix, rgb);
+  for (int channel = 0; channel < 3; ++channel) {
+    std::vector<float>& plane = image.add(std::string(1, "RGB"[channel]));
+    for (std::size_t pixel = 0; pixel < rgb.size(); ++pixel) plane[pixel] = rgb[pixel][channel];
+  }
+  return image;
+}
+
+DisplayedFrame tone_mapped(const Image& root, double exposure) {
+  return {root.width, root.height, image::srgb8_texels(tone_map(root, {false, exposure}))};
+}
+
+/// Illuminances in their colours; of isolines and bands the rest is the picture.
+DisplayedFrame false_coloured(const Frame& frame, const LightMix& mix,
+                              const DisplaySettings& settings) {
+  using measuring::Contours;
+  const Contours contours = settings.false_colour.contours;
+  const std::vector<float> values = mixed_illuminance(frame.layers, mix);
+  DisplayedFrame result{frame.layers.width, frame.layers.height,
+                        std::vector<std::uint8_t>(3 * values.size())};
+  if (contours == Contours::lines || contours == Contours::bands) {
+    result = tone_mapped(root_of(frame, mix), settings.exposure);
+  }
+  measuring::draw_false_colour(values, result.width, settings.false_colour, result.rgb);
+  return result;
+}
+
+/// What turns a layer's illuminance into lux.
+double lux_of(const MixedLight& light, const LightMix& mix) {
+  return light.power * (light.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt);
+}
+
+}  // namespace
+
+std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& mix) {
+  const auto width = static_cast<std::size_t>(layers.width);
+  std::vector<float> result(width * static_cast<std::size_t>(layers.height));
+  for_each_pixel(result.size(), [&](std::size_t pixel) {
+    double sum = 0;
+    for_each_light(layers, pixel % width, pixel / width,
+                   [&](std::size_t light, float illuminance, const glm::vec3&) {
+                     sum += lux_of(mix.lights[light], mix) * static_cast<double>(illuminance);
+                   });
+    result[pixel] = static_cast<float>(sum);
+  });
+  return result;
+}
+
+DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings) {
+  if (settings.mode == DisplayMode::illuminance) return false_coloured(frame, mix, settings);
+  DisplayedFrame result = tone_mapped(root_of(frame, mix), settings.exposure);
+  // The first frames of the mode may still be without.
+  if (settings.mode == DisplayMode::glare && frame.reflections) {
+    image::draw_marks(
+        image::find_glare(frame.layers, *frame.reflections, mix, settings.glare_limit).marks,
+        result.rgb);
+  }
+  return result;
+}
+
+double automatic_stops(const Frame& frame, const LightMix& mix) {
+  return std::log2(automatic_exposure(root_of(frame, mix)));
+}
+
+std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, int x, int y) {
+  std::vector<LightReading> readings(mix.lights.size());
+  if (x < 0 || y < 0 || x >= frame.layers.width || y >= frame.layers.height) return readings;
+  for_each_light(frame.layers, static_cast<std::size_t>(x), static_cast<std::size_t>(y),
+                 [&](std::size_t light, float illuminance, const glm::vec3& radiance) {
+                   const MixedLight& mixed = mix.lights[light];
+                   readings[light] = {
+                       mixed.power * luminance(glm::dvec3(mixed.tint) * glm::dvec3(radiance)),
+                       lux_of(mixed, mix) * static_cast<double>(illuminance)};
+                 });
+  return readings;
+}
+
+}  // namespace photile::view

@@ -1,0 +1,53 @@
+// From a frame and the lamps' settings to what the screen shows.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "photile/defaults.hpp"
+#include "photile/light_mix.hpp"
+#include "tools/report/false_colour.hpp"
+#include "tools/view/frame.hpp"
+
+namespace photile::view {
+
+enum class DisplayMode {
+  picture,      ///< tone mapped
+  illuminance,  ///< of the surface seen, in false colour
+  glare         ///< the picture, its unwanted reflections marked
+};
+
+struct DisplaySettings {
+  DisplayMode mode = DisplayMode::picture;
+  double exposure = 0;  ///< stops that the picture is scaled by
+  measuring::FalseColour false_colour;
+  double glare_limit = defaults::glare_limit;  ///< as image::find_glare takes it
+  bool photon_map = false;                     ///< of the clicked triangle, over any of the modes
+};
+
+/// sRGB texels of a frame.
+struct DisplayedFrame {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< row 0 at the top
+};
+
+/// Mixes and colours a frame: the picture is what `photile render --png` gives at that exposure.
+/// Errors: UsageError for an unknown palette.
+DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings);
+
+/// Stops by which `render --png` scales this picture of its own accord.
+double automatic_stops(const Frame& frame, const LightMix& mix);
+
+/// Illuminance of the surface that each pixel sees, lux.
+std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& mix);
+
+/// What one light gives to a pixel.
+struct LightReading {
+  double luminance = 0;    ///< cd/m2 or W/(m2 sr)
+  double illuminance = 0;  ///< lux
+};
+
+/// Per light of the mix, at a pixel of the frame. Errors: none; pixels outside read 0.
+std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, int x, int y);
+
+}  // namespace photile::view

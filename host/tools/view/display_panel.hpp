@@ -1,0 +1,19 @@
+// The part of the panel that says what the window shows.
+#pragma once
+
+#include "tools/view/panels.hpp"
+
+namespace photile::view {
+
+/// Pixels between panels and the window's border.
+constexpr float border = 10;
+
+void draw_display(PanelState& state, const PanelReadings& readings, PanelEvents& events);
+
+/// The legend of illuminances, in the corner of the window, where they are shown.
+void draw_legend(const PanelState& state, const Frame* frame);
+
+/// Of the picture: "cd/m2", or "W/(m2 sr)" where lamps are in watts.
+const char* luminance_unit(const LightMix& mix);
+
+}  // namespace photile::view

@@ -1,0 +1,137 @@
+#include "tools/view/moods.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "common/input_text.hpp"
+#include "common/output_file.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::view {
+namespace {
+
+using nlohmann::json;
+
+constexpr int version = 1;
+
+glm::vec3 color_of(const std::string& hex) {
+  unsigned value = 0;
+  const char* end = hex.data() + hex.size();
+  if (hex.size() != 7 || hex[0] != '#' ||
+      std::from_chars(hex.data() + 1, end, value, 16).ptr != end) {
+    throw std::invalid_argument(fmt::format("'{}' is no colour such as #ffd9a0", hex));
+  }
+  return glm::vec3((value >> 16) & 255, (value >> 8) & 255, value & 255) / 255.0f;
+}
+
+double kelvin_of(double value) {
+  if (value >= limits::min_color_temperature && value <= limits::max_color_temperature) {
+    return value;
+  }
+  throw std::invalid_argument(fmt::format("{} is no colour temperature from {} to {}", value,
+                                          limits::min_color_temperature,
+                                          limits::max_color_temperature));
+}
+
+PowerUnit unit_of(const std::string& word) {
+  if (word == "lm") return PowerUnit::lumen;
+  if (word == "W") return PowerUnit::watt;
+  throw std::invalid_argument(fmt::format("'{}' is no unit; use lm or W", word));
+}
+
+}  // namespace
+
+std::filesystem::path Moods::file_of(const std::filesystem::path& scene) {
+  return std::filesystem::path(scene).replace_extension(".moods.json");
+}
+
+Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
+  if (!std::filesystem::exists(file_)) return;
+  std::string place = "the file";
+  try {
+    const json document = json::parse(read_input_text(file_));
+    if (document.at("photile_moods").get<int>() != version) {
+      throw std::invalid_argument(fmt::format("\"photile_moods\" is not {}", version));
+    }
+    for (const auto& [name, lights] : document.at("moods").items()) {
+      for (const auto& [light, setting] : lights.items()) {
+        place = fmt::format("mood '{}', light '{}'", name, light);
+        Setting read{setting.at("power").get<double>(), unit_of(setting.value("unit", "lm")),
+                     setting.value("on", true), std::nullopt, 0};
+        if (!(read.power >= 0) || !std::isfinite(read.power)) {
+          throw std::invalid_argument("its power is not a number of 0 or more");
+        }
+        if (setting.contains("color")) read.color = color_of(setting["color"].get<std::string>());
+        if (setting.contains("kelvin")) read.kelvin = kelvin_of(setting["kelvin"].get<double>());
+        moods_[name][light] = read;
+      }
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(
+        fmt::format("{}: {}: {}; mend or remove it", file_.string(), place, error.what()));
+  }
+}
+
+std::vector<std::string> Moods::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, mood] : moods_) names.push_back(name);
+  return names;
+}
+
+void Moods::keep(const std::string& name, const LightBoard& board) {
+  auto moods = moods_;
+  Mood& mood = moods[name];
+  for (const LightControl& control : board.controls()) {
+    mood[control.name] = {control.power, control.unit, control.on, control.color, control.kelvin};
+  }
+  write(moods);
+  moods_ = std::move(moods);
+}
+
+void Moods::remove(const std::string& name) {
+  auto moods = moods_;
+  moods.erase(name);
+  write(moods);
+  moods_ = std::move(moods);
+}
+
+void Moods::apply(const std::string& name, LightBoard& board) const {
+  const auto found = moods_.find(name);
+  if (found == moods_.end()) {
+    throw UsageError(fmt::format("{}: there is no mood '{}'", file_.string(), name));
+  }
+  for (LightControl& control : board.controls()) {
+    const auto setting = found->second.find(control.name);
+    if (setting == found->second.end() || setting->second.unit != control.unit) continue;
+    control.power = setting->second.power;
+    control.on = setting->second.on;
+    control.color = setting->second.color;
+    control.kelvin = setting->second.kelvin;
+    control.solo = false;
+  }
+}
+
+void Moods::write(const std::map<std::string, Mood>& moods) const {
+  json document{{"photile_moods", version}, {"moods", json::object()}};
+  for (const auto& [name, mood] : moods) {
+    json& lights = document["moods"][name] = json::object();
+    for (const auto& [light, setting] : mood) {
+      json& entry = lights[light];
+      entry = {{"power", setting.power},
+               {"unit", setting.unit == PowerUnit::lumen ? "lm" : "W"},
+               {"on", setting.on}};
+      if (setting.color) entry["color"] = hex_of(*setting.color);
+      if (setting.kelvin > 0) entry["kelvin"] = setting.kelvin;
+    }
+  }
+  write_file(file_, document.dump(2) + "\n");
+}
+
+}  // namespace photile::view

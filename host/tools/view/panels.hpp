@@ -1,0 +1,53 @@
+// The panels over the picture.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/view/display.hpp"
+#include "tools/view/light_board.hpp"
+#include "tools/view/moods.hpp"
+#include "tools/view/photon_map_view.hpp"
+#include "tools/view/photon_worker.hpp"
+
+namespace photile::view {
+
+/// What a click on the picture asked for.
+struct Probe {
+  double x = 0, y = 0;  ///< in the picture, as shares of its width and height
+};
+
+/// What the panels show and set.
+struct PanelState {
+  LightBoard& lights;
+  Moods& moods;
+  DisplaySettings& display;
+  RenderParameters& parameters;
+  double& speed;  ///< of walking, metres per second
+  std::optional<Probe>& probe;
+  std::string& message;   ///< the last error or news; "" = none
+  std::string& new_mood;  ///< the name being typed
+};
+
+/// What they show alone.
+struct PanelReadings {
+  const Frame* frame = nullptr;
+  WorkProgress work;
+  const std::deque<float>& frame_milliseconds;  ///< newest last
+  const PhotonMapView* photon_map = nullptr;    ///< that is shown
+};
+
+/// What was asked for by them in this frame.
+struct PanelEvents {
+  bool lights_changed = false;   ///< mix again
+  bool display_changed = false;  ///< colour again
+  bool maps_changed = false;     ///< trace and build again, with other parameters
+  bool expose = false;           ///< set the exposure by the picture
+  std::string mood_to_scene;     ///< write this one into a copy of the scene; "" = none
+};
+
+PanelEvents draw_panels(PanelState& state, const PanelReadings& readings);
+
+}  // namespace photile::view

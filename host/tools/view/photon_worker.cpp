@@ -1,0 +1,109 @@
+#include "tools/view/photon_worker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::view {
+
+/// Keeps what the stages report for whoever asks, and tells them when to stop.
+class PhotonWorker::Listener : public Progress {
+ public:
+  void begin(std::string_view stage, std::uint64_t total, std::string_view) override {
+    const std::lock_guard lock(mutex_);
+    stage_ = stage;
+    total_ = total;
+    done_ = 0;
+  }
+  void advance(std::uint64_t count) override { done_ += count; }
+  void end() override {
+    const std::lock_guard lock(mutex_);
+    stage_.clear();
+  }
+  bool cancelled() const override { return stopped_; }
+
+  void stop() { stopped_ = true; }
+
+  WorkProgress progress() const {
+    const std::lock_guard lock(mutex_);
+    const double share =
+        total_ > 0 ? static_cast<double>(done_.load()) / static_cast<double>(total_) : 0;
+    return {stage_, std::min(share, 1.0)};
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string stage_;
+  std::uint64_t total_ = 0;
+  std::atomic<std::uint64_t> done_{0};
+  std::atomic<bool> stopped_{false};
+};
+
+std::vector<std::uint64_t> generations_to(std::uint64_t total) {
+  std::vector<std::uint64_t> paths{total};
+  for (std::uint64_t fewer = total / 4; paths.size() < 3 && fewer >= limits::min_photons;
+       fewer /= 4) {
+    paths.push_back(fewer);
+  }
+  std::reverse(paths.begin(), paths.end());
+  return paths;
+}
+
+PhotonWorker::PhotonWorker(const Scene& scene, OpenDevices open_devices,
+                           const RenderParameters& parameters,
+                           std::optional<PreparedPhotons> prepared, KeepPhotons keep,
+                           Deliver deliver)
+    : scene_(scene),
+      open_devices_(std::move(open_devices)),
+      parameters_(parameters),
+      keep_(std::move(keep)),
+      deliver_(std::move(deliver)),
+      listener_(std::make_unique<Listener>()),
+      thread_([this, prepared = std::move(prepared)]() mutable { work(std::move(prepared)); }) {}
+
+PhotonWorker::~PhotonWorker() { listener_->stop(); }
+
+WorkProgress PhotonWorker::progress() const { return listener_->progress(); }
+
+std::exception_ptr PhotonWorker::take_error() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(error_, nullptr);
+}
+
+void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
+  try {
+    if (prepared) {
+      deliver_(build(parameters_.photons.emitted_photons, &*prepared));
+      return;
+    }
+    for (const std::uint64_t paths : generations_to(parameters_.photons.emitted_photons)) {
+      deliver_(build(paths, nullptr));
+    }
+  } catch (const Interrupted&) {
+    // The window was closed, or other parameters were asked for.
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    error_ = std::current_exception();
+  }
+}
+
+std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, PreparedPhotons* prepared) {
+  listener_->throw_if_cancelled();
+  RenderParameters parameters = parameters_;
+  parameters.photons.emitted_photons = paths;
+  auto generation = std::make_shared<MapGeneration>();
+  generation->devices = open_devices_();
+  const bool last = paths == parameters_.photons.emitted_photons;
+  const KeepPhotons keep = [&](const PreparedPhotons& photons) {
+    generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
+    if (last && keep_) keep_(photons);
+  };
+  generation->renderer = std::make_unique<SceneRenderer>(scene_, generation->devices, parameters,
+                                                         prepared, keep, *listener_);
+  generation->emitted_photons = paths;
+  return generation;
+}
+
+}  // namespace photile::view

@@ -1,0 +1,37 @@
+// The walkthrough: a window in which a scene is walked through and its lamps are set.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "photile/light_mix.hpp"
+#include "photile/scene_renderer.hpp"
+#include "tools/view/photon_worker.hpp"
+
+namespace photile::view {
+
+struct ViewerParameters {
+  RenderParameters render;  ///< film: size of the window and most samples, standing still
+  double frames_per_second = defaults::view_frames_per_second;  ///< aimed at while moving
+  std::filesystem::path outputs = ".";  ///< folder of screenshots and pictures
+  /// Photons of an earlier run in place of all tracing, or none.
+  std::optional<PreparedPhotons> prepared;
+  SceneLoadOptions load;                ///< with which the scene was loaded, for copies of its file
+  std::string preview;                  ///< HOST:PORT of a tev that gets the pictures; "" = none
+  Progress* notes = &Progress::none();  ///< is told what has no place in the window
+  KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
+  /// Asked before each redraw: true ends the walkthrough.
+  std::function<bool()> interrupted = [] { return false; };
+};
+
+/// Opens the window and returns when it is closed.
+///   camera         in the scene's coordinates
+///   open_devices   called for each set of maps, so that one is built while another is in use
+/// Errors: DeviceError without a display; those of SceneRenderer where there is nothing to show
+/// yet (later ones are told in the window); InputError for a damaged file of moods.
+void run_viewer(const Scene& scene, const Camera& camera, const LightMix& mix,
+                PhotonWorker::OpenDevices open_devices, ViewerParameters parameters);
+
+}  // namespace photile::view

@@ -1,0 +1,120 @@
+// Small glTF files that ask for more than any memory holds are refused before anything is read.
+#include <catch2/catch.hpp>
+
+#include "import/gltf/document.hpp"
+#include "import/gltf/size.hpp"
+#include "photile/limits.hpp"
+#include "scene_files.hpp"
+
+namespace photile {
+namespace {
+
+using namespace tests;
+using nlohmann::json;
+
+constexpr std::uint64_t many = limits::max_implicit_elements;
+
+/// The square's mesh at 2^levels places, by nodes that have each child twice.
+json placed_often(int levels) {
+  json document = square_document();
+  document["nodes"] = json::array();
+  for (int i = 0; i < levels; ++i) document["nodes"].push_back({{"children", {i + 1, i + 1}}});
+  document["nodes"].push_back({{"mesh", 0}});
+  return document;
+}
+
+/// An accessor of so many elements of which the file holds one.
+void make_sparse(json& accessor, std::uint64_t count, int values) {
+  accessor.erase("bufferView");
+  accessor["count"] = count;
+  accessor["sparse"] = {{"count", 1},
+                        {"indices", {{"bufferView", 2}, {"componentType", 5123}}},
+                        {"values", {{"bufferView", values}}}};
+}
+
+/// Makes the square's mesh one of many / 3 triangles, nearly all of which have no area.
+void make_large(json& document) {
+  document["meshes"][0]["primitives"][0].erase("indices");
+  make_sparse(document["accessors"][0], many, 0);
+}
+
+/// What the check says, without loading the scene: it may be too large for this machine.
+std::string size_refusal(const json& document) {
+  const SceneFolderOnDisk on_disk;
+  on_disk.write("square.bin", square_buffer());
+  const std::filesystem::path file = on_disk.write("scene.gltf", document.dump());
+  Scene scene;
+  const SceneLoadOptions options;
+  scene_io::SceneFolder folder(file, false);
+  scene_io::Warnings warnings;
+  scene_io::AreaLights area_lights(scene);
+  scene_io::ImportContext context{scene, folder, options, warnings, area_lights, {}};
+  const tinygltf::Model model = scene_io::read_gltf(context);
+  const scene_io::AccessorReader accessors(model, context);
+  const auto visits = scene_io::visit_nodes(model, context);
+  return input_error_of([&] { scene_io::check_scene_size(model, accessors, visits, context); });
+}
+
+TEST_CASE("a file of a kilobyte that asks for terabytes is refused", "[size]") {
+  json document = placed_often(16);
+  make_large(document);
+  CHECK(document.dump().size() < 4'000);
+  // 3.5e11 triangles: 4 TB for their indices alone.
+  const std::string error = input_error_of([&] { load_gltf(document); });
+  CHECK_THAT(error, Catch::Contains("scene.gltf") &&
+                        Catch::Contains(std::to_string((many / 3) << 16)) &&
+                        Catch::Contains("65536 places of mesh 'square'") &&
+                        Catch::Contains(std::to_string(limits::max_triangles)));
+}
+
+TEST_CASE("meshes are not repeated beyond the limit from files that hold few bytes", "[size]") {
+  json document = placed_often(4);
+  make_large(document);
+  CHECK_THAT(size_refusal(document), Catch::Contains(std::to_string(16 * (many / 3))) &&
+                                         Catch::Contains("no more than 46") &&  // 140 bytes
+                                         Catch::Contains("mesh 'square'") &&
+                                         Catch::Contains("in 16 places"));
+  document = placed_often(3);
+  make_large(document);
+  CHECK(8 * (many / 3) < limits::max_repeated_triangles);
+  CHECK(size_refusal(document).empty());
+}
+
+TEST_CASE("vertices that no triangle uses, and primitives without any, count too", "[size]") {
+  json document = placed_often(4);
+  for (const int accessor : {0, 1, 3}) make_sparse(document["accessors"][accessor], many, 0);
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
+  document = placed_often(16);
+  json& primitives = document["meshes"][0]["primitives"];
+  for (int i = 0; i < 1'000; ++i) primitives.push_back({{"attributes", {{"TEXCOORD_0", 1}}}});
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
+}
+
+TEST_CASE("meshes that share a buffer count each", "[size]") {
+  json document = square_document();
+  make_large(document);
+  for (int i = 1; i < 16; ++i) {
+    document["meshes"].push_back(document["meshes"][0]);
+    document["nodes"].push_back({{"mesh", i}});
+    document["scenes"][0]["nodes"].push_back(i);
+  }
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
+}
+
+TEST_CASE("counts near 2^64 do not wrap", "[size]") {
+  json document = placed_often(12);
+  document["accessors"][2]["count"] = 0xFFFF'FFFF'FFFF'FFFFull;
+  CHECK_THAT(size_refusal(document), Catch::Contains("triangles"));
+}
+
+TEST_CASE("the limit is one of triangles beyond those that the buffers hold", "[size]") {
+  json document = square_document();
+  const std::uint64_t most = limits::max_repeated_triangles + 140 / 3;
+  document["accessors"][2]["count"] = 3 * most;  // the reader would not believe it
+  CHECK(size_refusal(document).empty());
+  document["accessors"][2]["count"] = 3 * most + 3;
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
+}
+
+}  // namespace
+}  // namespace photile
