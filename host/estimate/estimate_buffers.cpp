@@ -1,47 +1,35 @@
 #include "estimate/estimate_buffers.hpp"
 
-#include "estimate/light_sums.hpp"
 #include "maps/map_store.hpp"
 #include "maps/prefix_sum.hpp"
 
 namespace photile::estimate {
-EstimateBytes estimate_bytes_per_hit(const SceneNeeds& needs, std::uint32_t neighbours) {
-  const std::uint64_t estimates = estimates_per_hit(needs, neighbours);
-  const std::uint64_t largest = estimates * 3 * sizeof(float);
-  std::uint64_t together = needs.glossy ? 2 * largest : largest;
-  if (needs.many_lights()) together += estimates * sizeof(std::uint16_t) + sizeof(std::uint32_t);
-  return {largest, together};
-}
 
-EstimateBuffers::EstimateBuffers(device::Context& context, const SceneNeeds& needs,
-                                 std::uint32_t neighbours)
-    : context_(context),
-      needs_(needs),
-      slots_(estimates_per_hit(needs, neighbours)),
-      reclaimer_(context, *this) {}
+EstimateBuffers::EstimateBuffers(device::Context& context, const LightSums& sums)
+    : context_(context), sums_(sums), reclaimer_(context, *this) {}
 
 void EstimateBuffers::begin(std::uint32_t hits) {
   // A batch that was not read has failed, most likely for want of memory. Slots of many lights are
   // as many as their hits: they are scanned.
-  const bool fits = needs_.many_lights() ? hits == capacity_ : hits <= capacity_;
+  const bool fits = sums_.many_lights ? hits == capacity_ : hits <= capacity_;
   if (in_use_ || !fits) release();
   in_use_ = true;
   hits_ = hits;
   if (capacity_ == 0) allocate();
-  if (needs_.many_lights()) {
+  if (sums_.many_lights) {
     context_.fill(slots_taken, 0u);
     return;
   }
-  const std::size_t floats = 3 * std::size_t{hits} * slots_;
+  const std::size_t floats = 3 * std::size_t{hits} * sums_.per_hit;
   context_.fill(irradiance, 0.0f, floats);
-  if (needs_.glossy) context_.fill(radiance, 0.0f, floats);
+  if (sums_.glossy) context_.fill(radiance, 0.0f, floats);
 }
 
 void EstimateBuffers::allocate() {
-  const std::size_t estimates = std::size_t{hits_} * slots_;
+  const std::size_t estimates = std::size_t{hits_} * sums_.per_hit;
   irradiance = context_.allocate<float>(3 * estimates, "irradiance estimates");
-  radiance = context_.allocate<float>(needs_.glossy ? 3 * estimates : 0, "radiance estimates");
-  if (needs_.many_lights()) {
+  radiance = context_.allocate<float>(sums_.glossy ? 3 * estimates : 0, "radiance estimates");
+  if (sums_.many_lights) {
     slot_light = context_.allocate<std::uint16_t>(estimates, "lights of estimates");
     slots_taken = context_.allocate<std::uint32_t>(std::size_t{hits_} + 1, "lights per hit");
   }
@@ -63,14 +51,14 @@ bool EstimateBuffers::reclaim() {
 }
 
 void EstimateBuffers::read(Estimates& result, std::size_t first) {
-  if (needs_.many_lights()) {
+  if (sums_.many_lights) {
     result.append(read_slots());
   } else {
     const auto part = [&](std::vector<glm::vec3>& values) {
-      return std::span(values).subspan(first * slots_, std::size_t{hits_} * slots_);
+      return std::span(values).subspan(first * sums_.per_hit, std::size_t{hits_} * sums_.per_hit);
     };
     read_vectors(irradiance, part(result.irradiance));
-    if (needs_.glossy) read_vectors(radiance, part(result.radiance));
+    if (sums_.glossy) read_vectors(radiance, part(result.radiance));
   }
   in_use_ = false;
 }
@@ -83,8 +71,8 @@ void EstimateBuffers::read_vectors(const device::Buffer<float>& buffer,
 /// Takes the empty slots out on the device: it is fast there, and less is read.
 Estimates EstimateBuffers::read_slots() {
   device::Defines defines;
-  defines.set("LIGHT_SLOTS", static_cast<long long>(slots_));
-  if (needs_.glossy) defines.set("GLOSSY");
+  sums_.set_defines(defines);
+  if (sums_.glossy) defines.set("GLOSSY");
   const device::KernelSet kernels(context_, "estimate/pack_estimates.cl", std::move(defines));
   auto first = context_.allocate<std::uint32_t>(std::size_t{hits_} + 1, "first estimates of hits");
   maps::exclusive_prefix_sum(kernels, slots_taken, first);
@@ -95,12 +83,12 @@ Estimates EstimateBuffers::read_slots() {
   auto light = context_.allocate<std::uint16_t>(total, "lights of estimates");
   auto packed_irradiance = context_.allocate<float>(3 * total, "irradiance estimates");
   auto packed_radiance =
-      context_.allocate<float>(needs_.glossy ? 3 * total : 0, "radiance estimates");
+      context_.allocate<float>(sums_.glossy ? 3 * total : 0, "radiance estimates");
   const auto launch = [&](const auto&... glossy) {
     kernels.run("pack_estimates", hits_, maps::work_group_size, hits_, first, slot_light,
                 irradiance, light, packed_irradiance, glossy...);
   };
-  if (needs_.glossy) {
+  if (sums_.glossy) {
     launch(radiance, packed_radiance);
   } else {
     launch();
@@ -112,7 +100,7 @@ Estimates EstimateBuffers::read_slots() {
   if (total > 0) context_.read(light, std::span(estimates.light));
   estimates.irradiance.resize(total);
   read_vectors(packed_irradiance, estimates.irradiance);
-  if (needs_.glossy) {
+  if (sums_.glossy) {
     estimates.radiance.resize(total);
     read_vectors(packed_radiance, estimates.radiance);
   }

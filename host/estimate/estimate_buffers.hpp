@@ -7,23 +7,18 @@
 #include <span>
 
 #include "device/context.hpp"
+#include "estimate/light_sums.hpp"
 #include "photile/estimator.hpp"
-#include "photile/scene_needs.hpp"
 
 namespace photile::estimate {
-
-/// Bytes of the largest buffer, and of all, for one hit.
-struct EstimateBytes {
-  std::uint64_t largest = 0, together = 0;
-};
-EstimateBytes estimate_bytes_per_hit(const SceneNeeds& needs, std::uint32_t neighbours);
 
 /// Kept from batch to batch and from call to call: new memory, which the operating system must
 /// clear first, takes as long as a good part of the estimates that are written to it. Released
 /// where memory runs out between two batches.
 class EstimateBuffers final : private device::Reclaimer {
  public:
-  EstimateBuffers(device::Context& context, const SceneNeeds& needs, std::uint32_t neighbours);
+  /// For kernels compiled with the symbols of `sums`.
+  EstimateBuffers(device::Context& context, const LightSums& sums);
   EstimateBuffers(const EstimateBuffers&) = delete;
   EstimateBuffers& operator=(const EstimateBuffers&) = delete;
 
@@ -46,8 +41,7 @@ class EstimateBuffers final : private device::Reclaimer {
   void read_vectors(const device::Buffer<float>& buffer, std::span<glm::vec3> values);
 
   device::Context& context_;
-  SceneNeeds needs_;
-  std::uint32_t slots_;
+  LightSums sums_;
   std::uint32_t hits_ = 0;      ///< of the batch
   std::uint32_t capacity_ = 0;  ///< hits that the buffers have room for
   bool in_use_ = false;         ///< from begin() to the end of read()

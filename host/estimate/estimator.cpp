@@ -27,10 +27,10 @@ struct Estimator::Impl {
   std::uint32_t neighbours;
   float radius;
   HitBatches batches;
-  estimate::EstimateBuffers estimates;
   std::shared_ptr<const SurfaceIndex> surface;  ///< where areas are clipped
   std::optional<estimate::SurfaceBuffers> surface_buffers;
   std::unique_ptr<estimate::Query> query;
+  std::optional<estimate::EstimateBuffers> estimates;
 
   Impl(const PhotonMaps& photon_maps, const Scene& scene, const EstimateParameters& parameters)
       : store(photon_maps.store()),
@@ -38,8 +38,7 @@ struct Estimator::Impl {
         neighbours(static_cast<std::uint32_t>(parameters.neighbours)),
         radius(static_cast<float>(parameters.radius == 0 ? photon_maps.parameters().radius
                                                          : parameters.radius)),
-        batches(context),
-        estimates(context, store.needs, neighbours) {
+        batches(context) {
     if (parameters.area == AreaMode::clipped && !store.naive) {
       surface = parameters.surface != nullptr
                     ? parameters.surface
@@ -53,6 +52,7 @@ struct Estimator::Impl {
         parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
         surface_buffers ? &*surface_buffers : nullptr,
         kernel_used(parameters.kernel, parameters.neighbours));
+    estimates.emplace(context, query->sums());
   }
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
@@ -68,11 +68,11 @@ struct Estimator::Impl {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
                                                      surface.get(), store.needs);
-    estimates.begin(static_cast<std::uint32_t>(count));
+    estimates->begin(static_cast<std::uint32_t>(count));
     estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
-      query->estimate(page_hits, estimates);
+      query->estimate(page_hits, *estimates);
     });
-    estimates.read(result, place);
+    estimates->read(result, place);
   }
 
   /// The neighbours of hits [first, first + count).
@@ -150,8 +150,7 @@ Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::s
     return estimate::restored(estimate(estimate::reordered(hits, begin, order), 0, hit_count),
                               order, impl_->store.needs.light_count);
   }
-  const auto [largest, together] =
-      estimate::estimate_bytes_per_hit(impl_->store.needs, impl_->neighbours);
+  const auto [largest, together] = impl_->query->sums().bytes_per_hit();
   Estimates result;
   if (impl_->store.needs.many_lights()) {
     result.first.push_back(0);

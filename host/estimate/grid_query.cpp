@@ -22,6 +22,8 @@ class GridQuery : public Query {
         std::min<std::size_t>(choice_.work_group_size, context_.info().max_work_group_size);
   }
 
+  const LightSums& sums() const override { return choice_.sums; }
+
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     device::Defines estimate_defines = defines(hits.page);
     set_density_defines(estimate_defines, surface_, kernel_);

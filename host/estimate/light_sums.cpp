@@ -4,33 +4,34 @@
 #include <bit>
 
 namespace photile::estimate {
-namespace {
 
-/// Places of the hash table that finds a light's slot: half of them stay empty, unless each light
-/// has its own.
-std::uint32_t light_table(const SceneNeeds& needs, std::uint32_t neighbours) {
-  return std::bit_ceil(std::min(2 * estimates_per_hit(needs, neighbours), needs.light_count));
-}
+LightSums::LightSums(const SceneNeeds& needs, std::uint32_t neighbours)
+    : lights(needs.light_count),
+      many_lights(needs.many_lights()),
+      glossy(needs.glossy),
+      per_hit(many_lights ? std::min(neighbours, lights) : lights),
+      table(many_lights ? std::bit_ceil(std::min(2 * per_hit, lights)) : 0) {}
 
-}  // namespace
-
-std::uint32_t estimates_per_hit(const SceneNeeds& needs, std::uint32_t neighbours) {
-  return needs.many_lights() ? std::min(neighbours, needs.light_count) : needs.light_count;
-}
-
-void set_sum_defines(device::Defines& defines, const SceneNeeds& needs, std::uint32_t neighbours) {
-  if (needs.many_lights()) {
+void LightSums::set_defines(device::Defines& defines) const {
+  if (many_lights) {
     defines.set("MANY_LIGHTS");
-    defines.set("LIGHT_SLOTS", static_cast<long long>(estimates_per_hit(needs, neighbours)));
-    defines.set("LIGHT_TABLE", static_cast<long long>(light_table(needs, neighbours)));
-  } else if (needs.several_lights()) {
-    defines.set("LIGHT_COUNT", static_cast<long long>(needs.light_count));
+    defines.set("LIGHT_SLOTS", static_cast<long long>(per_hit));
+    defines.set("LIGHT_TABLE", static_cast<long long>(table));
+  } else if (lights > 1) {
+    defines.set("LIGHT_COUNT", static_cast<long long>(lights));
   }
 }
 
-std::size_t private_sum_bytes(const SceneNeeds& needs, std::uint32_t neighbours) {
-  if (needs.many_lights()) return light_table(needs, neighbours) * sizeof(std::uint16_t);
-  return needs.light_count * 3 * sizeof(float) * (needs.glossy ? 2 : 1);
+std::size_t LightSums::private_bytes() const {
+  if (many_lights) return table * sizeof(std::uint16_t);
+  return std::size_t{lights} * 3 * sizeof(float) * (glossy ? 2 : 1);
+}
+
+EstimateBytes LightSums::bytes_per_hit() const {
+  const std::uint64_t largest = std::uint64_t{per_hit} * 3 * sizeof(float);
+  std::uint64_t together = glossy ? 2 * largest : largest;
+  if (many_lights) together += per_hit * sizeof(std::uint16_t) + sizeof(std::uint32_t);
+  return {largest, together};
 }
 
 }  // namespace photile::estimate

@@ -9,13 +9,33 @@
 
 namespace photile::estimate {
 
-/// Estimates that a hit has room for: one per light, or with many lights min(k, lights) slots.
-std::uint32_t estimates_per_hit(const SceneNeeds& needs, std::uint32_t neighbours);
+/// Bytes of the largest buffer, and of all, for one hit.
+struct EstimateBytes {
+  std::uint64_t largest = 0, together = 0;
+};
 
-/// The symbols of sums.clh.
-void set_sum_defines(device::Defines& defines, const SceneNeeds& needs, std::uint32_t neighbours);
+/// Where the estimates of a hit lie. Kernels are compiled with its symbols and buffers are made in
+/// its sizes: both must come from one object, or kernels write beyond the buffers.
+struct LightSums {
+  std::uint32_t lights = 1;
+  bool many_lights = false;
+  bool glossy = false;
+  /// Estimates that a hit has room for: one per light, or with many lights min(k, lights) slots.
+  std::uint32_t per_hit = 1;
+  /// Many lights: places of the hash table that finds a light's slot. Half of them stay empty,
+  /// unless each light has its own.
+  std::uint32_t table = 0;
 
-/// Of the arrays that a work-item keeps in private memory for its sums.
-std::size_t private_sum_bytes(const SceneNeeds& needs, std::uint32_t neighbours);
+  LightSums() = default;
+  /// Kernels may be given any k up to `neighbours`.
+  LightSums(const SceneNeeds& needs, std::uint32_t neighbours);
+
+  /// The symbols of sums.clh.
+  void set_defines(device::Defines& defines) const;
+  /// Of the arrays that a work-item keeps in private memory.
+  std::size_t private_bytes() const;
+  /// Of EstimateBuffers.
+  EstimateBytes bytes_per_hit() const;
+};
 
 }  // namespace photile::estimate

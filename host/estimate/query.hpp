@@ -29,6 +29,10 @@ class Query {
  public:
   virtual ~Query() = default;
 
+  /// What the kernels are compiled with, and what EstimateBuffers are to be made for.
+  virtual const LightSums& sums() const = 0;
+
+  /// `estimates` are those of sums().
   virtual void estimate(const PageHits& hits, EstimateBuffers& estimates) = 0;
 
   /// k photon indices per hit, in any order. Before: none.

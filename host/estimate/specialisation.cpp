@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "estimate/light_sums.hpp"
 #include "maps/entry_defines.hpp"
 
 namespace photile::estimate {
@@ -43,7 +42,7 @@ device::Defines Specialisation::defines() const {
     defines.set("TILE_CAPACITY", static_cast<long long>(tile_capacity));
   }
   maps::set_entry_defines(defines, needs);
-  set_sum_defines(defines, needs, static_cast<std::uint32_t>(neighbours));
+  sums.set_defines(defines);
   if (needs.normal_maps) defines.set("NORMAL_MAPS");
   return defines;
 }
@@ -70,11 +69,11 @@ std::uint32_t Specialisation::work_items(std::uint32_t hits) const {
 
 std::size_t Specialisation::private_bytes() const {
   const auto width = static_cast<std::size_t>(vector_width);
-  const auto k = static_cast<std::uint32_t>(neighbours);
   const bool listed = needs.glossy || needs.many_lights();
-  std::size_t bytes = private_sum_bytes(needs, k);
-  if (strategy == EstimateStrategy::heap)
-    return bytes + k * (sizeof(float) + sizeof(std::uint32_t));
+  std::size_t bytes = sums.private_bytes();
+  if (strategy == EstimateStrategy::heap) {
+    return bytes + static_cast<std::size_t>(neighbours) * (sizeof(float) + sizeof(std::uint32_t));
+  }
   bytes += static_cast<std::size_t>(capacity) * sizeof(float) +
            static_cast<std::size_t>(capacity) / width * sizeof(std::uint32_t);
   if (listed) bytes += (near_capacity + 2 * width) * sizeof(std::uint32_t);
@@ -97,6 +96,7 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
   choice.tile_capacity = tile_capacity_for(neighbours);
   choice.hits_per_item = choice.strategy == EstimateStrategy::select ? tuning.hits_per_item : 1;
   choice.needs = needs;
+  choice.sums = LightSums(needs, static_cast<std::uint32_t>(neighbours));
   choice.work_group_size = static_cast<std::size_t>(tuning.work_group_size);
   while (choice.work_group_size > 1 &&
          choice.work_group_size * choice.private_bytes() > max_private_bytes_per_group) {

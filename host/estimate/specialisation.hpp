@@ -6,6 +6,7 @@
 #include <string>
 
 #include "device/context.hpp"
+#include "estimate/light_sums.hpp"
 #include "photile/estimate_tuning.hpp"
 #include "photile/scene_needs.hpp"
 
@@ -31,6 +32,7 @@ struct Specialisation {
   int hits_per_item = 1;    ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
   SceneNeeds needs;
+  LightSums sums;
 
   device::Defines defines() const;
   std::string kernel_file() const;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "estimate/light_sums.hpp"
 #include "estimate/query.hpp"
 #include "maps/entry_defines.hpp"
 
@@ -24,7 +23,8 @@ class TreeQuery : public Query {
         neighbours_(neighbours),
         radius_(radius),
         surface_(surface),
-        kernel_(kernel) {
+        kernel_(kernel),
+        sums_(store.needs, compiled_neighbours) {
     if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
     if (compiled_neighbours <= private_list_limit) {
       defines_.set("LIST_CAPACITY", static_cast<long long>(compiled_neighbours));
@@ -39,10 +39,12 @@ class TreeQuery : public Query {
     }
   }
 
+  const LightSums& sums() const override { return sums_; }
+
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     device::Defines defines = page_defines(hits.page);
     maps::set_entry_defines(defines, store_.needs);
-    set_sum_defines(defines, store_.needs, neighbours_);
+    sums_.set_defines(defines);
     if (store_.needs.normal_maps) defines.set("NORMAL_MAPS");
     set_density_defines(defines, surface_, kernel_);
     const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
@@ -97,6 +99,7 @@ class TreeQuery : public Query {
   float radius_;
   const SurfaceBuffers* surface_;
   DensityKernel kernel_;
+  LightSums sums_;
   device::Defines defines_;
   std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();
   device::Buffer<float> list_distance_;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "estimates_comparison.hpp"
+#include "oracle/density_oracle.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
@@ -134,5 +135,67 @@ TEST_CASE("a hit keeps the lights that reach it, each once, however many there a
     CHECK(found == std::set<std::uint16_t>{static_cast<std::uint16_t>(first),
                                            static_cast<std::uint16_t>(first + 256),
                                            static_cast<std::uint16_t>(first + 512)});
+  }
+}
+
+TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to their buffers",
+          "[buffers]") {
+  // Levels of k and later passes share kernels with a larger k. Lights around the limits of dense
+  // layers, of k and of the hash table; behind the fence an index too far ends the process.
+  constexpr int compiled = 20;
+  const auto lights = static_cast<std::size_t>(GENERATE(1, 8, 9, 13, 21, 70));
+  const bool glossy = lights == 13;
+  Scene scene = plate(lights, glossy);
+  const Photons photons = test::uniform_photons(scene, 2000, 98);
+  PrimaryHits hits = test::uniform_hits(scene, 64, 99);
+  if (glossy) test::add_lobes(hits, scene, 93);
+  const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
+  const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
+  for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_3d}) {
+    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+    for (const int neighbours : {1, 5, 12, compiled}) {
+      CAPTURE(lights, neighbours, name_of(structure));
+      EstimateParameters parameters;
+      parameters.neighbours = neighbours;
+      parameters.compiled_neighbours = compiled;
+      parameters.area = AreaMode::disc;
+      const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
+      test::ExpectedEstimates expected;
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        expected.push_back(
+            oracle.irradiance(hits.position[i], hits.sided_triangle[i], neighbours, radius));
+      }
+      CHECK(test::worst_difference(test::by_light(estimates.irradiance, estimates, lights),
+                                   expected) <= 1e-5);
+    }
+  }
+}
+
+TEST_CASE("any number of lights up to 70 and any level of k keep to their buffers",
+          "[buffers][slow]") {
+  constexpr int compiled = 50;
+  const auto lights = static_cast<std::size_t>(GENERATE(range(1, 71)));
+  const Scene scene = plate(lights, false);
+  const Photons photons = test::uniform_photons(scene, 2000, 98);
+  const PrimaryHits hits = test::uniform_hits(scene, 64, 99);
+  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+                        {radius, 4});
+  for (const int neighbours : {1, 3, 6, 12, 13, 25, 50}) {
+    CAPTURE(lights, neighbours);
+    EstimateParameters parameters;
+    parameters.neighbours = neighbours;
+    parameters.compiled_neighbours = compiled;
+    const Estimates shared = Estimator(maps, scene, parameters).estimate(hits);
+    // Of one light the sum is known: that of all lights. Slots that overlap would change it.
+    const Scene single = plate(1, false);
+    Photons together = photons;
+    together.light.clear();
+    const PhotonMaps single_maps(test::device(), single, together,
+                                 find_neighbour_groups(single, {radius, 60}), {radius, 4});
+    const Estimates sums = Estimator(single_maps, single, parameters).estimate(hits);
+    const auto by_light = test::by_light(shared.irradiance, shared, lights);
+    std::vector<glm::vec3> all(hits.size(), glm::vec3(0.0f));
+    for (std::size_t i = 0; i < by_light.size(); ++i) all[i / lights] += by_light[i];
+    CHECK(difference(all, sums.irradiance) <= tolerance_of(neighbours));
   }
 }
