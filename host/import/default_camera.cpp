@@ -1,9 +1,9 @@
-#include "import/default_camera.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "import/finishing.hpp"
 
 namespace photile::scene_io {
 namespace {

@@ -1,11 +1,10 @@
-#include "import/light_grouping.hpp"
-
 #include <fmt/format.h>
 #include <fnmatch.h>
 
 #include <string_view>
 #include <unordered_set>
 
+#include "import/finishing.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_names.hpp"

@@ -8,15 +8,12 @@
 #include <utility>
 
 #include "import/area_lights.hpp"
-#include "import/default_camera.hpp"
-#include "import/gltf/gltf_import.hpp"
+#include "import/finishing.hpp"
 #include "import/import_context.hpp"
+#include "import/importers.hpp"
 #include "import/lamp_instances.hpp"
 #include "import/light_changes.hpp"
-#include "import/light_grouping.hpp"
 #include "import/light_source.hpp"
-#include "import/obj/obj_import.hpp"
-#include "import/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"

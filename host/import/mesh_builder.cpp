@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "import/coordinate_limit.hpp"
+#include "import/scene_origin.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "import/coordinate_limit.hpp"
-
 namespace photile::scene_io {
 
 void SceneOrigin::add(const std::array<glm::dvec3, 3>& corners) {

@@ -1,5 +1,3 @@
-#include "import/surroundings.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "import/area_lights.hpp"
+#include "import/finishing.hpp"
 #include "import/radiance_picture.hpp"
 #include "import/sky_map.hpp"
 #include "photile/errors.hpp"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "import/default_camera.hpp"
+#include "import/finishing.hpp"
 #include "scene_files.hpp"
 
 namespace photile {

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "import/gltf/document.hpp"
-#include "import/gltf/size.hpp"
+#include "import/gltf/steps.hpp"
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 

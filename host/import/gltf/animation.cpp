@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "import/coordinate_limit.hpp"
 #include "import/gltf/accessor.hpp"
 #include "import/gltf/document.hpp"
 #include "import/gltf/nodes.hpp"
+#include "import/scene_origin.hpp"
 #include "photile/scene.hpp"
 #include "scene/interpolation.hpp"
 

@@ -1,11 +1,10 @@
-#include "import/gltf/cameras.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "import/coordinate_limit.hpp"
+#include "import/gltf/steps.hpp"
+#include "import/scene_origin.hpp"
 
 namespace photile::scene_io {
 namespace {

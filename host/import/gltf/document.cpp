@@ -9,7 +9,6 @@
 #include <span>
 #include <string_view>
 
-#include "import/gltf/extensions.hpp"
 #include "import/resource_error.hpp"
 #include "photile/limits.hpp"
 

@@ -12,6 +12,14 @@ namespace photile::scene_io {
 /// requires an extension that photile does not understand.
 tinygltf::Model read_gltf(ImportContext& context);
 
+/// Names every extension that the file uses and photile does not understand in a warning. Errors:
+/// InputError naming one that the file requires, with the remedy.
+void check_extensions(const tinygltf::Model& model, ImportContext& context);
+
+/// The same for a file that could not be parsed, often because of what an extension left out of it
+/// (buffers without data, ...). Does nothing where its JSON names no such extension.
+void check_required_extensions(std::string_view json, const ImportContext& context);
+
 /// A member of a JSON object: a number, or `fallback` when it is absent or no number.
 double number_member(const tinygltf::Value& object, const std::string& key, double fallback);
 

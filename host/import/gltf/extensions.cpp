@@ -1,5 +1,3 @@
-#include "import/gltf/extensions.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,8 @@
 #include <string>
 #include <string_view>
 #include <utility>
+
+#include "import/gltf/document.hpp"
 
 namespace photile::scene_io {
 namespace {

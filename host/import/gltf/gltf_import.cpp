@@ -1,15 +1,11 @@
-#include "import/gltf/gltf_import.hpp"
-
 #include "import/gltf/accessor.hpp"
-#include "import/gltf/cameras.hpp"
 #include "import/gltf/document.hpp"
 #include "import/gltf/lights.hpp"
 #include "import/gltf/materials.hpp"
 #include "import/gltf/meshes.hpp"
 #include "import/gltf/nodes.hpp"
-#include "import/gltf/origin.hpp"
-#include "import/gltf/size.hpp"
-#include "import/gltf/surroundings.hpp"
+#include "import/gltf/steps.hpp"
+#include "import/importers.hpp"
 
 namespace photile::scene_io {
 

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <optional>
 
-#include "import/coordinate_limit.hpp"
 #include "import/gltf/document.hpp"
 #include "import/gltf/light_traits.hpp"
 #include "import/gltf/profiles.hpp"
 #include "import/lamp_instances.hpp"
+#include "import/scene_origin.hpp"
 #include "photile/limits.hpp"
 #include "scene/color_temperature.hpp"
 #include "scene/photometry.hpp"

@@ -1,8 +1,7 @@
-#include "import/gltf/origin.hpp"
-
 #include <map>
 
 #include "import/gltf/primitives.hpp"
+#include "import/gltf/steps.hpp"
 #include "import/scene_origin.hpp"
 
 namespace photile::scene_io {

@@ -1,11 +1,10 @@
-#include "import/gltf/size.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
 
 #include "import/gltf/primitives.hpp"
+#include "import/gltf/steps.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {

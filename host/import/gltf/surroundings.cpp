@@ -1,5 +1,3 @@
-#include "import/gltf/surroundings.hpp"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -9,11 +7,12 @@
 #include <utility>
 
 #include "import/cube_map.hpp"
+#include "import/finishing.hpp"
 #include "import/gltf/document.hpp"
 #include "import/gltf/nodes.hpp"
 #include "import/gltf/pictures.hpp"
+#include "import/gltf/steps.hpp"
 #include "import/resource_error.hpp"
-#include "import/surroundings.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {

@@ -1,5 +1,3 @@
-#include "import/obj/obj_import.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "import/coordinate_limit.hpp"
+#include "import/importers.hpp"
 #include "import/mesh_builder.hpp"
 #include "import/obj/mtl_materials.hpp"
 #include "import/obj/obj_libraries.hpp"

@@ -1,5 +1,3 @@
-#include "tools/view/display_panel.hpp"
-
 #include <imgui.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "image/glare.hpp"
 #include "tools/report/number_text.hpp"
+#include "tools/view/panel_parts.hpp"
 
 namespace photile::view {
 namespace {

@@ -1,5 +1,3 @@
-#include "tools/view/light_panel.hpp"
-
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -10,6 +8,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "tools/view/panel_parts.hpp"
 
 namespace photile::view {
 namespace {

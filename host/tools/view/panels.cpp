@@ -9,8 +9,7 @@
 
 #include "photile/limits.hpp"
 #include "tools/report/number_text.hpp"
-#include "tools/view/display_panel.hpp"
-#include "tools/view/light_panel.hpp"
+#include "tools/view/panel_parts.hpp"
 
 namespace photile::view {
 namespace {

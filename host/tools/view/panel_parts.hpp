@@ -1,9 +1,15 @@
-// The part of the panel that says what the window shows.
+// The parts of the panel: lamps, and what the window shows.
 #pragma once
 
 #include "tools/view/panels.hpp"
 
 namespace photile::view {
+
+/// A control for each light, or group of lights. Returns whether one has changed.
+bool draw_lights(PanelState& state);
+
+/// The moods that are kept. Returns whether one has been applied.
+bool draw_moods(PanelState& state, PanelEvents& events);
 
 /// Pixels between panels and the window's border.
 constexpr float border = 10;
