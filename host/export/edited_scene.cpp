@@ -88,9 +88,9 @@ void refuse_taken(const std::filesystem::path& file) {
       fmt::format("{}: is there already; remove it, or take another name", file.string()));
 }
 
-LitCopy write_lit_copy(const std::filesystem::path& scene, const SceneLoadOptions& options,
+EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLoadOptions& options,
                        const LightMix& mix, const std::string& name) {
-  LitCopy copy;
+  EditedScene copy;
   const std::string clean = clean_light_name(name, limits::max_light_name_bytes);
   copy.file = scene;
   copy.file.replace_filename(

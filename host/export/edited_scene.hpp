@@ -10,7 +10,7 @@
 
 namespace photile::scene_io {
 
-struct LitCopy {
+struct EditedScene {
   std::filesystem::path file;
   /// A line for each light that the file cannot hold as the mix has it: its name and why.
   std::vector<std::string> left_out;
@@ -27,7 +27,7 @@ struct LitCopy {
 ///   mix       of LightMix::of, changed
 ///   name      cleaned as names of lights are
 /// Errors: those of load_scene; OutputError where the copy cannot be written or its name is taken.
-LitCopy write_lit_copy(const std::filesystem::path& scene, const SceneLoadOptions& options,
+EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLoadOptions& options,
                        const LightMix& mix, const std::string& name);
 
 }  // namespace photile::scene_io

@@ -20,8 +20,13 @@ variables=("${setting[@]:1}")
 run() {
   local vendors=$1 libraries=$2
   shift 2
-  local name
-  name=$(printf '%s' "$runtime$vendors${variables[*]-}" | cksum | cut -d' ' -f1)
+  # Only the runtime and its own settings decide what is compiled: layers around it, and parts of its
+  # device, share the kernels.
+  local compiled='' variable name
+  for variable in ${variables[@]+"${variables[@]}"}; do
+    case $variable in POCL_*) compiled+=" $variable" ;; esac
+  done
+  name=$(printf '%s' "$runtime$vendors$compiled" | cksum | cut -d' ' -f1)
   mkdir -p "$cache/$name"
   env XDG_CACHE_HOME="$cache/$name" OCL_ICD_VENDORS="$vendors" \
     ${libraries:+LD_LIBRARY_PATH="$libraries"} "${variables[@]}" "$@"

@@ -156,14 +156,14 @@ TEST_CASE(
   CHECK(six.load(options).lights.size() == 1);
 }
 
-TEST_CASE("a lit copy keeps the pictures of surroundings and says so", "[image_based]") {
+TEST_CASE("an edited copy keeps the pictures of surroundings and says so", "[image_based]") {
   ImageBasedScene six(std::vector<Texel>(6, {255, 255, 255}));
   six.document["materials"][0]["emissiveFactor"] = {1, 1, 1};
   const std::filesystem::path file = six.file();
   LightMix mix = LightMix::of(load_scene(file), 683);
   REQUIRE(mix.lights.size() == 2);
   for (MixedLight& light : mix.lights) light.power *= 0.5;
-  const auto copy = scene_io::write_lit_copy(file, {}, mix, "dim");
+  const auto copy = scene_io::write_edited_scene(file, {}, mix, "dim");
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Catch::Contains("environment") && Catch::Contains("pictures"));
   const Scene before = load_scene(file), after = load_scene(copy.file);

@@ -147,8 +147,8 @@ class Viewer {
       LightBoard board = lights_;
       for (LightControl& control : board.controls()) control.solo = false;
       moods_.apply(mood, board);
-      const scene_io::LitCopy copy =
-          scene_io::write_lit_copy(scene_.source, parameters_.load, board.mix(), mood);
+      const scene_io::EditedScene copy =
+          scene_io::write_edited_scene(scene_.source, parameters_.load, board.mix(), mood);
       message_ = fmt::format("{} is written", copy.file.filename().string());
       for (const std::string& line : copy.left_out) message_ += "\n" + line;
     } catch (const Error& error) {
