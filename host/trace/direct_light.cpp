@@ -5,6 +5,7 @@
 #include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
+#include "trace/sobol.hpp"
 
 namespace photile::trace {
 namespace {
@@ -12,28 +13,20 @@ namespace {
 /// Panes and holes that a ray may pass on its way to a lamp: each takes it on, but for rounding.
 constexpr int most_passed = 4096;
 
-/// Blocks of random numbers that one look takes.
-enum LookBlock : std::uint32_t { choice_block, place_block, lobe_block, direction_block, blocks };
-
 class DirectLight {
  public:
   DirectLight(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
-              const Receiver& receiver, const RandomStream& random, float share,
-              std::vector<ReceivedLight>& found)
+              const Receiver& receiver, float share, std::vector<ReceivedLight>& found)
       : rays_(rays),
         scene_(rays.scene()),
         lamps_(lamps),
         point_(point),
         receiver_(receiver),
-        random_(random),
         share_(share),
         found_(found) {}
 
-  /// Choices of lamps are stratified over `count` looks.
-  void look_at_lamp(std::uint32_t look, std::uint32_t count) {
-    const double choice = (look + block(look, choice_block).uniform_double(0)) / count;
-    const auto lamp =
-        lamps_.sample(point_.position, RandomBlock::of(choice), block(look, place_block));
+  void look_at_lamp(const LookSamples::Look& look) {
+    const auto lamp = lamps_.sample(point_.position, look.lamp, look.place);
     if (!lamp || !(glm::dot(lamp->direction, point_.normal) > 0.0f)) return;
     glm::vec3 arrives =
         lamp->received * transmittance(rays_, point_.origin_towards(lamp->direction), lamp->target);
@@ -45,8 +38,8 @@ class DirectLight {
   }
 
   /// Follows a direction through panes and holes until it meets a lamp, or what bends or stops it.
-  void look_around(std::uint32_t look) {
-    const auto direction = receiver_.sample(block(look, lobe_block), block(look, direction_block));
+  void look_around(const LookSamples::Look& look) {
+    const auto direction = receiver_.sample(look.lobe, look.direction);
     if (!direction) return;
     const float density = receiver_.density(*direction);
     if (!(density > 0.0f)) return;
@@ -72,10 +65,6 @@ class DirectLight {
   }
 
  private:
-  RandomBlock block(std::uint32_t look, LookBlock which) const {
-    return random_.block(Purpose::direct_light, blocks * look + which);
-  }
-
   void add_what_lies_beyond(const glm::vec3& direction, float density,
                             const LightWeights& weights) {
     for (const DistantLight& light : lamps_.distant()) {
@@ -95,22 +84,39 @@ class DirectLight {
   const LightSampler& lamps_;
   const SurfacePoint& point_;
   const Receiver& receiver_;
-  const RandomStream& random_;
   float share_;
   std::vector<ReceivedLight>& found_;
 };
 
 }  // namespace
 
+LookSamples::LookSamples(const RandomStream& sequences, std::uint32_t first)
+    : scrambles_{sequences.block(Purpose::direct_light, 0),
+                 sequences.block(Purpose::direct_light, 1),
+                 sequences.block(Purpose::direct_light, 2),
+                 sequences.block(Purpose::direct_light, 3)},
+      first_(first) {}
+
+LookSamples::Look LookSamples::look(std::uint32_t number) const {
+  const auto pair = [&](std::size_t i) { return sobol_words(first_ + number, scrambles_[i]); };
+  const glm::uvec2 choices = pair(0), lamp_place = pair(1), direction = pair(2), lobe = pair(3);
+  // A choice among many takes more than 32 bits: the direction's serve, for a look at a lamp has
+  // no use for it.
+  return {RandomBlock({choices.x, direction.y, 0, 0}),
+          RandomBlock({choices.y, direction.x, lamp_place.x, lamp_place.y}),
+          RandomBlock({lobe.x, 0, 0, 0}), RandomBlock({lobe.y, direction.x, direction.y, 0})};
+}
+
 void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
                        const glm::vec3& direction, bool lobe_only, int count,
-                       const RandomStream& random, std::vector<ReceivedLight>& found) {
+                       const LookSamples& samples, std::vector<ReceivedLight>& found) {
   OpaqueBsdf bsdf(rays.scene(), point, direction);
   if (lobe_only) bsdf.drop_diffuse();
   const Receiver receiver(point, bsdf);
-  DirectLight light(rays, lamps, point, receiver, random, 1.0f / static_cast<float>(count), found);
-  for (std::uint32_t look = 0; look < static_cast<std::uint32_t>(count); ++look) {
-    light.look_at_lamp(look, static_cast<std::uint32_t>(count));
+  DirectLight light(rays, lamps, point, receiver, 1.0f / static_cast<float>(count), found);
+  for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {
+    const LookSamples::Look look = samples.look(number);
+    light.look_at_lamp(look);
     light.look_around(look);
   }
 }

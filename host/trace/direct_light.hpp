@@ -1,6 +1,7 @@
 // Light that reaches a surface straight from lamps, by rays instead of photons.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -19,6 +20,27 @@ struct ReceivedLight {
   glm::vec3 radiance;    ///< reflected against the ray that arrived at the receiver
 };
 
+/// The places of scrambled sequences (sobol.hpp) that a receiver's looks take: point `first` and
+/// those after it.
+class LookSamples {
+ public:
+  /// `sequences`: receivers that share them, as the samples of a pixel do, take others of their
+  /// points each.
+  LookSamples(const RandomStream& sequences, std::uint32_t first);
+
+  /// Random numbers of one look. All words of a block may be used; the blocks of a direction and
+  /// of a lamp share some, so that no estimate may multiply what is found by both.
+  struct Look {
+    RandomBlock lamp, place;      ///< which lamp, and where on it
+    RandomBlock lobe, direction;  ///< of the receiver
+  };
+  Look look(std::uint32_t number) const;
+
+ private:
+  std::array<RandomBlock, 4> scrambles_;  ///< of pairs of dimensions
+  std::uint32_t first_;
+};
+
 /// Estimates what lamps send straight to a point of an opaque surface, or through panes of thin
 /// glass and holes of cut-out surfaces: just what photons bring that are not scattered before.
 /// `count` times a lamp is looked at, and a direction of the surface's own is followed; what both
@@ -28,6 +50,6 @@ struct ReceivedLight {
 ///   lobe_only   leaves the diffuse reflection out of the radiance
 void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
                        const glm::vec3& direction, bool lobe_only, int count,
-                       const RandomStream& random, std::vector<ReceivedLight>& found);
+                       const LookSamples& samples, std::vector<ReceivedLight>& found);
 
 }  // namespace photile::trace

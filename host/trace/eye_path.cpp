@@ -1,12 +1,12 @@
 #include "trace/eye_path.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include "trace/direct_light.hpp"
 #include "trace/holes.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
+#include "trace/sobol.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
@@ -14,11 +14,11 @@ namespace photile::trace {
 namespace {
 
 void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
-                      bool lobe_only, const RandomStream& random, EyeRecord& record) {
+                      bool lobe_only, const LookSamples& samples, EyeRecord& record) {
   thread_local std::vector<ReceivedLight> found;
   found.clear();
   find_direct_light(setup.direct->rays, setup.direct->lamps, point, ray.direction, lobe_only,
-                    setup.direct->count, random, found);
+                    setup.direct->count, samples, found);
   const float sample_weight = 1.0f / static_cast<float>(setup.parameters->samples_per_pixel);
   for (const ReceivedLight& light : found) {
     record.direct.push_back({ray.pixel, light.layer, ray.throughput * light.radiance,
@@ -27,17 +27,6 @@ void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const Ey
 }
 
 }  // namespace
-
-glm::dvec2 stratified(int index, int count, double u1, double u2) {
-  // Rows hold count / rows cells each, rounded down or up; a row is as high as its share of cells.
-  const std::int64_t n = count;
-  const auto rows = static_cast<std::int64_t>(std::sqrt(static_cast<double>(count)));
-  const auto first_of = [&](std::int64_t row) { return (row * n + rows - 1) / rows; };
-  const std::int64_t row = index * rows / n;
-  const auto first = static_cast<double>(first_of(row));
-  const auto cells = static_cast<double>(first_of(row + 1) - first_of(row));
-  return {(index - first + u1) / cells, (first + cells * u2) / count};
-}
 
 void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
                 EyeRecord& record) {
@@ -51,7 +40,7 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
 }
 
 void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
-                    EyeRecord& record, const LampTechnique* other) {
+                    EyeRecord& record, const LampTechnique* other, const LookSamples* looks) {
   const Scene& scene = *setup.rays->scene;
   const glm::vec3 start = ray.origin;
   std::uint32_t holes = 0;
@@ -89,7 +78,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
       if (seen_directly && !material_of(scene, point).glossy()) return;
       append_hit(*setup.rays, point, ray, record);
       if (seen_directly) record.hits.back().diffuse_albedo = glm::vec3(0.0f);
-      if (setup.direct) add_direct_light(setup, point, ray, seen_directly, random, record);
+      if (setup.direct) add_direct_light(setup, point, ray, seen_directly, *looks, record);
       return;
     }
     if (depth >= setup.parameters->max_specular_depth) return;
@@ -107,12 +96,17 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   const PrimaryHitParameters& film = *setup.parameters;
   const auto pixel = static_cast<std::uint32_t>(y) * film.width + x;
   const RandomStream random(film.seed, std::uint64_t{pixel} * film.samples_per_pixel + sample, 0);
-  const RandomBlock place = random.block(Purpose::film_position, 0);
-  const glm::dvec2 offset =
-      stratified(sample, film.samples_per_pixel, place.uniform_double(0), place.uniform_double(2));
+  // All samples of a pixel share their sequences.
+  const RandomStream of_pixel(film.seed, pixel, 0);
+  const auto index = static_cast<std::uint32_t>(sample);
+  const glm::dvec2 offset = sobol_point(index, of_pixel.block(Purpose::film_position, 0));
   const EyeRay ray{setup.eye, glm::vec3((*setup.film)(x + offset.x, y + offset.y)),
                    glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), pixel};
-  follow_eye_ray(setup, ray, random, record);
+  std::optional<LookSamples> looks;
+  if (setup.direct) {
+    looks.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
+  }
+  follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr);
 }
 
 }  // namespace photile::trace

@@ -7,6 +7,7 @@
 
 #include "photile/camera.hpp"
 #include "photile/primary_hits.hpp"
+#include "trace/direct_light.hpp"
 #include "trace/distant_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "trace/random_stream.hpp"
@@ -61,10 +62,6 @@ struct EyeSetup {
   bool reflections_only = false;
 };
 
-/// Place of sample `index` of `count` in the unit square, given two numbers in [0, 1): one in each
-/// of `count` cells of equal area, as square as their number allows.
-glm::dvec2 stratified(int index, int count, double u1, double u2);
-
 /// A ray on its way to the eye's first opaque surface.
 struct EyeRay {
   glm::vec3 origin;     ///< metres
@@ -86,8 +83,10 @@ struct LampTechnique {
 
 /// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to
 /// `record`. Lamps that `other` would find as well are weighed by the power heuristic.
+///   looks   of the hit, where EyeSetup::direct is set
 void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
-                    EyeRecord& record, const LampTechnique* other = nullptr);
+                    EyeRecord& record, const LampTechnique* other = nullptr,
+                    const LookSamples* looks = nullptr);
 
 /// Traces sample `sample` of pixel (x, y) and appends what it sees to `record`.
 void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record);

@@ -12,6 +12,7 @@
 #include "trace/hit_point.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/scatter.hpp"
+#include "trace/sobol.hpp"
 
 namespace photile::trace {
 namespace {
@@ -20,7 +21,11 @@ namespace {
 constexpr std::size_t hits_per_task = 16;
 
 /// Blocks of random numbers that the direction of a ray takes.
-enum DirectionBlock : std::uint32_t { gather_lobe_block, gather_place_block, gather_stratum_block };
+enum DirectionBlock : std::uint32_t {
+  gather_lobe_block,
+  gather_place_block,
+  gather_scramble_block
+};
 
 /// What a task's rays found.
 struct TaskRays {
@@ -41,12 +46,15 @@ class FinalGatherer {
 
   void trace(std::uint64_t number, TaskRays& found) const {
     const Receiver receiver(point_, bsdf_);
+    const RandomBlock scramble = RandomStream(parameters_.seed, number, 0)
+                                     .block(Purpose::gather_direction, gather_scramble_block);
     std::size_t count = 0;
     for (int ray = 0; ray < parameters_.rays; ++ray) {
       // A stream for each, apart from the primary ray's, which is 0.
       const RandomStream random(parameters_.seed, number, static_cast<std::uint32_t>(ray) + 1);
-      const auto direction = receiver.sample(
-          random.block(Purpose::gather_direction, gather_lobe_block), place_of(ray, random));
+      const auto direction =
+          receiver.sample(random.block(Purpose::gather_direction, gather_lobe_block),
+                          place_of(random, sobol_point(static_cast<std::uint32_t>(ray), scramble)));
       if (!direction) continue;
       const float density = receiver.density(*direction);
       if (!(density > 0.0f)) continue;
@@ -63,11 +71,8 @@ class FinalGatherer {
   }
 
  private:
-  /// Numbers for a direction, stratified over the hit's rays.
-  RandomBlock place_of(int ray, const RandomStream& random) const {
-    const RandomBlock within = random.block(Purpose::gather_direction, gather_stratum_block);
-    const glm::dvec2 place =
-        stratified(ray, parameters_.rays, within.uniform_double(0), within.uniform_double(2));
+  /// Numbers for a direction.
+  static RandomBlock place_of(const RandomStream& random, const glm::dvec2& place) {
     return random.block(Purpose::gather_direction, gather_place_block)
         .with(direction_word, place.x)
         .with(direction_word + 1, place.y);

@@ -32,7 +32,7 @@ struct FinalGatherRays {
   std::uint64_t traced = 0;        ///< those along mirrors and glass included
 };
 
-/// Traces rays in directions of the surfaces' own reflection, stratified over each hit's rays,
+/// Traces rays in directions of the surfaces' own reflection, spread evenly over each hit's rays,
 /// through holes, mirrors and glass to the next opaque surface. Lamps are not seen: their light is
 /// direct light, or a caustic. Depends on the scene, the hits, their numbers and the parameters
 /// only.

@@ -13,6 +13,7 @@
 #include "trace/hit_batch.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
+#include "trace/sobol.hpp"
 
 namespace photile::trace {
 namespace {
@@ -77,12 +78,14 @@ class Gatherer {
       return std::uint64_t{pixel_} * static_cast<std::uint64_t>(film.samples_per_pixel) +
              static_cast<std::uint64_t>(sample);
     };
+    const RandomBlock scramble =
+        RandomStream(film.seed, number(0), 0).block(Purpose::sensor_direction, 0);
     // One number for all choices of lamps: each is looked at as often as its chance says.
     const double shift =
         RandomStream(film.seed, number(0), 0).block(Purpose::sensor_light, 2).uniform_double(0);
     for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
       const RandomStream random(film.seed, number(sample), 0);
-      follow(random, sample, record);
+      follow(random, sobol_point(static_cast<std::uint32_t>(sample), scramble), record);
       look_at_lamp(random, (sample + shift) / film.samples_per_pixel, lamps);
     }
   }
@@ -92,10 +95,7 @@ class Gatherer {
     return glm::vec3(1.0f / static_cast<float>(setup_.parameters->samples_per_pixel));
   }
 
-  void follow(const RandomStream& random, int sample, EyeRecord& record) const {
-    const RandomBlock place = random.block(Purpose::sensor_direction, 0);
-    const glm::dvec2 spread = stratified(sample, setup_.parameters->samples_per_pixel,
-                                         place.uniform_double(0), place.uniform_double(2));
+  void follow(const RandomStream& random, const glm::dvec2& spread, EyeRecord& record) const {
     const glm::vec3 direction =
         photometer_.sample(spread, random.block(Purpose::sensor_direction, 1).uniform(0));
     const float density = photometer_.density(direction);

@@ -22,7 +22,8 @@ enum class Purpose : std::uint32_t {
   photon_holes,
   path_holes,
   direct_light,
-  gather_direction
+  gather_direction,
+  hemisphere_direction
 };
 
 /// Four independent random words.
@@ -37,6 +38,7 @@ class RandomBlock {
     return static_cast<double>(bits >> 11) * 0x1p-53;
   }
   bool bit(int word) const { return words_[word] >> 31; }
+  std::uint32_t word(int word) const { return words_[word]; }
 
   /// The same block but for one word: its uniform() is `number`, in [0, 1), to 2^-24.
   RandomBlock with(int word, double number) const {

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "statistical_tests.hpp"
-#include "trace/eye_path.hpp"
 #include "trace/random_stream.hpp"
 
 using namespace photile;
@@ -104,27 +103,4 @@ TEST_CASE("Points on a triangle fill its n^2 congruent parts equally") {
         std::min(parts_below + 2 * column + (inverted ? 1 : 0), n * n - 1))];
   }
   CHECK_VERDICT(counts_agree(counts, std::vector<double>(n * n, samples / double{n * n})));
-}
-
-TEST_CASE("Stratified film samples lie in disjoint cells of equal area, whatever their number") {
-  for (const int count : {1, 2, 3, 4, 5, 7, 16, 30, 64, 97}) {
-    double area = 0;
-    for (int i = 0; i < count; ++i) {
-      const glm::dvec2 low = stratified(i, count, 0, 0), high = stratified(i, count, 1, 1);
-      CHECK((high.x - low.x) * (high.y - low.y) == Approx(1.0 / count));
-      CHECK((high.x - low.x) / (high.y - low.y) == Approx(1).margin(2.1));
-      area += (high.x - low.x) * (high.y - low.y);
-      REQUIRE(low.x >= 0);
-      REQUIRE(low.y >= 0);
-      REQUIRE(high.x <= 1 + 1e-12);
-      REQUIRE(high.y <= 1 + 1e-12);
-      for (int j = 0; j < i; ++j) {
-        const glm::dvec2 l = stratified(j, count, 0, 0), h = stratified(j, count, 1, 1);
-        const double width = std::min(high.x, h.x) - std::max(low.x, l.x);
-        const double height = std::min(high.y, h.y) - std::max(low.y, l.y);
-        REQUIRE((width < 1e-12 || height < 1e-12));
-      }
-    }
-    CHECK(area == Approx(1));
-  }
 }
