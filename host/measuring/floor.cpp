@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <unordered_map>
 
 #include "photile/ray_scene.hpp"
 #include "trace/flush_denormals.hpp"
@@ -17,11 +18,12 @@ namespace photile::measuring {
 namespace {
 
 const double steepest_cosine = std::cos(glm::radians(5.0));
-constexpr double level_thickness = 0.02;            // metres
-constexpr double least_room = 1.2, most_room = 20;  // metres above a floor
-constexpr double least_share = 0.5;                 // of the widest level
-constexpr std::uint32_t samples = 8192;             // places whose headroom is looked at
-constexpr double plan_pixels = 1024;                // along the longer side
+constexpr double level_thickness = 0.02;  // metres
+constexpr double least_room = 1.2;        // metres above a floor
+constexpr int most_crossings = 1000;
+constexpr double least_share = 0.5;      // of the widest level
+constexpr std::uint32_t samples = 8192;  // places whose headroom is looked at
+constexpr double plan_pixels = 1024;     // along the longer side
 
 /// A horizontal triangle.
 struct Piece {
@@ -44,9 +46,37 @@ std::vector<Piece> horizontal_pieces(const Scene& scene, const PlanAxes& axes) {
   return pieces;
 }
 
+/// Looks down from everywhere below the room's ceiling, to what there is most room above.
+void measure_floor_of(const Room& room, const RayScene& rays, const PlanAxes& axes,
+                      std::vector<Piece>& pieces) {
+  std::unordered_map<std::uint32_t, Piece*> piece_of;
+  for (Piece& piece : pieces) piece_of.emplace(piece.triangle, &piece);
+  const trace::FlushDenormals flush_denormals;
+  const glm::vec3 down(-axes.up);
+  for (const glm::dvec3& place : room.places()) {
+    double above = glm::dot(place, axes.up);
+    const double lowest = above - Room::most_height;
+    glm::vec3 from(place);
+    for (int i = 0; i < most_crossings; ++i) {
+      const auto hit = trace::intersect(rays, from, down);
+      if (!hit) break;
+      const auto surface = trace::surface_hit(rays.scene(), *hit, down);
+      const double height = glm::dot(glm::dvec3(surface.position), axes.up);
+      if (height < lowest) break;
+      const auto piece = piece_of.find(hit->triangle);
+      if (piece != piece_of.end() && above - height >= least_room) {
+        piece->second->covered += room.cell_area();
+        break;
+      }
+      above = height;
+      from = surface.origin_towards(down);
+    }
+  }
+}
+
 /// Looks up from places spread evenly over all pieces.
-void measure_room(const Scene& scene, const PlanAxes& axes, std::vector<Piece>& pieces) {
-  const RayScene rays(scene);
+void measure_room(const RayScene& rays, const PlanAxes& axes, std::vector<Piece>& pieces) {
+  const Scene& scene = rays.scene();
   const trace::FlushDenormals flush_denormals;
   const glm::vec3 up(axes.up);
   double total = 0, passed = 0;
@@ -71,7 +101,7 @@ void measure_room(const Scene& scene, const PlanAxes& axes, std::vector<Piece>& 
     const auto ceiling = trace::surface_hit(scene, *above, up);
     const double room = glm::dot(glm::dvec3(ceiling.position - point.position), axes.up);
     if (room < least_room) continue;
-    (room <= most_room ? piece.covered : piece.open) += total / samples;
+    (room <= Room::most_height ? piece.covered : piece.open) += total / samples;
   }
 }
 
@@ -107,9 +137,13 @@ PlanAxes PlanAxes::of(int axis) {
   }
 }
 
-Floor find_floor(const Scene& scene, const PlanAxes& axes) {
-  std::vector<Piece> pieces = horizontal_pieces(scene, axes);
-  measure_room(scene, axes, pieces);
+Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room) {
+  std::vector<Piece> pieces = horizontal_pieces(rays.scene(), axes);
+  if (room) {
+    measure_floor_of(*room, rays, axes, pieces);
+  } else {
+    measure_room(rays, axes, pieces);
+  }
   const bool any_covered = std::any_of(pieces.begin(), pieces.end(),
                                        [](const Piece& piece) { return piece.covered > 0; });
   const std::vector<Level> levels = levels_of(
@@ -133,7 +167,8 @@ Floor find_floor(const Scene& scene, const PlanAxes& axes) {
   return floor;
 }
 
-FloorPlan::FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axes) {
+FloorPlan::FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axes, const Room* room)
+    : room_(room) {
   std::vector<std::array<glm::dvec2, 3>> plans;
   low_ = glm::dvec2(HUGE_VAL);
   high_ = -low_;
@@ -145,6 +180,10 @@ FloorPlan::FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axe
       low_ = glm::min(low_, plan[i]);
       high_ = glm::max(high_, plan[i]);
     }
+  }
+  if (room_) {
+    low_ = glm::max(low_, room_->low());
+    high_ = glm::min(high_, room_->high());
   }
   const glm::dvec2 size = high_ - low_;
   pixel_ = std::max(size.x, size.y) / plan_pixels;
@@ -191,7 +230,8 @@ bool FloorPlan::holds(const glm::dvec2& point) const {
   if (x < -1 || y < -1 || x > width_ || y > height_) return false;
   return covered_[static_cast<std::size_t>(std::clamp(y, 0, height_ - 1)) *
                       static_cast<std::size_t>(width_) +
-                  static_cast<std::size_t>(std::clamp(x, 0, width_ - 1))];
+                  static_cast<std::size_t>(std::clamp(x, 0, width_ - 1))] &&
+         (!room_ || room_->holds(point));
 }
 
 bool FloorPlan::holds_disc(const glm::dvec2& middle, double radius) const {

@@ -5,32 +5,25 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "measuring/plan_axes.hpp"
+#include "measuring/room.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::measuring {
-
-/// Axes of a plan: `right` x `ahead` = `up`, unit.
-struct PlanAxes {
-  glm::dvec3 right, ahead, up;
-
-  /// As a map is drawn where `axis` (0, 1, 2) points up; for 1, as in glTF, -z is at its top.
-  static PlanAxes of(int axis);
-  glm::dvec2 plan(const glm::dvec3& point) const {
-    return {glm::dot(point, right), glm::dot(point, ahead)};
-  }
-};
 
 /// Triangles of the floor: see working_plane_grid for which they are. Empty where there is none.
 struct Floor {
   double height = 0;  ///< along `up`, metres: half of its area is not higher
   std::vector<std::uint32_t> triangles;
 };
-Floor find_floor(const Scene& scene, const PlanAxes& axes);
+/// Of `room`, or of the whole scene where that is null.
+Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room);
 
 /// The floor as seen from above.
 class FloorPlan {
  public:
-  FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axes);
+  /// `room` is null or the part of the floor that counts; it is kept.
+  FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axes, const Room* room);
 
   const glm::dvec2& low() const { return low_; }
   const glm::dvec2& high() const { return high_; }
@@ -45,6 +38,7 @@ class FloorPlan {
   double pixel_ = 1;  ///< metres
   int width_ = 0, height_ = 0;
   std::vector<bool> covered_;  ///< width x height
+  const Room* room_ = nullptr;
 };
 
 }  // namespace photile::measuring

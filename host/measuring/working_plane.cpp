@@ -18,6 +18,23 @@ int cells_along(double metres, double spacing) {
   return static_cast<int>(std::clamp(std::round(metres / spacing), 1.0, 1e6));
 }
 
+/// Errors: UsageError where the given point is in no room.
+std::optional<Room> room_of(const RayScene& rays, const PlanAxes& axes, const WorkingPlane& plane) {
+  const Scene& scene = rays.scene();
+  if (!plane.inside) {
+    if (scene.cameras.empty()) return std::nullopt;
+    return Room::of_camera(rays, axes, scene.cameras.front());
+  }
+  std::optional<Room> room = Room::around(rays, axes, *plane.inside - scene.origin);
+  if (!room) {
+    throw UsageError(
+        fmt::format("--inside {},{},{}: is in no room with a floor below and a ceiling above, each "
+                    "less than {} m away; give another point",
+                    plane.inside->x, plane.inside->y, plane.inside->z, Room::most_height));
+  }
+  return room;
+}
+
 }  // namespace
 
 WorkingPlane parse_working_plane(const std::string& text) {
@@ -40,12 +57,14 @@ WorkingPlane parse_working_plane(const std::string& text) {
 
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   const PlanAxes axes = PlanAxes::of(plane.up);
-  const Floor floor = find_floor(scene, axes);
+  const RayScene rays(scene);
+  const std::optional<Room> room = room_of(rays, axes, plane);
+  const Floor floor = find_floor(rays, axes, room ? &*room : nullptr);
   if (floor.triangles.empty()) {
     throw InputError(
         fmt::format("{}: no floor found; describe the plane with --grid", scene.source.string()));
   }
-  const FloorPlan plan(scene, floor, axes);
+  const FloorPlan plan(scene, floor, axes, room ? &*room : nullptr);
   const glm::dvec2 low = plan.low() + plane.wall_band, high = plan.high() - plane.wall_band;
   if (!(high.x > low.x) || !(high.y > low.y)) {
     throw InputError(fmt::format(

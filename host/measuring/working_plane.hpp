@@ -1,6 +1,8 @@
 // The grid of EN 12464-1 over the floor of a room.
 #pragma once
 
+#include <glm/glm.hpp>
+#include <optional>
 #include <string>
 
 #include "measuring/sensor_grid.hpp"
@@ -14,6 +16,8 @@ struct WorkingPlane {
   double wall_band = 0;     ///< metres that are left out along the floor's border
   double spacing = 0;       ///< metres; 0 = that of EN 12464-1
   int up = 1;               ///< axis that points up: 0, 1 or 2
+  /// A point in the room, metres in the file's world; none = the first camera tells the room.
+  std::optional<glm::dvec3> inside;
 };
 
 /// "floor+0.75", "floor", or "1.2": a height in the file's world. Errors: UsageError.
@@ -22,11 +26,14 @@ WorkingPlane parse_working_plane(const std::string& text);
 /// Sensors that face up, in the middles of equal cells over the floor's bounding rectangle less the
 /// wall band; cells whose middle is nearer to the floor's border than the band are left out.
 ///
-/// The floor is the lowest level of horizontal surface, up to 2 cm thick, that has at least half as
-/// much room above it as the widest level has: 1.2 m to whatever is above, which is less than 20 m
-/// up. Where nothing is covered, levels under the open sky count.
+/// The floor is that of the room around the given point, or of the one in which the first camera
+/// stands or looks (see Room): the lowest level of horizontal surface, up to 2 cm thick, that has
+/// at least half as much room above it as the widest level has, where room is 1.2 m to whatever is
+/// above, which is less than 20 m up. Without such a room all levels of the scene count; where
+/// nothing is covered, those under the open sky.
 ///
-/// Errors: InputError naming the scene where there is no floor, or none left within the band.
+/// Errors: InputError naming the scene where there is no floor, or none left within the band;
+/// UsageError where the given point is in no room.
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane);
 
 }  // namespace photile::measuring

@@ -40,7 +40,85 @@ Scene room_like_an_l() {
   return builder.build();
 }
 
+/// A room of 4 x 3 m, 2.4 m high, with its floor at 0.3 m: a window without glass looks out on a
+/// street of 40 x 40 m at 0 m, which runs on below the room and has a roof over it. A doorway of
+/// 2 m leads into a second room of 3 x 3 m with the same floor. y is up.
+Scene room_in_a_street(bool lamp_at_camera = false) {
+  test::SceneBuilder builder("street");
+  const auto white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  builder.grid({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}, 4, white);
+  builder.grid({-20, 8, -20}, {40, 0, 0}, {0, 0, 40}, 4, white);
+  builder.grid({0, 0.3f, 0}, {0, 0, 3}, {7, 0, 0}, 2, white);     // floor of both rooms
+  builder.grid({0, 2.7f, 0}, {7, 0, 0}, {0, 0, 3}, 2, white);     // their ceiling
+  builder.grid({0, 0.3f, 0}, {7, 0, 0}, {0, 2.4f, 0}, 2, white);  // walls along x
+  builder.grid({0, 0.3f, 3}, {7, 0, 0}, {0, 0.9f, 0}, 2, white);  // below the window
+  builder.grid({0, 2.3f, 3}, {7, 0, 0}, {0, 0.4f, 0}, 2, white);  // above it
+  builder.grid({0, 0.3f, 0}, {0, 0, 3}, {0, 2.4f, 0}, 2, white);
+  builder.grid({7, 0.3f, 0}, {0, 0, 3}, {0, 2.4f, 0}, 2, white);
+  builder.grid({4, 0.3f, 0}, {0, 0, 2}, {0, 2.4f, 0}, 2, white);  // between the rooms
+  builder.grid({4, 2.3f, 2}, {0, 0, 1}, {0, 0.4f, 0}, 2, white);  // above the doorway
+  builder.box({1, 0.3f, 0}, {3, 1.0f, 1}, white, false);          // a table
+  if (lamp_at_camera) builder.box({1.8f, 2, 1.4f}, {2.2f, 2.1f, 1.6f}, white, false);
+  builder.add(test::point_light("lamp", {1, 2, 2}));
+  Scene scene = builder.build();
+  scene.cameras = {Camera::look_at({2, 1.8, 1.5}, {2, 1, 30}, {0, 1, 0}, 1)};
+  return scene;
+}
+
+/// The sensors' lowest and highest coordinates.
+std::pair<glm::dvec3, glm::dvec3> bounds_of(const SensorGrid& grid) {
+  glm::dvec3 low(1e9), high(-1e9);
+  for (const Sensor& sensor : grid.sensors) {
+    low = glm::min(low, sensor.position);
+    high = glm::max(high, sensor.position);
+  }
+  return {low, high};
+}
+
 }  // namespace
+
+TEST_CASE("the floor is that of the camera's room, not the street's or the next room's") {
+  WorkingPlane plane = plane_of("floor+0.75", 0, 1);
+  plane.spacing = 0.25;
+  const SensorGrid grid = working_plane_grid(room_in_a_street(GENERATE(false, true)), plane);
+  REQUIRE(grid.layout);
+  CHECK(grid.layout->columns == 16);
+  CHECK(grid.layout->rows == 12);
+  CHECK(grid.sensors.size() == 16 * 12);
+  const auto [low, high] = bounds_of(grid);
+  CHECK(low.y == Approx(1.05));
+  CHECK(low.x == Approx(0.125).margin(1e-3));
+  CHECK(high.x == Approx(3.875).margin(1e-3));
+  CHECK(low.z == Approx(0.125).margin(1e-3));
+  CHECK(high.z == Approx(2.875).margin(1e-3));
+}
+
+TEST_CASE("a point inside tells another room, and a camera outside the one that it looks into") {
+  WorkingPlane plane = plane_of("floor+0.75", 0, 1);
+  plane.spacing = 0.25;
+  Scene scene = room_in_a_street();
+  scene.cameras[0] = Camera::look_at({5.5, 100, 1.5}, {5.5, 0, 1.5}, {0, 0, 1}, 1);
+  plane.inside = glm::dvec3(5.5, 1.5, 1);
+  const auto [low, high] = bounds_of(working_plane_grid(scene, plane));
+  CHECK(low.x == Approx(4.125).margin(1e-3));
+  CHECK(high.x == Approx(6.875).margin(1e-3));
+  CHECK(low.y == Approx(1.05));
+
+  plane.inside.reset();
+  scene.cameras[0] = Camera::look_at({2, 1.8, -30}, {2, 1.8, 1.5}, {0, 1, 0}, 1);
+  scene.origin = {10, 0, 0};
+  const SensorGrid street = working_plane_grid(scene, plane);  // covered, up to its wall
+  CHECK(bounds_of(street).first.y == Approx(0.75));
+  plane.inside = glm::dvec3(15.5, 1.5, 1);  // in the file's world
+  CHECK(bounds_of(working_plane_grid(scene, plane)).first.x == Approx(14.125).margin(1e-3));
+}
+
+TEST_CASE("a point in no room is refused with a remedy") {
+  WorkingPlane plane = plane_of("floor+0.75", 0, 1);
+  plane.inside = glm::dvec3(0, 100, 0);
+  CHECK_THROWS_WITH(working_plane_grid(room_in_a_street(), plane),
+                    Contains("--inside") && Contains("another point"));
+}
 
 TEST_CASE("the number of points is that of EN 12464-1, table A.1") {
   const auto [side, points] =
