@@ -27,6 +27,7 @@ void StageCost::add(double more_seconds, std::uint64_t more_host_bytes,
 void RenderCosts::start_picture() {
   hits = gather = estimate = film = {};
   rays = gather_rays = hit_count = 0;
+  estimate_compile_seconds = 0;
 }
 
 RunStatistics RenderCosts::statistics() const {
@@ -60,7 +61,9 @@ RunStatistics RenderCosts::statistics() const {
   }
   std::vector<std::pair<std::string, double>> estimate_figures{
       {"hits", number(hit_count)},
-      {"microseconds per hit", 1e6 * estimate.seconds / std::max(1.0, number(hit_count))}};
+      {"kernel compilation seconds", estimate_compile_seconds},
+      {"microseconds per hit", 1e6 * (estimate.seconds - estimate_compile_seconds) /
+                                   std::max(1.0, number(hit_count))}};
   estimate_figures.insert(estimate_figures.end(), shares.begin(), shares.end());
   stages.push_back(stage("radiance estimate", estimate, std::move(estimate_figures)));
   stages.push_back(stage("film", film));

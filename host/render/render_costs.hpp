@@ -32,7 +32,8 @@ struct RenderCosts {
   std::uint64_t maps = 0, mixed_maps = 0;  ///< of the last pass
   std::uint64_t references = 0, largest_map = 0;
   std::uint64_t rays = 0, gather_rays = 0, hit_count = 0;
-  double compile_seconds = 0;
+  double compile_seconds = 0;           ///< of all kernels
+  double estimate_compile_seconds = 0;  ///< of them, within `estimate`
   std::vector<std::pair<std::string, double>> shares;  ///< of several devices
 
   /// Forgets what the picture before has cost, and not the maps.

@@ -88,12 +88,17 @@ void Rendering::add_pass(const HitSource& source) {
   for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / passes_;
 }
 
+/// Devices compile at the same time.
+double Rendering::compile_seconds() const {
+  double most = 0;
+  for (const Device& device : devices_) most = std::max(most, device.compile_seconds());
+  return most;
+}
+
 RenderResult Rendering::finish() {
   costs_.film.host_bytes = layers_.bytes();
   costs_.shares.clear();
-  for (const Device& device : devices_) {  // devices compile at the same time
-    costs_.compile_seconds = std::max(costs_.compile_seconds, device.compile_seconds());
-  }
+  costs_.compile_seconds = compile_seconds();
   for (std::size_t i = 0; i < devices_.size() && devices_.size() > 1; ++i) {
     const DeviceInfo& device = devices_[i].info();
     costs_.shares.emplace_back("share of " + device.id + " " + device.name, shares_[i]);
@@ -228,9 +233,11 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
 /// Of the hits of rows [first_row, last_row).
 Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_row) {
   const Stopwatch stopwatch;
+  const double compiled = compile_seconds();
   if (parameters_.final_gather_rays == 0) {
     Estimates estimates = photons_->estimate(hits);
     costs_.estimate.add(stopwatch.seconds());
+    costs_.estimate_compile_seconds += compile_seconds() - compiled;
     costs_.hit_count += hits.size();
     return estimates;
   }
@@ -240,6 +247,7 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
                                         hits_per_batch(parameters_.neighbours), *progress_);
   costs_.gather.add(gather.costs().ray_seconds);
   costs_.estimate.add(stopwatch.seconds() - gather.costs().ray_seconds);
+  costs_.estimate_compile_seconds += compile_seconds() - compiled;
   costs_.gather_rays += gather.costs().rays;
   costs_.hit_count += gather.costs().estimated;
   return estimates;

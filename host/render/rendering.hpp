@@ -59,6 +59,7 @@ class Rendering {
   int rows_per_batch(const HitSource& source) const;
   void add_rows(const HitSource& source, int first, int last);
   Estimates estimate(const PrimaryHits& hits, int first_row, int last_row);
+  double compile_seconds() const;
 
   const Stopwatch stopwatch_;  // before rays_, whose construction it times
   const Scene& scene_;
