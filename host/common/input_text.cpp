@@ -4,12 +4,18 @@
 
 #include <fstream>
 
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
 namespace photile {
 
 std::string read_input_text(const std::filesystem::path& file) {
+  note_input(file);
+  return read_own_text(file);
+}
+
+std::string read_own_text(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw InputError(fmt::format("{}: no such file", file.string()));

@@ -9,20 +9,13 @@
 #include <cstring>
 #include <vector>
 
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
 
 namespace photile {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What the name stands for once links are followed.
-fs::path resolve(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_symlink(file, error)) return file;
-  const fs::path resolved = fs::weakly_canonical(file, error);
-  return error ? file : resolved;
-}
 
 /// A rename lasts only once the folder that holds the name is on the storage device.
 void sync_folder(const fs::path& folder) {
@@ -35,7 +28,8 @@ void sync_folder(const fs::path& folder) {
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& file)
-    : IOProxy(file.string(), Write), file_(file), target_(resolve(file)) {
+    : IOProxy(file.string(), Write), file_(file), target_(target_of(file)) {
+  refuse_input(file);
   struct stat status {};
   if (::stat(target_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
     throw OutputError(

@@ -17,7 +17,7 @@ class OutputFile : public OIIO::Filesystem::IOProxy {
  public:
   /// Opens the temporary file. A symbolic link is followed, so that the link stays one.
   /// Errors: OutputError when the folder cannot be written, or when the name belongs to something
-  /// that is no regular file (a folder, a device).
+  /// that is no regular file (a folder, a device). UsageError: those of refuse_input.
   explicit OutputFile(const std::filesystem::path& file);
   ~OutputFile() override;
   OutputFile(const OutputFile&) = delete;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 
+#include "common/run_files.hpp"
 #include "device/embedded_files.hpp"
 #include "photile/errors.hpp"
 
@@ -33,11 +34,27 @@ std::optional<std::string> registered_source(const std::string& name) {
   return found == registry().texts.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::optional<std::string> source_in_folder(const std::string& name) {
+/// The folder of kernel_folder_variable, "" = none. Errors: UsageError where it holds no kernel: a
+/// mistyped one would pass for a copy that changes nothing.
+std::filesystem::path kernel_folder() {
   const char* const folder = std::getenv(kernel_folder_variable);
-  if (folder == nullptr || *folder == '\0') return std::nullopt;
-  std::ifstream file(std::filesystem::path(folder) / name, std::ios::binary);
+  if (folder == nullptr || *folder == '\0') return {};
+  std::error_code ignored;  // what cannot be looked at holds nothing
+  for (const auto& file : embedded_files()) {
+    if (std::filesystem::is_regular_file(std::filesystem::path(folder) / file.path, ignored)) {
+      return folder;
+    }
+  }
+  throw UsageError(fmt::format("{}: {} holds no kernel file, such as {}; name a copy of kernels/",
+                               kernel_folder_variable, folder, embedded_files().front().path));
+}
+
+std::optional<std::string> source_in_folder(const std::string& name) {
+  const std::filesystem::path folder = kernel_folder();
+  if (folder.empty()) return std::nullopt;
+  std::ifstream file(folder / name, std::ios::binary);
   if (!file) return std::nullopt;
+  note_input(folder / name);
   return std::string{std::istreambuf_iterator<char>(file), {}};
 }
 

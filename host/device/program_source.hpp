@@ -7,7 +7,8 @@
 namespace photile::device {
 
 /// Environment variable that names a folder with the layout of kernels/. A file found there
-/// replaces the embedded one of that name: for work on kernels without a rebuild.
+/// replaces the embedded one of that name: for work on kernels without a rebuild. A folder without
+/// any is a UsageError.
 inline constexpr const char* kernel_folder_variable = "PHOTILE_KERNEL_DIR";
 
 /// The text of kernel file `file` with every `#include "path"` line replaced by that file's text,

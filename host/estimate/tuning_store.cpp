@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/output_file.hpp"
+#include "common/run_files.hpp"
 #include "device/cache_folder.hpp"
 #include "device/cache_key.hpp"
 #include "device/program_source.hpp"
@@ -127,8 +128,10 @@ void store_tuning(const DeviceInfo& device, const SceneNeeds& needs, const Estim
 
 std::optional<EstimateTuning> stored_tuning(const DeviceInfo& device, const SceneNeeds& needs) {
   const auto folder = device::persistent_cache_folder();
-  return folder ? estimate::read_tuning(estimate::tuning_file(*folder, device), needs)
-                : std::nullopt;
+  if (!folder) return std::nullopt;
+  const auto file = estimate::tuning_file(*folder, device);
+  note_input(file);
+  return estimate::read_tuning(file, needs);
 }
 
 }  // namespace photile

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "common/run_files.hpp"
 #include "import/resource_error.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -48,6 +49,7 @@ std::vector<unsigned char> read_regular_file(const std::filesystem::path& file,
   if (size > max_bytes) {
     throw ResourceError(fmt::format("{} bytes; the limit is {}", size, max_bytes));
   }
+  note_input(file);
   std::vector<unsigned char> bytes(size);
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t count = ::read(descriptor.value(), bytes.data() + done, bytes.size() - done);

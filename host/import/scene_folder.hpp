@@ -8,7 +8,8 @@
 
 namespace photile::scene_io {
 
-/// The bytes of a regular file. Errors: ResourceError with the reason, without the name.
+/// The bytes of a regular file. Errors: ResourceError with the reason, without the name; those of
+/// note_input.
 std::vector<unsigned char> read_regular_file(const std::filesystem::path& file,
                                              std::uint64_t max_bytes);
 

@@ -11,6 +11,7 @@
 
 #include "common/content_hash.hpp"
 #include "common/output_file.hpp"
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "saved_maps/check_photons.hpp"
 #include "scene/scene_hash.hpp"
@@ -94,6 +95,7 @@ class Reader {
   explicit Reader(const std::filesystem::path& file) : file_(file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) refuse("no such file");
+    note_input(file);
     left_ = std::filesystem::file_size(file, error);
     stream_.open(file, std::ios::binary);
     if (error || !stream_) refuse("cannot be read");

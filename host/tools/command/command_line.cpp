@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/terminal.hpp"
@@ -61,6 +62,7 @@ int run_command_line(int argument_count, const char* const* arguments) {
   try {
     CLI::App photile("Photon mapping on OpenCL devices, one photon map per triangle.", "photile");
     define(photile);
+    const RunFiles files;
     code = parse_and_run(photile, argument_count, arguments);
   } catch (const Error& error) {
     print_error(error.what());

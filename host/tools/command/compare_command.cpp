@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/output_file.hpp"
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "tools/command/commands.hpp"
@@ -89,8 +90,9 @@ void run_compare(const CompareOptions& options) {
   if (!options.picture.empty() && outputs.front().extension() != ".png") {
     throw UsageError(fmt::format("{}: the comparison ends in .png; rename it", options.picture));
   }
-  check_outputs(outputs, options.first);
-  check_outputs(outputs, options.second);
+  note_input(options.first);
+  note_input(options.second);
+  check_outputs(outputs);
 
   const Image first = read_image(options.first), second = read_image(options.second);
   const image::PictureComparison comparison = image::compare_pictures(first, second);

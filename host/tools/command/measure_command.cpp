@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/run_files.hpp"
 #include "measuring/furniture.hpp"
 #include "measuring/measure_grids.hpp"
 #include "measuring/plane_file.hpp"
@@ -15,6 +16,7 @@
 #include "photile/limits.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/measure_outputs.hpp"
+#include "tools/command/output_files.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
 #include "tools/command/signals.hpp"
@@ -36,7 +38,8 @@ struct MeasureOptions {
   double wall_band = defaults::wall_band;
   double spacing = 0;  ///< metres; 0 = that of EN 12464-1
   std::string up = "y";
-  double clearance = 0;  ///< metres; 0 = furniture is not looked for
+  std::vector<double> inside;  ///< a point in the room; empty = by the camera
+  double clearance = 0;        ///< metres; 0 = furniture is not looked for
   bool cylindrical = false;
 };
 
@@ -70,6 +73,9 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
     plane.wall_band = options.wall_band;
     plane.spacing = options.spacing;
     plane.up = options.up[0] - 'x';
+    if (!options.inside.empty()) {
+      plane.inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
+    }
     grids.push_back(measuring::working_plane_grid(scene, plane));
   }
   if (options.clearance > 0) {
@@ -107,13 +113,17 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (options.planes.empty() && options.points.empty() && options.height.empty()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
-  const MeasureOutputs outputs(options.outputs, render.scene);
+  note_inputs_of(render);
+  for (const auto& file : options.planes) note_input(file);
+  for (const auto& file : options.points) note_input(file);
+  const MeasureOutputs outputs(options.outputs);
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const Scene scene = load_scene(render.scene, render.load);
   const LightMix mix = mix_of(scene, render);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
+  outputs.check_names(grids);
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);
   warn(scene, grids, progress);
@@ -138,10 +148,20 @@ void add_places(CLI::App& command, MeasureOptions& options) {
   };
   files("--grid", options.planes, "planes of points as JSON; repeatable");
   files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
+  CLI::Option* plane =
+      command
+          .add_option("--plane", options.height,
+                      "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
+          ->type_name("HEIGHT")
+          ->group("Places");
   command
-      .add_option("--plane", options.height,
-                  "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
-      ->type_name("HEIGHT")
+      .add_option("--inside", options.inside,
+                  "a point in the room whose floor --plane follows; default: the first camera's "
+                  "room")
+      ->type_name("X,Y,Z")
+      ->delimiter(',')
+      ->expected(3)
+      ->needs(plane)
       ->group("Places");
   command.add_option("--wall-band", options.wall_band, "metres left out along the walls")
       ->type_name("M")

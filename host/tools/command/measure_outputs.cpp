@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "common/output_file.hpp"
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
@@ -69,27 +71,16 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run)
   return facts;
 }
 
-/// The planes' plans under their files' names.
-std::map<std::filesystem::path, std::string> plans_of(const std::filesystem::path& file,
-                                                      const measuring::Measurement& measurement,
-                                                      const measuring::FalseColour& colours) {
-  std::vector<const measuring::GridValues*> planes;
-  for (const auto& values : measurement) {
-    if (values.grid.layout) planes.push_back(&values);
+/// The file of each plane's plan.
+std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file,
+                                              std::size_t planes) {
+  if (planes <= 1) return std::vector(planes, file);
+  std::vector<std::filesystem::path> names;
+  for (std::size_t i = 1; i <= planes; ++i) {
+    names.push_back(file);
+    names.back().replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i));
   }
-  if (planes.empty()) {
-    throw UsageError(fmt::format("{}: points have no plan; measure a plane, by --plane or --grid",
-                                 file.string()));
-  }
-  std::map<std::filesystem::path, std::string> plans;
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    std::filesystem::path name = file;
-    if (planes.size() > 1) {
-      name.replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i + 1));
-    }
-    plans[name] = measuring::plan_svg(*planes[i], planes[i]->total(), colours);
-  }
-  return plans;
+  return names;
 }
 
 }  // namespace
@@ -109,8 +100,7 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
   add_false_colour_options(command, options.false_colour);
 }
 
-MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options,
-                               const std::filesystem::path& scene)
+MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
     : colours_(options.false_colour.of("lux")), honeybee_(options.honeybee) {
   const std::map<std::string, std::vector<std::filesystem::path>*> lists{
       {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}};
@@ -126,9 +116,25 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options,
   }
   if (!honeybee_.empty()) {
     make_folder(honeybee_);
-    all.push_back(honeybee_ / "grids_info.json");
+    for (const char* name : measuring::honeybee_tables) all.push_back(honeybee_ / name);
   }
-  check_outputs(all, scene);
+  check_outputs(all);
+}
+
+void MeasureOutputs::check_names(const std::vector<measuring::SensorGrid>& grids) const {
+  if (!honeybee_.empty()) {
+    for (const auto& name : measuring::honeybee_names(grids)) note_output(honeybee_ / name);
+  }
+  const auto planes = static_cast<std::size_t>(std::count_if(
+      grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
+  for (const auto& file : svg_) {
+    if (planes == 0) {
+      throw UsageError(fmt::format("{}: points have no plan; measure a plane, by --plane or --grid",
+                                   file.string()));
+    }
+    if (planes == 1) continue;  // noted under its own name
+    for (const auto& name : plan_names(file, planes)) note_output(name);
+  }
 }
 
 void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
@@ -143,9 +149,14 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
         file,
         run_json(measurement, run).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   }
+  std::vector<const measuring::GridValues*> planes;
+  for (const auto& values : measurement) {
+    if (values.grid.layout) planes.push_back(&values);
+  }
   for (const auto& file : svg_) {
-    for (const auto& [name, svg] : plans_of(file, measurement, colours_)) {
-      write_file(name, svg);
+    const auto names = plan_names(file, planes.size());
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      write_file(names[i], measuring::plan_svg(*planes[i], planes[i]->total(), colours_));
     }
   }
   const std::string title = run.scene.source.filename().string();

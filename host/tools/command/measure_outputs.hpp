@@ -38,10 +38,15 @@ class MeasureOutputs {
  public:
   /// Errors: UsageError for a name with another ending; those of check_outputs; OutputError where
   /// the folder cannot be made.
-  MeasureOutputs(const MeasureOutputOptions& options, const std::filesystem::path& scene);
+  explicit MeasureOutputs(const MeasureOutputOptions& options);
 
-  /// A plan of each plane goes to the .svg, numbered where there are several.
-  /// Errors: OutputError; UsageError where a plan is asked for and there is no plane.
+  /// Notes the files whose names follow from what is measured: a plan of each plane goes to the
+  /// .svg, numbered where there are several, and a file of each grid to the folder.
+  /// Errors: UsageError where a plan is asked for and there is no plane, or where two grids have
+  /// one file; those of note_output.
+  void check_names(const std::vector<measuring::SensorGrid>& grids) const;
+
+  /// Errors: OutputError.
   void write(const measuring::Measurement& measurement, const MeasureRun& run) const;
 
  private:

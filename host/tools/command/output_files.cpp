@@ -2,26 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <set>
-
 #include "common/output_file.hpp"
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
+#include "tools/command/render_options.hpp"
 
 namespace photile::app {
 
-void check_outputs(std::span<const std::filesystem::path> outputs,
-                   const std::filesystem::path& input) {
-  std::set<std::filesystem::path> seen;
+void note_inputs_of(const RenderOptions& options) {
+  note_input(options.scene);
+  for (const LightProfile& profile : options.load.profiles) note_input(profile.file);
+  note_input(options.load.environment.file);
+  note_input(options.load_maps);
+}
+
+void check_outputs(std::span<const std::filesystem::path> outputs) {
   for (const auto& output : outputs) {
-    std::error_code ignored;  // files that do not exist are told apart by name
-    if (std::filesystem::equivalent(output, input, ignored)) {
-      throw UsageError(
-          fmt::format("{}: is the input, too; choose another output", output.string()));
-    }
+    note_output(output);
     const OutputFile probe(output);
-    if (!seen.insert(std::filesystem::weakly_canonical(output)).second) {
-      throw UsageError(fmt::format("{}: is named as output twice; remove one", output.string()));
-    }
   }
 }
 

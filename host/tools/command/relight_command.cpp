@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "tools/command/commands.hpp"
@@ -37,7 +38,8 @@ void run_relight(const RelightOptions& options) {
   if (outputs.empty() && !changes.empty()) {
     throw UsageError("no output; give -o FILE.exr or -o FILE.png");
   }
-  check_outputs(outputs.files(), options.input);
+  note_input(options.input);
+  check_outputs(outputs.files());
 
   if (outputs.empty()) {
     print_lights(read_light_mix(read_header(options.input)));

@@ -47,7 +47,8 @@ PictureOutputs check_outputs_of(const RenderOptions& options) {
   if (!options.statistics.empty()) files.emplace_back(options.statistics);
   if (!options.glare.empty()) files.emplace_back(options.glare);
   if (!options.save_maps.empty()) files.emplace_back(options.save_maps);
-  check_outputs(files, options.scene);
+  note_inputs_of(options);
+  check_outputs(files);
   return outputs;
 }
 

@@ -2,14 +2,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/output_file.hpp"
+#include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
@@ -127,7 +128,11 @@ void run_trade(TradeOptions& options) {
   apply_words(render);
   const TradeFiles files(options.folder);
   make_folder(options.folder);
-  check_outputs(std::array{files.csv, files.json, files.plot, files.reference}, render.scene);
+  note_inputs_of(render);
+  note_input(options.reference);
+  std::vector<std::filesystem::path> outputs{files.csv, files.json, files.plot};
+  if (options.reference.empty()) outputs.push_back(files.reference);
+  check_outputs(outputs);
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);

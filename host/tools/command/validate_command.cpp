@@ -55,7 +55,7 @@ void run_validate(ValidateOptions& options) {
   parameters.by_paths = options.integrator != "photon-map";
   if (!options.json.empty()) {
     const std::filesystem::path file = options.json;
-    check_outputs(std::span(&file, 1), {});
+    check_outputs(std::span(&file, 1));
   }
   const auto cases = chosen_cases(options.only);
 

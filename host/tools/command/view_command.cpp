@@ -8,6 +8,7 @@
 
 #include "photile/errors.hpp"
 #include "tools/command/commands.hpp"
+#include "tools/command/output_files.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
 #include "tools/command/saved_maps_option.hpp"
@@ -33,6 +34,11 @@ void run_view(ViewOptions& options) {
   if (!std::filesystem::is_directory(options.outputs)) {
     throw UsageError(
         fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
+  }
+  note_inputs_of(render);
+  if (!render.save_maps.empty()) {
+    const std::filesystem::path file = render.save_maps;
+    check_outputs(std::span(&file, 1));
   }
 
   const ThreadLimit threads(render.threads);

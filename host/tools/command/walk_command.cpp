@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/run_files.hpp"
 #include "import/camera_path.hpp"
 #include "import/gltf/animation.hpp"
 #include "photile/camera_attributes.hpp"
@@ -74,6 +75,10 @@ class Walk {
         progress_(progress),
         scene_digest_(digest_of(scene)) {
     if (!options.png.empty()) png_names_.emplace(options.png);
+    for (int frame = 1; frame < count_; ++frame) {  // check_names has noted the first
+      note_output(names_.of(number(frame)));
+      if (png_names_) note_output(png_names_->of(number(frame)));
+    }
     if (!options.sheet.empty()) {
       const PrimaryHitParameters& film = options.render.parameters.film;
       sheet_.emplace(std::min(count_, most_on_sheet), film.width, film.height);
@@ -206,16 +211,19 @@ void check_names(const WalkOptions& options) {
     }
   };
   ends_in(options.output, ".exr");
-  std::vector<std::filesystem::path> files{walk::FrameNames(options.output).of(0)};
+  std::vector<std::filesystem::path> files{
+      walk::FrameNames(options.output).of(options.first_number)};
   if (!options.png.empty()) {
     ends_in(options.png, ".png");
-    files.push_back(walk::FrameNames(options.png).of(0));
+    files.push_back(walk::FrameNames(options.png).of(options.first_number));
   }
   if (!options.sheet.empty()) {
     ends_in(options.sheet, ".png");
     files.emplace_back(options.sheet);
   }
-  check_outputs(files, options.render.scene);
+  note_inputs_of(options.render);
+  note_input(options.path);
+  check_outputs(files);
 }
 
 void run_walk(WalkOptions& options) {

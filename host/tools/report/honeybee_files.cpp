@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
 
@@ -22,6 +23,17 @@ std::string identifier_of(const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<std::string> honeybee_names(const std::vector<SensorGrid>& grids) {
+  std::vector<std::string> names;
+  for (const SensorGrid& grid : grids) {
+    names.push_back(identifier_of(grid.name) + ".res");
+    if (std::find(names.begin(), names.end() - 1, names.back()) != names.end() - 1) {
+      throw UsageError(fmt::format("two grids are named '{}'; rename one", grid.name));
+    }
+  }
+  return names;
+}
 
 std::map<std::string, std::string> honeybee_files(const Measurement& measurement) {
   std::map<std::string, std::string> files;

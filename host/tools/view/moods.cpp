@@ -54,7 +54,7 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
   if (!std::filesystem::exists(file_)) return;
   std::string place = "the file";
   try {
-    const json document = json::parse(read_input_text(file_));
+    const json document = json::parse(read_own_text(file_));
     if (document.at("photile_moods").get<int>() != version) {
       throw std::invalid_argument(fmt::format("\"photile_moods\" is not {}", version));
     }
