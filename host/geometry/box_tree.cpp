@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace photile::groups {
+namespace photile::geometry {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
@@ -43,4 +43,4 @@ void BoxTree::build(std::span<const Box> boxes, std::uint32_t first, std::uint32
   build(boxes, middle, last);
 }
 
-}  // namespace photile::groups
+}  // namespace photile::geometry

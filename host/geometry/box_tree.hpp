@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/triangle_bvh.hpp"
+#include "geometry/box.hpp"
 
-namespace photile::groups {
+namespace photile::geometry {
 
 /// Split at the median of the boxes' centres along the longest axis, down to leaves of 4.
 class BoxTree {
@@ -64,4 +64,4 @@ class BoxTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace photile::groups
+}  // namespace photile::geometry

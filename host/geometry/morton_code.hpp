@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-namespace photile {
+namespace photile::geometry {
 
 /// Interleaves the bits of a cell's numbers, those of x lowest. Numbers are below 2^21.
 inline std::uint64_t morton_code(const glm::uvec3& cell) {
@@ -19,4 +19,4 @@ inline std::uint64_t morton_code(const glm::uvec3& cell) {
   return spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2;
 }
 
-}  // namespace photile
+}  // namespace photile::geometry

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace photile {
+namespace photile::geometry {
 
 /// Sorts items in ascending order of key_of(item), an unsigned number below 2^bits; equal ones keep
 /// their order. Digits from the lowest on, each shared among all cores: 2 (bits / 8) moves of an
@@ -50,4 +50,4 @@ void radix_sort(std::vector<Item>& items, int bits, const KeyOf& key_of) {
   }
 }
 
-}  // namespace photile
+}  // namespace photile::geometry

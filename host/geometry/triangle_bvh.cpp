@@ -9,7 +9,7 @@
 
 #include "geometry/morton_code.hpp"
 
-namespace photile::groups {
+namespace photile::geometry {
 namespace {
 
 constexpr int bits_per_axis = 20;
@@ -89,4 +89,4 @@ TriangleBvh::TriangleBvh(const Scene& scene) {
   }
 }
 
-}  // namespace photile::groups
+}  // namespace photile::geometry

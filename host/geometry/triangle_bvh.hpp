@@ -4,35 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <glm/glm.hpp>
-#include <limits>
 #include <vector>
 
+#include "geometry/box.hpp"
 #include "photile/scene.hpp"
 
-namespace photile::groups {
-
-/// Axis-parallel box; empty until extended. Its corners are vertices' own coordinates, so no
-/// rounding goes into it.
-struct Box {
-  glm::vec3 lower{std::numeric_limits<float>::infinity()};
-  glm::vec3 upper{-std::numeric_limits<float>::infinity()};
-
-  void extend(const glm::vec3& point) {
-    lower = glm::min(lower, point);
-    upper = glm::max(upper, point);
-  }
-  void extend(const Box& box) {
-    lower = glm::min(lower, box.lower);
-    upper = glm::max(upper, box.upper);
-  }
-};
-
-/// Square of the distance between two boxes; infinite if one is empty.
-inline float squared_distance(const Box& a, const Box& b) {
-  const glm::vec3 gap = glm::max(glm::vec3(0.0f), glm::max(a.lower - b.upper, b.lower - a.upper));
-  return glm::dot(gap, gap);
-}
+namespace photile::geometry {
 
 Box triangle_box(const Scene& scene, std::uint32_t triangle);
 
@@ -92,4 +69,4 @@ class TriangleBvh {
   std::vector<Box> boxes_;        ///< 2 * leaf_count_; boxes_[0] is not used
 };
 
-}  // namespace photile::groups
+}  // namespace photile::geometry

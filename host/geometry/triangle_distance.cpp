@@ -12,7 +12,7 @@
 #include "photile/neighbour_groups.hpp"
 
 namespace photile {
-namespace groups {
+namespace geometry {
 namespace {
 
 double squared_length(const glm::dvec3& v) { return glm::dot(v, v); }
@@ -77,7 +77,7 @@ double squared_point_triangle_distance(const glm::dvec3& point, const TriangleCo
                    squared_point_segment_distance(point, triangle[2], triangle[0])});
 }
 
-}  // namespace groups
+}  // namespace geometry
 
 double triangle_triangle_distance(const std::array<glm::dvec3, 3>& a,
                                   const std::array<glm::dvec3, 3>& b) {
@@ -87,12 +87,12 @@ double triangle_triangle_distance(const std::array<glm::dvec3, 3>& a,
   for (int i = 0; i < 3; ++i) {
     const glm::dvec3 &a0 = a[i], &a1 = a[(i + 1) % 3];
     const glm::dvec3 &b0 = b[i], &b1 = b[(i + 1) % 3];
-    if (groups::pierces(a0, a1, b, normal_b) || groups::pierces(b0, b1, a, normal_a)) return 0;
-    squared = std::min({squared, groups::squared_point_triangle_distance(a0, b),
-                        groups::squared_point_triangle_distance(b0, a)});
+    if (geometry::pierces(a0, a1, b, normal_b) || geometry::pierces(b0, b1, a, normal_a)) return 0;
+    squared = std::min({squared, geometry::squared_point_triangle_distance(a0, b),
+                        geometry::squared_point_triangle_distance(b0, a)});
     for (int j = 0; j < 3; ++j) {
       squared =
-          std::min(squared, groups::squared_inner_segment_distance(a0, a1, b[j], b[(j + 1) % 3]));
+          std::min(squared, geometry::squared_inner_segment_distance(a0, a1, b[j], b[(j + 1) % 3]));
     }
   }
   return std::sqrt(squared);

@@ -4,7 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-namespace photile::groups {
+namespace photile::geometry {
 
 using TriangleCorners = std::array<glm::dvec3, 3>;
 
@@ -12,4 +12,4 @@ using TriangleCorners = std::array<glm::dvec3, 3>;
 /// counts as its edges.
 double squared_point_triangle_distance(const glm::dvec3& point, const TriangleCorners& triangle);
 
-}  // namespace photile::groups
+}  // namespace photile::geometry

@@ -15,6 +15,8 @@ namespace photile {
 namespace {
 
 using namespace groups;
+using geometry::triangle_box;
+using geometry::TriangleBvh;
 
 class Search {
  public:

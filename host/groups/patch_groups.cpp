@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/box_tree.hpp"
+#include "geometry/triangle_bvh.hpp"
 #include "groups/group_lists.hpp"
 #include "groups/proximity_test.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -15,6 +16,9 @@ namespace photile {
 namespace {
 
 using namespace groups;
+using geometry::Box;
+using geometry::BoxTree;
+using geometry::triangle_box;
 
 /// Patches of fewer triangles are searched one triangle after the other.
 constexpr std::size_t fewest_for_tree = 8;

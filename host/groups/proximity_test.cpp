@@ -10,6 +10,8 @@
 namespace photile::groups {
 namespace {
 
+using geometry::TriangleCorners;
+
 TriangleCorners corners_of(const Scene& scene, std::uint32_t triangle) {
   const auto corners = scene.corners(triangle);
   return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
@@ -98,7 +100,7 @@ bool ProximityTest::within_by_corners(const TriangleBound& a, const TriangleBoun
   const bool a_is_smaller = a.radius < b.radius;
   const TriangleBound& small = a_is_smaller ? a : b;
   const double squared =
-      squared_point_triangle_distance(small.centre, a_is_smaller ? corners_b : corners_a);
+      geometry::squared_point_triangle_distance(small.centre, a_is_smaller ? corners_b : corners_a);
   if (squared <= squared_inner_) return true;
   const double farthest = outer_ + small.radius;
   if (squared > farthest * farthest) return false;

@@ -3,23 +3,17 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/box.hpp"
 #include "import/finishing.hpp"
 
 namespace photile::scene_io {
 namespace {
 
-struct Box {
-  glm::dvec3 low, high;
-  glm::dvec3 center() const { return 0.5 * (low + high); }
-  glm::dvec3 size() const { return high - low; }
-};
+using Box = geometry::BoxOf<double>;
 
 Box bounds_of(const Scene& scene) {
-  Box box{glm::dvec3(scene.vertices[0]), glm::dvec3(scene.vertices[0])};
-  for (const glm::vec3& vertex : scene.vertices) {
-    box.low = glm::min(box.low, glm::dvec3(vertex));
-    box.high = glm::max(box.high, glm::dvec3(vertex));
-  }
+  Box box;
+  for (const glm::vec3& vertex : scene.vertices) box.extend(glm::dvec3(vertex));
   return box;
 }
 
@@ -39,8 +33,8 @@ std::array<double, 6> coverage_of(const Scene& scene, const Box& box) {
     for (int axis = 0; axis < 3; ++axis) {
       const double margin = face_thickness * size[axis];
       const auto side = static_cast<std::size_t>(2 * axis);
-      if (high[axis] <= box.low[axis] + margin) covered[side] += area[axis];
-      if (low[axis] >= box.high[axis] - margin) covered[side + 1] += area[axis];
+      if (high[axis] <= box.lower[axis] + margin) covered[side] += area[axis];
+      if (low[axis] >= box.upper[axis] - margin) covered[side + 1] += area[axis];
     }
   }
   for (std::size_t side = 0; side < covered.size(); ++side) {
@@ -67,8 +61,8 @@ Camera through_side(const Box& box, int axis, double sign) {
   outwards[axis] = sign;
   const glm::dvec3 size = box.size();
   const double distance = distance_that_frames(size[axis == 0 ? 2 : 0], size.y);
-  const glm::dvec3 eye = box.center() + outwards * (0.5 * size[axis] + distance);
-  return Camera::look_at(eye, box.center(), up, field_of_view);
+  const glm::dvec3 eye = box.centre() + outwards * (0.5 * size[axis] + distance);
+  return Camera::look_at(eye, box.centre(), up, field_of_view);
 }
 
 /// A lower bound of the distance from `point` to any triangle, by the triangles' bounding boxes.
@@ -87,7 +81,7 @@ double free_space(const Scene& scene, const glm::dvec3& point) {
 Camera inside(const Scene& scene, const Box& box) {
   constexpr double inset = 0.1, eye_height = 0.6, target_height = 0.4;  // of the box
   const auto at = [&](double x, double y, double z) {
-    return box.low + glm::dvec3(x, y, z) * box.size();
+    return box.lower + glm::dvec3(x, y, z) * box.size();
   };
   Camera best;
   double most_space = -1.0;
@@ -106,8 +100,8 @@ Camera inside(const Scene& scene, const Box& box) {
 Camera outside(const Box& box) {
   const glm::dvec3 direction = glm::normalize(glm::dvec3(0.4, 0.35, 1.0));
   const double radius = 0.5 * glm::length(box.size());
-  const glm::dvec3 eye = box.center() + direction * (radius / std::sin(0.5 * field_of_view));
-  return Camera::look_at(eye, box.center(), up, field_of_view);
+  const glm::dvec3 eye = box.centre() + direction * (radius / std::sin(0.5 * field_of_view));
+  return Camera::look_at(eye, box.centre(), up, field_of_view);
 }
 
 }  // namespace

@@ -6,25 +6,13 @@
 #include <numeric>
 #include <span>
 
+#include "geometry/box.hpp"
+
 namespace photile::maps {
 namespace {
 
 constexpr std::size_t few_members = 24;  ///< a list this short is not worth splitting
 constexpr std::size_t few_photons = 16;  ///< nor is one for this many photons
-
-struct Box {
-  glm::vec3 low{std::numeric_limits<float>::infinity()};
-  glm::vec3 high{-std::numeric_limits<float>::infinity()};
-
-  void include(const glm::vec3& p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  bool is_within(float reach, const Box& other) const {
-    const glm::vec3 gap = glm::max(glm::max(low - other.high, other.low - high), glm::vec3(0.0f));
-    return glm::dot(gap, gap) <= reach * reach;
-  }
-};
 
 constexpr std::size_t triangles_per_chunk = 1024;  ///< sided ones
 
@@ -39,8 +27,8 @@ struct Lists {
 class Splitter {
  public:
   /// `positions`: of the photons that the next lists are for; the last of `lists.list_of_photon`.
-  Splitter(const std::vector<Box>& map_boxes, std::span<const glm::vec3> positions, float reach,
-           Lists& lists)
+  Splitter(const std::vector<geometry::Box>& map_boxes, std::span<const glm::vec3> positions,
+           float reach, Lists& lists)
       : boxes_(map_boxes),
         positions_(positions),
         reach_(reach),
@@ -48,14 +36,16 @@ class Splitter {
         first_photon_(lists.list_of_photon.size() - positions.size()) {}
 
   void split(std::span<std::uint32_t> photons, std::span<const std::uint32_t> members) {
-    Box box;
-    for (const std::uint32_t photon : photons) box.include(positions_[photon]);
+    geometry::Box box;
+    for (const std::uint32_t photon : photons) box.extend(positions_[photon]);
     std::vector<std::uint32_t> near;
     near.reserve(members.size());
     for (const std::uint32_t member : members) {
-      if (boxes_[member / 2].is_within(reach_, box)) near.push_back(member);
+      if (geometry::squared_distance(boxes_[member / 2], box) <= reach_ * reach_) {
+        near.push_back(member);
+      }
     }
-    const glm::vec3 extent = box.high - box.low;
+    const glm::vec3 extent = box.size();
     const bool small = glm::length(extent) <= 0.5f * reach_;
     if (near.size() <= few_members || photons.size() <= few_photons || small) {
       add_list(photons, near);
@@ -64,7 +54,7 @@ class Splitter {
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0
                      : extent.y >= extent.z                       ? 1
                                                                   : 2;
-    const float middle = 0.5f * (box.low[axis] + box.high[axis]);
+    const float middle = 0.5f * (box.lower[axis] + box.upper[axis]);
     const auto half = std::partition(photons.begin(), photons.end(), [&](std::uint32_t photon) {
       return positions_[photon][axis] < middle;
     });
@@ -82,7 +72,7 @@ class Splitter {
     lists_.members.insert(lists_.members.end(), members.begin(), members.end());
   }
 
-  const std::vector<Box>& boxes_;
+  const std::vector<geometry::Box>& boxes_;
   std::span<const glm::vec3> positions_;
   float reach_;
   Lists& lists_;
@@ -90,11 +80,11 @@ class Splitter {
 };
 
 /// The box of each pair of maps: of a triangle, or of a patch.
-std::vector<Box> map_boxes(const Scene& scene, const Patches& patches) {
-  std::vector<Box> boxes(patches.empty() ? scene.triangle_count() : patches.count());
+std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches) {
+  std::vector<geometry::Box> boxes(patches.empty() ? scene.triangle_count() : patches.count());
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    Box& box = boxes[patches.map(sided(t, 0)) / 2];
-    for (const glm::vec3& corner : scene.corners(t)) box.include(corner);
+    geometry::Box& box = boxes[patches.map(sided(t, 0)) / 2];
+    for (const glm::vec3& corner : scene.corners(t)) box.extend(corner);
   }
   return boxes;
 }
@@ -103,7 +93,7 @@ std::vector<Box> map_boxes(const Scene& scene, const Patches& patches) {
 
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
                                   const NeighbourGroups& groups, float reach) {
-  const std::vector<Box> boxes = map_boxes(scene, groups.patches);
+  const std::vector<geometry::Box> boxes = map_boxes(scene, groups.patches);
   const std::size_t triangle_total = groups.offsets.size() - 1;
   std::vector<Lists> chunks((triangle_total + triangles_per_chunk - 1) / triangles_per_chunk);
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {

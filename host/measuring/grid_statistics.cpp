@@ -7,17 +7,23 @@
 namespace photile::measuring {
 namespace {
 
+/// Which sensors the figures of a grid are about.
+struct Extremes {
+  std::size_t darkest, brightest;
+
+  static Extremes of(std::span<const double> values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {static_cast<std::size_t>(low - values.begin()),
+            static_cast<std::size_t>(high - values.begin())};
+  }
+};
+
 /// The figures of one set of values.
 struct Figures {
-  double mean = 0, minimum = 0, maximum = 0;
-  std::size_t darkest = 0, brightest = 0;
+  double mean = 0, minimum, maximum;
 
-  explicit Figures(std::span<const double> values) {
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    minimum = *low;
-    maximum = *high;
-    darkest = static_cast<std::size_t>(low - values.begin());
-    brightest = static_cast<std::size_t>(high - values.begin());
+  Figures(std::span<const double> values, const Extremes& extremes)
+      : minimum(values[extremes.darkest]), maximum(values[extremes.brightest]) {
     for (const double value : values) mean += value;
     mean /= static_cast<double>(values.size());
   }
@@ -61,7 +67,8 @@ GridStatistics statistics_of(std::span<const std::vector<float>> repeats, std::s
   }
   std::vector<double> means(sums);
   for (double& mean : means) mean /= number;
-  const Figures all(means);
+  const Extremes extremes = Extremes::of(means);
+  const Figures all(means, extremes);
 
   GridStatistics result;
   std::vector<Figures> without;
@@ -70,9 +77,10 @@ GridStatistics statistics_of(std::span<const std::vector<float>> repeats, std::s
     for (std::size_t i = 0; i < count; ++i) {
       others[i] = (sums[i] - static_cast<double>(repeat[first + i])) / (number - 1);
     }
-    const Figures& figures = without.emplace_back(others);
-    result.minimum_at_most += static_cast<double>(repeat[first + figures.darkest]) / number;
-    result.maximum_at_least += static_cast<double>(repeat[first + figures.brightest]) / number;
+    without.emplace_back(others, extremes);
+    const Extremes seen = Extremes::of(others);
+    result.minimum_at_most += static_cast<double>(repeat[first + seen.darkest]) / number;
+    result.maximum_at_least += static_cast<double>(repeat[first + seen.brightest]) / number;
   }
   const auto measured = [&](auto of) { return Measured{of(all), jackknife_error(without, of)}; };
   result.mean = measured([](const Figures& f) { return f.mean; });

@@ -18,7 +18,12 @@ std::vector<Measured> means_of(std::span<const std::vector<float>> repeats);
 
 /// Of the sensors first .. first + count - 1. Standard errors are those of the jackknife over
 /// repeats (Tukey, "Bias and confidence in not-quite large samples", 1958), which knows that
-/// sensors share photons.
+/// sensors share photons. It holds the darkest and the brightest sensor of all repeats: a jackknife
+/// that chose them anew would converge to nothing where several are nearly as dark. The square of
+/// the error of a minimum is then the variance of the reading of the sensor that looks darkest. In
+/// the mean that is the variance of the minimum where one sensor is darkest in all measurements,
+/// and an upper bound of it where noise chooses (Poincare's inequality for normal readings, whether
+/// they are correlated or not). It says nothing of the bias, which the next two figures bound.
 struct GridStatistics {
   Measured mean;        ///< Em
   Measured minimum;     ///< Emin: the least of the sensors' means

@@ -6,6 +6,7 @@
 #include "photile/quiet_progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/flush_denormals.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 
 namespace photile::measuring {
@@ -39,7 +40,8 @@ Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, co
   QuietProgress quiet(progress);
   progress.begin("measure", static_cast<std::uint64_t>(parameters.repeats), "repeats");
   for (int repeat = 0; repeat < parameters.repeats; ++repeat) {
-    const std::uint64_t seed = parameters.photons.film.seed + static_cast<std::uint64_t>(repeat);
+    const std::uint64_t seed =
+        trace::seed_of_repeat(parameters.photons.film.seed, static_cast<std::uint32_t>(repeat));
     photons.film.seed = photons.photons.seed = seed;
     if (parameters.by_paths) {
       const auto result = gather_by_paths(scene, sensors, parameters.gathering, seed, quiet);

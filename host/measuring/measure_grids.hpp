@@ -15,7 +15,7 @@ struct MeasuringParameters {
   GatherParameters gathering;
   int repeats = defaults::measuring_repeats;          ///< >= 2, each with its own seed
   bool by_paths = false;                              ///< and not by photon maps
-  RenderParameters photons;                           ///< of each repeat; its seed is the first
+  RenderParameters photons;                           ///< of each repeat, whose seeds follow from this one
   double maintenance = defaults::maintenance_factor;  ///< factor of all values
 };
 

@@ -91,6 +91,7 @@ class SurfacePath {
       // A pane of thin glass passes light straight on, and looking at lamps sees through it.
       const bool straight = scattered.direction == direction;
       if (!straight || !trace::material_of(scene_, point).thin) density_ = 0.0f;
+      radiance_factor_ *= scattered.radiance_factor;
       direction = scattered.direction;
       return survives(scattered.weight, numbers);
     }
@@ -133,7 +134,8 @@ class SurfacePath {
   }
 
   void add(std::uint32_t layer, const LightWeights& light) {
-    found_.push_back({layer, light.irradiance, light.radiance});
+    const auto factor = static_cast<float>(radiance_factor_);
+    found_.push_back({layer, factor * light.irradiance, factor * light.radiance});
   }
 
   const RayScene& rays_;
@@ -142,10 +144,11 @@ class SurfacePath {
   const RandomStream& random_;
   std::vector<PathLight>& found_;
 
-  LightWeights weights_;  ///< of the radiance that arrives along the path
-  glm::vec3 left_{1.0f};  ///< of the light since the first direction was chosen
-  glm::vec3 from_{0.0f};  ///< the last opaque point, metres
-  float density_ = 0;     ///< of the direction from there; 0 after a mirror or glass
+  LightWeights weights_;        ///< of the radiance that arrives along the path
+  double radiance_factor_ = 1;  ///< of trace::Scattered, so far; roulette does not play with it
+  glm::vec3 left_{1.0f};        ///< of the light since the first direction was chosen
+  glm::vec3 from_{0.0f};        ///< the last opaque point, metres
+  float density_ = 0;           ///< of the direction from there; 0 after a mirror or glass
   std::uint32_t bounce_ = 1;
   std::uint32_t holes_ = 0;
 };

@@ -29,9 +29,9 @@ glm::dvec3 sample_point(const Corners& corners, int i) {
 }
 
 /// Holds a triangle moved from `low` to `high`; rounded outwards.
-groups::Box box_of_prism(const Corners& corners, const glm::dvec3& low, const glm::dvec3& high) {
+geometry::Box box_of_prism(const Corners& corners, const glm::dvec3& low, const glm::dvec3& high) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  groups::Box box;
+  geometry::Box box;
   for (const glm::dvec3& corner : corners) {
     for (const glm::dvec3& point : {corner + low, corner + high}) box.extend(glm::vec3(point));
   }
@@ -128,7 +128,7 @@ class ExposureFinder {
     std::vector<Projection> covers;
     const Projection outline(own_corners, normal);
     // A cover lies within the slab, and so where it covers within the prism over the triangle.
-    const groups::Box prism =
+    const geometry::Box prism =
         box_of_prism(own_corners, -coincident * radius_ * normal, reach * radius_ * normal);
     planes_.visit_others(triangle_of(own), prism, 0, [&](std::uint32_t triangle) {
       constexpr bool enough = false;  // all of them are wanted

@@ -14,7 +14,7 @@ PlaneTree::PlaneTree(const SurfaceMesh& mesh, const Facets& facets)
   plane_.assign(2 * leaves, nothing);
   for (std::size_t i = 0; i < tree_.order().size(); ++i) {
     const std::uint32_t triangle = tree_.order()[i];
-    std::uint32_t& leaf = plane_[leaves + i / groups::TriangleBvh::leaf_size];
+    std::uint32_t& leaf = plane_[leaves + i / geometry::TriangleBvh::leaf_size];
     if (mesh.counts(triangle)) leaf = join(leaf, facets.plane[triangle]);
   }
   for (std::size_t node = leaves; node-- > 1;) {

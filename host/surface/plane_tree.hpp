@@ -19,7 +19,7 @@ class PlaneTree {
   /// Calls visit(other) for triangles of other facets than `triangle` in leaves at most `radius`
   /// metres from `box`, until it returns true.
   template <class Visit>
-  void visit_others(std::uint32_t triangle, const groups::Box& box, double radius,
+  void visit_others(std::uint32_t triangle, const geometry::Box& box, double radius,
                     Visit&& visit) const {
     const std::uint32_t own = mesh_.counts(triangle) ? facets_.plane[triangle] : nothing;
     tree_.visit_within(
@@ -40,7 +40,7 @@ class PlaneTree {
 
   const SurfaceMesh& mesh_;
   const Facets& facets_;
-  groups::TriangleBvh tree_;
+  geometry::TriangleBvh tree_;
   std::vector<std::uint32_t> plane_;  ///< per node: as Facets::plane, or one of the above
 };
 

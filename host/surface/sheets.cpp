@@ -42,8 +42,8 @@ struct LoneEdge {
   std::uint32_t triangle;
 };
 
-groups::Box box_of(const LoneEdge& edge) {
-  groups::Box box;
+geometry::Box box_of(const LoneEdge& edge) {
+  geometry::Box box;
   box.extend(glm::vec3(edge.from));
   box.extend(glm::vec3(edge.to));
   return box;
@@ -65,9 +65,9 @@ bool run_along(const LoneEdge& a, const LoneEdge& b, double tolerance) {
 
 void join_along_edges(const SurfaceMesh& mesh, const std::vector<LoneEdge>& edges, double tolerance,
                       double cos_angle, SheetUnion& sheets) {
-  std::vector<groups::Box> boxes;
+  std::vector<geometry::Box> boxes;
   for (const LoneEdge& edge : edges) boxes.push_back(box_of(edge));
-  const groups::BoxTree tree(boxes);
+  const geometry::BoxTree tree(boxes);
   const auto limit = static_cast<float>(tolerance * tolerance);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     tree.visit_within(boxes[i], limit, [&](std::uint32_t j) {

@@ -23,7 +23,7 @@ class NearbyPlanes {
   bool near(std::uint32_t triangle) const {
     bool found = false;
     planes_.visit_others(
-        triangle, groups::triangle_box(mesh_.scene, triangle), radius_, [&](std::uint32_t other) {
+        triangle, geometry::triangle_box(mesh_.scene, triangle), radius_, [&](std::uint32_t other) {
           const double cosine = glm::dot(mesh_.normal[triangle], mesh_.normal[other]);
           return found = !(std::abs(cosine) < least_cosine_);
         });
@@ -66,7 +66,7 @@ std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& fac
   for (std::uint32_t t = 0; t < is_piece.size(); ++t) {
     if (is_piece[t] == 0) continue;
     const auto [a, b, c] = mesh.scene.corners(t);
-    pieces.push_back({.box = groups::triangle_box(mesh.scene, t),
+    pieces.push_back({.box = geometry::triangle_box(mesh.scene, t),
                       .a = a,
                       .b = b,
                       .c = c,

@@ -13,7 +13,7 @@ namespace photile::surface {
 
 /// As PhotileSurfaceLeaf describes it, and its box.
 struct SurfacePiece {
-  groups::Box box = {};
+  geometry::Box box = {};
   glm::vec3 a{0.0f}, b{0.0f}, c{0.0f};
   std::uint32_t facet = 0;
   std::uint32_t triangle = 0;  ///< with PHOTILE_PIECE_BORDER where it is a border edge

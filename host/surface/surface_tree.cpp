@@ -9,7 +9,7 @@
 namespace photile::surface {
 namespace {
 
-using groups::Box;
+using geometry::Box;
 
 constexpr std::size_t width = PHOTILE_SURFACE_WIDTH;
 constexpr int bin_count = 16;

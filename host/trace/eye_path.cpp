@@ -21,7 +21,7 @@ void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const Ey
                     setup.direct->count, samples, found);
   const float sample_weight = 1.0f / static_cast<float>(setup.parameters->samples_per_pixel);
   for (const ReceivedLight& light : found) {
-    record.direct.push_back({ray.pixel, light.layer, ray.throughput * light.radiance,
+    record.direct.push_back({ray.pixel, light.layer, ray.radiance_weight() * light.radiance,
                              sample_weight * static_cast<float>(luminance(light.irradiance))});
   }
 }
@@ -32,7 +32,7 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
                 EyeRecord& record) {
   const scene_io::Reflectance surface = reflectance(*rays.scene, point);
   record.hits.push_back(
-      {point.position, point.sided_triangle(), ray.pixel, ray.throughput, surface.albedo});
+      {point.position, point.sided_triangle(), ray.pixel, ray.radiance_weight(), surface.albedo});
   if (!rays.needs.glossy) return;
   const ShadingNormals normals = shading_normals(*rays.scene, point, ray.direction);
   record.glossy.push_back(
@@ -62,7 +62,8 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
         if (radiance == glm::vec3(0.0f)) continue;
         const float weight =
             other ? weight_against(other->lamps.density(light, ray.direction)) : 1.0f;
-        record.emission.push_back({ray.pixel, light.light(), weight * ray.throughput * radiance});
+        record.emission.push_back(
+            {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});
       }
       return;
     }
@@ -71,7 +72,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
       const float weight = other ? weight_against(other->lamps.density(start, point)) : 1.0f;
       record.emission.push_back({ray.pixel, light,
-                                 weight * ray.throughput * (*setup.emitted_radiance)[light] *
+                                 weight * ray.radiance_weight() * (*setup.emitted_radiance)[light] *
                                      emission_texel(scene, point)});
     }
     if (material_of(scene, point).interaction == Interaction::opaque) {
@@ -86,6 +87,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
     const Scattered scattered =
         scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word));
     ray.throughput *= scattered.weight;
+    ray.radiance_factor *= scattered.radiance_factor;
     straight = straight && scattered.direction == ray.direction && material_of(scene, point).thin;
     ray.direction = scattered.direction;
     ray.origin = point.origin_towards(ray.direction);

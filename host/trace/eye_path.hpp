@@ -68,6 +68,10 @@ struct EyeRay {
   glm::vec3 direction;  ///< unit
   glm::vec3 throughput;
   std::uint32_t pixel;
+  double radiance_factor = 1;  ///< of Scattered, so far; not in `throughput`
+
+  /// What radiance that the ray meets counts at its start.
+  glm::vec3 radiance_weight() const { return throughput * static_cast<float>(radiance_factor); }
 };
 
 /// Appends what a ray that meets an opaque surface sees there.

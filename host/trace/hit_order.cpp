@@ -21,8 +21,8 @@ struct Key {
 
 }  // namespace
 
-HitCells::HitCells(const Box& box) : low_(box.low) {
-  const glm::vec3 extent = box.high - box.low;
+HitCells::HitCells(const geometry::Box& box) : low_(box.lower) {
+  const glm::vec3 extent = box.size();
   for (int axis = 0; axis < 3; ++axis) {
     if (extent[axis] > 0) cells_per_metre_[axis] = float{cells_per_axis} / extent[axis];
   }
@@ -30,10 +30,10 @@ HitCells::HitCells(const Box& box) : low_(box.low) {
 
 std::uint64_t HitCells::morton_code(const glm::vec3& position) const {
   const glm::vec3 cell = cells_per_metre_ * (position - low_);
-  return photile::morton_code(glm::uvec3(glm::clamp(cell, 0.0f, float{cells_per_axis - 1})));
+  return geometry::morton_code(glm::uvec3(glm::clamp(cell, 0.0f, float{cells_per_axis - 1})));
 }
 
-std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const Box& box,
+std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
                                     std::span<const std::uint32_t> map_of) {
   std::vector<std::uint32_t> first{0};
   for (const EyeRecord& record : records) {
@@ -55,7 +55,8 @@ std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const Bo
   });
   std::uint32_t last = 0;
   for (const std::uint32_t map : last_map) last = std::max(last, map);
-  radix_sort(keys, code_bits + std::bit_width(last), [](const Key& key) { return key.order; });
+  geometry::radix_sort(keys, code_bits + std::bit_width(last),
+                       [](const Key& key) { return key.order; });
   std::vector<HitPlace> places(keys.size());
   tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
     const std::uint32_t record = record_of[keys[i].number];

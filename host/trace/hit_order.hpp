@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/box.hpp"
 #include "trace/eye_path.hpp"
 
 namespace photile::trace {
@@ -16,7 +17,7 @@ class HitCells {
   /// So that code and map together, which are below 2^30 (limits::max_triangles), fit 64 bits.
   static constexpr int bits_per_axis = 11;
 
-  explicit HitCells(const Box& box);
+  explicit HitCells(const geometry::Box& box);
 
   /// Along the Morton curve. Positions outside count as on the border.
   std::uint64_t morton_code(const glm::vec3& position) const;
@@ -34,7 +35,7 @@ struct HitPlace {
 
 /// All hits in the order map, Morton code of their cell of `box`, place.
 ///   map_of   per sided triangle; empty where a sided triangle is the map itself
-std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const Box& box,
+std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
                                     std::span<const std::uint32_t> map_of);
 
 }  // namespace photile::trace

@@ -95,7 +95,8 @@ std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
 }
 
 glm::vec3 LightSampler::beyond(const glm::vec3& position, const glm::vec3& direction) const {
-  return position + static_cast<float>(2.5 * bounds_.radius) * direction;
+  const double reach = glm::distance(glm::dvec3(position), bounds_.center) + 1.5 * bounds_.radius;
+  return position + static_cast<float>(std::max(2.5 * bounds_.radius, reach)) * direction;
 }
 
 LightSample LightSampler::towards_sun(std::uint32_t light, const glm::vec3& position) const {

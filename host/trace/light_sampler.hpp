@@ -65,6 +65,7 @@ class LightSampler {
   LightSample towards_sun(std::uint32_t light, const glm::vec3& position) const;
   LightSample towards_distant(std::uint32_t light, const glm::vec3& position,
                               const RandomBlock& place) const;
+  /// A place in that direction behind all of the scene, wherever the position is.
   glm::vec3 beyond(const glm::vec3& position, const glm::vec3& direction) const;
 
   const Scene* scene_;

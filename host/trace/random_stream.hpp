@@ -23,7 +23,8 @@ enum class Purpose : std::uint32_t {
   path_holes,
   direct_light,
   gather_direction,
-  hemisphere_direction
+  hemisphere_direction,
+  repeat
 };
 
 /// Four independent random words.
@@ -78,5 +79,14 @@ class RandomStream {
   std::uint32_t path_low_;
   std::uint32_t path_high_and_stream_;
 };
+
+/// The seed of a repeat of what would be done with `seed`. Repeats of neighbouring seeds have
+/// nothing in common, as seeds seed, seed + 1 ... of their repeats would.
+constexpr std::uint64_t seed_of_repeat(std::uint64_t seed, std::uint32_t repeat) {
+  const PhiloxCounter words =
+      philox4x32_10({repeat, 0, 0, static_cast<std::uint32_t>(Purpose::repeat)},
+                    {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)});
+  return std::uint64_t{words[1]} << 32 | words[0];
+}
 
 }  // namespace photile::trace

@@ -35,13 +35,9 @@ bool finite(const glm::vec3& origin, const glm::vec3& direction) {
   return sum < std::numeric_limits<float>::infinity();  // false for NaN as well
 }
 
-Box bounds_of(const Scene& scene) {
-  Box box{glm::vec3(std::numeric_limits<float>::infinity()),
-          glm::vec3(-std::numeric_limits<float>::infinity())};
-  for (const glm::vec3& vertex : scene.vertices) {
-    box.low = glm::min(box.low, vertex);
-    box.high = glm::max(box.high, vertex);
-  }
+geometry::Box bounds_of(const Scene& scene) {
+  geometry::Box box;
+  for (const glm::vec3& vertex : scene.vertices) box.extend(vertex);
   return box;
 }
 

@@ -9,15 +9,11 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/box.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/triangle_hit.hpp"
 
 namespace photile {
-
-/// Axis-aligned box, metres.
-struct Box {
-  glm::vec3 low, high;
-};
 
 struct RayScene::Impl {
   explicit Impl(const Scene& scene);
@@ -34,7 +30,7 @@ struct RayScene::Impl {
 
   const Scene* scene;
   SceneNeeds needs;
-  Box bounds;                          ///< encloses all triangles
+  geometry::Box bounds;                ///< encloses all triangles, metres
   std::atomic<std::int64_t> bytes{0};  ///< outlives the device, which reports to it
   RTCDevice device = nullptr;
   RTCScene bvh = nullptr;

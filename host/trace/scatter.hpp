@@ -13,15 +13,19 @@ namespace photile::trace {
 struct Scattered {
   glm::vec3 direction;  ///< unit
   glm::vec3 weight;     ///< multiplies the photon's flux or the eye ray's throughput
+  /// What multiplies the throughput of a ray from the eye as well: radiance over the squared index
+  /// of refraction is what a boundary keeps, so that radiance seen through one is that beyond it
+  /// times (index here / index beyond)^2. The flux that photons carry has no such factor (Veach,
+  /// "Robust Monte Carlo methods for light transport simulation", 1997, section 5.2). In double
+  /// precision: into a glass and out again it is 1 to the last bit of a float.
+  double radiance_factor = 1;
 };
 
 /// Words of the RandomBlock of one interaction.
 enum ScatterWord : int { choice_word = 0, direction_word = 1, roulette_word = 3 };
 
 /// Reflection and refraction at a mirror or glass; `choice` in [0, 1) picks one of them with the
-/// probability that Fresnel's equations give it. Also used for rays from the eye: the radiance
-/// scaling by the squared index of refraction is left out, since it cancels where camera and
-/// surface are both in air.
+/// probability that Fresnel's equations give it.
 Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
                            const glm::vec3& direction, float choice);
 

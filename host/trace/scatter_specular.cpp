@@ -38,6 +38,13 @@ Deflected deflect(const Material& material, bool entering, const glm::vec3& dire
   return {material.thin ? direction : refract(direction, normal, cos_i, eta), true};
 }
 
+/// Of a ray that the surface transmits: (index where it comes from / index beyond)^2.
+double radiance_factor(const Material& material, bool entering) {
+  if (material.thin) return 1;
+  const double index{material.index_of_refraction};
+  return entering ? 1 / (index * index) : index * index;
+}
+
 }  // namespace
 
 float fresnel_dielectric(float cos_i, float eta) {
@@ -68,7 +75,8 @@ Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
     deflected = deflect(material, entering, direction, point.normal, choice);
 
   if (material.interaction == Interaction::mirror) return {deflected.direction, material.specular};
-  return {deflected.direction, deflected.transmitted ? material.transmission : glm::vec3(1.0f)};
+  if (!deflected.transmitted) return {deflected.direction, glm::vec3(1.0f)};
+  return {deflected.direction, material.transmission, radiance_factor(material, entering)};
 }
 
 }  // namespace photile::trace

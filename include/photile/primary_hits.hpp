@@ -27,7 +27,7 @@ struct PrimaryHits {
   std::vector<glm::vec3> position;  ///< metres
   std::vector<std::uint32_t> sided_triangle;
   std::vector<std::uint32_t> pixel;       ///< y * width + x
-  std::vector<glm::vec3> throughput;      ///< of the specular chain from the eye to the hit
+  std::vector<glm::vec3> throughput;      ///< what the hit's radiance counts in its pixel
   std::vector<glm::vec3> diffuse_albedo;  ///< textured Lambertian albedo at the hit
   std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
   std::vector<HitLobe> lobe;              ///< empty unless glossy

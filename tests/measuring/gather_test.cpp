@@ -153,6 +153,24 @@ TEST_CASE("under an even sky a sensor reads pi L, a deviation of 1% would be see
   CHECK_VERDICT(paths_give(scene, {{0.2, 0.1, 0.5}, up}, {.rays = 4096}, truth, 0.01 * truth));
 }
 
+TEST_CASE("sensors far outside the scene lie in its shadow") {
+  Scene scene = test::plate(test::diffuse(glm::vec3(0)), 2);
+  Light sun = test::point_light("sun", {0, 0, 0});
+  sun.kind = LightKind::directional;
+  sun.direction = {0, 0, -1};
+  Light disc = sun;
+  disc.name = "sun with a disc";
+  disc.angular_diameter = 0.01f;
+  scene.lights = {sun, disc};
+  const double shadowless = 1 / (pi * std::pow(bounding_sphere(scene).radius, 2));
+  const std::vector<Sensor> sensors{{{0.1, 0.2, -40}, up}, {{3, 0.2, -40}, up}};
+  const auto layers = gather_by_paths(scene, sensors, {.rays = 256}, 1).layers;
+  for (std::size_t light = 0; light < 2; ++light) {
+    CHECK(luminous(layers, light, 0) == 0);
+    CHECK(luminous(layers, light, 1) == Approx(shadowless).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("a sensor that lies on a surface reads what paths find there") {
   const Scene scene = test::furnished_room();
   const std::vector<Sensor> sensors{{{1.0, 1.0, 0}, up}, {{3.5, 0.4, 0}, up}};

@@ -1,6 +1,7 @@
 // Figures of a grid and their errors, against values that are known, and against their own spread.
 #include "measuring/grid_statistics.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -77,6 +78,42 @@ TEST_CASE("standard errors are the spread that repeated measurements have") {
   // deviation from 2000 samples has an error of 1.6%, that of variances twice as much.
   CHECK(told_mean / squares_mean == Approx(1).epsilon(0.15));
   CHECK(told_minimum / squares_minimum == Approx(1).epsilon(0.15));
+}
+
+TEST_CASE("the error of a minimum that noise chooses is that of the sensor it chooses") {
+  // Of 100 sensors that all have 100 lux, or of the first half with an eighth of the noise.
+  const bool alike = GENERATE(true, false);
+  const std::size_t repeats = GENERATE(8, 32);
+  CAPTURE(alike, repeats);
+  constexpr std::size_t sensors = 100;
+  constexpr double noise = 5;
+  std::mt19937 random(7);
+  double spread = 0, mean_minimum = 0, told = 0, of_darkest = 0;
+  constexpr int measurements = 2000;
+  for (int i = 0; i < measurements; ++i) {
+    Repeats values = noisy(random, repeats, sensors, 0, noise);
+    const double scale = alike ? 1 : 0.125;
+    for (auto& repeat : values) {
+      for (std::size_t s = 0; s < sensors / 2; ++s) {
+        repeat[s] = static_cast<float>(100 + scale * (static_cast<double>(repeat[s]) - 100));
+      }
+    }
+    const std::vector<Measured> means = means_of(values);
+    const auto darkest =
+        std::min_element(means.begin(), means.end(),
+                         [](const Measured& a, const Measured& b) { return a.value < b.value; });
+    const bool quiet = darkest - means.begin() < static_cast<std::ptrdiff_t>(sensors / 2);
+    of_darkest += std::pow((quiet ? scale : 1) * noise, 2) / static_cast<double>(repeats);
+    const GridStatistics s = statistics_of(values, 0, sensors);
+    told += std::pow(s.minimum.standard_error, 2);
+    mean_minimum += s.minimum.value;
+    spread += std::pow(s.minimum.value, 2);
+  }
+  mean_minimum /= measurements;
+  spread = spread / measurements - mean_minimum * mean_minimum;
+  // A variance from 8 values has a deviation of 53%, and the mean of 2000 of them one of 1.2%.
+  CHECK(told / of_darkest == Approx(1).epsilon(0.06));
+  CHECK(told / measurements > spread);
 }
 
 TEST_CASE("the true minimum and maximum lie between what noise pulls down and up") {

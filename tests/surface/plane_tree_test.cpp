@@ -15,11 +15,12 @@ namespace {
 std::set<std::uint32_t> others_within(const surface::SurfaceMesh& mesh,
                                       const surface::Facets& facets, std::uint32_t triangle,
                                       double radius) {
-  const groups::Box box = groups::triangle_box(mesh.scene, triangle);
+  const geometry::Box box = geometry::triangle_box(mesh.scene, triangle);
   std::set<std::uint32_t> found;
   for (std::uint32_t other = 0; other < mesh.scene.triangle_count(); ++other) {
     if (mesh.counts(other) && facets.plane[other] != facets.plane[triangle] &&
-        groups::squared_distance(box, groups::triangle_box(mesh.scene, other)) <= radius * radius) {
+        geometry::squared_distance(box, geometry::triangle_box(mesh.scene, other)) <=
+            radius * radius) {
       found.insert(other);
     }
   }
@@ -41,7 +42,7 @@ TEST_CASE("triangles of other planes are all found, and none of the own") {
     const surface::PlaneTree planes(mesh, facets);
     for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
       std::set<std::uint32_t> visited;
-      planes.visit_others(triangle, groups::triangle_box(scene, triangle), radius,
+      planes.visit_others(triangle, geometry::triangle_box(scene, triangle), radius,
                           [&](std::uint32_t other) {
                             visited.insert(other);
                             return false;
@@ -69,7 +70,7 @@ TEST_CASE("a search for triangles of other planes ends where it is told to") {
   const surface::Facets facets = surface::find_facets(mesh, 0.1);
   const surface::PlaneTree planes(mesh, facets);
   int visits = 0;
-  planes.visit_others(0, groups::triangle_box(scene, 0), 2.0,
+  planes.visit_others(0, geometry::triangle_box(scene, 0), 2.0,
                       [&](std::uint32_t) { return ++visits == 3; });
   CHECK(visits == 3);
 }

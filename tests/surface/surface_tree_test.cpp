@@ -31,7 +31,7 @@ int check_tree(const surface::SurfaceTree& tree, const std::vector<surface::Surf
       }
       for (const std::uint32_t p : tree.leaves.at(node.child[i] & ~PHOTILE_SURFACE_LEAF)) {
         ++seen.at(p);
-        const groups::Box& box = pieces[p].box;
+        const geometry::Box& box = pieces[p].box;
         outside += box.lower.x < node.lower_x[i] || box.lower.y < node.lower_y[i] ||
                    box.lower.z < node.lower_z[i] || box.upper.x > node.upper_x[i] ||
                    box.upper.y > node.upper_y[i] || box.upper.z > node.upper_z[i];

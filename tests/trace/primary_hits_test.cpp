@@ -193,6 +193,28 @@ TEST_CASE("A window splits rays by Fresnel's probability and conserves their num
       counts_agree({reflected, all - reflected}, {all * reflectance, all * (1 - reflectance)}));
 }
 
+TEST_CASE("A lamp under water is seen from above by its radiance over the squared index") {
+  const bool closed = GENERATE(false, true);  // the lamp is in the glass, or below it
+  SceneBuilder builder;
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
+  const std::uint32_t solid = builder.add(glass(1.5f));
+  builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, solid);
+  if (closed) builder.grid({-2, -2, 0.5f}, {0, 4, 0}, {4, 0, 0}, 1, solid);
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))), lamp);
+  Camera camera = camera_above();
+  camera.vertical_field_of_view = 0.01;  // normal incidence
+  const PrimaryHitBatch batch =
+      trace_primary_hits(RayScene(builder.build()), camera,
+                         {.width = 64, .height = 64, .samples_per_pixel = 16}, 0, 64);
+  // A lamp below a slab of glass is seen as without it, but for what its faces reflect.
+  const double expected = (closed ? 1.0 : 1 / 2.25) / (M_PI * 16);
+  for (const SeenEmission& seen : batch.emission) {
+    CHECK(double{seen.radiance.x} == Approx(expected / 16).epsilon(1e-6));
+  }
+  const double passes = closed ? 1 - 2 * 0.04 / 1.04 : 0.96;
+  CHECK(static_cast<double>(batch.emission.size()) == Approx(64 * 64 * 16 * passes).epsilon(0.01));
+}
+
 TEST_CASE("A ray between two mirrors ends at the bound on its depth") {
   SceneBuilder builder;
   const std::uint32_t silver = builder.add(mirror(glm::vec3(1.0f)));

@@ -29,7 +29,7 @@ TEST_CASE("A radix sort is a stable sort") {
   std::vector<Item> expected = items;
   std::stable_sort(expected.begin(), expected.end(),
                    [](const Item& a, const Item& b) { return a.key < b.key; });
-  radix_sort(items, bits, [](const Item& item) { return item.key; });
+  geometry::radix_sort(items, bits, [](const Item& item) { return item.key; });
   CHECK((items == expected));
 }
 

@@ -127,3 +127,17 @@ TEST_CASE("A steep shading normal sends no ray to the wrong side of a mirror or 
     }
   }
 }
+
+TEST_CASE("Radiance loses the squared index on the way into the eye, and gets it back beyond") {
+  const Scene solid = plate(glass(1.5f), 2);
+  const double inside = std::asin(std::sin(0.8) / 1.5);
+  const Scattered in = scatter(solid, downwards(0.8), never_reflect);
+  const Scattered out = scatter(solid, upwards(inside), never_reflect);
+  CHECK(in.radiance_factor == Approx(1 / 2.25));
+  CHECK(out.radiance_factor == Approx(2.25));
+  CHECK(static_cast<float>(in.radiance_factor * out.radiance_factor) == 1.0f);
+  CHECK(scatter(solid, downwards(0.8), 0.0f).radiance_factor == 1);
+  CHECK(scatter(solid, upwards(1.2), never_reflect).radiance_factor == 1);  // total reflection
+  CHECK(scatter(plate(glass(1.5f, true), 2), downwards(0.8), never_reflect).radiance_factor == 1);
+  CHECK(scatter(plate(mirror(glm::vec3(1.0f)), 2), downwards(0.8), 0.5f).radiance_factor == 1);
+}

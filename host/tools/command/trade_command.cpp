@@ -26,6 +26,7 @@
 #include "tools/command/trade_report.hpp"
 #include "tools/command/validators.hpp"
 #include "tools/command/version.hpp"
+#include "trace/random_stream.hpp"
 
 namespace photile::app {
 namespace {
@@ -62,9 +63,10 @@ Reference trace_reference(const Scene& scene, const Camera& camera, const LightM
   }
   PrimaryHitParameters film = options.render.parameters.film;
   film.samples_per_pixel = std::max(1, options.reference_samples / 2);
-  film.seed = ~film.seed;  // paths of its own
+  const std::uint64_t seed = film.seed;
+  film.seed = trace::seed_of_repeat(seed, 0);  // paths of its own
   const Image first = mixed_picture(trace_paths(scene, camera, film, progress).layers, mix)->root();
-  ++film.seed;
+  film.seed = trace::seed_of_repeat(seed, 1);
   Reference reference{
       mixed_picture(trace_paths(scene, camera, film, progress).layers, mix)->root()};
   for (std::size_t plane = 0; plane < first.channels.size(); ++plane) {

@@ -11,6 +11,7 @@
 #include "render/film.hpp"
 #include "tools/trade/error_model.hpp"
 #include "tools/trade/quality_target.hpp"
+#include "trace/random_stream.hpp"
 
 namespace photile {
 namespace {
@@ -165,9 +166,12 @@ QualityModels measure_models(const Scene& scene, const Camera& camera, Device& d
   const RayScene rays(scene);
   const double structure_seconds = stopwatch.seconds();
   Pilot pilot(scene, camera, device, mix, parameters);
-  const SeedPictures a = pilot.render(rays, parameters.photons.seed, progress);
+  const auto seed_of = [&](std::uint32_t repeat) {
+    return trace::seed_of_repeat(parameters.photons.seed, repeat);
+  };
+  const SeedPictures a = pilot.render(rays, seed_of(0), progress);
   progress.advance(1);
-  const SeedPictures b = pilot.render(rays, parameters.photons.seed + 1, progress);
+  const SeedPictures b = pilot.render(rays, seed_of(1), progress);
   progress.advance(1);
   progress.end();
   return {.error = trade::fit_error_model(errors_of(a, b, pilot)),

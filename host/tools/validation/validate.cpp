@@ -6,6 +6,7 @@
 
 #include "photile/limits.hpp"
 #include "photile/sensors.hpp"
+#include "trace/random_stream.hpp"
 
 namespace photile::validation {
 namespace {
@@ -31,14 +32,14 @@ std::vector<double> readings_of(const AnalyticCase& analytic, const LightLayers&
   return values;
 }
 
-/// Measures with seeds first, first + 1 ...; `layers` gives the film for a seed.
+/// Measures with seeds that follow from one; `layers` gives the film for a seed.
 template <class Layers>
-std::vector<Measured> over_seeds(const AnalyticCase& analytic, std::uint64_t first,
+std::vector<Measured> over_seeds(const AnalyticCase& analytic, std::uint64_t seed,
                                  const Layers& layers) {
   std::vector<std::vector<double>> values(analytic.readings.size());
   for (int i = 0; i < seeds; ++i) {
     const std::vector<double> read =
-        readings_of(analytic, layers(first + static_cast<std::uint64_t>(i)));
+        readings_of(analytic, layers(trace::seed_of_repeat(seed, static_cast<std::uint32_t>(i))));
     for (std::size_t r = 0; r < read.size(); ++r) values[r].push_back(read[r]);
   }
   std::vector<Measured> result;
@@ -73,7 +74,7 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
     rows.push_back({analytic.name, analytic.source, reading.place, reading.quantity,
                     reading.expected, std::nullopt, std::nullopt});
   }
-  const std::uint64_t first_seed = parameters.photons.photons.seed;
+  const std::uint64_t seed_of_all = parameters.photons.photons.seed;
   if (parameters.by_photons) {
     RenderParameters photons = parameters.photons;
     photons.photons.emitted_photons = std::max<std::uint64_t>(
@@ -82,7 +83,7 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
                                    static_cast<double>(photons.photons.emitted_photons)));
     photons.neighbours =
         std::max(1, static_cast<int>(std::lround(analytic.neighbour_share * photons.neighbours)));
-    const auto all = over_seeds(analytic, first_seed, [&](std::uint64_t seed) {
+    const auto all = over_seeds(analytic, seed_of_all, [&](std::uint64_t seed) {
       photons.photons.seed = photons.film.seed = seed;
       RenderResult result = measure(analytic.scene, sensors, devices, photons, progress);
       photons.radius = result.radius;  // found once
@@ -93,7 +94,7 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
   if (parameters.by_paths) {
     const int paths = std::clamp(parameters.paths / static_cast<int>(sensors.size()), 1,
                                  limits::max_samples_per_pixel);
-    const auto all = over_seeds(analytic, first_seed, [&](std::uint64_t seed) {
+    const auto all = over_seeds(analytic, seed_of_all, [&](std::uint64_t seed) {
       return measure_by_paths(analytic.scene, sensors, paths, seed, progress).layers;
     });
     for (std::size_t r = 0; r < rows.size(); ++r) rows[r].paths = all[r];

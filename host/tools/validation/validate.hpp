@@ -18,7 +18,7 @@ inline constexpr int seeds = 16;
 inline constexpr double tolerance = 0.01;
 
 struct ValidationParameters {
-  RenderParameters photons;  ///< for each seed; the first seed is photons.seed
+  RenderParameters photons;  ///< for each seed; all follow from photons.seed
   int paths = 0;             ///< for each seed, shared by the sensors of a case
   bool by_photons = true, by_paths = true;
 };

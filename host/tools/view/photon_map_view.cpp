@@ -80,7 +80,7 @@ PhotonMapView view_of_map(const Scene& scene, const InspectablePhotons& photons,
   const auto corners = corners_of(scene, sided_triangle);
   for (const std::uint32_t each : view.group) {
     for (const glm::vec3& photon : photons_on(photons, each)) {
-      if (groups::squared_point_triangle_distance(glm::dvec3(photon), corners) <=
+      if (geometry::squared_point_triangle_distance(glm::dvec3(photon), corners) <=
           photons.radius * photons.radius) {
         view.group_photons.push_back(photon);
       }
