@@ -14,9 +14,11 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "photile/neighbour_groups.hpp"
-#include "photile/scene.hpp"
+#include "photile/scene_builder.hpp"
 
 namespace {
 
@@ -25,22 +27,26 @@ using photile::Scene;
 /// Height field of cells x cells quads of 2 cm.
 Scene terrain(std::uint32_t cells) {
   constexpr double edge = 0.02;
-  Scene scene;
+  std::vector<glm::vec3> vertices;
   for (std::uint32_t j = 0; j <= cells; ++j) {
     for (std::uint32_t i = 0; i <= cells; ++i) {
       const double x = edge * i, y = edge * j;
-      scene.vertices.emplace_back(x, y, 0.3 * std::sin(2 * x) * std::cos(3 * y));
+      vertices.emplace_back(x, y, 0.3 * std::sin(2 * x) * std::cos(3 * y));
     }
   }
+  std::vector<glm::uvec3> triangles;
   const std::uint32_t row = cells + 1;
   for (std::uint32_t j = 0; j < cells; ++j) {
     for (std::uint32_t i = 0; i < cells; ++i) {
       const std::uint32_t corner = j * row + i;
-      scene.triangles.emplace_back(corner, corner + 1, corner + row);
-      scene.triangles.emplace_back(corner + 1, corner + row + 1, corner + row);
+      triangles.emplace_back(corner, corner + 1, corner + row);
+      triangles.emplace_back(corner + 1, corner + row + 1, corner + row);
     }
   }
-  return scene;
+  photile::SceneBuilder builder("terrain");
+  builder.add(photile::Material());
+  builder.add(photile::MeshArrays{.vertices = vertices, .triangles = triangles});
+  return std::move(builder).build();
 }
 
 void find_groups(benchmark::State& state, const Scene& scene) {

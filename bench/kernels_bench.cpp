@@ -51,6 +51,7 @@ Subject whole_living_room(const Size& size) {
 Subject restricted(Subject subject, const SceneNeeds& needs) {
   if (needs.light_count == 1) {
     subject.scene.lights.resize(1);
+    for (std::uint32_t& light : subject.scene.triangle_light) light = light == 0 ? 0 : none;
     subject.photons.light.clear();
   }
   if (!needs.glossy) {

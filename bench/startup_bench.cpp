@@ -82,11 +82,11 @@ void start(const Variant& variant, const std::string& selector, double main_begu
   picture();
   const double second = stopwatch.seconds() - opened - first;
   nlohmann::json kernels;
-  for (const device::KernelTime& time : device.context().kernel_times()) {
+  for (const device::KernelTime& time : device::context_of(device).kernel_times()) {
     kernels[time.kernel] = time.preparation_seconds;
   }
   nlohmann::json programs = nlohmann::json::object();
-  for (const device::ProgramTime& time : device.context().program_times()) {
+  for (const device::ProgramTime& time : device::context_of(device).program_times()) {
     programs[time.file] = programs.value(time.file, 0.0) + time.seconds;
   }
   const nlohmann::json line{{"main begun", main_begun},

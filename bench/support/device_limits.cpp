@@ -51,7 +51,7 @@ DeviceLimits measure_limits(Device& device, const Repeats& repeats, std::size_t 
   constexpr std::uint32_t cache_rounds = 64, compute_rounds = 1024;
   const char* const file = "bench/limits.cl";
   device::register_kernel_source(file, source);
-  device::Context& context = device.context();
+  device::Context& context = device::context_of(device);
   auto from = context.allocate<float>(copied_bytes / sizeof(float), "memory to copy");
   auto to = context.allocate<float>(from.size(), "copied memory");
   auto sums = context.allocate<float>(16 * items, "sums");

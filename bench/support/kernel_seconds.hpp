@@ -12,7 +12,7 @@ namespace photile::bench {
 /// Seconds that each kernel has run so far; needs DeviceOptions::profile.
 inline std::map<std::string, double> seconds_by_kernel(Device& device) {
   std::map<std::string, double> seconds;
-  for (const device::KernelTime& time : device.context().kernel_times()) {
+  for (const device::KernelTime& time : device::context_of(device).kernel_times()) {
     seconds[time.kernel] = time.seconds;
   }
   return seconds;

@@ -1,9 +1,8 @@
 #include "support/subdivision.hpp"
 
-#include <algorithm>
 #include <array>
 
-#include "support/mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 namespace photile::bench {
 namespace {
@@ -26,17 +25,6 @@ Corners<T> from_the_front(const Corners<T>& canonical, bool front_is_side_0) {
   return front_is_side_0 ? Corners<T>{a, b, c} : Corners<T>{a, c, b};
 }
 
-/// The order in which `stored` holds the corners of `given`.
-Corners<glm::vec2> in_order_of(const Corners<glm::vec3>& stored, const Corners<glm::vec3>& given,
-                               const Corners<glm::vec2>& uv) {
-  Corners<glm::vec2> ordered{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto place = std::find(given.begin(), given.end(), stored[i]) - given.begin();
-    ordered[i] = uv[static_cast<std::size_t>(place)];
-  }
-  return ordered;
-}
-
 }  // namespace
 
 Scene subdivided(const Scene& scene) {
@@ -50,24 +38,28 @@ Scene subdivided(const Scene& scene) {
   fine.environments = scene.environments;
   fine.cameras = scene.cameras;
   for (Light& light : fine.lights) light.triangles.clear();
+  scene_io::MeshBuilder mesh(
+      fine, {.uv = !scene.corner_uv.empty(), .emission_uv = !scene.corner_emission_uv.empty()});
   for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
-    const bool front_is_side_0 = scene.front_side[t] == 0;
-    const auto pieces = quarters(from_the_front(scene.corners(t), front_is_side_0));
-    for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
-      const auto added = static_cast<std::uint32_t>(fine.triangle_count());
-      add_triangle(fine, pieces[piece]);
-      fine.triangle_material.back() = scene.triangle_material[t];
-      fine.triangle_light.back() = scene.triangle_light[t];
-      if (scene.triangle_light[t] != none) {
-        fine.lights[scene.triangle_light[t]].triangles.push_back(added);
+    const auto pieces = [&](const auto& whole) {
+      return quarters(from_the_front(whole, scene.front_side[t] == 0));
+    };
+    const auto positions = pieces(scene.corners(t));
+    std::array<Corners<scene_io::Corner>, 4> corners;
+    for (std::size_t piece = 0; piece < 4; ++piece) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        scene_io::Corner& corner = corners[piece][i];
+        corner.position = glm::dvec3(positions[piece][i]);
+        if (!scene.corner_uv.empty()) corner.uv = pieces(scene.corner_uv[t])[piece][i];
+        if (!scene.corner_emission_uv.empty()) {
+          corner.emission_uv = pieces(scene.corner_emission_uv[t])[piece][i];
+        }
       }
-      const auto add_uv = [&](const auto& whole, auto& cut) {
-        if (whole.empty()) return;
-        const auto uv = quarters(from_the_front(whole[t], front_is_side_0));
-        cut.push_back(in_order_of(fine.corners(added), pieces[piece], uv[piece]));
-      };
-      add_uv(scene.corner_uv, fine.corner_uv);
-      add_uv(scene.corner_emission_uv, fine.corner_emission_uv);
+      const std::uint32_t light = scene.triangle_light[t];
+      const auto added = static_cast<std::uint32_t>(fine.triangle_count());
+      if (mesh.add(corners[piece], scene.triangle_material[t], light) && light != none) {
+        fine.lights[light].triangles.push_back(added);
+      }
     }
   }
   return fine;

@@ -1,7 +1,8 @@
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "support/mesh_builder.hpp"
+#include "photile/scene_builder.hpp"
 #include "support/workload.hpp"
 
 namespace photile::bench {
@@ -24,14 +25,14 @@ glm::vec3 point_of(const Wall& wall, std::uint32_t i, std::uint32_t j) {
   return glm::vec3(wall.origin + s * wall.u + t * wall.v + wave * wall.inward);
 }
 
-void add_wall(Scene& scene, const Wall& wall) {
+void add_wall(SceneBuilder& builder, std::uint32_t material, const Wall& wall) {
   const bool front_in = glm::dot(glm::cross(wall.u, wall.v), wall.inward) > 0;
   for (std::uint32_t j = 0; j < wall.cells_v; ++j) {
     for (std::uint32_t i = 0; i < wall.cells_u; ++i) {
       const glm::vec3 a = point_of(wall, i, j), b = point_of(wall, i + 1, j);
       const glm::vec3 c = point_of(wall, i + 1, j + 1), d = point_of(wall, i, j + 1);
-      add_triangle(scene, front_in ? std::array{a, b, c} : std::array{a, c, b});
-      add_triangle(scene, front_in ? std::array{a, c, d} : std::array{a, d, c});
+      builder.triangle(a, front_in ? b : c, front_in ? c : b, material);
+      builder.triangle(a, front_in ? c : d, front_in ? d : c, material);
     }
   }
 }
@@ -42,16 +43,17 @@ Scene waved_hall(std::uint32_t cells) {
   constexpr double width = 4, height = 3;  // metres; y is up
   const glm::dvec3 x(width, 0, 0), y(0, height, 0), z(0, 0, width), zero(0);
   const std::uint32_t high = cells / 4 * 3;
-  Scene scene = empty_scene("waved hall", {2.0f, 2.0f, 2.0f});
-  add_wall(scene, {zero, x, z, {0, 1, 0}, cells, cells});
-  add_wall(scene, {y, x, z, {0, -1, 0}, cells, cells});
-  add_wall(scene, {zero, x, y, {0, 0, 1}, cells, high});
-  add_wall(scene, {z, x, y, {0, 0, -1}, cells, high});
-  add_wall(scene, {zero, z, y, {1, 0, 0}, cells, high});
-  add_wall(scene, {x, z, y, {-1, 0, 0}, cells, high});
-  scene.cameras.push_back(
-      Camera::look_at({0.3, 2.4, 0.3}, {2.8, 1.0, 2.8}, {0, 1, 0}, glm::radians(70.0)));
-  return scene;
+  SceneBuilder builder("waved hall");
+  const std::uint32_t white = builder.add(white_material());
+  builder.add(lamp_at({2.0f, 2.0f, 2.0f}));
+  add_wall(builder, white, {zero, x, z, {0, 1, 0}, cells, cells});
+  add_wall(builder, white, {y, x, z, {0, -1, 0}, cells, cells});
+  add_wall(builder, white, {zero, x, y, {0, 0, 1}, cells, high});
+  add_wall(builder, white, {z, x, y, {0, 0, -1}, cells, high});
+  add_wall(builder, white, {zero, z, y, {1, 0, 0}, cells, high});
+  add_wall(builder, white, {x, z, y, {-1, 0, 0}, cells, high});
+  builder.add(Camera::look_at({0.3, 2.4, 0.3}, {2.8, 1.0, 2.8}, {0, 1, 0}, glm::radians(70.0)));
+  return std::move(builder).build();
 }
 
 }  // namespace photile::bench

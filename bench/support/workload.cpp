@@ -5,7 +5,7 @@
 
 #include "estimate/map_order.hpp"
 #include "photile/photon_tracer.hpp"
-#include "support/mesh_builder.hpp"
+#include "photile/scene_builder.hpp"
 #include "support/morton_order.hpp"
 
 namespace photile::bench {
@@ -20,10 +20,10 @@ std::uint32_t upper_side(const Scene& scene, std::uint32_t triangle) {
 std::uint32_t plane_triangle(const glm::vec3& point) { return point.y <= point.x ? 0 : 1; }
 
 std::shared_ptr<const Scene> plane_scene() {
-  Scene scene = empty_scene("plane", {0.5f, 0.5f, 1.0f});
-  add_triangle(scene, {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}});
-  add_triangle(scene, {{{0, 0, 0}, {1, 1, 0}, {0, 1, 0}}});
-  return std::make_shared<const Scene>(std::move(scene));
+  SceneBuilder builder("plane");
+  builder.add(lamp_at({0.5f, 0.5f, 1.0f}));
+  builder.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, builder.add(white_material()));
+  return std::make_shared<const Scene>(std::move(builder).build());
 }
 
 std::vector<glm::vec3> uniform_points(std::size_t count, std::uint32_t seed) {
@@ -70,6 +70,22 @@ PrimaryHits plane_hits(const Scene& scene, std::size_t count) {
 }
 
 }  // namespace
+
+Material white_material() {
+  Material material;
+  material.name = "white";
+  material.diffuse = glm::vec3(0.5f);
+  return material;
+}
+
+Light lamp_at(const glm::vec3& position) {
+  Light light;
+  light.name = "lamp";
+  light.kind = LightKind::point;
+  light.position = position;
+  light.power = 1000;
+  return light;
+}
 
 Workload plane_workload(std::size_t queries) {
   const std::shared_ptr<const Scene> scene = plane_scene();

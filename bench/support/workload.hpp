@@ -63,6 +63,12 @@ Photons traced_photons(const RayScene& rays, std::uint64_t count);
 /// repository), diffuse; nothing where that folder is missing.
 std::optional<Scene> classroom();
 
+/// Diffuse, half of the light reflected.
+Material white_material();
+
+/// A point light of 1000 lm.
+Light lamp_at(const glm::vec3& position);
+
 /// A hall of 4 m x 4 m x 3 m with gently waved walls, 10 `cells`^2 triangles, white, lit by a point
 /// light in its middle, seen from a corner. `cells`: a multiple of 4.
 Scene waved_hall(std::uint32_t cells);

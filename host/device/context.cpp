@@ -35,8 +35,8 @@ ListedDevice find_one(const std::string& selector) {
     std::vector<std::string> ids;
     for (const auto& listed : found) ids.push_back(listed.info.id);
     throw DeviceError(
-        fmt::format("{} devices are chosen ({}) where one is needed; name one by "
-                    "--device or {}",
+        fmt::format("{} devices are chosen ({}) where one is needed; choose one, by its "
+                    "number or by {}",
                     found.size(), fmt::join(ids, ", "), device_variable));
   }
   return std::move(found.front());
@@ -73,7 +73,7 @@ void Context::Impl::check(cl_int status, std::string_view call, const std::strin
                   "bytes are in use; use {}",
                   call, status_name(status), what, info.name, info.max_allocation_bytes,
                   budget ? "may use" : "has", memory_limit, memory->live.load(),
-                  budget ? "a larger --memory, fewer photons or a smaller radius"
+                  budget ? "a larger memory limit, fewer photons or a smaller radius"
                          : "fewer photons or a smaller radius"),
       status);
 }

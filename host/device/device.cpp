@@ -7,6 +7,8 @@ namespace photile {
 Device::Device(const DeviceOptions& options)
     : context_(std::make_unique<device::Context>(options)) {}
 Device::Device(std::unique_ptr<device::Context> context) : context_(std::move(context)) {}
+
+device::Context& device::context_of(Device& device) { return *device.context_; }
 Device::~Device() = default;
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;

@@ -33,8 +33,8 @@ struct Estimator::Impl {
   std::optional<estimate::EstimateBuffers> estimates;
 
   Impl(const PhotonMaps& photon_maps, const Scene& scene, const EstimateParameters& parameters)
-      : store(photon_maps.store()),
-        context(photon_maps.device().context()),
+      : store(maps::store_of(photon_maps)),
+        context(device::context_of(photon_maps.device())),
         neighbours(static_cast<std::uint32_t>(parameters.neighbours)),
         radius(static_cast<float>(parameters.radius == 0 ? photon_maps.parameters().radius
                                                          : parameters.radius)),

@@ -5,7 +5,7 @@
 namespace photile::estimate {
 
 SurfaceBuffers::SurfaceBuffers(const maps::MapStore& store, const SurfaceIndex& surface) {
-  device::Context& context = store.device->context();
+  device::Context& context = device::context_of(*store.device);
   const std::vector<std::uint8_t> lit = lit_sheets(surface, store.landed);
   std::vector<PhotileSurfaceLeaf> marked = surface.leaves;
   const auto mark = [&](std::uint32_t& sheet) {

@@ -31,17 +31,17 @@ class Bench {
         neighbours_(static_cast<std::uint32_t>(neighbours)),
         sample_(make_tuning_sample(needs, neighbours, size)),
         groups_(find_neighbour_groups(sample_.scene, {sample_.radius})),
-        hits_(upload_hits(device.context(), sample_.hits, 0, sample_.hits.sided_triangle, {},
+        hits_(upload_hits(device::context_of(device), sample_.hits, 0, sample_.hits.sided_triangle, {},
                           nullptr, needs)) {}
 
   /// Median of 5 runs over all hits, after one that warms up.
   double microseconds_per_hit(const EstimateTuning& tuning) {
-    const maps::MapStore& store = maps_of(tuning.photons_per_cell).store();
+    const maps::MapStore& store = maps::store_of(maps_of(tuning.photons_per_cell));
     const auto query =
         make_grid_query(store, neighbours_, neighbours_, static_cast<float>(sample_.radius), tuning,
                         nullptr, DensityKernel::constant);
     if (!estimates_) {  // the sums of a hit depend on k, not on the tuning
-      estimates_.emplace(device_.context(), query->sums());
+      estimates_.emplace(device::context_of(device_), query->sums());
       estimates_->begin(hits_.count);
     }
     std::array<double, 5> seconds{};
@@ -67,7 +67,7 @@ class Bench {
   void run(const maps::MapStore& store, Query& query) {
     for_each_page(store, hits_, sample_.hits.sided_triangle,
                   [&](const PageHits& page_hits) { query.estimate(page_hits, *estimates_); });
-    device_.context().finish();
+    device::context_of(device_).finish();
   }
 
   Device& device_;

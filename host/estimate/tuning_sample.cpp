@@ -6,6 +6,8 @@
 #include <random>
 #include <utility>
 
+#include "photile/scene_builder.hpp"
+
 namespace photile::estimate {
 namespace {
 
@@ -14,25 +16,25 @@ float uniform(std::mt19937_64& random) { return static_cast<float>(random() >> 4
 
 /// The unit square as two triangles, with a material and lights as needed.
 Scene unit_square(const SceneNeeds& needs) {
-  Scene scene;
+  SceneBuilder builder("tuning sample");
   Material material;
   material.diffuse = glm::vec3(0.5f);
   if (needs.glossy) {
     material.specular = glm::vec3(0.04f);
     material.roughness = 0.3f;
   }
-  scene.materials = {material};
-  scene.lights.resize(needs.light_count);
-  scene.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
-  scene.triangles = {{0, 2, 1}, {0, 3, 2}};
-  scene.front_side = {0, 0};
-  scene.triangle_material = {0, 0};
-  scene.triangle_light = {none, none};
-  return scene;
+  Light light;
+  light.kind = LightKind::point;
+  light.power = 1;
+  for (std::uint32_t i = 0; i < needs.light_count; ++i) builder.add(light);
+  builder.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, builder.add(material));
+  return std::move(builder).build();
 }
 
 /// The sided triangle of unit_square that a point lies on, seen from above.
-std::uint32_t front_at(const glm::vec3& point) { return sided(point.x > point.y ? 1 : 0, 0); }
+std::uint32_t front_at(const glm::vec3& point) {
+  return point.x > point.y ? sided(0, 0) : sided(1, 1);
+}
 
 Photons random_photons(const SceneNeeds& needs, std::size_t count, std::mt19937_64& random) {
   Photons photons;

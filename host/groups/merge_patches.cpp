@@ -8,6 +8,7 @@
 #include "groups/patch_union.hpp"
 #include "groups/photon_sample.hpp"
 #include "photile/neighbour_groups.hpp"
+#include "photile/scene_builder.hpp"
 
 namespace photile {
 namespace {
@@ -147,6 +148,7 @@ std::vector<Sharing> find_partners(const PhotonSample& sample, std::span<const P
 NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons) {
   const std::size_t count = groups.patches.count();
   if (count < 2 || photons.size() == 0) return groups;
+  check_scene(scene);
   const TriangleFacts facts(scene);
   const std::vector<PatchShape> shapes = shapes_of(scene, facts, groups.patches);
   std::vector<NormalSpread> spreads;

@@ -10,6 +10,7 @@
 #include "geometry/triangle_bvh.hpp"
 #include "groups/group_lists.hpp"
 #include "groups/proximity_test.hpp"
+#include "photile/scene_builder.hpp"
 
 namespace photile {
 namespace {
@@ -68,6 +69,7 @@ NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       const NeighbourGroupParameters& parameters,
                                       Progress& progress) {
   check(parameters);
+  check_scene(scene);
   const Search search(scene, parameters);
   return collect_groups(
       scene.triangle_count(), parameters,

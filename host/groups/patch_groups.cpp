@@ -11,6 +11,7 @@
 #include "groups/group_lists.hpp"
 #include "groups/proximity_test.hpp"
 #include "photile/neighbour_groups.hpp"
+#include "photile/scene_builder.hpp"
 
 namespace photile {
 namespace {
@@ -150,6 +151,7 @@ class PatchSearch {
 NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
                                   const NeighbourGroupParameters& parameters, Progress& progress) {
   check(parameters);
+  check_scene(scene);
   if (patches.empty()) return find_neighbour_groups(scene, parameters, progress);
   NeighbourGroups result;
   {

@@ -3,6 +3,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "groups/patch_splitter.hpp"
+#include "photile/scene_builder.hpp"
 
 namespace photile {
 namespace {
@@ -78,6 +79,7 @@ std::string_view name_of(MapMode mode) {
 
 Patches find_patches(const Scene& scene, double radius, MapMode mode) {
   if (mode == MapMode::naive || mode == MapMode::triangle) return {};
+  check_scene(scene);
   groups::PatchSplitter splitter(scene, radius);
   const std::vector<PatchPart> parts = splitter.split();
   Collector collector(scene, splitter.facts());

@@ -18,7 +18,7 @@ constexpr double lamp_level = 20;     ///< medians
 constexpr double floor_share = 0.01;  ///< of the squared mean, below the squared error
 constexpr int tiles_per_height = 16;
 constexpr double dark_tile = 0.1;  ///< of the mean
-constexpr double mid_grey = 0.18;
+constexpr double middle_grey = 0.18;
 
 using Planes = std::array<const std::vector<float>*, 3>;
 
@@ -108,7 +108,7 @@ OIIO::ImageBuf displayed(const Image& image, const RelativeErrorWeights& weights
   OIIO::ImageBuf buffer(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT));
   const Planes planes = planes_of(image);
   auto* texels = static_cast<float*>(buffer.localpixels());
-  const double factor = mid_grey / weights.mean();
+  const double factor = middle_grey / weights.mean();
   for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel) {
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const double value = weights.counts(pixel) ? factor * (*planes[channel])[pixel] : 0.0;

@@ -2,22 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "photile/errors.hpp"
 #include "scene/color_temperature.hpp"
-#include "scene/emission_cells.hpp"
+#include "scene/light_emission.hpp"
 #include "scene/photometry.hpp"
 
 namespace photile::scene_io {
-
-bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_rgb) {
-  const glm::dvec3 positive = glm::max(rgb, glm::dvec3(0.0));
-  luminance_of_rgb = luminance(positive);
-  if (!std::isfinite(luminance_of_rgb) || luminance_of_rgb <= 0.0) return false;
-  light.color = glm::vec3(positive / luminance_of_rgb);
-  return true;
-}
 
 std::uint32_t AreaLights::find_or_add(std::uint64_t object, const std::string& object_name,
                                       std::uint32_t material, const Emission& emission,
@@ -100,11 +90,7 @@ bool AreaLights::set_emission(const Pending& pending, double area, Light& light,
   }
   light.emission_texture = emission.texture;
   light.texel_radiance = glm::vec3(glm::max(emission.radiance, glm::dvec3(0.0)));
-  // Radiance times area in place of radiance.
-  if (!set_light_color(EmissionCells(scene_, light).integral(), light, bright)) return false;
-  light.power = area_flux(bright, 1.0, light.two_sided);
-  light.texel_radiance = glm::vec3(glm::dvec3(light.texel_radiance) / light.power);
-  return true;
+  return set_textured_emission(scene_, light);
 }
 
 /// An object's lumens are shared by its lights as their materials say.

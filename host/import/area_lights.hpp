@@ -66,7 +66,4 @@ class AreaLights {
   std::map<std::uint64_t, int> materials_of_object_;
 };
 
-/// `light.color` and the luminance of `rgb`, which may be any radiometric colour; false if black.
-bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_rgb);
-
 }  // namespace photile::scene_io

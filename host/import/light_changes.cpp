@@ -17,14 +17,15 @@
 namespace photile::scene_io {
 namespace {
 
-/// The light called `name` by `option`. Errors: UsageError that lists the lights there are.
-Light& light_named(const std::string& name, const char* option, Scene& scene) {
+/// The light called `name` that a `change` is for. Errors: UsageError that lists the lights there
+/// are.
+Light& light_named(const std::string& name, const char* change, Scene& scene) {
   const auto found = std::find_if(scene.lights.begin(), scene.lights.end(),
                                   [&](const Light& light) { return light.name == name; });
   if (found != scene.lights.end()) return *found;
   std::vector<std::string> names;
   for (const Light& light : scene.lights) names.push_back(light.name);
-  throw UsageError(fmt::format("{} {}: there is no light '{}'; there {}", option, name, name,
+  throw UsageError(fmt::format("{} {}: there is no light '{}'; there {}", change, name, name,
                                listed_names(names)));
 }
 
@@ -48,10 +49,11 @@ IntensityDistribution read_user_file(const std::filesystem::path& file, Warnings
 
 void apply_profiles(Scene& scene, std::span<const LightProfile> profiles, Warnings& warnings) {
   for (const LightProfile& profile : profiles) {
-    Light& light = light_named(profile.light, "--ies", scene);
+    Light& light = light_named(profile.light, "photometric file for", scene);
     if (light.kind != LightKind::point && light.kind != LightKind::spot) {
       throw UsageError(
-          fmt::format("--ies {}: the light is neither a point nor a spot light; name one of those",
+          fmt::format("photometric file for {}: the light is neither a point nor a spot light; "
+                      "name one of those",
                       profile.light));
     }
     IntensityDistribution distribution = read_user_file(profile.file, warnings);
@@ -64,10 +66,10 @@ void apply_profiles(Scene& scene, std::span<const LightProfile> profiles, Warnin
 
 void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperatures) {
   for (const LightTemperature& temperature : temperatures) {
-    Light& light = light_named(temperature.light, "--light-temperature", scene);
+    Light& light = light_named(temperature.light, "temperature of", scene);
     if (light.kind == LightKind::environment || light.emission_texture != none) {
       throw UsageError(fmt::format(
-          "--light-temperature {}: its colours come from a picture; tint it with --light",
+          "temperature of {}: its colours come from a picture, which a light mix can tint",
           light.name));
     }
     light.color = glm::vec3(color_of_temperature(temperature.kelvin));

@@ -37,7 +37,7 @@ void apply(const LightGrouping& grouping, std::vector<Light>& lights) {
     matched = true;
   }
   if (!matched) {
-    throw UsageError(fmt::format("--light-group {}={}: no light matches '{}'; there {}",
+    throw UsageError(fmt::format("light group {}={}: no light matches '{}'; there {}",
                                  grouping.glob, grouping.group, grouping.glob,
                                  listed_names(names_of(lights))));
   }
@@ -50,7 +50,7 @@ void check_names(const std::vector<Light>& lights) {
   for (const Light& light : lights) {
     if (!light.group.empty() || !groups.contains(light.name)) continue;
     throw UsageError(
-        fmt::format("--light-group: the light '{}' is outside the group of that name; put it in or "
+        fmt::format("light groups: the light '{}' is outside the group of that name; put it in or "
                     "choose another name",
                     light.name));
   }

@@ -17,6 +17,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
+#include "scene/default_camera.hpp"
 #include "scene/light_names.hpp"
 #include "scene/photometry.hpp"
 
@@ -117,7 +118,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
     if (scene.lights.empty()) {
       throw lacks(
           "no lights; give a material an emission (Ke in MTL, emissiveFactor in glTF), add "
-          "KHR_lights_punctual lights, or pass --environment, --sun or --sky",
+          "KHR_lights_punctual lights, or give an environment picture, a sun or a sky",
           context);
     }
   } catch (const Error&) {

@@ -95,7 +95,7 @@ std::filesystem::path SceneFolder::resolve(const std::string& name) const {
   // A missing file outside must not be told from an existing one.
   if (!allow_outside_ && (!inside(lexical) || (!error && !inside(target)))) {
     throw ResourceError(
-        "it lies outside the scene's folder; move it there or pass --allow-outside");
+        "it lies outside the scene's folder; move it there, or allow files outside");
   }
   if (error) throw ResourceError(error.message());
   return target;

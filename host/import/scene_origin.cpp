@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/coordinate_limit.hpp"
+
 namespace photile::scene_io {
 
 void SceneOrigin::add(const std::array<glm::dvec3, 3>& corners) {

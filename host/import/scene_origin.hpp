@@ -1,21 +1,11 @@
-// Which positions a scene can hold, and where they are counted from.
+// Where the positions of a scene are counted from.
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "photile/limits.hpp"
-
 namespace photile::scene_io {
-
-/// Neither NaN, infinite nor beyond limits::max_coordinate.
-inline bool within_limit(const glm::dvec3& position) {
-  constexpr double most = limits::max_coordinate;
-  return std::abs(position.x) <= most && std::abs(position.y) <= most &&
-         std::abs(position.z) <= most;
-}
 
 /// Finds the origin of a scene (Scene::origin) from its triangles, before they are rounded to
 /// float.

@@ -1,17 +1,15 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
 
-#include "import/area_lights.hpp"
 #include "import/finishing.hpp"
 #include "import/radiance_picture.hpp"
 #include "import/sky_map.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "scene/photometry.hpp"
+#include "scene/light_emission.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -34,17 +32,14 @@ void add_picture(const EnvironmentPicture& picture, Scene& scene) {
 }
 
 void add_sun(const Sun& sun, const SceneLoadOptions& options, Scene& scene) {
-  const double half = 0.5 * sun.diameter_degrees * std::numbers::pi / 180.0;
+  const double diameter = sun.diameter_degrees * std::numbers::pi / 180.0;
   Light light;
   light.name = "sun";
   light.kind = LightKind::directional;
   light.direction = -glm::vec3(direction_to(sun));
-  light.angular_diameter = static_cast<float>(2.0 * half);
-  // A disc of radiance L makes L pi sin^2 on a surface that faces it, while the flux counts its
-  // solid angle L 2 pi (1 - cos).
-  light.power = directional_flux(in_scene_unit(sun.illuminance, scene, options),
-                                 bounding_sphere(scene).radius) *
-                2.0 / (1.0 + std::cos(half));
+  light.angular_diameter = static_cast<float>(diameter);
+  light.power = distant_flux(in_scene_unit(sun.illuminance, scene, options), diameter,
+                             bounding_sphere(scene).radius);
   scene.lights.push_back(std::move(light));
 }
 
@@ -52,7 +47,7 @@ void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
   glm::dvec3 to_sun(0.0, 1.0, 0.0);
   if (sky.kind == SkyKind::clear) {
     if (!options.sun || !(options.sun->elevation_degrees > 0.0)) {
-      throw UsageError("a clear sky needs a sun above the horizon; give --sun, too");
+      throw UsageError("a clear sky needs a sun above the horizon; give one, too");
     }
     to_sun = direction_to(*options.sun);
   }
@@ -61,18 +56,6 @@ void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
 }
 
 }  // namespace
-
-void add_environment_light(const std::string& name, EnvironmentMap map, Scene& scene) {
-  Light light;
-  light.name = name;
-  light.kind = LightKind::environment;
-  double bright = 0;
-  set_light_color(map.integral(), light, bright);
-  light.power = directional_flux(bright, bounding_sphere(scene).radius);
-  light.environment = static_cast<std::uint32_t>(scene.environments.size());
-  scene.environments.push_back(std::move(map));
-  scene.lights.push_back(std::move(light));
-}
 
 void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
   if (!options.environment.file.empty()) add_picture(options.environment, scene);

@@ -19,7 +19,7 @@ class TreeQuery : public Query {
             std::uint32_t compiled_neighbours, float radius, const SurfaceBuffers* surface,
             DensityKernel kernel)
       : store_(store),
-        context_(store.device->context()),
+        context_(device::context_of(*store.device)),
         neighbours_(neighbours),
         radius_(radius),
         surface_(surface),

@@ -8,11 +8,11 @@ device::KernelSet build_kernels(const MapStore& store, bool patches) {
   device::Defines defines;
   set_entry_defines(defines, store.needs);
   if (patches) defines.set("PATCHES");
-  return {store.device->context(), "grid/build.cl", std::move(defines)};
+  return {device::context_of(*store.device), "grid/build.cl", std::move(defines)};
 }
 
 device::KernelSet tile_kernels(const MapStore& store) {
-  return {store.device->context(), "grid/build_tiles.cl", {}};
+  return {device::context_of(*store.device), "grid/build_tiles.cl", {}};
 }
 
 }  // namespace photile::maps

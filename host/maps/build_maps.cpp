@@ -29,14 +29,6 @@ namespace {
 
 using device::Context;
 
-std::vector<glm::vec3> sided_normals(const Scene& scene) {
-  std::vector<glm::vec3> normals(2 * scene.triangle_count());
-  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t s) {
-    normals[s] = glm::vec3(sided_normal(scene, static_cast<std::uint32_t>(s)));
-  });
-  return normals;
-}
-
 /// The radius that photons must lie within of a triangle to enter its map: grown by what rounding
 /// may do to positions as large as the scene's, so that no neighbour is lost.
 float reach_of(const Scene& scene, double radius) {
@@ -168,40 +160,49 @@ void build_pages(MapStore& store, const Build& build, const Photons& photons,
   }
 }
 
-/// The surfaces of the maps on the device, and how the photons lie on them.
-void upload_surfaces(Build& build, const Scene& scene, const Photons& photons,
-                     const NeighbourGroups& groups, const MapNumbers& numbers) {
-  const MapShapes surfaces =
-      map_shapes(scene, groups.patches, numbers.pairs, glm::radians(groups.angle_degrees));
-  build.corners = build.context.upload(std::span(surfaces.corners), "triangle corners");
-  build.shapes = build.context.upload(std::span(surfaces.shapes), "map shapes");
-  const std::vector<float> crowding =
-      of_numbered(numbers, photon_crowding(scene, photons, groups.patches));
-  build.crowding = build.context.upload(std::span(crowding), "photon crowding");
-}
-
 }  // namespace
+
+std::vector<glm::vec3> sided_normals(const Scene& scene) {
+  std::vector<glm::vec3> normals(2 * scene.triangle_count());
+  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t s) {
+    normals[s] = glm::vec3(sided_normal(scene, static_cast<std::uint32_t>(s)));
+  });
+  return normals;
+}
 
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
                           const NeighbourGroups& groups, Progress& progress) {
-  Context& context = store.device->context();
-  const float reach = reach_of(scene, store.parameters.radius);
   const Patches& patches = groups.patches;
-  if (!patches.empty()) store.normals = sided_normals(scene);
-  CandidateMaps candidates = find_candidate_maps(scene, photons, groups, reach);
-  MapNumbers numbers = number_maps(candidates, patches, 2 * scene.triangle_count());
+  MapPlan plan;
+  plan.reach = reach_of(scene, store.parameters.radius);
+  plan.normals = !patches.empty();
+  if (plan.normals) store.normals = sided_normals(scene);
+  plan.candidates = find_candidate_maps(scene, photons, groups, plan.reach);
+  MapNumbers numbers = number_maps(plan.candidates, patches, 2 * scene.triangle_count());
   store.map_of = std::move(numbers.map_of);
+  plan.surfaces = map_shapes(scene, patches, numbers.pairs, glm::radians(groups.angle_degrees));
+  plan.crowding = of_numbered(numbers, photon_crowding(scene, photons, patches));
+  plan.name_of = [&](std::uint32_t pair) { return surface_name(numbers.pairs[pair], patches); };
+  build_maps(store, photons, std::move(plan), progress);
+}
+
+void build_maps(MapStore& store, const Photons& photons, MapPlan plan, Progress& progress) {
+  Context& context = device::context_of(*store.device);
   Build build{.context = context,
               .store = store,
-              .kernels = build_kernels(store, !patches.empty()),
+              .kernels = build_kernels(store, plan.normals),
               .tile_kernels = tile_kernels(store),
-              .patches = !patches.empty(),
-              .squared_reach = reach * reach,
+              .patches = plan.normals,
+              .squared_reach = plan.reach * plan.reach,
               .radius = static_cast<float>(store.parameters.radius),
               .photons_per_cell = photons_per_cell(store.parameters)};
-  upload_surfaces(build, scene, photons, groups, numbers);
-  build.photon_pages = photon_pages(context, store, candidates, photons, progress);
-  count_photons(build, numbers.map_count());
+  build.corners = context.upload(std::span<const float>(plan.surfaces.corners), "triangle corners");
+  build.shapes =
+      context.upload(std::span<const PhotileMapShape>(plan.surfaces.shapes), "map shapes");
+  build.crowding = context.upload(std::span<const float>(plan.crowding), "photon crowding");
+  build.photon_pages = photon_pages(context, store, plan.candidates, photons, progress);
+  plan.surfaces = {};
+  count_photons(build, plan.crowding.size());
   const CountedMaps counted{read_all(context, build.counts.photons),
                             read_all(context, build.counts.mixed)};
 
@@ -212,7 +213,7 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
       counted.photons,
       page_limits(context, store, build.photons_per_cell, statistics.mixed_maps > 0), store.tilings,
       [&](std::uint32_t map) { return tiling_of(build, map); },
-      [&](std::uint32_t map) { return surface_name(numbers.pairs[map / 2], patches); });
+      [&](std::uint32_t map) { return plan.name_of(map / 2); });
   build_pages(store, build, photons, counted, queue, progress);
   if (statistics.mixed_maps == 0) store.normals.clear();
   const std::vector<std::uint32_t>& counts = counted.photons;
@@ -221,24 +222,23 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
   statistics.largest_map = counts.empty() ? 0 : *std::max_element(counts.begin(), counts.end());
 }
 
-void build_global_map(MapStore& store, const Scene& scene, const Photons& photons) {
+void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map_count) {
   const auto count = static_cast<std::uint32_t>(photons.size());
   if (count == 0) return;
-  Context& context = store.device->context();
+  Context& context = device::context_of(*store.device);
   const PageLimits limits{.largest_buffer = context.largest_buffer()};
   if (!limits.fit(count, 1)) {
     throw DeviceError(fmt::format(
         "a global kd-tree of {} photons, more than the {} that the device's largest buffer holds; "
-        "use fewer photons, more --passes or another --structure",
+        "use fewer photons, more passes or another structure",
         count, limits.most_entries()));
   }
   MapPage page;
   page.first_map = 0;
-  page.last_map = static_cast<std::uint32_t>(2 * scene.triangle_count());
+  page.last_map = map_count;
   page.entry_count = count;
   build_global_tree(context, photons, page);
 
-  store.normals = sided_normals(scene);
   PhotonPages pages(
       context,
       [&](std::uint64_t) {

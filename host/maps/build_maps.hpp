@@ -1,6 +1,12 @@
 // Drives the build kernels.
 #pragma once
 
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "maps/candidate_maps.hpp"
+#include "maps/map_shapes.hpp"
 #include "maps/map_store.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
@@ -13,7 +19,26 @@ namespace photile::maps {
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
                           const NeighbourGroups& groups, Progress& progress);
 
-/// Builds one kd-tree over all photons. Errors: DeviceError when they do not fit in one buffer.
-void build_global_map(MapStore& store, const Scene& scene, const Photons& photons);
+/// Where maps lie, and which photons may enter them.
+struct MapPlan {
+  CandidateMaps candidates;
+  MapShapes surfaces;           ///< of pairs of maps
+  std::vector<float> crowding;  ///< per map, see photon_crowding
+  float reach = 0;              ///< metres: photons within it of a surface enter its maps
+  bool normals = false;         ///< normals of photons may disagree with those of hits
+  /// What messages call a pair.
+  std::function<std::string(std::uint32_t pair)> name_of;
+};
+
+/// Builds the maps of a plan. `store.map_of` is set, and with plan.normals `store.normals`, which
+/// is empty afterwards where no map needs it.
+void build_maps(MapStore& store, const Photons& photons, MapPlan plan, Progress& progress);
+
+/// Builds one kd-tree over all photons for hits of `map_count` maps; `store.normals` is set.
+/// Errors: DeviceError when they do not fit in one buffer.
+void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map_count);
+
+/// Unit normals of sided triangles.
+std::vector<glm::vec3> sided_normals(const Scene& scene);
 
 }  // namespace photile::maps

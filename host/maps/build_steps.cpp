@@ -42,7 +42,7 @@ std::uint32_t total_cells(Context& context, const Buffer<std::uint32_t>& cells_o
   if (total > most) {
     throw DeviceMemoryError(fmt::format(
         "photon maps of {} grid cells, more than the {} that the device's largest buffer "
-        "holds; use more photons per cell, or a larger --memory if one is set",
+        "holds; use more photons per cell, or a larger memory limit if one is set",
         total, most));
   }
   return static_cast<std::uint32_t>(total);

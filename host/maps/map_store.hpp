@@ -15,7 +15,7 @@ namespace photile::maps {
 /// The state behind PhotonMaps.
 struct MapStore {
   MapStore(Device& device, const SceneNeeds& needs, const PhotonMapParameters& parameters)
-      : device(&device), needs(needs), parameters(parameters), pages(device.context()) {}
+      : device(&device), needs(needs), parameters(parameters), pages(device::context_of(device)) {}
 
   Device* device;
   SceneNeeds needs;

@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "maps/build_maps.hpp"
+#include "maps/check_photons.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/scene_builder.hpp"
 #include "photile/statistics.hpp"
 #include "photile/surface_index.hpp"
 
@@ -28,7 +30,7 @@ void check(const Photons& photons, const NeighbourGroups& groups,
         fmt::format("photons per cell {}: must be a positive number", parameters.photons_per_cell));
   }
   if (parameters.structure == MapStructure::kdtree_global && std::isinf(groups.radius)) {
-    throw UsageError("a global kd-tree knows no triangles' maps: leave out --maps naive");
+    throw UsageError("a global kd-tree knows no triangles' maps: use other maps than naive");
   }
   if (photons.size() > limits::max_stored_photons) {
     throw UsageError(fmt::format("{} stored photons; at most {} can be indexed", photons.size(),
@@ -57,24 +59,42 @@ std::string_view name_of(MapStructure structure) {
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
                        Progress& progress) {
+  check_scene(scene);
   check(photons, groups, parameters);
   const Stopwatch stopwatch;
   progress.begin("build photon maps", 0, "references");
   store_ = std::make_unique<maps::MapStore>(device, needs_of(scene), parameters);
+  const std::string problem = maps::problem_of(photons, store_->needs, 2 * scene.triangle_count());
+  if (!problem.empty()) {
+    throw InputError(fmt::format("photons of {}: {}", scene.source.string(), problem));
+  }
   store_->angle_degrees = groups.angle_degrees;
   store_->cos_angle = std::cos(glm::radians(groups.angle_degrees));
   store_->naive = std::isinf(groups.radius);
   store_->landed = landed_on(scene, photons);
   store_->statistics.photons = photons.size();
   if (parameters.structure == MapStructure::kdtree_global) {
-    maps::build_global_map(*store_, scene, photons);
+    store_->normals = maps::sided_normals(scene);
+    const auto maps = static_cast<std::uint32_t>(2 * scene.triangle_count());
+    maps::build_global_map(*store_, photons, maps);
   } else {
+    if (groups.offsets.size() != 2 * scene.triangle_count() + 1) {
+      throw InputError(
+          fmt::format("neighbour groups of {}: those of another scene", scene.source.string()));
+    }
     maps::build_maps_of_groups(*store_, scene, photons, groups, progress);
   }
 
   store_->statistics.spilled_bytes = store_->pages.spilled_bytes();
   store_->statistics.seconds = stopwatch.seconds();
   progress.end();
+}
+
+PhotonMaps::PhotonMaps(std::unique_ptr<maps::MapStore> store) : store_(std::move(store)) {}
+
+const maps::MapStore& maps::store_of(const PhotonMaps& maps) { return *maps.store_; }
+PhotonMaps maps::maps_in(std::unique_ptr<maps::MapStore> store) {
+  return PhotonMaps(std::move(store));
 }
 
 PhotonMaps::~PhotonMaps() = default;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "photile/errors.hpp"
+#include "photile/scene_builder.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"
 #include "surface/plane_tree.hpp"
@@ -66,6 +67,7 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& 
   if (!(radius > 0) || !std::isfinite(radius)) {
     throw UsageError(fmt::format("radius {} m: must be a positive number", radius));
   }
+  check_scene(scene);
   SurfaceIndex index;
   index.radius = radius;
   index.angle_degrees = angle_degrees;
@@ -95,7 +97,13 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& 
 
 std::vector<std::uint8_t> landed_on(const Scene& scene, const Photons& photons) {
   std::vector<std::uint8_t> landed(2 * scene.triangle_count(), 0);
-  for (const std::uint32_t s : photons.sided_triangle) landed[s] = 1;
+  for (const std::uint32_t s : photons.sided_triangle) {
+    if (s >= landed.size()) {
+      throw InputError(fmt::format("{}: a photon lies on sided triangle {} of {}",
+                                   scene.source.string(), s, landed.size()));
+    }
+    landed[s] = 1;
+  }
   return landed;
 }
 

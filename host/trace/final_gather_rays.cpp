@@ -98,7 +98,7 @@ FinalGatherRays join(const RayScene& rays, std::vector<TaskRays> tasks,
     first_of.push_back(first_of.back() + static_cast<std::uint32_t>(task.record.hits.size()));
     records.push_back(std::move(task.record));
   }
-  const std::vector<HitPlace> places = sorted_places(records, rays.impl().bounds, map_of);
+  const std::vector<HitPlace> places = sorted_places(records, impl_of(rays).bounds, map_of);
   result.ends = hits_at(records, places);
   result.end.resize(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -115,7 +115,7 @@ FinalGatherRays trace_final_gather(const RayScene& rays, const PrimaryHits& hits
                                    std::span<const std::uint32_t> map_of) {
   PrimaryHitParameters specular;
   specular.max_specular_depth = parameters.max_specular_depth;
-  const EyeSetup setup{.rays = &rays.impl(),
+  const EyeSetup setup{.rays = &impl_of(rays),
                        .film = nullptr,
                        .eye = {},
                        .parameters = &specular,

@@ -52,7 +52,7 @@ PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
   }
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
-  batch.hits = hits_at(rows, sorted_places(rows, rays.impl().bounds, map_of));
+  batch.hits = hits_at(rows, sorted_places(rows, impl_of(rays).bounds, map_of));
   return batch;
 }
 

@@ -33,7 +33,7 @@ std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, glm::vec3& 
 std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin,
                                          const glm::vec3& direction, const RandomStream& random,
                                          Purpose purpose, std::uint32_t& holes) {
-  return next_surface(rays.impl(), origin, direction, random, purpose, holes);
+  return next_surface(impl_of(rays), origin, direction, random, purpose, holes);
 }
 
 }  // namespace photile::trace

@@ -75,7 +75,7 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
     progress.throw_if_cancelled();
     const trace::FlushDenormals flush_denormals;
     const Chunk& chunk = chunks[c];
-    const trace::PathSetup setup{&scene.impl(),
+    const trace::PathSetup setup{&impl_of(scene),
                                  &parameters,
                                  &emitters[chunk.light],
                                  chunk.light,

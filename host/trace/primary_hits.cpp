@@ -56,7 +56,7 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
     direct.emplace(trace::DirectRays{ray_scene, *lamps, parameters.direct_rays});
   }
   const FilmDirections directions = camera.directions(parameters.width, parameters.height);
-  const trace::EyeSetup setup{.rays = &ray_scene.impl(),
+  const trace::EyeSetup setup{.rays = &impl_of(ray_scene),
                               .film = &directions,
                               .eye = glm::vec3(camera.position),
                               .parameters = &parameters,

@@ -17,11 +17,11 @@ glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm
 
 std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
                                      const glm::vec3& direction) {
-  return rays.impl().intersect(origin, direction);
+  return impl_of(rays).intersect(origin, direction);
 }
 
 bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {
-  return rays.impl().occluded(from, to);
+  return impl_of(rays).occluded(from, to);
 }
 
 glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {

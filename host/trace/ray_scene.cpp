@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "photile/scene_builder.hpp"
 #include "trace/ray_scene_impl.hpp"
 #include "trace/surface.hpp"
 
@@ -89,7 +90,11 @@ bool RayScene::Impl::occluded(const glm::vec3& from, const glm::vec3& to) const 
   return ray.tfar < 0.0f;
 }
 
-RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+RayScene::RayScene(const Scene& scene) {
+  check_scene(scene);
+  impl_ = std::make_unique<Impl>(scene);
+}
+const RayScene::Impl& impl_of(const RayScene& scene) { return *scene.impl_; }
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;

@@ -35,9 +35,8 @@ void check(RTCDevice device, const Scene& scene, const char* call) {
   const std::string remedy = error == RTC_ERROR_OUT_OF_MEMORY
                                  ? "; free memory or use a smaller scene"
                                  : "; Embree 3.13 on a CPU with SSE2 is needed";
-  throw Error(ExitCode::failure,
-              scene.source.string() + ": " + call + " of Embree failed with " + name_of(error) +
-                  " for " + std::to_string(scene.triangle_count()) + " triangles" + remedy);
+  throw Error(scene.source.string() + ": " + call + " of Embree failed with " + name_of(error) +
+              " for " + std::to_string(scene.triangle_count()) + " triangles" + remedy);
 }
 
 bool count_bytes(void* bytes, ssize_t change, bool /*after the change*/) {

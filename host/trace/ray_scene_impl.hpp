@@ -47,4 +47,7 @@ struct RayScene::Impl {
   void release();
 };
 
+/// What host/trace needs of a scene.
+const RayScene::Impl& impl_of(const RayScene& scene);
+
 }  // namespace photile

@@ -28,7 +28,7 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
           "{}: no opaque surface within {} m of the sensor at ({}, {}, {})", scene.source.string(),
           reach, sensor.position.x, sensor.position.y, sensor.position.z));
     }
-    append_hit(rays.impl(), *point,
+    append_hit(impl_of(rays), *point,
                {glm::vec3(sensor.position), down, glm::vec3(1.0f), static_cast<std::uint32_t>(i)},
                record);
     places.push_back({0, static_cast<std::uint32_t>(i)});

@@ -45,9 +45,11 @@ struct DeviceOptions {
   std::uint64_t memory_bytes = 0;  ///< that live buffers may take together; 0 = all the device has
 };
 
+class Device;
 namespace device {
-class Context;  // host/device/context.hpp
-}
+class Context;
+Context& context_of(Device& device);
+}  // namespace device
 
 /// An open device: context, queue and program cache. Movable.
 class Device {
@@ -65,10 +67,9 @@ class Device {
   std::uint64_t programs_from_cache() const;
   std::uint64_t peak_allocated_bytes() const;  ///< most that live buffers took together so far
 
-  device::Context& context() { return *context_; }
-
  private:
   friend std::vector<Device> open_devices(const DeviceOptions& options);
+  friend device::Context& device::context_of(Device& device);
   explicit Device(std::unique_ptr<device::Context> context);
 
   std::unique_ptr<device::Context> context_;

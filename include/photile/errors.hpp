@@ -1,4 +1,4 @@
-// What can go wrong, as exceptions, and the exit code that the command line gives for each.
+// What can go wrong, as exceptions.
 #pragma once
 
 #include <stdexcept>
@@ -6,47 +6,31 @@
 
 namespace photile {
 
-/// The exit codes of the `photile` command. Documented in docs/command-line.md.
-enum class ExitCode : int {
-  success = 0,       ///< the output is complete
-  failure = 1,       ///< run-time failure: unwritable output, disk full, internal error
-  usage = 2,         ///< unknown option, value out of range, unknown light name
-  input = 3,         ///< scene or image missing, unreadable, malformed, without lights or geometry
-  device = 4,        ///< no OpenCL device, kernel build failure, device out of memory
-  interrupted = 130  ///< stopped by the user (SIGINT); earlier results are kept
-};
-
 /// Base of every error photile throws on purpose. `what()` is one line: the file or object, what
 /// was found, and the remedy.
-class Error : public std::runtime_error {
- public:
-  Error(ExitCode exit_code, const std::string& message)
-      : std::runtime_error(message), exit_code_(exit_code) {}
-  ExitCode exit_code() const noexcept { return exit_code_; }
-
- private:
-  ExitCode exit_code_;
+struct Error : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// A parameter is out of its range, or names something that does not exist.
 struct UsageError : Error {
-  explicit UsageError(const std::string& message) : Error(ExitCode::usage, message) {}
+  using Error::Error;
 };
 
-/// A file given by the user cannot be used.
+/// A file, or a scene made in memory, cannot be used.
 struct InputError : Error {
-  explicit InputError(const std::string& message) : Error(ExitCode::input, message) {}
+  using Error::Error;
 };
 
 /// An output cannot be written.
 struct OutputError : Error {
-  explicit OutputError(const std::string& message) : Error(ExitCode::failure, message) {}
+  using Error::Error;
 };
 
 /// An OpenCL call failed. Carries the status by name and the call that returned it.
 struct DeviceError : Error {
   explicit DeviceError(const std::string& message, int status = 0)
-      : Error(ExitCode::device, message), status(status) {}
+      : Error(message), status(status) {}
   int status;  ///< the OpenCL status code, 0 where none applies
 };
 
@@ -65,7 +49,7 @@ struct KernelBuildError : DeviceError {
 
 /// The user asked to stop.
 struct Interrupted : Error {
-  Interrupted() : Error(ExitCode::interrupted, "interrupted") {}
+  Interrupted() : Error("interrupted") {}
 };
 
 }  // namespace photile

@@ -9,7 +9,7 @@
 
 namespace photile {
 
-/// Puts lights into a group: `--light-group GLOB=NAME`.
+/// Puts lights into a group.
 struct LightGrouping {
   std::string glob;   ///< of light names: *, ? and [...] as in a shell
   std::string group;  ///< cleaned as light names are
@@ -17,8 +17,7 @@ struct LightGrouping {
   static LightGrouping parse(const std::string& text);
 };
 
-/// Gives a point or spot light of the scene the intensities of a photometric file:
-/// `--ies NAME=FILE`.
+/// Gives a point or spot light of the scene the intensities of a photometric file.
 struct LightProfile {
   std::string light;
   std::filesystem::path file;  ///< LM-63 (.ies) or EULUMDAT (.ldt)
@@ -26,14 +25,14 @@ struct LightProfile {
   static LightProfile parse(const std::string& text);
 };
 
-/// Surroundings from a picture: `--environment FILE`.
+/// Surroundings from a picture.
 struct EnvironmentPicture {
   std::filesystem::path file;   ///< "" = none
   double scale = 1;             ///< multiplies the texels, which are cd/m2 or W/(m2 sr)
   double rotation_degrees = 0;  ///< clockwise as seen from above
 };
 
-/// `--sun AZIMUTH,ELEVATION,LUX`.
+/// The sun; parsed from AZIMUTH,ELEVATION,LUX.
 struct Sun {
   double azimuth_degrees = 0;    ///< clockwise from north, which is -z; east is +x
   double elevation_degrees = 0;  ///< above the horizon, y upwards
@@ -49,7 +48,7 @@ enum class SkyKind {
   clear      ///< CIE standard clear sky (ISO 15469, type 12); it needs a sun
 };
 
-/// `--sky KIND=LUX`: the upper half of the surroundings, black below the horizon.
+/// The upper half of the surroundings, black below the horizon.
 struct Sky {
   SkyKind kind = SkyKind::overcast;
   double illuminance = 0;  ///< lux on a horizontal surface that sees all of it, without the sun
@@ -57,7 +56,7 @@ struct Sky {
   static Sky parse(const std::string& text);
 };
 
-/// A luminous rectangle at a node of a glTF file: `--area-light NAME=WxH,LUMENS`.
+/// A luminous rectangle at a node of a glTF file; parsed from NAME=WxH,LUMENS.
 struct LuminousPanel {
   std::string node;
   double width = 0, height = 0;  ///< metres, along the node's x and y axes; it shines along -z
@@ -66,7 +65,7 @@ struct LuminousPanel {
   static LuminousPanel parse(const std::string& text);
 };
 
-/// The colour of a light by its temperature: `--light-temperature NAME=KELVIN`.
+/// The colour of a light by its temperature; parsed from NAME=KELVIN.
 struct LightTemperature {
   std::string light;
   double kelvin = 0;

@@ -52,9 +52,12 @@ struct PhotonMapStatistics {
   double seconds = 0;
 };
 
+class PhotonMaps;
 namespace maps {
-struct MapStore;  // host/maps/map_store.hpp
-}
+struct MapStore;
+const MapStore& store_of(const PhotonMaps& maps);
+PhotonMaps maps_in(std::unique_ptr<MapStore> store);
+}  // namespace maps
 
 /// Photon maps of every sided triangle, or of patches of them (NeighbourGroups::patches). A photon
 /// is entered in the maps of its group that lie within the radius of the photon itself. Build is
@@ -79,9 +82,11 @@ class PhotonMaps {
   /// that is the sided triangle itself.
   std::span<const std::uint32_t> map_of() const;
 
-  const maps::MapStore& store() const { return *store_; }
-
  private:
+  friend const maps::MapStore& maps::store_of(const PhotonMaps& maps);
+  friend PhotonMaps maps::maps_in(std::unique_ptr<maps::MapStore> store);
+  explicit PhotonMaps(std::unique_ptr<maps::MapStore> store);
+
   std::unique_ptr<maps::MapStore> store_;
 };
 

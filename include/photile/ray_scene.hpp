@@ -23,11 +23,11 @@ class RayScene {
   const SceneNeeds& needs() const;  ///< of the scene, computed once
   std::uint64_t bytes() const;      ///< held by Embree
 
-  /// Embree's handle (an RTCScene), for host/trace only.
   struct Impl;
-  const Impl& impl() const { return *impl_; }
 
  private:
+  friend const Impl& impl_of(const RayScene& scene);
+
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,4 +1,4 @@
-// What each stage cost: the record behind the summary and `--stats FILE`.
+// What each stage cost: a record of time, memory and figures.
 #pragma once
 
 #include <chrono>

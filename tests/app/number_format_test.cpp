@@ -4,7 +4,9 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-namespace photile::app {
+namespace photile::test {
+
+using namespace app;
 
 TEST_CASE("counts take a suffix from a thousand on") {
   CHECK(format_count(0) == "0");
@@ -39,4 +41,4 @@ TEST_CASE("a power is given in its own unit first") {
   CHECK(format_power_in_both(2, PowerUnit::watt, 179) == "2 W (358 lm)");
 }
 
-}  // namespace photile::app
+}  // namespace photile::test

@@ -4,7 +4,9 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-namespace photile::app {
+namespace photile::test {
+
+using namespace app;
 
 TEST_CASE("counts are read with exponents and suffixes") {
   CHECK(parse_count("0") == 0u);
@@ -76,4 +78,4 @@ TEST_CASE("what is no byte size is none") {
   CHECK_FALSE(parse_bytes(text).has_value());
 }
 
-}  // namespace photile::app
+}  // namespace photile::test

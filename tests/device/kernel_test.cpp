@@ -3,6 +3,7 @@
 
 #include "device/context.hpp"
 #include "device/program_source.hpp"
+#include "tools/command/exit_code.hpp"
 
 namespace {
 
@@ -143,7 +144,7 @@ TEST_CASE("a build error names file and line and carries the log") {
     if (context.info().platform != "Oclgrind") {
       CHECK_THAT(error.build_log, Catch::Contains("test/included.clh:2"));
     }
-    CHECK(error.exit_code() == photile::ExitCode::device);
+    CHECK(photile::app::exit_code_of(error) == photile::app::ExitCode::device);
   }
 }
 

@@ -52,7 +52,7 @@ TEST_CASE("too little allowed memory names the option that allows more") {
   Context context(limited(100));
   CHECK_THROWS_WITH(context.allocate<float>(50, "photons"),
                     Catch::Contains("photons (50 x 4 bytes)") &&
-                        Catch::Contains("may use 100 bytes") && Catch::Contains("--memory"));
+                        Catch::Contains("may use 100 bytes") && Catch::Contains("memory limit"));
 }
 
 TEST_CASE("an allocation takes what reclaimers release, and no more than it needs") {

@@ -69,7 +69,7 @@ TEST_CASE("two sub-devices compute at once, compiling the same program") {
   {
     std::vector<std::jthread> threads;
     for (std::size_t i = 0; i < devices.size(); ++i) {
-      threads.emplace_back([&, i] { values[i] = thirds(devices[i].context(), n); });
+      threads.emplace_back([&, i] { values[i] = thirds(device::context_of(devices[i]), n); });
     }
   }
   for (const auto& computed : values) {

@@ -99,6 +99,7 @@ TEST_CASE("radiance under normal maps equals the BSDF summed over the oracle's n
   scene.textures.emplace_back("flat", 1, 1,
                               std::vector<std::array<std::uint8_t, 4>>{{128, 128, 255, 255}});
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  scene.corner_uv.resize(scene.triangle_count());
   REQUIRE(needs_of(scene).normal_maps);
   const Photons photons = test::uniform_photons(scene, 5000, 59);
   PrimaryHits hits = test::uniform_hits(scene, 100, 60);

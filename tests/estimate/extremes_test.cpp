@@ -223,7 +223,8 @@ TEST_CASE("extremes: photons within a rounding of the borders of cells") {
     const PhotonMaps maps(test::device(), scene, photons,
                           find_neighbour_groups(scene, {radius, 60}), {radius, photons_per_cell});
     PhotileGrid grid{};
-    test::device().context().read(maps.store().pages.use(0).grids, std::span(&grid, 1));
+    device::context_of(test::device())
+        .read(maps::store_of(maps).pages.use(0).grids, std::span(&grid, 1));
     return grid;
   };
   const PhotileGrid frame = grid_of(test::uniform_photons(scene, 10, 124, false), 4);
@@ -280,7 +281,8 @@ TEST_CASE("extremes: photons within the radius by less than rounding moves them 
   };
   const auto grid_of = [](const PhotonMaps& maps) {
     PhotileGrid grid{};
-    test::device().context().read(maps.store().pages.use(0).grids, std::span(&grid, 1));
+    device::context_of(test::device())
+        .read(maps::store_of(maps).pages.use(0).grids, std::span(&grid, 1));
     return grid;
   };
   const PhotileGrid grid = grid_of(maps_of(photons_at(scene, {glm::vec3(0.5 * length * x)}, 127)));

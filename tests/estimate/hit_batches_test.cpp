@@ -46,7 +46,7 @@ TEST_CASE("a batch takes a quarter of the memory and no buffer beyond the larges
 }
 
 TEST_CASE("work that fails for want of memory is repeated with half the hits, then stays so") {
-  HitBatches batches(test::device().context());
+  HitBatches batches(device::context_of(test::device()));
   std::vector<std::pair<std::size_t, std::size_t>> done;
   int failures = 0;
   const auto work = [&](std::size_t first, std::size_t count) {
@@ -66,7 +66,7 @@ TEST_CASE("work that fails for want of memory is repeated with half the hits, th
 }
 
 TEST_CASE("a single hit that does not fit is an error") {
-  HitBatches batches(test::device().context());
+  HitBatches batches(device::context_of(test::device()));
   CHECK_THROWS_AS(batches.run(7, one_light_needs,
                               [](std::size_t, std::size_t) { throw DeviceMemoryError("none"); }),
                   DeviceMemoryError);

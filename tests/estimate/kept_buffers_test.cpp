@@ -74,12 +74,12 @@ TEST_CASE("a second call allocates nothing that the first has not") {
   const PhotonMaps maps = maps_on(device, scene, photons);
   const PrimaryHits hits = on_plate(test::uniform_hits(scene, 2'000, 8), false);
   Estimator estimator(maps, scene, {});
-  const std::uint64_t before = device.context().allocated_bytes();
+  const std::uint64_t before = device::context_of(device).allocated_bytes();
   estimator.estimate(hits);
-  const std::uint64_t kept = device.context().allocated_bytes();
+  const std::uint64_t kept = device::context_of(device).allocated_bytes();
   CHECK(kept - before == hits.size() * sizeof(glm::vec3));
   estimator.estimate(hits, 0, hits.size() / 2);
-  CHECK(device.context().allocated_bytes() == kept);
+  CHECK(device::context_of(device).allocated_bytes() == kept);
 }
 
 TEST_CASE("kept estimates make room where memory runs out") {
@@ -93,7 +93,7 @@ TEST_CASE("kept estimates make room where memory runs out") {
   const PrimaryHits hits = on_plate(test::uniform_hits(scene, 2'000, 8), false);
   Estimator estimator(maps, scene, {});
   const Estimates expected = estimator.estimate(hits);
-  device::Context& context = device.context();
+  device::Context& context = device::context_of(device);
   {
     // One byte more than is left. The maps are asked last, and stay.
     const std::uint64_t left = memory - context.allocated_bytes();

@@ -111,9 +111,9 @@ TEST_CASE("a diffuse scene of one light has the smallest records, others what th
   Device device;
   const PhotonMaps maps(device, scene, photons,
                         find_map_groups(scene, photons, MapMode::triangle, {0.2}), {.radius = 0.2});
-  for (std::size_t i = 0; i < maps.store().pages.size(); ++i) {
-    const maps::MapPage& page = maps.store().pages.use(i);
-    const maps::ResidentMaps::Release release{maps.store().pages};
+  for (std::size_t i = 0; i < maps::store_of(maps).pages.size(); ++i) {
+    const maps::MapPage& page = maps::store_of(maps).pages.use(i);
+    const maps::ResidentMaps::Release release{maps::store_of(maps).pages};
     CHECK(bytes_per_reference(page) == bytes);
   }
 

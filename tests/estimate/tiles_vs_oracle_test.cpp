@@ -32,8 +32,8 @@ TEST_CASE("tiles find the oracle's neighbours up to the radius, on either side o
   const PhotonMaps maps(small, scene, photons,
                         find_map_groups(scene, photons, MapMode::patch, {radius, 60}),
                         {.radius = radius, .photons_per_cell = 0.318f});
-  REQUIRE_FALSE(maps.store().tilings.empty());
-  for (const auto& [map, tiling] : maps.store().tilings) {
+  REQUIRE_FALSE(maps::store_of(maps).tilings.empty());
+  for (const auto& [map, tiling] : maps::store_of(maps).tilings) {
     // A reach too short by a tenth would show.
     REQUIRE(bins_within(tiling, 0.9 * radius) < bins_within(tiling, radius));
   }

@@ -166,7 +166,7 @@ TEST_CASE("a render in a small --memory is the same; in too small a one it says 
           undisturbed_picture());
   }
   const Outcome outcome = run_photile(small_render(folder, {}, {"--memory", "300"}));
-  CHECK_THAT(last_error(outcome, device_error), Catch::Contains("use a larger --memory"));
+  CHECK_THAT(last_error(outcome, device_error), Catch::Contains("use a larger memory limit"));
 }
 
 TEST_CASE("PoCL with 256 MiB a buffer renders the same picture", "[slow]") {

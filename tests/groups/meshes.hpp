@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <random>
+#include <utility>
 
 #include "photile/scene.hpp"
 
@@ -34,10 +35,20 @@ class Uniform {
   std::mt19937_64 generator_;
 };
 
+/// The scene with what groups do not look at, so that it is whole.
+inline Scene whole(Scene scene) {
+  scene.front_side.resize(scene.triangle_count(), 0);
+  scene.triangle_material.resize(scene.triangle_count(), 0);
+  scene.triangle_light.resize(scene.triangle_count(), none);
+  scene.materials.resize(1);
+  return scene;
+}
+
 inline void add_triangle(Scene& scene, const Corners& corners) {
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
   for (const glm::dvec3& corner : corners) scene.vertices.emplace_back(corner);
   scene.triangles.emplace_back(first, first + 1, first + 2);
+  scene = whole(std::move(scene));
 }
 
 /// `count` triangles of about `size` metres at random places in a cube of `extent` metres. Every
@@ -73,7 +84,7 @@ Scene height_field(int cells, double extent, Height&& height) {
       scene.triangles.emplace_back(corner + 1, corner + row + 1, corner + row);
     }
   }
-  return scene;
+  return whole(std::move(scene));
 }
 
 /// Unit sphere of latitude and longitude bands; shared vertices, needles at the poles.
@@ -96,7 +107,7 @@ inline Scene sphere(int bands) {
       }
     }
   }
-  return scene;
+  return whole(std::move(scene));
 }
 
 inline Corners corners_of(const Scene& scene, std::uint32_t triangle) {

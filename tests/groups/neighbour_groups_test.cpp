@@ -68,7 +68,7 @@ Scene folded_strip(double fold_degrees) {
   Scene scene;
   scene.vertices = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}, {x, 0, z}, {x, 1, z}};
   scene.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
-  return scene;
+  return whole(std::move(scene));
 }
 
 }  // namespace

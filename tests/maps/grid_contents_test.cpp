@@ -18,7 +18,7 @@ namespace {
 template <class T>
 std::vector<T> download(const device::Buffer<T>& buffer) {
   std::vector<T> values(buffer.size());
-  test::device().context().read(buffer, std::span(values));
+  device::context_of(test::device()).read(buffer, std::span(values));
   return values;
 }
 
@@ -58,8 +58,8 @@ bool in_cell(double coordinate, double minimum, double size, std::uint32_t index
 Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
   Contents contents;
   const std::span<const std::uint32_t> map_of = photon_maps.map_of();
-  for (std::size_t i = 0; i < photon_maps.store().pages.size(); ++i) {
-    const maps::MapPage& page = photon_maps.store().pages.use(i);
+  for (std::size_t i = 0; i < maps::store_of(photon_maps).pages.size(); ++i) {
+    const maps::MapPage& page = maps::store_of(photon_maps).pages.use(i);
     const auto grids = download(page.grids);
     const auto cell_start = download(page.cell_start);
     const auto entry_photon = download(page.entry_photon);
@@ -141,14 +141,14 @@ void check_against_reference(const Scene& scene, const Photons& photons, double 
 }  // namespace
 
 TEST_CASE("the shared grid struct has the same size on the device as on the host") {
-  auto& context = test::device().context();
+  auto& context = device::context_of(test::device());
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
   const Photons photons = test::uniform_photons(scene, 100, 1, false);
   const PhotonMaps photon_maps(test::device(), scene, photons,
                                find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
   // A device that laid the struct out otherwise would not return the values it was sized with.
-  const auto grids = download(photon_maps.store().pages.use(0).grids);
+  const auto grids = download(maps::store_of(photon_maps).pages.use(0).grids);
   for (const PhotileGrid& grid : grids) {
     if (grid.columns == 0) continue;
     CHECK(grid.minimum_u == Approx(-0.1));
@@ -213,7 +213,7 @@ TEST_CASE("maps without any photon are built and empty") {
   const PhotonMaps photon_maps(test::device(), scene, photons,
                                find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
   CHECK(photon_maps.statistics().references == 0);
-  CHECK(photon_maps.store().pages.empty());
+  CHECK(maps::store_of(photon_maps).pages.empty());
 }
 
 TEST_CASE("two builds give the same bits") {
@@ -223,12 +223,12 @@ TEST_CASE("two builds give the same bits") {
   const NeighbourGroups groups = find_neighbour_groups(scene, {0.2, 60});
   const PhotonMaps first(test::device(), scene, photons, groups, {0.2, 4});
   const PhotonMaps second(test::device(), scene, photons, groups, {0.2, 4});
-  REQUIRE(first.store().pages.size() == second.store().pages.size());
-  for (std::size_t i = 0; i < first.store().pages.size(); ++i) {
-    CHECK(download(first.store().pages.use(i).entry_photon) ==
-          download(second.store().pages.use(i).entry_photon));
-    CHECK(download(first.store().pages.use(i).cell_start) ==
-          download(second.store().pages.use(i).cell_start));
+  REQUIRE(maps::store_of(first).pages.size() == maps::store_of(second).pages.size());
+  for (std::size_t i = 0; i < maps::store_of(first).pages.size(); ++i) {
+    CHECK(download(maps::store_of(first).pages.use(i).entry_photon) ==
+          download(maps::store_of(second).pages.use(i).entry_photon));
+    CHECK(download(maps::store_of(first).pages.use(i).cell_start) ==
+          download(maps::store_of(second).pages.use(i).cell_start));
   }
 }
 

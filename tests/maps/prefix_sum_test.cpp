@@ -10,7 +10,7 @@ using namespace photile;
 
 namespace {
 
-device::KernelSet kernels() { return {test::device().context(), "shared/scan.clh", {}}; }
+device::KernelSet kernels() { return {device::context_of(test::device()), "shared/scan.clh", {}}; }
 
 }  // namespace
 

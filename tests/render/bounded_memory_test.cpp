@@ -104,9 +104,9 @@ TEST_CASE("a memory too small for the triangles alone is refused with the remedy
       DeviceMemoryError,
       Catch::Predicate<DeviceMemoryError>(
           [](const DeviceMemoryError& error) {
-            return std::string(error.what()).find("--memory") != std::string::npos;
+            return std::string(error.what()).find("memory limit") != std::string::npos;
           },
-          "names --memory"));
+          "names the memory limit"));
 }
 
 TEST_CASE("a global tree that does not fit is refused: it cannot be split") {

@@ -126,8 +126,8 @@ Scene gltf_room(const glm::dvec3& offset) {
   const std::vector<std::uint32_t> box_indices = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6,
                                                   0, 4, 5, 0, 5, 1, 3, 2, 6, 3, 6, 7,
                                                   0, 3, 7, 0, 7, 4, 1, 5, 6, 1, 6, 2};
-  const std::vector<std::string> parts = {tests::bytes_of(box), tests::bytes_of(box_indices),
-                                          tests::bytes_of(positions), tests::bytes_of(indices)};
+  const std::vector<std::string> parts = {test::bytes_of(box), test::bytes_of(box_indices),
+                                          test::bytes_of(positions), test::bytes_of(indices)};
   const std::vector<std::size_t> counts = {8, box_indices.size(), ball.vertices.size(),
                                            indices.size()};
   json document = json::parse(gltf_text);
@@ -142,7 +142,7 @@ Scene gltf_room(const glm::dvec3& offset) {
   }
   document["buffers"][0]["byteLength"] = buffer.size();
   document["nodes"][0]["translation"] = {offset.x, offset.y, offset.z};
-  const tests::SceneFolderOnDisk folder;
+  const test::SceneFolderOnDisk folder;
   folder.write("room.bin", buffer);
   return load_scene(folder.write("room.gltf", document.dump()));
 }
@@ -156,7 +156,7 @@ LightLayers picture_of(const Scene& scene, const glm::dvec3& offset) {
 TEST_CASE("extremes: a thousand kilometres off, files give the picture of a scene at the origin") {
   const bool is_obj = GENERATE(true, false);
   const auto scene_at = [&](const glm::dvec3& offset) {
-    return is_obj ? tests::load_obj(room_text(offset), room_materials) : gltf_room(offset);
+    return is_obj ? test::load_obj(room_text(offset), room_materials) : gltf_room(offset);
   };
   const Scene at_origin = scene_at(glm::dvec3(0));
   REQUIRE(at_origin.instances.size() == (is_obj ? 0u : 3u));
@@ -222,7 +222,7 @@ TEST_CASE("extremes: a lamp of a millimetre in a hall of 1e5 m lights it as theo
   vertex(x + half, y + half, height), vertex(x + half, y - half, height);
   text += "f 9 10 11 12\n";
   const Scene scene =
-      tests::load_obj(text, "newmtl lamp\nKd 0 0 0\nKe 1e6 1e6 1e6\nnewmtl wall\nKd 0 0 0\n");
+      test::load_obj(text, "newmtl lamp\nKd 0 0 0\nKe 1e6 1e6 1e6\nnewmtl wall\nKd 0 0 0\n");
   REQUIRE(scene.triangle_count() == 14);
   const RayScene rays(scene);
   std::vector<double> within;
@@ -250,7 +250,7 @@ TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a 
   for (unsigned seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);
     try {
-      const Scene scene = tests::load_obj(test::garbage_obj(seed), tests::lamp_and_wall);
+      const Scene scene = test::load_obj(test::garbage_obj(seed), test::lamp_and_wall);
       // Half of them with a radius that fits nothing.
       parameters.radius = seed % 4 < 2 ? 0 : std::pow(10.0, static_cast<int>(seed % 40) - 20);
       const LightLayers layers =

@@ -19,6 +19,7 @@
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "render/device_estimators.hpp"
+#include "tools/command/exit_code.hpp"
 
 using namespace photile;
 
@@ -124,12 +125,12 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
       devices, test.scene, photons, find_neighbour_groups(test.scene, {radius, 60}),
       {radius, photons_per_cell, test.structure}, Progress::none());
   const PhotonMaps& maps = all_maps.back();
-  if (tiled && maps.store().tilings.empty()) {
+  if (tiled && maps::store_of(maps).tilings.empty()) {
     throw DeviceError(test.name + ": no map was cut into tiles; take more photons");
   }
-  for (std::size_t i = 0; i < maps.store().pages.size(); ++i) {
-    const maps::MapPage& page = maps.store().pages.use(i);
-    device::Context& context = maps.device().context();
+  for (std::size_t i = 0; i < maps::store_of(maps).pages.size(); ++i) {
+    const maps::MapPage& page = maps::store_of(maps).pages.use(i);
+    device::Context& context = device::context_of(maps.device());
     print_hash(test, "cell_start", context, page.cell_start);
     print_hash(test, "entry_photon", context, page.entry_photon);
     print_hash(test, "entry_position", context, page.entry_position);
@@ -188,7 +189,7 @@ std::vector<Case> cases(bool every_kernel) {
 int main(int count, char** arguments) {
   if (count < 3) {
     fmt::print(stderr, "usage: photile_fingerprint PHOTONS HITS [--every-kernel]\n");
-    return static_cast<int>(ExitCode::usage);
+    return static_cast<int>(app::ExitCode::usage);
   }
   const Sizes sizes{std::strtoul(arguments[1], nullptr, 10),
                     std::strtoul(arguments[2], nullptr, 10)};
@@ -210,9 +211,9 @@ int main(int count, char** arguments) {
     }
   } catch (const Error& error) {
     fmt::print(stderr, "photile_fingerprint: error: {}\n", error.what());
-    return static_cast<int>(error.exit_code());
+    return static_cast<int>(app::exit_code_of(error));
   }
   if (all_finite) return 0;
   fmt::print(stderr, "photile_fingerprint: error: an estimate is not a finite number\n");
-  return static_cast<int>(ExitCode::input);
+  return static_cast<int>(app::ExitCode::input);
 }

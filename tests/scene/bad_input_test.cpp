@@ -7,10 +7,9 @@
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 /// Loading `content` under `name` must fail with one line that names the file and holds `words`.
@@ -192,4 +191,4 @@ TEST_CASE("names with dots inside are files like any other") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

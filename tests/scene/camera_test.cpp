@@ -1,13 +1,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "import/finishing.hpp"
+#include "scene/default_camera.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
-
-using namespace tests;
 
 void check_vector(const glm::dvec3& actual, const glm::dvec3& expected) {
   CHECK(glm::length(actual - expected) < 1e-9);
@@ -125,4 +123,4 @@ TEST_CASE("an orthographic glTF camera is skipped by name and replaced") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

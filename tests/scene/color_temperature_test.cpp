@@ -6,10 +6,9 @@
 
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using scene_io::chromaticity_of_temperature;
 using scene_io::color_of_temperature;
 
@@ -72,4 +71,4 @@ TEST_CASE("texts of temperatures are checked", "[temperature]") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

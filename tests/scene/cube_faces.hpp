@@ -8,7 +8,7 @@
 
 #include "import/cube_map.hpp"
 
-namespace photile::tests {
+namespace photile::test {
 
 /// OpenGL 4.6, table 8.19: the direction of a place of a face, s and t from 0 to 1, t from the
 /// first row of texels on.
@@ -39,4 +39,4 @@ inline scene_io::CubeMap cube_of(int side,
   return cube;
 }
 
-}  // namespace photile::tests
+}  // namespace photile::test

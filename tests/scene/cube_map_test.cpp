@@ -8,10 +8,9 @@
 
 #include "cube_faces.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using scene_io::CubeMap;
 using std::numbers::pi;
 
@@ -86,4 +85,4 @@ TEST_CASE("a patch of sky keeps its flux wherever it is turned", "[cube_map]") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -9,7 +9,7 @@
 #include "scene_files.hpp"
 #include "scene_invariants.hpp"
 
-namespace photile::tests {
+namespace photile::test {
 
 /// Loads them one after the other in a folder of their own, and counts.
 class DamagedFiles {
@@ -46,4 +46,4 @@ inline std::string with_replaced_bytes(std::string text, std::mt19937& random) {
   return text;
 }
 
-}  // namespace photile::tests
+}  // namespace photile::test

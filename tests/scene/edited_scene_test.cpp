@@ -1,18 +1,18 @@
 // Copies of scene files with other lights: what is written reads back as the same powers.
+#include "export/edited_scene.hpp"
+
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <iterator>
 #include <numbers>
 
-#include "export/edited_scene.hpp"
 #include "photile/light_mix.hpp"
 #include "scene_files.hpp"
 #include "source_folder.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using Catch::Contains;
 
 std::string bytes_in(const std::filesystem::path& file) {
@@ -232,4 +232,4 @@ TEST_CASE("lights of options are told, and no file is written over another") {
                     Contains("room.a.gltf") && Contains("there already"));
 }
 
-}  // namespace photile
+}  // namespace photile::test

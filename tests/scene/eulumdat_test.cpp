@@ -8,10 +8,9 @@
 #include "import/resource_error.hpp"
 #include "photometric_texts.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using std::numbers::pi;
 
 IntensityDistribution read_eulumdat(const std::string& text) {
@@ -120,4 +119,4 @@ TEST_CASE("a EULUMDAT file cut anywhere, or with bytes replaced at random, is re
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

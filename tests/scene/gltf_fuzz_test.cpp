@@ -7,10 +7,9 @@
 #include "damaged_files.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 /// A document with something of everything that is read.
@@ -284,4 +283,4 @@ TEST_CASE("glTF surroundings with values replaced or removed give a sound scene 
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -4,10 +4,8 @@
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
-
-using namespace tests;
 
 double total_area(const Scene& scene) {
   double area = 0.0;
@@ -195,4 +193,4 @@ TEST_CASE("cycles, deep trees and multiplying nodes are refused with the reason"
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

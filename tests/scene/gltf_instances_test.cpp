@@ -4,10 +4,9 @@
 
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 constexpr int cells = 96;  // 18,432 triangles, enough to be shared by two places
@@ -178,4 +177,4 @@ TEST_CASE("a place that loses other triangles than the first stays single") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

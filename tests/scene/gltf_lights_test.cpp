@@ -4,10 +4,9 @@
 
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using std::numbers::pi;
 
 /// The square without emission, lit by one punctual light at a node.
@@ -111,7 +110,7 @@ TEST_CASE("an area light that Blender's exporter lost is named") {
 TEST_CASE("emissive materials of a Blender export are noted unless they are scaled") {
   nlohmann::json document = square_document();
   document["asset"]["generator"] = "Khronos glTF Blender I/O v4.2.60";
-  CHECK(warns(load_gltf(document), {"'glow'", "--emissive-scale 683"}));
+  CHECK(warns(load_gltf(document), {"'glow'", "emissive scale of 683"}));
   SceneLoadOptions scaled;
   scaled.emissive_scale = 683.0f;
   const Scene scene = load_gltf(document, scaled);
@@ -120,4 +119,4 @@ TEST_CASE("emissive materials of a Blender export are noted unless they are scal
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

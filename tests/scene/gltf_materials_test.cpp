@@ -3,10 +3,9 @@
 
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 /// The square's material with `members` merged in, and what the import warned about.
@@ -177,4 +176,4 @@ TEST_CASE("primitives without a material get glTF's default, and a wrong number 
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

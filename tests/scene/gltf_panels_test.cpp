@@ -5,10 +5,9 @@
 
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using std::numbers::pi;
 
 /// A dark square at z = 0, and a node called Area above it.
@@ -138,7 +137,7 @@ TEST_CASE("an area light that cannot shine is named", "[panels]") {
   CHECK(warned(with_extension({{"type", "sphere"}}), "'sphere'"));
   CHECK(warned(with_extension({{"type", "rect"}, {"size", 0}}), "no size"));
   CHECK(warned(with_extension({{"type", "rect"}, {"intensity", 0}}), "no size, no light"));
-  CHECK(warned(panel_document(nlohmann::json::object()), "--area-light"));
+  CHECK(warned(panel_document(nlohmann::json::object()), "luminous panel"));
   nlohmann::json missing = with_extension({{"type", "rect"}});
   missing["nodes"][1]["extensions"]["EXT_lights_area"]["light"] = 3;
   CHECK_THAT(input_error_of([&] { load_gltf(missing); }), Catch::Contains("there is no light 3"));
@@ -170,4 +169,4 @@ TEST_CASE("texts of area lights are checked", "[panels]") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -6,10 +6,9 @@
 #include "photometric_texts.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using std::numbers::pi;
 
 /// An even lamp of 100 cd: 400 pi lm.
@@ -200,4 +199,4 @@ TEST_CASE("the option --ies gives a point or spot light a file", "[profiles]") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

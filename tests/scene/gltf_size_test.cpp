@@ -6,10 +6,9 @@
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 constexpr std::uint64_t many = limits::max_implicit_elements;
@@ -117,4 +116,4 @@ TEST_CASE("the limit is one of triangles beyond those that the buffers hold", "[
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -10,10 +10,9 @@
 #include "srgb_oracle.hpp"
 #include "textured_square.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 using std::numbers::pi;
 
@@ -113,7 +112,7 @@ TEST_CASE("surroundings that cannot be read are named, with the remedy", "[image
     CHECK(scene.lights.size() == 1);
     REQUIRE(scene.report.warnings.size() == 1);
     CHECK_THAT(scene.report.warnings[0],
-               Catch::Contains("EXT_lights_image_based") && Catch::Contains("--environment"));
+               Catch::Contains("EXT_lights_image_based") && Catch::Contains("environment picture"));
     return scene.report.warnings[0];
   };
   using Catch::Contains;
@@ -173,4 +172,4 @@ TEST_CASE("an edited copy keeps the pictures of surroundings and says so", "[ima
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -6,10 +6,9 @@
 #include "scene_invariants.hpp"
 #include "textured_square.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 using Texel = std::vector<std::uint8_t>;
@@ -143,4 +142,4 @@ TEST_CASE("scenes without normal maps carry no tangents", "[tangents]") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

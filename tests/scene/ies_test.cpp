@@ -8,10 +8,9 @@
 #include "import/resource_error.hpp"
 #include "photometric_texts.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using scene_io::read_ies;
 using scene_io::ResourceError;
 using std::numbers::pi;
@@ -244,4 +243,4 @@ TEST_CASE("a file cut anywhere, or with bytes replaced at random, is read or ref
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -5,10 +5,8 @@
 
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
-
-using namespace tests;
 
 /// Point lights of 10, 30 and 60 lm at nodes of the given names, in the square without emission.
 nlohmann::json three_lamps(const std::vector<std::string>& names = {"hall_1", "hall_2", "desk"}) {
@@ -173,4 +171,4 @@ TEST_CASE("lights of a group that is off share it equally") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

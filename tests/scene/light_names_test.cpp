@@ -4,7 +4,9 @@
 
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::test {
+
+using namespace scene_io;
 namespace {
 
 TEST_CASE("light names lose the bytes that separate EXR channels and command-line parts") {
@@ -39,4 +41,4 @@ TEST_CASE("a numbered light name does not collide with a name of the file") {
 }
 
 }  // namespace
-}  // namespace photile::scene_io
+}  // namespace photile::test

@@ -4,10 +4,9 @@
 #include "textured_square.hpp"
 #include "trace/surface.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 void check_sampled(const glm::vec3& actual, const glm::dvec3& expected) {
@@ -166,4 +165,4 @@ TEST_CASE("MTL norm is a normal map", "[material_textures]") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

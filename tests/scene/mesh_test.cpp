@@ -2,15 +2,15 @@
 #include <cmath>
 #include <limits>
 
-#include "import/mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
 using scene_io::Corner;
 using scene_io::MeshBuilder;
-using tests::load_obj;
+using test::load_obj;
 
 /// A bumpy grid of triangles with texture coordinates; every third is wound the other way round
 /// when `flipped`.
@@ -150,4 +150,4 @@ TEST_CASE("the bounding sphere goes through the corners of the bounding box") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -3,10 +3,8 @@
 
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
-
-using namespace tests;
 
 /// Material m of an MTL text, beside a lamp. Warnings go to `report` where given.
 Material mtl_material(const std::string& statements, Scene* report = nullptr) {
@@ -118,4 +116,4 @@ TEST_CASE("materials that scatter in one way cost nothing elsewhere") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

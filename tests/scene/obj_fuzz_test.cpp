@@ -6,10 +6,8 @@
 
 #include "damaged_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
-
-using namespace tests;
 
 /// A text with something of everything that is read.
 const std::string sound_obj =
@@ -92,4 +90,4 @@ TEST_CASE("OBJ and MTL texts with bytes or words replaced at random are read or 
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -6,10 +6,8 @@
 
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
-
-using namespace tests;
 
 TEST_CASE("an OBJ square becomes two triangles of area 1 that face its winding's side") {
   const Scene scene = load_obj(unit_square + "o panel\nusemtl lamp\nf 1 2 3 4\n", lamp_and_wall);
@@ -125,4 +123,4 @@ TEST_CASE("a missing material library and a missing material are named and becom
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

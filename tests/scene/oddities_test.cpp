@@ -5,10 +5,9 @@
 #include "scene_files.hpp"
 #include "scene_invariants.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 using std::numbers::pi;
 
@@ -311,4 +310,4 @@ TEST_CASE("nodes that multiply are counted before they are visited", "[oddities]
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

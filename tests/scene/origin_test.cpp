@@ -8,10 +8,9 @@
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 /// `v` lines of points moved by `offset`, with every digit of a double.
@@ -148,4 +147,4 @@ TEST_CASE("garbage OBJ files are refused in a line, or give a scene of sound tri
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

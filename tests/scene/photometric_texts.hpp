@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace photile::tests {
+namespace photile::test {
 
 /// Angles from `first` to `last` in equal steps.
 inline std::vector<double> angles(double first, double last, int steps) {
@@ -104,4 +104,4 @@ struct EulumdatText {
   }
 };
 
-}  // namespace photile::tests
+}  // namespace photile::test

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace photile::scene_io {
+namespace photile::test {
+
+using namespace scene_io;
 namespace {
 
 using std::numbers::pi;
@@ -41,4 +43,4 @@ TEST_CASE("fluxes of area, point and directional lights are their closed forms")
 }
 
 }  // namespace
-}  // namespace photile::scene_io
+}  // namespace photile::test

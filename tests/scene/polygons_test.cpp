@@ -7,7 +7,9 @@
 
 #include "import/polygon_triangulator.hpp"
 
-namespace photile::scene_io {
+namespace photile::test {
+
+using namespace scene_io;
 namespace {
 
 glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -102,4 +104,4 @@ TEST_CASE("polygons without area give triangles for the caller to drop, and end"
 }
 
 }  // namespace
-}  // namespace photile::scene_io
+}  // namespace photile::test

@@ -14,7 +14,7 @@
 #include "photile/scene_needs.hpp"
 #include "temporary_folder.hpp"
 
-namespace photile::tests {
+namespace photile::test {
 
 /// A temporary folder that scene files are written to.
 struct SceneFolderOnDisk : TemporaryFolder {
@@ -108,4 +108,4 @@ std::string input_error_of(Action action) {
   return "";
 }
 
-}  // namespace photile::tests
+}  // namespace photile::test

@@ -7,7 +7,7 @@
 
 #include "common/content_hash.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
 std::string hash_of(const Scene& scene) {
@@ -50,4 +50,4 @@ TEST_CASE("scenes whose lights differ in anything have different hashes") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

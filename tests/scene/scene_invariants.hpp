@@ -7,7 +7,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::tests {
+namespace photile::test {
 
 /// Every index in range, every number finite, every area positive, every light fed.
 inline void check_invariants(const Scene& scene) {
@@ -46,4 +46,4 @@ inline void check_invariants(const Scene& scene) {
   CHECK_FALSE(scene.cameras.empty());
 }
 
-}  // namespace photile::tests
+}  // namespace photile::test

@@ -8,10 +8,8 @@
 #include "scene_files.hpp"
 #include "scene_invariants.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
-
-using namespace tests;
 
 /// Whether the shared scenes are here; says so when they are not.
 bool available(const std::string& name) {
@@ -84,4 +82,4 @@ TEST_CASE("every shared scene loads, or is refused in one line that says why") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

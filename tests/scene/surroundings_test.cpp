@@ -9,10 +9,9 @@
 #include "import/sky_map.hpp"
 #include "scene_files.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using std::numbers::pi;
 
 /// Illuminance of a surface that faces `normal` under all of the map: the midpoint rule over each
@@ -226,4 +225,4 @@ TEST_CASE("texts of suns and skies are checked", "[sun]") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -7,10 +7,9 @@
 #include "scene_invariants.hpp"
 #include "textured_square.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 /// KHR_texture_transform's texCoord is a number of any size; the parser cuts others to an int.
@@ -156,4 +155,4 @@ TEST_CASE("huge scales and indices of refraction leave normals and Fresnel's ter
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

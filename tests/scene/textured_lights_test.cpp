@@ -12,10 +12,9 @@
 #include "statistical_tests.hpp"
 #include "trace/light_emitter.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using std::numbers::pi;
 
 /// The glowing square of square_document, 100 cd/m2 where the picture is white. The picture has one
@@ -196,4 +195,4 @@ TEST_CASE("paths and eyes see the picture of a textured light", "[emission]") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

@@ -10,7 +10,7 @@
 #include "scene_files.hpp"
 #include "trace/surface.hpp"
 
-namespace photile::tests {
+namespace photile::test {
 
 /// A picture of `side` x `side` equal texels of 1 to 4 bytes.
 inline void write_texel(const std::filesystem::path& file, const std::vector<std::uint8_t>& texel,
@@ -55,4 +55,4 @@ inline trace::SurfacePoint middle(const Scene& scene) {
   return trace::surface_hit(scene, {0, 0.3f, 0.3f}, {0, 0, -1});
 }
 
-}  // namespace photile::tests
+}  // namespace photile::test

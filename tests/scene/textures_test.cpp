@@ -12,10 +12,9 @@
 #include "scene_files.hpp"
 #include "srgb_oracle.hpp"
 
-namespace photile {
+namespace photile::test {
 namespace {
 
-using namespace tests;
 using nlohmann::json;
 
 /// Two by two texels: red, green / blue, white.
@@ -198,4 +197,4 @@ TEST_CASE("a picture in a buffer view beyond its buffer is refused") {
 }
 
 }  // namespace
-}  // namespace photile
+}  // namespace photile::test

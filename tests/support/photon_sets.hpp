@@ -30,6 +30,8 @@ inline Scene empty_scene(std::size_t light_count = 1) {
   return scene;
 }
 
+/// A triangle as it is given: corners in any order, vertices of its own, coincident with others or
+/// without area, all of which SceneBuilder mends and stages have to bear.
 inline void add_triangle(Scene& scene, glm::vec3 a, glm::vec3 b, glm::vec3 c) {
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
   scene.vertices.insert(scene.vertices.end(), {a, b, c});

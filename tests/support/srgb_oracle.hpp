@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace photile::tests {
+namespace photile::test {
 
 /// sRGB byte to linear, from IEC 61966-2-1.
 inline double linear(double byte) {
@@ -11,4 +11,4 @@ inline double linear(double byte) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-}  // namespace photile::tests
+}  // namespace photile::test

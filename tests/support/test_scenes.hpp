@@ -2,16 +2,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <map>
 #include <string>
-#include <tuple>
 
-#include "photile/scene.hpp"
+#include "photile/scene_builder.hpp"
 
 namespace photile::test {
+
+using photile::SceneBuilder;
 
 inline Material diffuse(const glm::vec3& albedo) {
   Material material;
@@ -40,90 +39,6 @@ inline Material glass(float index_of_refraction, bool thin = false) {
   material.thin = thin;
   return material;
 }
-
-/// Builds a Scene as the importer would: vertices welded, corners in canonical order. Triangles and
-/// quads are given counter-clockwise as seen from their front.
-class SceneBuilder {
- public:
-  explicit SceneBuilder(std::string name = "test scene") { scene_.source = std::move(name); }
-
-  std::uint32_t add(const Material& material) {
-    scene_.materials.push_back(material);
-    return static_cast<std::uint32_t>(scene_.materials.size() - 1);
-  }
-
-  std::uint32_t add(const Light& light) {
-    scene_.lights.push_back(light);
-    return static_cast<std::uint32_t>(scene_.lights.size() - 1);
-  }
-
-  void triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, std::uint32_t material,
-                std::uint32_t light = none) {
-    const std::array<glm::vec3, 3> given{a, b, c};
-    std::array<int, 3> order{0, 1, 2};
-    std::sort(order.begin(), order.end(),
-              [&](int i, int j) { return tuple_of(given[i]) < tuple_of(given[j]); });
-    const bool winding_kept = (order[1] - order[0] + 3) % 3 == 1;
-    if (light != none)
-      scene_.lights[light].triangles.push_back(static_cast<std::uint32_t>(scene_.triangles.size()));
-    scene_.triangles.emplace_back(vertex(given[order[0]]), vertex(given[order[1]]),
-                                  vertex(given[order[2]]));
-    scene_.front_side.push_back(winding_kept ? 0 : 1);
-    scene_.triangle_material.push_back(material);
-    scene_.triangle_light.push_back(light);
-  }
-
-  void quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d,
-            std::uint32_t material, std::uint32_t light = none) {
-    triangle(a, b, c, material, light);
-    triangle(a, c, d, material, light);
-  }
-
-  /// Parallelogram from `origin` along two edges, cut into cells x cells quads. Its front is on the
-  /// side of u x v.
-  void grid(const glm::vec3& origin, const glm::vec3& u, const glm::vec3& v, int cells,
-            std::uint32_t material, std::uint32_t light = none) {
-    const auto at = [&](int i, int j) {
-      const auto n = static_cast<float>(cells);
-      return origin + (static_cast<float>(i) / n) * u + (static_cast<float>(j) / n) * v;
-    };
-    for (int j = 0; j < cells; ++j)
-      for (int i = 0; i < cells; ++i)
-        quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), material, light);
-  }
-
-  /// Axis-aligned box with cells x cells quads a face. Fronts look into the box if `inwards`.
-  void box(const glm::vec3& low, const glm::vec3& high, std::uint32_t material, bool inwards,
-           int cells = 1) {
-    const glm::vec3 size = high - low;
-    for (int axis = 0; axis < 3; ++axis) {
-      glm::vec3 u(0.0f), v(0.0f), across(0.0f);
-      u[(axis + 1) % 3] = size[(axis + 1) % 3];
-      v[(axis + 2) % 3] = size[(axis + 2) % 3];
-      across[axis] = size[axis];
-      // u x v points along +axis: into the box on the low face.
-      grid(low, inwards ? u : v, inwards ? v : u, cells, material);
-      grid(low + across, inwards ? v : u, inwards ? u : v, cells, material);
-    }
-  }
-
-  /// The scene so far.
-  Scene build() const { return scene_; }
-
- private:
-  using Position = std::tuple<float, float, float>;
-  static Position tuple_of(const glm::vec3& p) { return {p.x, p.y, p.z}; }
-
-  std::uint32_t vertex(const glm::vec3& p) {
-    const auto [entry, inserted] =
-        vertices_.emplace(tuple_of(p), static_cast<std::uint32_t>(scene_.vertices.size()));
-    if (inserted) scene_.vertices.push_back(p);
-    return entry->second;
-  }
-
-  Scene scene_;
-  std::map<Position, std::uint32_t> vertices_;
-};
 
 inline Light area_light(const std::string& name, double power = 1.0, bool two_sided = false) {
   Light light;

@@ -34,7 +34,7 @@ TEST_CASE("the kernels' arctangent is right to 3e-7 in every direction, and 0 at
     x.push_back(scale * direction(random));
   }
   device::register_kernel_source("test/angles.cl", arctangent_source);
-  device::Context& context = test::device().context();
+  device::Context& context = device::context_of(test::device());
   const auto y_buffer = context.upload(std::span<const float>(y), "y");
   const auto x_buffer = context.upload(std::span<const float>(x), "x");
   const auto angle_buffer = context.allocate<float>(y.size(), "angles");

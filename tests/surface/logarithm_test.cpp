@@ -30,7 +30,7 @@ TEST_CASE("the kernels' logarithm is right to 2e-7 of itself or of 1 for all nor
     x.push_back(1 + near_one(random));
   }
   device::register_kernel_source("test/logarithms.cl", logarithm_source);
-  device::Context& context = test::device().context();
+  device::Context& context = device::context_of(test::device());
   const auto x_buffer = context.upload(std::span<const float>(x), "x");
   const auto buffer = context.allocate<float>(x.size(), "logarithms");
   context.run(context.kernel("test/logarithms.cl", "logarithms", {}), x.size() / 8, 1, x_buffer,

@@ -54,7 +54,7 @@ TEST_CASE("rays meet turned, scaled and mirrored instances where the world's tri
     const glm::vec3 direction = uniform.direction();
     const auto expected = nearest_distance(scene, origin, direction);
     REQUIRE(expected);
-    const auto hit = rays.impl().intersect(origin, direction);
+    const auto hit = impl_of(rays).intersect(origin, direction);
     REQUIRE(hit);
     on_instances += hit->triangle >= first_of_instances(scene);
     const SurfacePoint point = surface_hit(scene, *hit, direction);
@@ -74,7 +74,7 @@ TEST_CASE("a hit on an instance has the weights of the corners as the scene orde
     // From close by, so that nothing else is in the way.
     const SurfacePoint point = surface_point(scene, {t, 0.25f, 0.35f}, t % 2);
     const glm::vec3 origin = point.position + 1e-3f * point.normal;
-    const auto hit = rays.impl().intersect(origin, -point.normal);
+    const auto hit = impl_of(rays).intersect(origin, -point.normal);
     REQUIRE(hit);
     if (hit->triangle != t) continue;  // where two balls intersect
     CHECK(hit->u == Approx(0.25f).margin(1e-3));
@@ -113,7 +113,7 @@ TEST_CASE(
             direction = glm::normalize(direction -
                                        0.999f * glm::dot(direction, point.normal) * point.normal);
           }
-          const auto hit = rays.impl().intersect(point.origin_towards(direction), direction);
+          const auto hit = impl_of(rays).intersect(point.origin_towards(direction), direction);
           CAPTURE(size, turn, r);
           REQUIRE_FALSE((hit && hit->triangle == t));
         }
@@ -155,7 +155,7 @@ TEST_CASE("nothing escapes from a closed instance whose triangles meet at every 
     const glm::vec3 centre = instance.to_world[3];
     int escaped = 0;
     for (int i = 0; i < 20'000; ++i) {
-      const auto hit = rays.impl().intersect(centre, uniform.direction());
+      const auto hit = impl_of(rays).intersect(centre, uniform.direction());
       escaped += !hit || hit->triangle < first_of_instances(scene);
     }
     CHECK(escaped == 0);

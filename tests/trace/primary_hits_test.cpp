@@ -89,7 +89,7 @@ TEST_CASE("Hits are sorted by sided triangle, then by Morton code") {
   const PrimaryHits hits =
       trace_primary_hits(rays, camera, {.width = 64, .height = 48}, 0, 48).hits;
   REQUIRE(hits.size() > 10'000);
-  const trace::HitCells cells(rays.impl().bounds);
+  const trace::HitCells cells(impl_of(rays).bounds);
   const auto key = [&](std::size_t i) {
     return std::pair{hits.sided_triangle[i], cells.morton_code(hits.position[i])};
   };

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace photile {
+namespace photile::test {
 namespace {
 
 struct Item {
@@ -33,4 +33,4 @@ TEST_CASE("A radix sort is a stable sort") {
   CHECK((items == expected));
 }
 
-}  // namespace photile
+}  // namespace photile::test

@@ -22,7 +22,7 @@ TEST_CASE("A ray hits the point of the plate below it, on the side that it comes
     const float x = 1.9f * uniform() - 0.95f, y = 1.9f * uniform() - 0.95f;
     for (const float z : {-1.0f, 1.0f}) {
       const glm::vec3 direction(0, 0, -z);
-      const auto hit = rays.impl().intersect({x, y, z}, direction);
+      const auto hit = impl_of(rays).intersect({x, y, z}, direction);
       REQUIRE(hit);
       const SurfacePoint point = surface_hit(scene, *hit, direction);
       CHECK(glm::distance(point.position, glm::vec3(x, y, 0)) < 1e-6f);
@@ -36,16 +36,16 @@ TEST_CASE("A ray hits the point of the plate below it, on the side that it comes
 TEST_CASE("Rays with a NaN or an infinity hit nothing") {
   const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
   const RayScene rays(scene);
-  REQUIRE(rays.impl().intersect(glm::vec3(0.5f), glm::vec3(0, 0, 1)));
+  REQUIRE(impl_of(rays).intersect(glm::vec3(0.5f), glm::vec3(0, 0, 1)));
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
                           std::numeric_limits<float>::infinity(), -1.0f / 0.0f})
     for (int axis = 0; axis < 3; ++axis) {
       glm::vec3 origin(0.5f), direction(0, 0, 1);
       origin[axis] = bad;
-      CHECK_FALSE(rays.impl().intersect(origin, direction));
+      CHECK_FALSE(impl_of(rays).intersect(origin, direction));
       origin[axis] = 0.5f;
       direction[axis] = bad;
-      CHECK_FALSE(rays.impl().intersect(origin, direction));
+      CHECK_FALSE(impl_of(rays).intersect(origin, direction));
     }
 }
 
@@ -70,11 +70,11 @@ TEST_CASE("A ray that leaves a triangle never meets it again, at any size, place
           const SurfacePoint point = surface_point(scene, {0, uv.x, uv.y}, r % 2);
           glm::vec3 direction = uniform.direction();
           CAPTURE(size, t, r);
-          REQUIRE_FALSE(rays.impl().intersect(point.origin_towards(direction), direction));
+          REQUIRE_FALSE(impl_of(rays).intersect(point.origin_towards(direction), direction));
           // Nearly along the surface, where the offset has least to spare.
           direction =
               glm::normalize(direction - 0.999f * glm::dot(direction, point.normal) * point.normal);
-          REQUIRE_FALSE(rays.impl().intersect(point.origin_towards(direction), direction));
+          REQUIRE_FALSE(impl_of(rays).intersect(point.origin_towards(direction), direction));
         }
       }
     }
@@ -94,7 +94,7 @@ TEST_CASE("No ray from inside a closed room of many triangles escapes through it
     Uniform uniform(11);
     int escaped = 0;
     for (int i = 0; i < 200'000; ++i)
-      escaped += !rays.impl().intersect(offset + 0.5f, uniform.direction());
+      escaped += !impl_of(rays).intersect(offset + 0.5f, uniform.direction());
     CHECK(escaped == 0);
     for (glm::vec3& vertex : scene.vertices) vertex -= offset;
   }

@@ -15,8 +15,8 @@
 #include "import/gltf/accessor.hpp"
 #include "import/gltf/document.hpp"
 #include "import/gltf/nodes.hpp"
-#include "import/scene_origin.hpp"
 #include "photile/scene.hpp"
+#include "scene/coordinate_limit.hpp"
 #include "scene/interpolation.hpp"
 
 namespace photile::scene_io {

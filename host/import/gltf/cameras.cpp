@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "import/gltf/steps.hpp"
-#include "import/scene_origin.hpp"
+#include "scene/coordinate_limit.hpp"
 
 namespace photile::scene_io {
 namespace {

@@ -11,9 +11,10 @@
 #include "import/gltf/light_traits.hpp"
 #include "import/gltf/profiles.hpp"
 #include "import/lamp_instances.hpp"
-#include "import/scene_origin.hpp"
 #include "photile/limits.hpp"
 #include "scene/color_temperature.hpp"
+#include "scene/coordinate_limit.hpp"
+#include "scene/light_emission.hpp"
 #include "scene/photometry.hpp"
 
 namespace photile::scene_io {

@@ -266,8 +266,8 @@ void note_blender_units(const tinygltf::Model& model, ImportContext& context) {
   for (std::size_t i = 0; i < context.emission.size() && from_blender && !scaled; ++i) {
     if (context.emission[i].radiance == glm::dvec3(0.0)) continue;
     context.warnings.add("material", context.scene.materials[i].name,
-                         "Blender writes emission in W/(m2 sr), not cd/m2; pass "
-                         "--emissive-scale 683 to match its lamps");
+                         "Blender writes emission in W/(m2 sr), not cd/m2; an "
+                         "emissive scale of 683 matches its lamps");
   }
 }
 

@@ -7,7 +7,7 @@
 #include "import/gltf/materials.hpp"
 #include "import/gltf/nodes.hpp"
 #include "import/import_context.hpp"
-#include "import/mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 namespace photile::scene_io {
 

@@ -48,15 +48,14 @@ std::vector<int> root_nodes(const tinygltf::Model& model, ImportContext& context
   if (const std::optional<std::size_t> scene = scene_number(model, context)) {
     if (model.scenes.size() > 1 && context.options.scene.empty()) {
       context.warnings.add(
-          fmt::format("of {} scenes only scene {} is loaded; --scene takes another: {}",
+          fmt::format("of {} scenes only scene {} is loaded; others can be chosen: {}",
                       model.scenes.size(), *scene, scene_list(model)));
     }
     return model.scenes[*scene].nodes;
   }
   if (!context.options.scene.empty()) {
-    throw UsageError(
-        fmt::format("{}: no scene '{}'; the file has none, only nodes: leave --scene out",
-                    context.folder.scene_file().string(), context.options.scene));
+    throw UsageError(fmt::format("{}: no scene '{}'; the file has none, only nodes: name none",
+                                 context.folder.scene_file().string(), context.options.scene));
   }
   return parentless_nodes(model);
 }
@@ -175,7 +174,7 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
         !asked_for(node)) {
       context.warnings.add("node", node_name(model, visit.node),
                            "no mesh, light, camera or child; Blender's exporter drops area lights "
-                           "like that: pass --area-light NAME=WxH,LUMENS, or see docs/lights.md");
+                           "like that: give it a luminous panel, see docs/lights.md");
     }
   }
 }
@@ -199,7 +198,7 @@ std::optional<std::size_t> scene_number(const tinygltf::Model& model,
   const int scene = std::max(model.defaultScene, 0);  // else the first
   if (static_cast<std::size_t>(scene) >= model.scenes.size()) {
     throw context.error(
-        fmt::format("the default scene is {}, but there are only {}; pass --scene or export it "
+        fmt::format("the default scene is {}, but there are only {}; choose a scene or export it "
                     "again",
                     scene, model.scenes.size()));
   }

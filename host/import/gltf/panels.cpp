@@ -149,7 +149,7 @@ void check_panel_names(const tinygltf::Model& model, const std::vector<NodeVisit
     std::vector<std::string> names;
     for (const NodeVisit& visit : visits) names.push_back(node_name(model, visit.node));
     if (std::find(names.begin(), names.end(), panel.node) == names.end()) {
-      throw UsageError(fmt::format("--area-light {}: there is no node '{}'; there {}", panel.node,
+      throw UsageError(fmt::format("panel at node {}: there is no node '{}'; there {}", panel.node,
                                    panel.node, listed_names(names)));
     }
   }

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "import/cube_map.hpp"
-#include "import/finishing.hpp"
 #include "import/gltf/document.hpp"
 #include "import/gltf/nodes.hpp"
 #include "import/gltf/pictures.hpp"
 #include "import/gltf/steps.hpp"
 #include "import/resource_error.hpp"
 #include "photile/limits.hpp"
+#include "scene/light_emission.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -110,7 +110,7 @@ void add_gltf_surroundings(const tinygltf::Model& model, const AccessorReader& a
     add_light(*light, model, accessors, context);
   } catch (const ResourceError& error) {
     context.warnings.add(
-        fmt::format("{}: {}; the surroundings are dark; give them as a picture with --environment",
+        fmt::format("{}: {}; the surroundings are dark; give them as an environment picture",
                     extension_name, error.what()));
   }
 }

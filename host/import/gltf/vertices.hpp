@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "import/gltf/materials.hpp"
-#include "import/mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 namespace photile::scene_io {
 

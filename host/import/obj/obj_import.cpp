@@ -6,7 +6,6 @@
 #include <map>
 
 #include "import/importers.hpp"
-#include "import/mesh_builder.hpp"
 #include "import/obj/mtl_materials.hpp"
 #include "import/obj/obj_libraries.hpp"
 #include "import/obj/obj_reader.hpp"
@@ -16,7 +15,9 @@
 #include "import/resource_error.hpp"
 #include "import/scene_origin.hpp"
 #include "photile/limits.hpp"
+#include "scene/coordinate_limit.hpp"
 #include "scene/material_needs.hpp"
+#include "scene/mesh_builder.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -138,11 +139,11 @@ void move_to_origin(ObjFile& file, Scene& scene) {
 
 void import_obj(ImportContext& context) {
   if (!context.options.panels.empty()) {
-    throw UsageError(fmt::format("--area-light {}: nodes are what glTF files have; this is an OBJ",
+    throw UsageError(fmt::format("panel at node {}: nodes are what glTF files have; this is an OBJ",
                                  context.options.panels.front().node));
   }
   if (!context.options.scene.empty()) {
-    throw UsageError(fmt::format("--scene {}: only glTF files hold several scenes; this is an OBJ",
+    throw UsageError(fmt::format("scene {}: only glTF files hold several scenes; this is an OBJ",
                                  context.options.scene));
   }
   const std::vector<unsigned char> bytes = context.folder.read_scene_file();

@@ -9,6 +9,7 @@
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "tools/command/commands.hpp"
+#include "tools/command/exit_code.hpp"
 #include "tools/command/terminal.hpp"
 #include "tools/command/version.hpp"
 
@@ -67,7 +68,7 @@ int run_command_line(int argument_count, const char* const* arguments) {
     code = parse_and_run(photile, argument_count, arguments);
   } catch (const Error& error) {
     print_error(error.what());
-    code = error.exit_code();
+    code = exit_code_of(error);
   } catch (const std::bad_alloc&) {
     print_error("out of memory; render fewer photons, fewer pixels or a smaller scene");
   } catch (const std::exception& error) {

@@ -96,7 +96,8 @@ void tell_kernels(Device& device, bool profile, Progress& progress) {
                             device.programs_built(), device.programs_from_cache(),
                             format_seconds(device.compile_seconds())));
   if (!profile) return;
-  for (const auto& line : kernel_table(device.context().kernel_times())) progress.note(line);
+  for (const auto& line : kernel_table(device::context_of(device).kernel_times()))
+    progress.note(line);
 }
 
 /// What is rendered: the picture and, where --glare asks for it, what came by reflection.

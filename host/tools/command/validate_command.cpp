@@ -79,10 +79,10 @@ void run_validate(ValidateOptions& options) {
   }
   const std::size_t failed = rows_not_within(rows);
   if (failed > 0) {
-    throw Error(ExitCode::failure,
-                fmt::format("{} of {} readings are not within {}%; those that are only too noisy "
-                            "need more --photons or --paths",
-                            failed, rows.size(), 100 * validation::tolerance));
+    throw Error(
+        fmt::format("{} of {} readings are not within {}%; those that are only too noisy "
+                    "need more --photons or --paths",
+                    failed, rows.size(), 100 * validation::tolerance));
   }
 }
 

@@ -3,8 +3,9 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 
-#include "import/mesh_builder.hpp"
+#include "photile/scene_builder.hpp"
 
 namespace photile::validation {
 
@@ -34,19 +35,19 @@ std::vector<Sensor> grid_of_sensors(const std::vector<Rectangle>& rectangles, do
   return sensors;
 }
 
-Room::Room(const std::string& name) { scene_.source = name; }
+Room::Room(const std::string& name) : name_(name) {}
 
 std::uint32_t Room::add_material(const Material& material) {
-  scene_.materials.push_back(material);
-  return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+  materials_.push_back(material);
+  return static_cast<std::uint32_t>(materials_.size() - 1);
 }
 
 std::uint32_t Room::add_light(LightKind kind) {
-  Light& light = scene_.lights.emplace_back();
+  Light& light = lights_.emplace_back();
   light.name = "lamp";
   light.kind = kind;
   light.power = 1;
-  return static_cast<std::uint32_t>(scene_.lights.size() - 1);
+  return static_cast<std::uint32_t>(lights_.size() - 1);
 }
 
 void Room::add(const Rectangle& rectangle, std::uint32_t material, std::uint32_t light) {
@@ -81,19 +82,18 @@ void Room::add_ball(const glm::dvec3& centre, double radius, int rings, std::uin
   }
 }
 
-Scene Room::build(double power) {
-  scene_io::MeshBuilder mesh(scene_, {});
-  for (const Triangle& triangle : triangles_) {
-    const auto index = static_cast<std::uint32_t>(scene_.triangles.size());
-    const std::array corners{scene_io::Corner{triangle.corners[0]},
-                             scene_io::Corner{triangle.corners[1]},
-                             scene_io::Corner{triangle.corners[2]}};
-    if (!mesh.add(corners, triangle.material, triangle.light)) continue;
-    if (triangle.light != none) scene_.lights[triangle.light].triangles.push_back(index);
+Scene Room::build(double power) const {
+  SceneBuilder builder(name_);
+  for (const Material& material : materials_) builder.add(material);
+  for (Light light : lights_) {
+    light.power = power;
+    builder.add(std::move(light));
   }
-  mesh.finish();
-  scene_.lights.at(0).power = power;
-  return std::move(scene_);
+  for (const auto& [corners, material, light] : triangles_) {
+    builder.triangle(glm::vec3(corners[0]), glm::vec3(corners[1]), glm::vec3(corners[2]), material,
+                     light);
+  }
+  return std::move(builder).build();
 }
 
 }  // namespace photile::validation

@@ -43,7 +43,7 @@ class Room {
   std::uint32_t add_material(const Material& material);
   /// The scene's light.
   std::uint32_t add_light(LightKind kind);
-  Light& light(std::uint32_t index) { return scene_.lights[index]; }
+  Light& light(std::uint32_t index) { return lights_[index]; }
 
   void add(const Rectangle& rectangle, std::uint32_t material, std::uint32_t light = none);
   void add_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
@@ -54,14 +54,16 @@ class Room {
                 bool inwards = false);
 
   /// The scene, its only light at `power` lumens. Call once.
-  Scene build(double power);
+  Scene build(double power) const;
 
  private:
   struct Triangle {
     std::array<glm::dvec3, 3> corners;
     std::uint32_t material, light;
   };
-  Scene scene_;
+  std::string name_;
+  std::vector<Material> materials_;
+  std::vector<Light> lights_;
   std::vector<Triangle> triangles_;
 };
 

@@ -40,6 +40,9 @@ class MeshBuilder {
   /// Errors: InputError beyond a limit.
   bool add(const std::array<Corner, 3>& corners, std::uint32_t material, std::uint32_t light);
 
+  /// Attributes that the triangles from now on need, too; those so far have zeros.
+  void also_need(const CornerNeeds& needs);
+
   /// Drops normals and tangents when the file turned out to have none.
   void finish();
 

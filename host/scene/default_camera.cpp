@@ -1,3 +1,5 @@
+#include "scene/default_camera.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "import/mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include "import/scene_origin.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "scene/coordinate_limit.hpp"
 
 namespace photile::scene_io {
 namespace {
@@ -174,6 +174,18 @@ void MeshBuilder::add_tangents(const std::array<const Corner*, 3>& sorted, doubl
   }
   any_tangent_ |= whole;
   scene_.corner_tangent.push_back(whole ? stored : std::array<glm::vec4, 3>{});
+}
+
+void MeshBuilder::also_need(const CornerNeeds& needs) {
+  const auto want = [&](bool wanted, bool& needed, auto& array) {
+    if (!wanted || needed) return;
+    needed = true;
+    array.resize(scene_.triangles.size());
+  };
+  want(needs.uv, needs_.uv, scene_.corner_uv);
+  want(needs.emission_uv, needs_.emission_uv, scene_.corner_emission_uv);
+  want(needs.normals, needs_.normals, scene_.corner_normal);
+  want(needs.tangents, needs_.tangents, scene_.corner_tangent);
 }
 
 void MeshBuilder::finish() {

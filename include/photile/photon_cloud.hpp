@@ -1,0 +1,85 @@
+// Photons of any origin, without a scene: their k nearest around points, and densities.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "photile/density_kernel.hpp"
+#include "photile/device.hpp"
+#include "photile/estimator.hpp"
+#include "photile/photon_maps.hpp"
+#include "photile/progress.hpp"
+
+namespace photile {
+
+/// Photons in arrays that stay the caller's. Arrays but the first are empty or as long as it.
+struct CloudPhotons {
+  std::span<const glm::vec3> position;        ///< metres, up to limits::max_coordinate
+  std::span<const glm::vec3> normal = {};     ///< unit, of the surface below; empty: none counts
+  std::span<const glm::vec3> flux = {};       ///< linear RGB; empty: 1 each
+  std::span<const std::uint16_t> light = {};  ///< numbers from 0; empty: all of one light
+};
+
+struct CloudParameters {
+  double radius = 0;  ///< metres, > 0: no neighbour is farther
+  /// Largest angle between the normals of a point and of its neighbours, in [0, 180].
+  double angle_degrees = defaults::group_angle_degrees;
+  MapStructure structure = MapStructure::uniform_grid;
+  float photons_per_cell = defaults::photons_per_cell;  ///< aimed at, in uniform grids
+};
+
+/// The neighbours of points: row-major [point][k], nearest first.
+struct CloudNeighbours {
+  int k = 0;
+  std::vector<std::uint32_t> photons;   ///< indices; `none` beyond the last
+  std::vector<float> squared_distance;  ///< square metres; infinity beyond the last
+};
+
+struct CloudEstimateParameters {
+  int neighbours = defaults::neighbours;           ///< k
+  double radius = 0;                               ///< metres; 0 = the cloud's
+  DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
+};
+
+/// Photon maps over a cloud of photons on a device. Space is cut into cubes a few radii wide; each
+/// that a photon may be near has maps in the plane that most of its photons lie along (photons on
+/// a wall: that of the wall). Projection into a plane lengthens no distance, so that a search there
+/// finds every neighbour in space; photons spread through a volume are found as well, though with
+/// more candidates to look at. The device must outlive the cloud; one thread at a time may use it.
+class PhotonCloud {
+ public:
+  /// Copies what it needs. Errors: InputError that names the first photon that is NaN, infinite,
+  /// too far or without a unit normal, or arrays of different lengths; UsageError for parameters
+  /// out of range; DeviceMemoryError; Interrupted.
+  PhotonCloud(Device& device, const CloudPhotons& photons, const CloudParameters& parameters,
+              Progress& progress = Progress::none());
+  ~PhotonCloud();
+  PhotonCloud(PhotonCloud&&) noexcept;
+  PhotonCloud& operator=(PhotonCloud&&) noexcept;
+
+  std::size_t size() const;  ///< photons
+  const PhotonMapStatistics& statistics() const;
+
+  /// The k nearest photons of each point within `radius` (0 = the cloud's), whose normals agree
+  /// where photons have any. Of photons at the same distance, to a few roundings of a float, any
+  /// may be the last.
+  ///   normals   unit, as many as points, if the photons have some; else empty
+  /// Errors: InputError for a point that is no number or arrays that do not fit; UsageError for k
+  /// or a radius out of range.
+  CloudNeighbours nearest(std::span<const glm::vec3> points, std::span<const glm::vec3> normals,
+                          int k, double radius = 0);
+
+  /// Flux per area at each point: that of its neighbours over the disc that they fill (Estimator,
+  /// AreaMode::disc), per light. Errors: those of `nearest`.
+  Estimates irradiance(std::span<const glm::vec3> points, std::span<const glm::vec3> normals,
+                       const CloudEstimateParameters& parameters = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace photile

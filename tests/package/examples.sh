@@ -1,0 +1,55 @@
+#!/bin/bash
+# Installs the library, builds docs/examples with nothing but the installed files, and checks what
+# they print against values known in closed form.
+#   examples.sh CMAKE BUILD-FOLDER SOURCE-FOLDER SCRATCH-FOLDER
+set -eu
+cmake=$1 build=$2 source=$3 scratch=$4
+
+fail() {
+  echo "examples.sh: $*" >&2
+  exit 1
+}
+
+# within LOW HIGH VALUE WHAT
+within() {
+  awk -v low="$1" -v high="$2" -v value="$3" 'BEGIN { exit !(value >= low && value <= high) }' ||
+    fail "$4: $3 is not within [$1, $2]"
+}
+
+rm -rf "$scratch/installed" "$scratch/out"
+mkdir -p "$scratch/out"
+"$cmake" --install "$build" --prefix "$scratch/installed" > "$scratch/out/install.log"
+for header in "$source"/include/photile/*.hpp; do
+  name=$(basename "$header")
+  [ "$name" = photile.hpp ] || grep -q "\"photile/$name\"" "$source/include/photile/photile.hpp" ||
+    fail "photile.hpp leaves out $name"
+done
+for program in "$source"/docs/examples/*.cpp; do
+  python3 -c 'import sys; sys.exit(open(sys.argv[1]).read() not in open(sys.argv[2]).read())' \
+    "$program" "$source/docs/library.md" || fail "docs/library.md shows another $program"
+done
+# The programs are copied, so that no header of the source folder can be found by chance.
+cp -r "$source/docs/examples" "$scratch/out/examples"
+"$cmake" -S "$scratch/out/examples" -B "$scratch/out/build" -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$scratch/installed" > "$scratch/out/configure.log"
+"$cmake" --build "$scratch/out/build" -j 2 > "$scratch/out/build.log"
+
+photons=$("$scratch/out/build/own_photons")
+echo "$photons"
+# 400 lm on 4 m2; the estimate of 1000 photons scatters by 3%.
+within 85 115 "$(sed -n 's/^point 0: .* \([0-9.]*\) lx$/\1/p' <<< "$photons")" "lux of even photons"
+within 0 0 "$(sed -n 's/^point 2: .* \([0-9.]*\) lx$/\1/p' <<< "$photons")" "lux far from photons"
+
+room=$("$scratch/out/build/measured_room")
+echo "$room"
+# Straight from the lamp 1500 lm / 4 pi / (2 m)^2 = 29.8 lx in the middle. All light, with a
+# reflectance of 0.8, is 1500 lm / (1 - 0.8) over 85 m2 on average: 88 lx.
+within 60 160 "$(sed -n 's/^x = 2.5 m: \([0-9]*\) lx$/\1/p' <<< "$room")" "lux below the lamp"
+
+(cd "$scratch/out" &&
+  build/relit_picture "$source/scenes/cornell-box/cornell-box.obj" lit.exr half.png)
+[ -s "$scratch/out/lit.exr" ] && [ -s "$scratch/out/half.png" ] || fail "a picture is missing"
+! "$scratch/out/build/relit_picture" missing.obj a.exr b.png 2> "$scratch/out/error.log" ||
+  fail "a missing scene is no error"
+grep -q "missing.obj" "$scratch/out/error.log" || fail "the error does not name the file"
+[ "$(wc -l < "$scratch/out/error.log")" = 1 ] || fail "the error is not one line"
