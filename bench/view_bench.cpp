@@ -52,12 +52,7 @@ double seconds_of_stage(const RunStatistics& statistics, const std::string& stag
   return 0;
 }
 
-PrimaryHitParameters film_of(int side) {
-  PrimaryHitParameters film;
-  film.width = film.height = side;
-  film.samples_per_pixel = 1;
-  return film;
-}
+Film film_of(int side) { return {side, side, 1}; }
 
 /// The first hits of a frame's rays and nothing else.
 double bare_ray_seconds(const RayScene& rays, const Camera& camera, int side) {
@@ -111,7 +106,7 @@ class FrameTimer {
 
  private:
   LightMix mix_;
-  PrimaryHitParameters film_;
+  Film film_;
   SceneRenderer renderer_;
   std::optional<view::DisplaySettings> settings_;
 };
@@ -140,7 +135,7 @@ bool run(BenchOptions& options) {
   std::vector<Device> profiled;
   profiled.emplace_back(DeviceOptions{.selector = options.device, .profile = true});
   SceneRenderer profiled_renderer(scene, profiled, parameters);
-  const PrimaryHitParameters film = film_of(frames.side);
+  const Film film = film_of(frames.side);
   ViewTiming timing;
   // In turn, so that whatever else the machine does meets all of them.
   for (int frame = -warm_up_frames; frame < frames.count; ++frame) {

@@ -154,7 +154,7 @@ LightChange LightChange::parse(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-void apply(LightMix& mix, const std::vector<LightChange>& changes) {
+void change_lights(LightMix& mix, const std::vector<LightChange>& changes) {
   LightMix changed = mix;  // a refused change leaves the mix as it was
   for (const LightChange& change : changes) {
     image::apply(changed.lights[image::index_of(changed, change.name)], image::understand(change),

@@ -41,14 +41,14 @@ Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, co
   progress.begin("measure", static_cast<std::uint64_t>(parameters.repeats), "repeats");
   for (int repeat = 0; repeat < parameters.repeats; ++repeat) {
     const std::uint64_t seed =
-        trace::seed_of_repeat(parameters.photons.film.seed, static_cast<std::uint32_t>(repeat));
-    photons.film.seed = photons.photons.seed = seed;
+        trace::seed_of_repeat(parameters.photons.seed, static_cast<std::uint32_t>(repeat));
+    photons.seed = seed;
     if (parameters.by_paths) {
       const auto result = gather_by_paths(scene, sensors, parameters.gathering, seed, quiet);
       readings.add(result.layers, mix, parameters.maintenance);
     } else {
       const auto result = gather(scene, sensors, parameters.gathering, devices, photons, quiet);
-      photons.radius = result.radius;  // found once
+      photons.radius = result.used.radius;  // found once
       readings.add(result.layers, mix, parameters.maintenance);
     }
     progress.advance(1);

@@ -11,8 +11,7 @@
 namespace photile {
 namespace {
 
-PrimaryHitParameters film_of(std::span<const Sensor> sensors, const GatherParameters& gathering,
-                             std::uint64_t seed) {
+Film film_of(std::span<const Sensor> sensors, const GatherParameters& gathering) {
   if (gathering.rays < 1 || gathering.rays > limits::max_samples_per_pixel) {
     throw UsageError("rays: " + std::to_string(gathering.rays) + " is not between 1 and " +
                      std::to_string(limits::max_samples_per_pixel));
@@ -21,12 +20,7 @@ PrimaryHitParameters film_of(std::span<const Sensor> sensors, const GatherParame
     throw UsageError("sensors: " + std::to_string(sensors.size()) + " is not between 1 and " +
                      std::to_string(limits::max_sensors));
   }
-  PrimaryHitParameters film;
-  film.width = 1;
-  film.height = static_cast<int>(sensors.size());
-  film.samples_per_pixel = gathering.rays;
-  film.seed = seed;
-  return film;
+  return {1, static_cast<int>(sensors.size()), gathering.rays};
 }
 
 /// What the film has gathered as illuminance is that of the surfaces seen: replaces it by the
@@ -56,10 +50,8 @@ RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress) {
   refuse_final_gather(parameters);
-  RenderParameters of_sensors = parameters;
-  of_sensors.film = film_of(sensors, gathering, parameters.film.seed);
-  RenderResult result = render_hits(scene, GatherHits(scene, sensors, gathering.response), devices,
-                                    of_sensors, progress);
+  RenderResult result = render_hits(scene, GatherHits(scene, sensors, gathering.response),
+                                    film_of(sensors, gathering), devices, parameters, progress);
   result.layers = with_own_illuminance(std::move(result.layers));
   return result;
 }
@@ -69,7 +61,7 @@ PathTracerResult gather_by_paths(const Scene& scene, std::span<const Sensor> sen
                                  Progress& progress) {
   PathTracerResult result =
       trace_paths_of_hits(scene, GatherHits(scene, sensors, gathering.response),
-                          film_of(sensors, gathering, seed), progress);
+                          eye_rays({.seed = seed, .film = film_of(sensors, gathering)}), progress);
   result.layers = with_own_illuminance(std::move(result.layers));
   return result;
 }

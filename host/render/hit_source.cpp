@@ -10,13 +10,8 @@
 namespace photile {
 namespace {
 
-PrimaryHitParameters film_of(std::span<const Sensor> sensors, int samples, std::uint64_t seed) {
-  PrimaryHitParameters film;
-  film.width = static_cast<int>(sensors.size());
-  film.height = 1;
-  film.samples_per_pixel = samples;
-  film.seed = seed;
-  return film;
+Film one_row(std::span<const Sensor> sensors, int samples) {
+  return {static_cast<int>(sensors.size()), 1, samples};
 }
 
 }  // namespace
@@ -71,14 +66,14 @@ void refuse_final_gather(const RenderParameters& parameters) {
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress) {
   refuse_final_gather(parameters);
-  RenderParameters one_row = parameters;
-  one_row.film = film_of(sensors, 1, parameters.film.seed);
-  return render_hits(scene, SensorHits(sensors), devices, one_row, progress);
+  return render_hits(scene, SensorHits(sensors), one_row(sensors, 1), devices, parameters,
+                     progress);
 }
 
 PathTracerResult measure_by_paths(const Scene& scene, std::span<const Sensor> sensors, int paths,
                                   std::uint64_t seed, Progress& progress) {
-  return trace_paths_of_hits(scene, SensorHits(sensors), film_of(sensors, paths, seed), progress);
+  return trace_paths_of_hits(scene, SensorHits(sensors),
+                             eye_rays({.seed = seed, .film = one_row(sensors, paths)}), progress);
 }
 
 }  // namespace photile

@@ -94,8 +94,10 @@ class GatherHits : public HitSource {
 void refuse_final_gather(const RenderParameters& parameters);
 
 /// `render` and `trace_paths` for any hits.
-RenderResult render_hits(const Scene& scene, const HitSource& hits, std::span<Device> devices,
-                         const RenderParameters& parameters, Progress& progress);
+///   film   that they fill, in place of the parameters'
+RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& film,
+                         std::span<Device> devices, const RenderParameters& parameters,
+                         Progress& progress);
 PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& hits,
                                      const PrimaryHitParameters& film, Progress& progress);
 

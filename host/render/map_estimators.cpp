@@ -1,34 +1,20 @@
 #include "render/map_estimators.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "estimate/map_order.hpp"
 #include "render/neighbour_choice.hpp"
 
 namespace photile {
-namespace {
-
-/// The k that hits choose from; just one unless they are to have their own.
-std::vector<int> levels_of(int least, int neighbours) {
-  return least > 0 ? neighbour_levels(std::min(least, neighbours), neighbours)
-                   : std::vector{neighbours};
-}
-
-}  // namespace
 
 MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene,
-                             std::vector<PhotonMaps> maps, int neighbours,
-                             const RenderParameters& parameters,
-                             const std::shared_ptr<const SurfaceIndex>& surface,
+                             std::vector<PhotonMaps> maps,
+                             std::span<const EstimateParameters> levels,
                              std::span<const double> layer_powers)
-    : maps_(std::move(maps)),
-      levels_(levels_of(parameters.least_neighbours, neighbours)),
-      layer_powers_(layer_powers) {
-  for (const int level : levels_) {
-    estimators_.emplace_back(devices, maps_, scene,
-                             EstimateParameters{level, 0, parameters.tuning, parameters.neighbours,
-                                                parameters.area, parameters.kernel, surface});
+    : maps_(std::move(maps)), layer_powers_(layer_powers) {
+  for (const EstimateParameters& level : levels) {
+    neighbours_.push_back(level.neighbours);
+    estimators_.emplace_back(devices, maps_, scene, level);
   }
 }
 
@@ -49,7 +35,7 @@ Estimates MapEstimators::estimate_in_order(const PrimaryHits& hits) {
   for (DeviceEstimators& one : estimators_) by_level.push_back(one.estimate(hits));
   return by_level.size() == 1
              ? std::move(by_level.front())
-             : estimates_of_least_error(std::move(by_level), levels_, layer_powers_);
+             : estimates_of_least_error(std::move(by_level), neighbours_, layer_powers_);
 }
 
 }  // namespace photile

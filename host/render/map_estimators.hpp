@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "photile/renderer.hpp"
-#include "photile/surface_index.hpp"
+#include "photile/estimator.hpp"
 #include "render/device_estimators.hpp"
 
 namespace photile {
@@ -16,14 +14,11 @@ class MapEstimators {
  public:
   /// References are kept.
   ///   maps           the same on each device
-  ///   neighbours     k, or the most that a hit has where it has its own
-  ///   surface        where areas are clipped, else null
+  ///   levels         ascending in k: hits choose one, each its own
   ///   layer_powers   by which hits choose their own k
   /// Errors: as Estimator.
   MapEstimators(std::span<Device> devices, const Scene& scene, std::vector<PhotonMaps> maps,
-                int neighbours, const RenderParameters& parameters,
-                const std::shared_ptr<const SurfaceIndex>& surface,
-                std::span<const double> layer_powers);
+                std::span<const EstimateParameters> levels, std::span<const double> layer_powers);
 
   /// Of hits in any order. Errors: as DeviceEstimators.
   Estimates estimate(const PrimaryHits& hits);
@@ -38,7 +33,7 @@ class MapEstimators {
   Estimates estimate_in_order(const PrimaryHits& hits);
 
   std::vector<PhotonMaps> maps_;  ///< on each device
-  std::vector<int> levels_;       ///< of k
+  std::vector<int> neighbours_;   ///< of each level
   std::span<const double> layer_powers_;
   std::vector<DeviceEstimators> estimators_;  ///< of each level; they keep references to the maps
 };

@@ -52,8 +52,8 @@ int automatic_passes(const RayScene& rays, const PhotonTracerParameters& paramet
   }
   if (passes > 1) {
     progress.note(
-        fmt::format("{} photons do not fit in half of {:.1f} GB of memory: --passes {} (gives "
-                    "the same picture on any machine)",
+        fmt::format("{} photons do not fit in half of {:.1f} GB of memory: they are traced in {} "
+                    "passes, which if asked for give the same picture on any machine",
                     parameters.emitted_photons, static_cast<double>(memory) / 1e9, passes));
   }
   return passes;

@@ -7,7 +7,7 @@
 #include "render/hit_source.hpp"
 #include "render/path_estimate.hpp"
 #include "render/path_numbers.hpp"
-#include "render/render_costs.hpp"
+#include "render/rendering.hpp"
 
 namespace photile {
 namespace {
@@ -19,10 +19,9 @@ constexpr std::int64_t paths_per_batch = std::int64_t{1} << 18;
 
 PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source,
                                      const PrimaryHitParameters& parameters, Progress& progress) {
-  StageCost structure, hits, paths, film_cost;
-  const Stopwatch structure_watch;
-  const RayScene rays(scene);
-  structure.add(structure_watch.seconds(), rays.bytes());
+  StageCost hits, paths, film_cost;
+  const PreparedScene prepared(scene);
+  const RayScene& rays = prepared.rays;
   const reference::PathEstimator estimator(rays, parameters.seed);
 
   PrimaryHitParameters film = parameters;
@@ -58,7 +57,7 @@ PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source
   progress.end();
   film_cost.host_bytes = layers.bytes();
   return {.layers = std::move(layers),
-          .statistics = {stage("ray tracing structure", structure),
+          .statistics = {stage("ray tracing structure", prepared.cost),
                          stage("primary hits", hits, {{"rays", rays_seen}}),
                          stage("trace paths", paths,
                                {{"paths", path_count},

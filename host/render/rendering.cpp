@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "photile/errors.hpp"
 #include "render/film.hpp"
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
-#include "render/pass_count.hpp"
 #include "render/path_numbers.hpp"
 
 namespace photile {
@@ -22,37 +22,27 @@ std::int64_t hits_per_batch(int neighbours) {
 /// Least number of batches of a picture that somebody watches.
 constexpr int watched_batches = 16;
 
-NeighbourGroups groups_of(const Scene& scene, const Photons& photons,
-                          const RenderParameters& parameters, double radius, Progress& progress) {
-  const bool global = parameters.structure == MapStructure::kdtree_global;  // no use for patches
-  const MapMode mode =
-      global && parameters.maps != MapMode::naive ? MapMode::triangle : parameters.maps;
-  return find_map_groups(scene, photons, mode, {radius, parameters.angle_degrees}, progress);
-}
-
 }  // namespace
 
-Rendering::Rendering(const Scene& scene, std::span<Device> devices,
-                     const RenderParameters& parameters, Progress& progress)
-    : scene_(scene),
-      devices_(devices),
-      parameters_(parameters),
-      progress_(&progress),
-      rays_(scene),
-      layer_powers_(layer_powers(scene)) {
-  costs_.structure.add(stopwatch_.seconds(), rays_.bytes());
-  passes_ = parameters.passes > 0 ? parameters.passes
-                                  : automatic_passes(rays_, parameters.photons_used(), progress);
-  paths_before_.assign(scene.lights.size(), 0);
+PreparedScene::PreparedScene(const Scene& scene) : rays(scene) {
+  cost.add(stopwatch.seconds(), rays.bytes());
 }
 
-void Rendering::start(const PrimaryHitParameters& film) {
-  // Passes share the samples of a pixel: photons of one pass make the errors of neighbouring
-  // samples alike, those of another do not.
-  film_ = film;
-  film_.direct_rays = parameters_.direct_rays_used();  // as the photons were traced
-  film_.passes = passes_;
-  film_.samples_per_pixel = passes_ * ((film.samples_per_pixel - 1) / passes_ + 1);
+Rendering::Rendering(const PreparedScene& scene, std::span<Device> devices,
+                     const RenderParameters& parameters, Progress& progress)
+    : rays_(scene.rays),
+      scene_(scene.rays.scene()),
+      devices_(devices),
+      progress_(&progress),
+      plan_(parameters, rays_, progress),
+      paths_before_(scene_.lights.size()),
+      layer_powers_(layer_powers(scene_)) {
+  if (devices.empty()) throw UsageError("rendering needs a device; give at least one");
+  costs_.structure = scene.cost;
+}
+
+void Rendering::start(const Film& film) {
+  film_ = plan_.hits(film, 0);
   layers_ = LightLayers(film_.width, film_.height, scene_);
   shares_.assign(devices_.size(), 0.0);
   costs_.start_picture();
@@ -62,10 +52,9 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   photons_.reset();
   caustics_.reset();
   Maps maps = trace_and_build(pass, prepared, keep);
-  const int neighbours = estimate_of_pass(pass, first_).neighbours;
+  const std::vector<EstimateParameters> levels = plan_.estimates(pass, surface_);
   const auto estimators_of = [&](std::vector<PhotonMaps>& built) {
-    return MapEstimators(devices_, scene_, std::move(built), neighbours, parameters_, surface_,
-                         layer_powers_);
+    return MapEstimators(devices_, scene_, std::move(built), levels, layer_powers_);
   };
   photons_.emplace(estimators_of(maps.photons));
   if (!maps.caustics.empty()) caustics_.emplace(estimators_of(maps.caustics));
@@ -85,7 +74,7 @@ void Rendering::add_pass(const HitSource& source) {
   }
   progress_->end();
   const std::vector<double> shares = photons_->shares();
-  for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / passes_;
+  for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / plan_.passes();
 }
 
 /// Devices compile at the same time.
@@ -103,12 +92,13 @@ RenderResult Rendering::finish() {
     const DeviceInfo& device = devices_[i].info();
     costs_.shares.emplace_back("share of " + device.id + " " + device.name, shares_[i]);
   }
+  RenderParameters used = plan_.used();
+  used.film = {film_.width, film_.height, film_.samples_per_pixel};
+  used.radius = radius_;
   return {.layers = std::move(layers_),
           .statistics = costs_.statistics(),
-          .radius = first_.radius,
+          .used = used,
           .stored_photons = costs_.stored_photons,
-          .passes = passes_,
-          .samples_per_pixel = film_.samples_per_pixel,
           .device_shares = shares_};
 }
 
@@ -119,47 +109,34 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
   if (prepared) {
     traced.photons = std::move(prepared->photons);
   } else {
-    traced = trace(pass);
+    traced = trace_photons(rays_, plan_.tracing(pass, paths_before_), *progress_);
   }
   count(traced);
   if (pass == 0) {
-    first_ = {prepared ? prepared->radius : radius_for(traced.photons), parameters_.neighbours};
+    radius_ = prepared ? prepared->radius : plan_.radius(traced.photons);
     find_groups(traced.photons, prepared);  // once: no later radius is larger
     find_surface(traced.photons);
   }
   if (keep) {
-    PreparedPhotons own{std::move(traced.photons), std::move(groups_), first_.radius};
+    PreparedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
     (*keep)(own);
     traced.photons = std::move(own.photons);
     groups_ = std::move(own.groups);
   }
-  const double radius = estimate_of_pass(pass, first_).radius;
-  Maps maps{build(traced.photons, radius), {}};
+  const PhotonMapParameters parameters = plan_.maps(pass, radius_);
+  Maps maps{build(traced.photons, parameters), {}};
   costs_.maps = maps.photons.front().statistics().maps;
   costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
-  if (traced.caustics.size() > 0) maps.caustics = build(traced.caustics, radius);
+  if (traced.caustics.size() > 0) maps.caustics = build(traced.caustics, parameters);
   return maps;
 }
 
-PhotonTracerResult Rendering::trace(int pass) {
-  PhotonTracerParameters parameters = parameters_.photons_used();
-  const auto until = [&](int p) {  // paths of the passes before p
-    return parameters_.photons.emitted_photons / passes_ * p +
-           parameters_.photons.emitted_photons % passes_ * p / passes_;
-  };
-  if (passes_ > 1) {
-    parameters.emitted_photons = std::max<std::uint64_t>(1, until(pass + 1) - until(pass));
-    parameters.paths_before = paths_before_;
-  }
-  return trace_photons(rays_, parameters, *progress_);
-}
-
-std::vector<PhotonMaps> Rendering::build(const Photons& photons, double radius) {
+std::vector<PhotonMaps> Rendering::build(const Photons& photons,
+                                         const PhotonMapParameters& parameters) {
   const Stopwatch stopwatch;
   std::vector<PhotonMaps> maps =
-      build_maps_on_each(devices_, scene_, photons, groups_,
-                         {radius, parameters_.photons_per_cell, parameters_.structure}, *progress_);
+      build_maps_on_each(devices_, scene_, photons, groups_, parameters, *progress_);
   std::uint64_t device_bytes = 0, spilled_bytes = 0;
   for (const PhotonMaps& one : maps) {
     device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
@@ -170,13 +147,6 @@ std::vector<PhotonMaps> Rendering::build(const Photons& photons, double radius) 
   costs_.references += built.references;
   costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
   return maps;
-}
-
-double Rendering::radius_for(const Photons& photons) const {
-  if (parameters_.radius > 0) return parameters_.radius;
-  // Where rays bring all the light there is, no photon is stored, and any radius serves.
-  if (!parameters_.photons_used().store_direct && photons.size() < 2) return 1;
-  return automatic_radius(photons, parameters_.neighbours);
 }
 
 void Rendering::count(const PhotonTracerResult& traced) {
@@ -193,7 +163,8 @@ void Rendering::count(const PhotonTracerResult& traced) {
 void Rendering::find_groups(const Photons& photons, PreparedPhotons* prepared) {
   const Stopwatch stopwatch;
   groups_ = prepared ? std::move(prepared->groups)
-                     : groups_of(scene_, photons, parameters_, first_.radius, *progress_);
+                     : find_map_groups(scene_, photons, plan_.map_mode(), plan_.groups(radius_),
+                                       *progress_);
   costs_.group.add(stopwatch.seconds(), groups_.bytes());
   costs_.group_members = groups_.members.size();
   costs_.groups = groups_.offsets.size() - 1;
@@ -201,10 +172,10 @@ void Rendering::find_groups(const Photons& photons, PreparedPhotons* prepared) {
 }
 
 void Rendering::find_surface(const Photons& photons) {
-  if (parameters_.area_used() != AreaMode::clipped) return;
+  if (!plan_.clips_areas()) return;
   const Stopwatch stopwatch;
   surface_ = std::make_shared<const SurfaceIndex>(
-      index_surface(scene_, landed_on(scene_, photons), first_.radius, parameters_.angle_degrees));
+      index_surface(scene_, landed_on(scene_, photons), radius_, plan_.used().angle_degrees));
   costs_.surface.add(stopwatch.seconds(), surface_->bytes());
   costs_.sheets = surface_->sheets;
   costs_.surface_leaves = surface_->leaves.size();
@@ -213,10 +184,10 @@ void Rendering::find_surface(const Photons& photons) {
 int Rendering::rows_per_batch(const HitSource& source) const {
   const std::int64_t hits_per_row = std::int64_t{film_.width} *
                                     (film_.samples_per_pixel / film_.passes) *
-                                    std::max(1, parameters_.final_gather_rays);
+                                    std::max(1, plan_.used().final_gather_rays);
   const int most = source.watched() ? (film_.height - 1) / watched_batches + 1 : film_.height;
   return static_cast<int>(
-      std::clamp<std::int64_t>(hits_per_batch(parameters_.neighbours) / hits_per_row, 1, most));
+      std::clamp<std::int64_t>(hits_per_batch(plan_.used().neighbours) / hits_per_row, 1, most));
 }
 
 void Rendering::add_rows(const HitSource& source, int first, int last) {
@@ -234,17 +205,16 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
 Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_row) {
   const Stopwatch stopwatch;
   const double compiled = compile_seconds();
-  if (parameters_.final_gather_rays == 0) {
+  if (!plan_.gathers()) {
     Estimates estimates = photons_->estimate(hits);
     costs_.estimate.add(stopwatch.seconds());
     costs_.estimate_compile_seconds += compile_seconds() - compiled;
     costs_.hit_count += hits.size();
     return estimates;
   }
-  FinalGather gather(rays_, *photons_, caustics_ ? &*caustics_ : nullptr,
-                     {parameters_.final_gather_rays, film_.seed, film_.max_specular_depth});
+  FinalGather gather(rays_, *photons_, caustics_ ? &*caustics_ : nullptr, plan_.gathering());
   Estimates estimates = gather.estimate(hits, path_numbers(hits, film_, first_row, last_row),
-                                        hits_per_batch(parameters_.neighbours), *progress_);
+                                        hits_per_batch(plan_.used().neighbours), *progress_);
   costs_.gather.add(gather.costs().ray_seconds);
   costs_.estimate.add(stopwatch.seconds() - gather.costs().ray_seconds);
   costs_.estimate_compile_seconds += compile_seconds() - compiled;

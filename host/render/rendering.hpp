@@ -6,30 +6,40 @@
 #include <span>
 #include <vector>
 
+#include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
 #include "photile/surface_index.hpp"
 #include "render/hit_source.hpp"
 #include "render/map_estimators.hpp"
-#include "render/pass_schedule.hpp"
 #include "render/render_costs.hpp"
+#include "render/render_plan.hpp"
 
 namespace photile {
+
+/// A scene prepared for rays, and what that took.
+struct PreparedScene {
+  explicit PreparedScene(const Scene& scene);
+
+  Stopwatch stopwatch;  ///< before `rays`, whose construction it times
+  RayScene rays;
+  StageCost cost;
+};
 
 /// What the photon passes of a rendering share.
 class Rendering {
  public:
-  /// References are kept. Errors: those of RayScene and automatic_passes.
-  Rendering(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
-            Progress& progress);
+  /// References are kept. Errors: those of RenderPlan; UsageError without a device.
+  Rendering(const PreparedScene& scene, std::span<Device> devices,
+            const RenderParameters& parameters, Progress& progress);
 
-  int passes() const { return passes_; }
+  const RenderPlan& plan() const { return plan_; }
 
   /// From now on.
   void report_to(Progress& progress) { progress_ = &progress; }
 
   /// Begins a picture.
-  void start(const PrimaryHitParameters& film);
+  void start(const Film& film);
 
   /// Traces the photons of a pass and builds their maps. Those of the pass before are gone.
   ///   prepared   photons and groups in place of traced ones, or null; taken
@@ -50,9 +60,7 @@ class Rendering {
   };
 
   Maps trace_and_build(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
-  PhotonTracerResult trace(int pass);
-  std::vector<PhotonMaps> build(const Photons& photons, double radius);
-  double radius_for(const Photons& photons) const;
+  std::vector<PhotonMaps> build(const Photons& photons, const PhotonMapParameters& parameters);
   void count(const PhotonTracerResult& traced);
   void find_groups(const Photons& photons, PreparedPhotons* prepared);
   void find_surface(const Photons& photons);
@@ -61,17 +69,15 @@ class Rendering {
   Estimates estimate(const PrimaryHits& hits, int first_row, int last_row);
   double compile_seconds() const;
 
-  const Stopwatch stopwatch_;  // before rays_, whose construction it times
+  const RayScene& rays_;
   const Scene& scene_;
   std::span<Device> devices_;
-  const RenderParameters parameters_;
   Progress* progress_;
-  const RayScene rays_;
-  int passes_ = 1;
+  const RenderPlan plan_;
   PrimaryHitParameters film_;
   LightLayers layers_;
   std::vector<std::uint64_t> paths_before_;  ///< per light
-  PassEstimate first_;
+  double radius_ = 0;                        ///< of the first pass, metres
   NeighbourGroups groups_;
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
   const std::vector<double> layer_powers_;

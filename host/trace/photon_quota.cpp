@@ -29,6 +29,18 @@ std::vector<double> light_shares(const std::vector<Light>& lights, PhotonQuota q
 
 }  // namespace trace
 
+std::string_view name_of(PhotonQuota quota) {
+  switch (quota) {
+    case PhotonQuota::balanced:
+      return "balanced";
+    case PhotonQuota::power:
+      return "power";
+    case PhotonQuota::equal:
+      return "equal";
+  }
+  return "unknown";
+}
+
 namespace {
 
 /// Adds what rounding down left over, one path each, by the largest remainder first.

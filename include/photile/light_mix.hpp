@@ -46,7 +46,7 @@ struct LightChange {
 
 /// Applies changes. Errors: UsageError for an unknown light (the message lists those there are), a
 /// negative or non-finite power, a malformed value, a colour that the light does not emit.
-void apply(LightMix& mix, const std::vector<LightChange>& changes);
+void change_lights(LightMix& mix, const std::vector<LightChange>& changes);
 
 /// Layers x powers, as channels: root R G B A (the sum, alpha 1), `Combined_<light>.R/G/B` and
 /// `Illuminance_<light>.Y` in lux, with attribute `photile.lights` (JSON) and units. The root is
@@ -64,8 +64,8 @@ void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<gl
 /// Returns the channels of `mix_layers`: the root is the sum of the layers, so light that another
 /// program left out of every layer is not in it. The root's alpha and the attributes are kept.
 /// Errors: InputError when the picture has no light layers, several views of them, or damaged
-/// records; UsageError as in `apply`; UsageError when a light that is off in the picture, or a
-/// colour that it lacks there, is to be turned up.
+/// records; UsageError as in `change_lights`; UsageError when a light that is off in the picture,
+/// or a colour that it lacks there, is to be turned up.
 Image relight(const Image& layered, const std::vector<LightChange>& changes);
 
 /// The lights of a picture, as `relight` sees them.

@@ -1,7 +1,9 @@
 // Photon paths from the lights.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "photile/defaults.hpp"
@@ -17,6 +19,11 @@ enum class PhotonQuota {
   power,     ///< by power: least noise at the scene's own powers
   equal      ///< the same number for each light
 };
+
+/// "balanced", "power", "equal".
+std::string_view name_of(PhotonQuota quota);
+inline constexpr std::array all_photon_quotas = {PhotonQuota::balanced, PhotonQuota::power,
+                                                 PhotonQuota::equal};
 
 struct PhotonTracerParameters {
   std::uint64_t emitted_photons = defaults::emitted_photons;  ///< over all lights

@@ -20,8 +20,31 @@
 
 namespace photile {
 
+/// The raster that a picture, or a row of sensors, is gathered in.
+struct Film {
+  int width = defaults::image_width;    ///< pixels
+  int height = defaults::image_height;  ///< pixels
+  int samples_per_pixel = defaults::samples_per_pixel;
+};
+
+/// The paths that leave the lamps.
+struct PhotonPaths {
+  std::uint64_t emitted_photons = defaults::emitted_photons;  ///< over all lights
+  PhotonQuota quota = PhotonQuota::balanced;
+  int max_path_length = defaults::max_path_length;  ///< surface interactions
+  int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
+};
+
+/// What is asked of a rendering, each setting once. What follows from them, and which stage reads
+/// which, is said in docs/settings.md; their ranges are those of the table there.
 struct RenderParameters {
-  PhotonTracerParameters photons;
+  std::uint64_t seed = defaults::seed;  ///< of all random numbers
+  Film film = {};
+  int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
+  PhotonPaths photons = {};
+  /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
+  /// their mean. 0 = as many as the host's memory asks for.
+  int passes = 0;
   MapMode maps = MapMode::automatic;
   double radius = 0;  ///< metres; 0 = automatic_radius
   double angle_degrees = defaults::group_angle_degrees;
@@ -34,39 +57,27 @@ struct RenderParameters {
   /// How uniform grids are queried; none = shipped_tuning of the device. Its photons_per_cell does
   /// not count, the one above does.
   std::optional<EstimateTuning> tuning = std::nullopt;
-  /// What the density divides by. Naive maps take the disc in any case.
-  AreaMode area = AreaMode::clipped;
-  AreaMode area_used() const { return maps == MapMode::naive ? AreaMode::disc : area; }
+  AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
-  PrimaryHitParameters film;
+  /// > 0: light straight from lamps is found by so many looks at them from each hit. 0 = photons
+  /// bring it; where rays gather, as many looks as defaults::direct_rays do.
+  int direct_rays = 0;
   /// > 0: light from other surfaces is gathered by so many rays from each hit, which look photons
   /// up where they end; at the hit itself only caustics are (docs/final-gathering.md). 0 = all
   /// light is looked up at the hit.
   int final_gather_rays = 0;
-  /// Final gathering has no photons for direct light.
-  int direct_rays_used() const {
-    return final_gather_rays > 0 && film.direct_rays == 0 ? defaults::direct_rays
-                                                          : film.direct_rays;
-  }
-  /// Without those that film.direct_rays replaces; where rays gather, those see direct light, too.
-  PhotonTracerParameters photons_used() const {
-    PhotonTracerParameters used = photons;
-    used.store_direct = film.direct_rays == 0 || final_gather_rays > 0;
-    used.keep_caustics = final_gather_rays > 0;
-    return used;
-  }
-  /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
-  /// their mean. 0 = as many as the host's memory asks for.
-  int passes = 0;
 };
+
+/// The rays of a whole picture by these parameters, as trace_paths takes them.
+PrimaryHitParameters eye_rays(const RenderParameters& parameters);
 
 struct RenderResult {
   LightLayers layers;
   RunStatistics statistics;
-  double radius = 0;                 ///< the one used, metres; of the first pass
-  std::uint64_t stored_photons = 0;  ///< over all passes
-  int passes = 1;
-  int samples_per_pixel = 1;          ///< over all passes: those asked for, or one more for a pass
+  /// What the picture was made with: as asked, and where that leaves a choice or cannot be had,
+  /// what was found (the radius, of the first pass). Asked for these, `render` gives it again.
+  RenderParameters used;
+  std::uint64_t stored_photons = 0;   ///< over all passes
   std::vector<double> device_shares;  ///< each device's part of the hits, in [0, 1]
 };
 

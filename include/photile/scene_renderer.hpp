@@ -11,8 +11,6 @@
 
 namespace photile {
 
-class HitSource;
-
 /// What photon maps are built from: all that depends on random numbers or takes long on the host.
 struct PreparedPhotons {
   Photons photons;
@@ -35,16 +33,12 @@ class SceneRenderer {
 
   /// The picture that `render` gives with this film, bit for bit. Statistics contain the costs of
   /// the maps each time.
-  RenderResult render(const Camera& camera, const PrimaryHitParameters& film,
-                      Progress& progress = Progress::none());
-
-  /// The same of any hits (host/render/hit_source.hpp).
-  RenderResult render(const HitSource& hits, const PrimaryHitParameters& film,
+  RenderResult render(const Camera& camera, const Film& film,
                       Progress& progress = Progress::none());
 
   /// The part of that picture which comes by a mirror, by glass that bends or reflects it, or by a
   /// glossy lobe.
-  RenderResult render_reflections(const Camera& camera, const PrimaryHitParameters& film,
+  RenderResult render_reflections(const Camera& camera, const Film& film,
                                   Progress& progress = Progress::none());
 
  private:

@@ -17,7 +17,7 @@ struct Sensor {
 
 /// The light at sensors on opaque surfaces that face their normals, within a millimetre, by
 /// `render`: the result's layers are one row high, sensor i is pixel i.
-/// `parameters.film` gives the seed only. Errors: those of `render`; InputError that names a sensor
+/// `parameters.film` does not count. Errors: those of `render`; InputError that names a sensor
 /// without an opaque surface.
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress = Progress::none());
@@ -44,7 +44,7 @@ struct GatherParameters {
 /// pixel wide, sensor i is row i: `radiance` is irradiance / pi, W/(m2 sr) or cd/m2 of a white
 /// plate there, and `illuminance` the luminance of irradiance. What mirrors and refracting glass
 /// throw onto a sensor from point, spot and directional lights is missing, see has_unseen_caustics.
-/// `parameters.film` gives the seed only. Errors: those of `render`; UsageError for rays out of
+/// `parameters.film` does not count. Errors: those of `render`; UsageError for rays out of
 /// limits.hpp.
 RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,

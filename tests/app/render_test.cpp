@@ -96,7 +96,7 @@ TEST_CASE("an EXR tells how it was made") {
   CHECK(attribute("photile.photons_emitted") == "100000");
   CHECK(attribute("photile.neighbours") == "30");
   CHECK(attribute("photile.radius") == "0.25 m");
-  CHECK(attribute("photile.angle") == "45 degrees");
+  CHECK(attribute("photile.angle_degrees") == "45 degrees");
   CHECK(attribute("photile.least_neighbours") == "0");
   CHECK(attribute("photile.area") == "clipped");
   CHECK(attribute("photile.kernel") == "constant");

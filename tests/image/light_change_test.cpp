@@ -18,7 +18,7 @@ LightMix after(const std::vector<std::string>& changes) {
   LightMix mix = two_lights();
   std::vector<LightChange> parsed;
   for (const std::string& text : changes) parsed.push_back(LightChange::parse(text));
-  photile::apply(mix, parsed);
+  change_lights(mix, parsed);
   return mix;
 }
 
@@ -64,14 +64,14 @@ TEST_CASE("a colour becomes a tint of luminance 1 with the ratios of linear sRGB
 TEST_CASE("a colour temperature replaces the light's own colour and keeps its power") {
   LightMix mix = two_lights();
   mix.lights[0].color = {1.4f, 0.9f, 0.8172f};
-  photile::apply(mix, {LightChange::parse("lamp=2700K")});
+  change_lights(mix, {LightChange::parse("lamp=2700K")});
   const glm::dvec3 color = glm::dvec3(mix.lights[0].tint) * glm::dvec3(mix.lights[0].color);
   // Chromaticity (0.4599, 0.4106) of the black body, in Rec.709.
   CHECK(color.r / color.b == Approx(1.9353 / 0.1917).epsilon(0.02));
   CHECK(luminance(color) == Approx(1.0).epsilon(1e-6));
   CHECK(mix.lights[0].power == 800.0);
   mix.lights[0].color = {4.7036689f, 0.0f, 0.0f};
-  CHECK_THROWS_AS(photile::apply(mix, {LightChange::parse("lamp=2700K")}), UsageError);
+  CHECK_THROWS_AS(change_lights(mix, {LightChange::parse("lamp=2700K")}), UsageError);
   for (const char* text : {"lamp=K", "lamp=999K", "lamp=40001K", "lamp=x2K", "lamp=-5000K"}) {
     CHECK_THROWS_AS(after({text}), UsageError);
   }
@@ -80,7 +80,7 @@ TEST_CASE("a colour temperature replaces the light's own colour and keeps its po
 TEST_CASE("a tint keeps the luminance of the light's own colour") {
   LightMix mix = two_lights();
   mix.lights[0].color = {2.0f, 0.7f, 1.0f};
-  photile::apply(mix, {LightChange::parse("lamp=#3060C0")});
+  change_lights(mix, {LightChange::parse("lamp=#3060C0")});
   CHECK(luminance(glm::dvec3(mix.lights[0].tint) * glm::dvec3(mix.lights[0].color)) ==
         Approx(1.0).epsilon(1e-6));
 }
@@ -88,7 +88,7 @@ TEST_CASE("a tint keeps the luminance of the light's own colour") {
 TEST_CASE("an unknown light is refused with the list of those there are, and nothing changes") {
   LightMix mix = two_lights();
   const std::string message = message_of<UsageError>([&] {
-    photile::apply(mix, {LightChange::parse("lamp=5"), LightChange::parse("lmap=5")});
+    change_lights(mix, {LightChange::parse("lamp=5"), LightChange::parse("lmap=5")});
   });
   CHECK(message.find("'lmap'") != std::string::npos);
   CHECK(message.find("'lamp', 'heater'") != std::string::npos);
@@ -102,7 +102,7 @@ TEST_CASE("a malformed, negative or non-finite value is refused, naming light an
         "#1234567", "#GG0000", "#-12345", "#000000", "Off",   " 5",    "0x10"}) {
     LightMix mix = two_lights();
     const std::string message = message_of<UsageError>([&] {
-      photile::apply(mix, {LightChange{"lamp", value}});
+      change_lights(mix, {LightChange{"lamp", value}});
     });
     INFO(message);
     CHECK(message.find("'lamp'") != std::string::npos);
@@ -117,7 +117,7 @@ TEST_CASE("factors that multiply beyond the largest number are refused") {
 TEST_CASE("a colour that a light's own colour lacks altogether is refused") {
   LightMix mix = two_lights();
   mix.lights[0].color = {4.7f, 0.0f, 0.0f};
-  CHECK_THROWS_AS(photile::apply(mix, {LightChange::parse("lamp=#0000FF")}), UsageError);
+  CHECK_THROWS_AS(change_lights(mix, {LightChange::parse("lamp=#0000FF")}), UsageError);
 }
 
 TEST_CASE("a change is split at its last equals sign, and both sides must be there") {

@@ -53,7 +53,7 @@ TEST_CASE("relighting with a colour equals mixing with that colour") {
   mix.lights[1].color = {1.8f, 0.8f, 0.6f};
   const std::vector<LightChange> changes = parse({"lamp=#40A0FF", "lamp=7"});
   const Image relit = relight(mix_layers(layers, mix), changes);
-  photile::apply(mix, changes);
+  change_lights(mix, changes);
   check_equal(relit, mix_layers(layers, mix));
 }
 

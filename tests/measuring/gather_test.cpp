@@ -20,7 +20,7 @@ const glm::dvec3 up(0, 0, 1);
 RenderParameters photons(std::uint64_t count, std::uint64_t seed) {
   RenderParameters parameters;
   parameters.photons.emitted_photons = count;
-  parameters.photons.seed = parameters.film.seed = seed;
+  parameters.seed = seed;
   return parameters;
 }
 

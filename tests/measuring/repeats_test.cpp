@@ -20,7 +20,7 @@ Readings measured(const Scene& scene, std::uint64_t seed, int repeats) {
   parameters.by_paths = true;
   parameters.gathering.rays = 64;
   parameters.repeats = repeats;
-  parameters.photons.film.seed = seed;
+  parameters.photons.seed = seed;
   return measure_grids(scene, grids, LightMix::of(scene, 683), {}, parameters, Progress::none());
 }
 

@@ -49,7 +49,7 @@ TEST_CASE("paths and photon maps see the same light in a closed box, away from i
     RenderParameters parameters;
     parameters.film.width = parameters.film.height = 16;
     parameters.film.samples_per_pixel = 64;
-    parameters.film.seed = parameters.photons.seed = seed;
+    parameters.seed = seed;
     parameters.photons.emitted_photons = 500'000;
     parameters.radius = 0.1;
     by_photons.push_back(
@@ -68,7 +68,7 @@ TEST_CASE("paths and photon maps see the same light in the living room, light by
     parameters.film.width = 48;
     parameters.film.height = 36;
     parameters.film.samples_per_pixel = 128;
-    parameters.film.seed = parameters.photons.seed = seed;
+    parameters.seed = seed;
     parameters.photons.emitted_photons = 400'000;
     parameters.photons.quota = PhotonQuota::equal;
     const LightLayers photons = render(scene, scene.cameras[0], test::device(), parameters).layers;

@@ -50,7 +50,7 @@ void check_agreement(const Scene& scene) {
     RenderParameters parameters;
     parameters.film.width = parameters.film.height = 16;
     parameters.film.samples_per_pixel = 36;
-    parameters.film.seed = parameters.photons.seed = seed;
+    parameters.seed = seed;
     parameters.photons.emitted_photons = 200'000;
     parameters.radius = 0.1;
     const double photons = mean_radiance(render(scene, camera, test::device(), parameters).layers);

@@ -62,7 +62,7 @@ TEST_CASE("a point light over a floor: mean illuminance and radiance over a squa
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     RenderParameters parameters;
     parameters.photons.emitted_photons = 200'000;
-    parameters.photons.seed = parameters.film.seed = seed;
+    parameters.seed = seed;
     parameters.film.width = parameters.film.height = 48;
     const RenderResult result = render(scene, camera, test::device(), parameters);
     const double power = scene.lights[0].power;
@@ -90,7 +90,7 @@ TEST_CASE("a furnace: inside a sphere that emits L and reflects rho the radiance
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
       RenderParameters parameters;
       parameters.photons.emitted_photons = 150'000;
-      parameters.photons.seed = parameters.film.seed = seed;
+      parameters.seed = seed;
       parameters.film.width = parameters.film.height = 40;
       const RenderResult result = render(scene, camera, test::device(), parameters);
       radiances.push_back(scene.lights[0].power * mean_luminance(result.layers.layers[0].radiance));

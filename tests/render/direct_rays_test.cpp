@@ -21,11 +21,11 @@ using std::numbers::pi;
 
 RenderParameters by_rays(int looks, std::uint64_t seed = 1) {
   RenderParameters parameters;
-  parameters.film.direct_rays = looks;
+  parameters.direct_rays = looks;
   parameters.film.width = parameters.film.height = 1;
   parameters.film.samples_per_pixel = 1;
   parameters.photons.emitted_photons = 100'000;
-  parameters.film.seed = parameters.photons.seed = seed;
+  parameters.seed = seed;
   return parameters;
 }
 
@@ -67,7 +67,7 @@ void check_room(const Material& floor, double delta) {
     parameters.photons.emitted_photons = 400'000;
     parameters.radius = 0.15;
     const Means own(render(scene, camera, test::device(), parameters).layers);
-    PrimaryHitParameters film = parameters.film;
+    PrimaryHitParameters film = eye_rays(parameters);
     film.samples_per_pixel = 1024;
     truth = Means(trace_paths(scene, camera, film).layers);
     for (std::size_t layer = 0; layer < 2; ++layer) {
@@ -173,7 +173,7 @@ TEST_CASE("direct rays: layers are the same whatever the powers") {
 
 TEST_CASE("direct rays: paths find direct light themselves") {
   const Scene scene = test::furnished_room();
-  PrimaryHitParameters film = by_rays(2).film;
+  PrimaryHitParameters film = eye_rays(by_rays(2));
   const Means with(trace_paths(scene, test::above(2.6, 2.2, 2.0, 0.4), film).layers);
   film.direct_rays = 0;
   CHECK(with.radiance ==

@@ -191,7 +191,7 @@ TEST_CASE("extremes: a room a million times larger or smaller gives the same pic
     for (auto& layer : result.layers.layers) {
       for (glm::vec3& radiance : layer.radiance) radiance *= factor * factor;
     }
-    result.radius /= factor;
+    result.used.radius /= factor;
     return result;
   };
   const RenderResult expected = scaled_room(1.0f);
@@ -199,7 +199,7 @@ TEST_CASE("extremes: a room a million times larger or smaller gives the same pic
     const RenderResult result = scaled_room(factor);
     const Difference difference = compare(result.layers, expected.layers);
     CAPTURE(factor, difference.mean, difference.apart);
-    CHECK(result.radius == Approx(expected.radius).epsilon(1e-4));
+    CHECK(result.used.radius == Approx(expected.used.radius).epsilon(1e-4));
     CHECK(difference.mean < 1e-4);
     CHECK(difference.apart < 0.01);
   }

@@ -100,7 +100,7 @@ RenderParameters parameters_of(std::uint64_t photons, int samples, std::uint64_t
   parameters.film.samples_per_pixel = samples;
   parameters.photons.emitted_photons = photons;
   parameters.neighbours = 200;
-  parameters.film.seed = parameters.photons.seed = seed;
+  parameters.seed = seed;
   return parameters;
 }
 

@@ -61,7 +61,7 @@ TEST_CASE("the layer of a group is the sum of its lights at their powers") {
   REQUIRE_FALSE(together.layers.sparse());
   REQUIRE(together.layers.layers.size() == 3);
   CHECK(together.stored_photons == alone.stored_photons);
-  CHECK(together.radius == alone.radius);
+  CHECK(together.used.radius == alone.used.radius);
 
   // Both sum the same terms, none negative: up to k photons of each sample and, of lights alone,
   // the lights. A sum of n terms is right to n units of 2^-24, and each term is a product of at

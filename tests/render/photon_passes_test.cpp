@@ -122,9 +122,9 @@ TEST_CASE("passes on one, two and three threads render the same bits") {
 TEST_CASE("passes share the photons and the samples of a pixel") {
   const RenderResult one = render_room(small_parameters(1));
   const RenderResult seven = render_room(small_parameters(7));
-  CHECK(seven.passes == 7);
-  CHECK(one.samples_per_pixel == 2);
-  CHECK(seven.samples_per_pixel == 7);
+  CHECK(seven.used.passes == 7);
+  CHECK(one.used.film.samples_per_pixel == 2);
+  CHECK(seven.used.film.samples_per_pixel == 7);
   // The same paths, but that rounding may give a light one more or less.
   CHECK(static_cast<double>(seven.stored_photons) ==
         Approx(static_cast<double>(one.stored_photons)).epsilon(0.001));

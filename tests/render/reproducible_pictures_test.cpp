@@ -62,7 +62,7 @@ TEST_CASE("another seed renders another picture") {
   const Scene scene = test::furnished_room(2);
   RenderParameters parameters = small_parameters();
   const auto first = render(scene, room_camera(), test::device(), parameters).layers;
-  parameters.photons.seed = 2;
+  parameters.seed = 2;
   CHECK_FALSE(same_bits(first, render(scene, room_camera(), test::device(), parameters).layers));
 }
 

@@ -80,11 +80,11 @@ TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a
   const auto file = write_scene(folder, shared_document());
   const std::string before = bytes_in(file);
   LightMix mix = LightMix::of(load_scene(file), 683);
-  apply(mix, {{"lamp", "50"},
-              {"bulb", "x3"},
-              {"bulb", "2700K"},
-              {"panel", "x0.25"},
-              {"second", "#80ff40"}});
+  change_lights(mix, {{"lamp", "50"},
+                      {"bulb", "x3"},
+                      {"bulb", "2700K"},
+                      {"panel", "x0.25"},
+                      {"second", "#80ff40"}});
   const scene_io::EditedScene copy = scene_io::write_edited_scene(file, {}, mix, "late evening");
   CHECK(copy.file.filename() == "room.late_evening.gltf");
   CHECK(copy.left_out.empty());
@@ -101,7 +101,7 @@ TEST_CASE("instances of one lamp stay one in a copy of a glTF file") {
   const auto file = write_scene(folder, document);
   LightMix mix = LightMix::of(load_scene(file), 683);
   REQUIRE(mix.lights.size() == 3);
-  photile::apply(mix, {{"lamp", "50"}, {"lamp", "2700K"}, {"panel", "x0.25"}});
+  change_lights(mix, {{"lamp", "50"}, {"lamp", "2700K"}, {"panel", "x0.25"}});
   const scene_io::EditedScene copy = scene_io::write_edited_scene(file, {}, mix, "evening");
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
@@ -117,7 +117,7 @@ TEST_CASE("nodes outside the scene may name what no file can hold") {
   }
   const auto file = write_scene(folder, document);
   LightMix mix = LightMix::of(load_scene(file), 683);
-  photile::apply(mix, {{"lamp", "50"}, {"panel", "x0.25"}});
+  change_lights(mix, {{"lamp", "50"}, {"panel", "x0.25"}});
   const scene_io::EditedScene copy = scene_io::write_edited_scene(file, {}, mix, "evening");
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
@@ -127,7 +127,7 @@ TEST_CASE("a lamp that is off is written with intensity 0") {
   const SceneFolderOnDisk folder;
   const auto file = write_scene(folder, shared_document());
   LightMix mix = LightMix::of(load_scene(file), 683);
-  apply(mix, {{"lamp", "off"}, {"panel", "off"}});
+  change_lights(mix, {{"lamp", "off"}, {"panel", "off"}});
   check_reads_back(scene_io::write_edited_scene(file, {}, mix, "dark").file, mix);
 }
 
@@ -142,7 +142,7 @@ TEST_CASE("what photile_lumens and photile_kelvin say follows in a copy") {
       nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
   const auto file = write_scene(folder, document);
   LightMix mix = LightMix::of(load_scene(file), 683);
-  apply(mix, {{"panel", "500"}, {"panel", "5000K"}, {"lamp", "100"}, {"bulb", "#ff0000"}});
+  change_lights(mix, {{"panel", "500"}, {"panel", "5000K"}, {"lamp", "100"}, {"bulb", "#ff0000"}});
   check_reads_back(scene_io::write_edited_scene(file, {}, mix, "a").file, mix);
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("lights of a group are scaled and tinted together in a copy") {
   for (const int node : {0, 2}) document["nodes"][node]["extras"]["photile_group"] = "all";
   const auto file = write_scene(folder, document);
   LightMix mix = LightMix::of(load_scene(file), 683);
-  apply(mix, {{"all", "x0.5"}, {"all", "#ffc080"}});
+  change_lights(mix, {{"all", "x0.5"}, {"all", "#ffc080"}});
   check_reads_back(scene_io::write_edited_scene(file, {}, mix, "a").file, mix);
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("a copy of a GLB keeps what follows its JSON") {
       "room.glb", "glTF" + word(2) + word(28 + text.size() + buffer.size()) + word(text.size()) +
                       "JSON" + text + word(buffer.size()) + std::string("BIN\0", 4) + buffer);
   LightMix mix = LightMix::of(load_scene(file), 683);
-  apply(mix, {{"lamp", "x0.1"}, {"second", "x7"}});
+  change_lights(mix, {{"lamp", "x0.1"}, {"second", "x7"}});
   const auto copy = scene_io::write_edited_scene(file, {}, mix, "a");
   CHECK(copy.file.extension() == ".glb");
   check_reads_back(copy.file, mix);
@@ -181,11 +181,11 @@ TEST_CASE("the bundled living room is copied with a mood") {
                         std::filesystem::copy_options::recursive);
   const auto file = folder.path / "living-room.gltf";
   LightMix mix = LightMix::of(load_scene(file), 683);
-  apply(mix, {{"daylight", "off"},
-              {"floor_lamp", "400"},
-              {"desk_lamp", "3000K"},
-              {"sconce_left", "#ffd9a0"},
-              {"picture_spot", "x2"}});
+  change_lights(mix, {{"daylight", "off"},
+                      {"floor_lamp", "400"},
+                      {"desk_lamp", "3000K"},
+                      {"sconce_left", "#ffd9a0"},
+                      {"picture_spot", "x2"}});
   const auto copy = scene_io::write_edited_scene(file, {}, mix, "evening");
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
@@ -198,7 +198,7 @@ TEST_CASE("an OBJ file is copied with a library of its own") {
       "room.obj", "mtllib materials.mtl\n" + unit_square +
                       "o panel\nusemtl lamp\nf 1 2 3 4\no floor\nusemtl wall\nf 1 2 3\n");
   LightMix mix = LightMix::of(load_scene(file), 683);
-  apply(mix, {{"panel", "x0.3"}, {"panel", "#ff8000"}});
+  change_lights(mix, {{"panel", "x0.3"}, {"panel", "#ff8000"}});
   const auto copy = scene_io::write_edited_scene(file, {}, mix, "warm");
   CHECK(copy.file.filename() == "room.warm.obj");
   check_reads_back(copy.file, mix);
@@ -211,7 +211,7 @@ TEST_CASE("lamps of one MTL material that are set differently are told and keep 
   const auto file = folder.write("room.obj", "mtllib materials.mtl\n" + unit_square +
                                                  "usemtl lamp\no one\nf 1 2 3\no two\nf 1 3 4\n");
   LightMix mix = LightMix::of(load_scene(file), 683);
-  apply(mix, {{"one", "x2"}});
+  change_lights(mix, {{"one", "x2"}});
   const auto copy = scene_io::write_edited_scene(file, {}, mix, "a");
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Contains("one") && Contains("two") && Contains("lamp"));
@@ -224,7 +224,7 @@ TEST_CASE("lights of options are told, and no file is written over another") {
   SceneLoadOptions options;
   options.sky = Sky{SkyKind::uniform, 1000};
   LightMix mix = LightMix::of(load_scene(file, options), 683);
-  apply(mix, {{"sky", "x0.5"}, {"panel", "x2"}});
+  change_lights(mix, {{"sky", "x0.5"}, {"panel", "x2"}});
   const auto copy = scene_io::write_edited_scene(file, options, mix, "a");
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Contains("sky") && Contains("option"));

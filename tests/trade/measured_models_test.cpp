@@ -39,7 +39,7 @@ RenderParameters small_picture() {
 }
 
 Image path_traced(const View& view, const LightMix& mix, int samples) {
-  PrimaryHitParameters film = small_picture().film;
+  PrimaryHitParameters film = eye_rays(small_picture());
   film.samples_per_pixel = samples;
   film.seed = 99;
   return mixed_picture(trace_paths(view.scene, view.camera, film).layers, mix)->root();
@@ -51,7 +51,7 @@ double error_of_choice(const View& view, const LightMix& mix, const QualityChoic
   parameters.photons.emitted_photons = choice.photons;
   parameters.neighbours = choice.neighbours;
   parameters.film.samples_per_pixel = choice.samples_per_pixel;
-  parameters.photons.seed = parameters.film.seed = 7;  // not those of the pilots
+  parameters.seed = 7;  // not those of the pilots
   const RenderResult result = render(view.scene, view.camera, test::device(), parameters);
   return picture_error(mixed_picture(result.layers, mix)->root(), reference).relative_error();
 }

@@ -21,7 +21,7 @@ struct Subject {
     parameters.photons.emitted_photons = 40'000;
     parameters.film.width = parameters.film.height = 48;
     parameters.film.samples_per_pixel = 1;
-    PrimaryHitParameters film = parameters.film;
+    PrimaryHitParameters film = eye_rays(parameters);
     film.samples_per_pixel = 256;
     reference = mixed_picture(trace_paths(scene, scene.cameras.front(), film).layers, mix)->root();
   }
@@ -55,7 +55,7 @@ TEST_CASE("a trade has all pairs of photons and neighbours, and every other valu
   CHECK(count("maps") == 1);
   const TradePoint& base = points[6];
   CHECK(base.varied == "nothing");
-  CHECK(points.back().radius == Approx(0.5 * base.radius));
+  CHECK(points.back().used.radius == Approx(0.5 * base.used.radius));
   for (const TradePoint& point : points) {
     CHECK(point.first_picture_seconds > point.frame_seconds);
     CHECK(point.device_bytes > 0);

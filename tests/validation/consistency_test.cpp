@@ -29,7 +29,7 @@ std::vector<Sensor> square_of_sensors(int count, double spacing, const glm::dvec
 RenderParameters with(std::uint64_t photons, int neighbours, std::uint64_t seed) {
   RenderParameters parameters;
   parameters.photons.emitted_photons = photons;
-  parameters.photons.seed = parameters.film.seed = seed;
+  parameters.seed = seed;
   parameters.neighbours = neighbours;
   return parameters;
 }

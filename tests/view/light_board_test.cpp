@@ -59,7 +59,7 @@ TEST_CASE("a colour temperature tints as --light NAME=KELVINK does, in place of 
   LightBoard board(two_lamps());
   board.controls()[0].kelvin = 2700;
   LightMix expected = two_lamps();
-  apply(expected, {{"ceiling", "2700K"}});
+  change_lights(expected, {{"ceiling", "2700K"}});
   CHECK(board.mix().lights[0].tint == expected.lights[0].tint);
   CHECK(board.mix().lights[0].tint.r > board.mix().lights[0].tint.b);
   CHECK(board.mix().lights[0].power == 100);

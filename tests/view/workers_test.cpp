@@ -61,7 +61,7 @@ TEST_CASE("photons grow fourfold to all that were asked for") {
 
 TEST_CASE("a viewer that stands still sees what render gives, bit for bit") {
   const Scene scene = lit_floor();
-  FrameWorker frames(defaults::seed, 4, 30);
+  FrameWorker frames(4, 30);
   frames.show({from_above(), 40, 30, false});
   PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
@@ -86,7 +86,7 @@ TEST_CASE("a viewer that stands still sees what render gives, bit for bit") {
 
 TEST_CASE("reflections come with a frame where they are asked for: none of a matt floor") {
   const Scene scene = lit_floor();
-  FrameWorker frames(defaults::seed, 1, 30);
+  FrameWorker frames(1, 30);
   frames.show({from_above(), 40, 30, false, true});
   PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
@@ -101,7 +101,7 @@ TEST_CASE("reflections come with a frame where they are asked for: none of a mat
 
 TEST_CASE("a frame is of the last viewpoint that was asked for") {
   const Scene scene = lit_floor();
-  FrameWorker frames(defaults::seed, 1, 30);
+  FrameWorker frames(1, 30);
   PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
   Camera camera = from_above();
@@ -130,7 +130,7 @@ TEST_CASE("closing the window in the middle of the work waits for no photons") {
   const Scene scene = lit_floor();
   RenderParameters parameters;
   parameters.photons.emitted_photons = 400'000'000;  // minutes
-  FrameWorker frames(defaults::seed, 1024, 30);
+  FrameWorker frames(1024, 30);
   frames.show({from_above(), 400, 300, false});
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });

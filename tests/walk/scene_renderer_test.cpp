@@ -37,7 +37,7 @@ TEST_CASE("each picture is the one that render gives, bit for bit") {
       CHECK(kept.layers.layers[light].radiance == once.layers.layers[light].radiance);
       CHECK(kept.layers.layers[light].illuminance == once.layers.layers[light].illuminance);
     }
-    CHECK(kept.radius == once.radius);
+    CHECK(kept.used.radius == once.used.radius);
     CHECK(kept.stored_photons == once.stored_photons);
   }
 }

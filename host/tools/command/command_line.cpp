@@ -10,6 +10,7 @@
 #include "photile/errors.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/exit_code.hpp"
+#include "tools/command/setting_options.hpp"
 #include "tools/command/terminal.hpp"
 #include "tools/command/version.hpp"
 
@@ -18,6 +19,13 @@ namespace {
 
 void define(CLI::App& photile) {
   photile.set_version_flag("--version", version_text());
+  photile.add_flag_callback(
+      "--settings-table",
+      [] {
+        std::cout << settings_table();
+        throw CLI::Success();
+      },
+      "print the settings of a rendering as a table of Markdown");
   photile.require_subcommand(1);
   add_render_command(photile);
   add_relight_command(photile);
@@ -66,6 +74,9 @@ int run_command_line(int argument_count, const char* const* arguments) {
     define(photile);
     const RunFiles files;
     code = parse_and_run(photile, argument_count, arguments);
+  } catch (const SettingError& error) {
+    print_error(option_of(error.setting) + ": " + error.problem);
+    code = exit_code_of(error);
   } catch (const Error& error) {
     print_error(error.what());
     code = exit_code_of(error);

@@ -28,12 +28,6 @@ std::string frame_settings(const std::string& scene_digest, const RunRecord& rec
   ContentHash hash;
   hash.add(scene_digest);
   hash.add(settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  const RenderParameters& parameters = record.parameters;
-  hash.add(parameters.radius);
-  hash.add(parameters.photons.quota);
-  hash.add(parameters.structure);
-  hash.add(parameters.passes);
-  hash.add(parameters.film.samples_per_pixel);
   for (const glm::dvec3& v : {camera.position, camera.forward, camera.up, camera.right}) {
     hash.add(v);
   }

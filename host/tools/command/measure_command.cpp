@@ -108,8 +108,8 @@ void warn(const Scene& scene, const std::vector<measuring::SensorGrid>& grids, P
 void run_measure(const CLI::App& command, MeasureOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  apply_words(render);
-  if (render.integrates == Integrator::path) refuse_photon_map_options(command);
+  check_settings(render);
+  if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   if (options.planes.empty() && options.points.empty() && options.height.empty()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
@@ -130,7 +130,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
 
   measuring::MeasuringParameters& parameters = options.parameters;
   parameters.photons = render.parameters;
-  parameters.by_paths = render.integrates == Integrator::path;
+  parameters.by_paths = render.integrator == Integrator::path;
   if (options.cylindrical) parameters.gathering.response = SensorResponse::cylindrical;
   const measuring::Readings readings =
       measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
@@ -222,7 +222,8 @@ void add_measure_command(CLI::App& photile) {
   add_measure_output_options(*command, options->outputs);
   add_places(*command, *options);
   add_measuring(*command, *options);
-  add_light_setting_options(*command, options->render);
+  add_setting_options(*command, options->render,
+                      {"samples_per_pixel", "direct_rays", "final_gather_rays"});
   add_integrator_option(*command, options->render);
   command->callback([command, options] { run_measure(*command, *options); });
 }

@@ -32,7 +32,7 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run) 
               {"response", planar ? "planar" : "cylindrical"},
               {"maintenance_factor", parameters.maintenance},
               {"integrator", parameters.by_paths ? "path" : "photon-map"},
-              {"seed", parameters.photons.film.seed},
+              {"seed", parameters.photons.seed},
               {"repeats", parameters.repeats},
               {"rays", parameters.gathering.rays}};
   if (!parameters.by_paths) {

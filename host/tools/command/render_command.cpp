@@ -52,8 +52,9 @@ PictureOutputs check_outputs_of(const RenderOptions& options) {
 
 /// What `photile devices --tune` found for these devices and such scenes. A tuning is of one kind
 /// of device. Errors: UsageError when there are several kinds.
-void use_stored_tuning(RenderOptions& options, std::span<const Device> devices, const Scene& scene,
-                       Progress& progress) {
+///   own_cells   were asked for: a tuning does not replace them
+void use_stored_tuning(RenderParameters& parameters, bool own_cells,
+                       std::span<const Device> devices, const Scene& scene, Progress& progress) {
   const DeviceInfo& device = devices.front().info();
   for (const Device& other : devices) {
     if (other.info().name != device.name || other.info().platform != device.platform) {
@@ -63,7 +64,6 @@ void use_stored_tuning(RenderOptions& options, std::span<const Device> devices, 
                       device.name, other.info().name));
     }
   }
-  RenderParameters& parameters = options.parameters;
   parameters.tuning = stored_tuning(device, needs_of(scene));
   if (!parameters.tuning) {
     progress.note(fmt::format(
@@ -71,9 +71,7 @@ void use_stored_tuning(RenderOptions& options, std::span<const Device> devices, 
         device.name));
     return;
   }
-  if (!options.own_photons_per_cell) {
-    parameters.photons_per_cell = parameters.tuning->photons_per_cell;
-  }
+  if (!own_cells) parameters.photons_per_cell = parameters.tuning->photons_per_cell;
   progress.note("tuning: " + tuning_words(*parameters.tuning));
 }
 
@@ -122,24 +120,20 @@ std::unique_ptr<HitSource> hits_of(const Camera& camera, const RenderOptions& op
 LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
                               RenderOptions& options, const Views& views, RunRecord& record,
                               Progress& progress) {
-  if (options.tuned) use_stored_tuning(options, devices, scene, progress);
   if (is_wanted(options.target)) {
     record.stages.push_back(choose_quality(options.target, scene, camera, devices.front(),
                                            record.mix, options.parameters, progress));
   }
   const bool keeps_maps =
       !options.save_maps.empty() || !options.load_maps.empty() || views.reflections;
-  RenderResult result =
-      keeps_maps ? render_with_kept_maps(scene, camera, views.picture, devices, options,
-                                         views.reflections, progress)
-                 : render_hits(scene, views.picture, devices, options.parameters, progress);
-  record.parameters = options.parameters;
+  RenderResult result = keeps_maps ? render_with_kept_maps(scene, camera, views.picture, devices,
+                                                           options, views.reflections, progress)
+                                   : render_hits(scene, views.picture, options.parameters.film,
+                                                 devices, options.parameters, progress);
+  record.used = result.used;
   for (const Device& device : devices) record.devices.push_back(device.info());
   record.device_shares = result.device_shares;
-  record.radius = result.radius;
   record.stored_photons = result.stored_photons;
-  record.passes = result.passes;
-  record.samples_per_pixel = result.samples_per_pixel;
   record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
   return std::move(result.layers);
 }
@@ -153,13 +147,12 @@ LightLayers render_by_paths(const Scene& scene, const Camera& camera, const View
         "lights; photon maps do");
   }
   PathTracerResult result =
-      trace_paths_of_hits(scene, views.picture, record.parameters.film, progress);
+      trace_paths_of_hits(scene, views.picture, eye_rays(record.used), progress);
   if (views.reflections) {
     PathTracerResult reflected =
-        trace_paths_of_hits(scene, ReflectedHits(camera), record.parameters.film, progress);
+        trace_paths_of_hits(scene, ReflectedHits(camera), eye_rays(record.used), progress);
     *views.reflections = std::move(reflected.layers);
   }
-  record.samples_per_pixel = record.parameters.film.samples_per_pixel;
   record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
   return std::move(result.layers);
 }
@@ -182,8 +175,8 @@ void write_glare(const RenderOptions& options, const LightLayers& layers,
 void run_render(const CLI::App& command, RenderOptions& options) {
   handle_signals();
   const Stopwatch stopwatch;
-  apply_words(options);
-  if (options.integrates == Integrator::path) refuse_photon_map_options(command);
+  check_settings(options);
+  if (options.integrator == Integrator::path) refuse_photon_map_options(command);
   const PictureOutputs outputs = check_outputs_of(options);
 
   const ThreadLimit threads(options.threads);
@@ -200,14 +193,18 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   set_film_size(options.parameters.film, options.size, camera);
   record.scene = scene.source.filename().string();
   record.camera = camera.name;
-  record.integrator = options.integrator;
-  record.parameters = options.parameters;
+  record.integrator = name_of(options.integrator);
+  record.used = options.parameters;
 
+  if (options.tuned) {
+    const bool own_cells = command.count("--photons-per-cell") > 0;
+    use_stored_tuning(options.parameters, own_cells, devices, scene, progress);
+  }
   const std::unique_ptr<HitSource> hits = hits_of(camera, options, record, progress);
   LightLayers reflections;
   const Views views{*hits, options.glare.empty() ? nullptr : &reflections};
   const LightLayers layers =
-      options.integrates == Integrator::path
+      options.integrator == Integrator::path
           ? render_by_paths(scene, camera, views, record, progress)
           : render_by_photons(scene, camera, devices, options, views, record, progress);
   record.stages.push_back(timed_stage("write pictures", progress, [&] {

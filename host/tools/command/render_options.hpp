@@ -1,8 +1,9 @@
 // The options of `photile render`.
 #pragma once
 
-#include <cstdint>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "photile/camera.hpp"
@@ -23,30 +24,19 @@ namespace photile::app {
 /// What estimates the light that reaches a surface.
 enum class Integrator { photon_map, path };
 
-/// As typed, checked against the limits.
+/// As typed; each value is within its range.
 struct RenderOptions {
   std::string scene;
   PictureOptions pictures;
   RenderParameters parameters;
-  std::string integrator = "photon-map";  ///< or "path"
-  Integrator integrates = Integrator::photon_map;
-  std::string quota;               ///< "balanced", "power" or "equal"
-  std::string maps;                ///< "naive", "triangle", "patch" or "auto"
-  std::string area;                ///< "disc" or "clipped"
-  std::string kernel;              ///< "constant", "cone" or "epanechnikov"
-  std::string direct = "photons";  ///< or "rays": what brings the light straight from lamps
-  bool own_direct = false;         ///< given by the user
-  int direct_rays = defaults::direct_rays;
-  std::string structure;              ///< "uniform-grid", ...
-  QualityTarget target;               ///< settings are chosen to meet it
-  bool tuned = false;                 ///< use the tuning that `photile devices --tune` stored
-  bool own_photons_per_cell = false;  ///< given by the user: a tuning does not replace it
+  Integrator integrator = Integrator::photon_map;
+  std::string direct;    ///< "photons" or "rays" bring the light straight from lamps; "" = any
+  QualityTarget target;  ///< settings are chosen to meet it
+  bool tuned = false;    ///< use the tuning that `photile devices --tune` stored
   std::string camera;
-  std::string size;                        ///< "" = by the camera
-  std::vector<std::string> lights;         ///< what --light asks for
-  std::vector<LightChange> light_changes;  ///< the same, understood
+  std::string size;                 ///< "" = by the camera
+  std::vector<LightChange> lights;  ///< what --light asks for
   DeviceOptions device;
-  bool no_cache = false;
   SceneLoadOptions load;
   int threads = 0;
   std::string statistics;            ///< file, "" = none
@@ -60,12 +50,15 @@ struct RenderOptions {
 /// Adds the options of `photile render` to the subcommand.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-/// Adds those that say what is rendered and how, but not what becomes of the picture: what commands
-/// that render for another purpose take, too.
-void add_setting_options(CLI::App& command, RenderOptions& options);
+/// Adds those that say how light is found, but not what a camera makes of it: what commands that
+/// measure take, too.
+///   without   names of settings that the command does without
+void add_setting_options(CLI::App& command, RenderOptions& options,
+                         std::initializer_list<std::string_view> without = {});
 
-/// Adds those of them that say how light is found, but not what a camera makes of it.
-void add_light_setting_options(CLI::App& command, RenderOptions& options);
+/// Adds these and those that say what a camera makes of it, but not what becomes of the picture.
+void add_picture_settings(CLI::App& command, RenderOptions& options,
+                          std::initializer_list<std::string_view> without = {});
 
 /// Adds --save-maps and --load-maps.
 void add_saved_maps_options(CLI::App& command, RenderOptions& options);
@@ -76,10 +69,11 @@ void add_preview_option(CLI::App& command, RenderOptions& options, const std::st
 /// Adds --integrator.
 void add_integrator_option(CLI::App& command, RenderOptions& options);
 
-/// Sets what `options` holds as words: the integrator, the quota, the maps, the structure, the
-/// area, the light changes and the cache. Errors: UsageError for a light change that is not
-/// understood, and for --final-gather with --direct photons; CLI11 has checked the other words.
-void apply_words(RenderOptions& options);
+/// "photon-map", "path".
+const char* name_of(Integrator integrator);
+
+/// Brings --direct into the settings and checks them. Errors: UsageError, SettingError.
+void check_settings(RenderOptions& options);
 
 /// Errors: UsageError that names an option which was given to `command` although the path tracer
 /// has no use for it.
@@ -96,6 +90,6 @@ LightMix mix_of(const Scene& scene, const RenderOptions& options);
 /// Width and height into `film`: `size` if given, else the default height and the camera's aspect
 /// ratio, else the default size. Errors: UsageError when the aspect ratio makes the picture too
 /// wide.
-void set_film_size(PrimaryHitParameters& film, const std::string& size, const Camera& camera);
+void set_film_size(Film& film, const std::string& size, const Camera& camera);
 
 }  // namespace photile::app

@@ -33,7 +33,7 @@ void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress) {
 }
 
 std::vector<Device> devices_for(const RenderOptions& options, Progress& progress) {
-  if (options.integrates == Integrator::path) return {};
+  if (options.integrator == Integrator::path) return {};
   std::vector<Device> devices = open_devices(options.device);
   for (const Device& device : devices) tell_device(device.info(), progress);
   return devices;

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "tools/command/number_format.hpp"
+#include "tools/command/setting_options.hpp"
 #include "tools/command/version.hpp"
 
 namespace photile::app {
@@ -57,45 +56,9 @@ std::string devices_text(std::span<const DeviceInfo> devices) {
 }
 
 json parameters_json(const RunRecord& record) {
-  const RenderParameters& parameters = record.parameters;
-  json result{{"integrator", record.integrator},
-              {"seed", parameters.film.seed},
-              {"width", parameters.film.width},
-              {"height", parameters.film.height},
-              {"samples_per_pixel", record.samples_per_pixel}};
-  if (record.has_photons()) {
-    result.update({{"photons_emitted", parameters.photons.emitted_photons},
-                   {"neighbours", parameters.neighbours},
-                   {"least_neighbours", parameters.least_neighbours},
-                   {"radius", record.radius},
-                   {"angle_degrees", parameters.angle_degrees},
-                   {"area", name_of(parameters.area_used())},
-                   {"kernel", name_of(parameters.kernel)},
-                   {"direct_rays", parameters.direct_rays_used()},
-                   {"final_gather_rays", parameters.final_gather_rays},
-                   {"maps", name_of(parameters.maps)},
-                   {"photons_per_cell", parameters.photons_per_cell},
-                   {"passes", record.passes}});
-  }
+  json result = settings_json(record.used, record.has_photons());
+  result["integrator"] = record.integrator;
   return result;
-}
-
-void set_photon_attributes(std::map<std::string, std::string>& attributes,
-                           const RunRecord& record) {
-  const RenderParameters& parameters = record.parameters;
-  attributes["photile.photons_emitted"] = std::to_string(parameters.photons.emitted_photons);
-  attributes["photile.photons_stored"] = std::to_string(record.stored_photons);
-  attributes["photile.neighbours"] = std::to_string(parameters.neighbours);
-  attributes["photile.least_neighbours"] = std::to_string(parameters.least_neighbours);
-  attributes["photile.radius"] = fmt::format("{} m", record.radius);
-  attributes["photile.angle"] = fmt::format("{} degrees", parameters.angle_degrees);
-  attributes["photile.area"] = name_of(parameters.area_used());
-  attributes["photile.kernel"] = name_of(parameters.kernel);
-  attributes["photile.direct_rays"] = std::to_string(parameters.direct_rays_used());
-  attributes["photile.final_gather_rays"] = std::to_string(parameters.final_gather_rays);
-  attributes["photile.maps"] = name_of(parameters.maps);
-  attributes["photile.passes"] = std::to_string(record.passes);
-  attributes["photile.device"] = devices_text(record.devices);
 }
 
 }  // namespace
@@ -106,10 +69,14 @@ void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
   attributes["photile.scene"] = record.scene;
   attributes["photile.camera"] = record.camera;
   attributes["photile.integrator"] = record.integrator;
-  attributes["photile.seed"] = std::to_string(record.parameters.film.seed);
-  attributes["photile.samples_per_pixel"] = std::to_string(record.samples_per_pixel);
   attributes["photile.times"] = times_text(record.stages);
-  if (record.has_photons()) set_photon_attributes(attributes, record);
+  for (const Setting& setting : settings()) {
+    if (!record.has_photons() && !is_of_any_integrator(setting)) continue;
+    attributes["photile." + std::string(setting.name)] = text_with_unit(setting, record.used);
+  }
+  if (!record.has_photons()) return;
+  attributes["photile.photons_stored"] = std::to_string(record.stored_photons);
+  attributes["photile.device"] = devices_text(record.devices);
 }
 
 json run_json(const RunRecord& record) {

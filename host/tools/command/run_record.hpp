@@ -21,14 +21,11 @@ struct RunRecord {
   std::string scene;  ///< the file's name, without folders: a picture should not tell them
   std::string camera;
   std::string integrator;  ///< "photon-map" or "path", which has no devices, maps and photons
-  RenderParameters parameters;
+  RenderParameters used;   ///< RenderResult::used, or what paths were asked for
   std::vector<DeviceInfo> devices;
   std::vector<double> device_shares;  ///< of the hits, per device
   LightMix mix;
-  double radius = 0;  ///< the one used, metres
   std::uint64_t stored_photons = 0;
-  int passes = 1;
-  int samples_per_pixel = 1;  ///< those used
   RunStatistics stages;
   double total_seconds = 0;
 };

@@ -6,25 +6,16 @@
 #include <string>
 #include <utility>
 
-#include "photile/scene_renderer.hpp"
+#include "render/kept_maps.hpp"
+#include "render/setting.hpp"
 #include "saved_maps/saved_maps.hpp"
 #include "tools/command/version.hpp"
 
 namespace photile::app {
 namespace {
 
-/// What photons and groups depend on beside the scene, in words that a refusal can name.
 std::string settings_of(const RenderOptions& options) {
-  const RenderParameters& parameters = options.parameters;
-  const std::string radius =
-      parameters.radius > 0 ? fmt::format("radius {} m", parameters.radius)
-                            : fmt::format("k {}", parameters.neighbours);  // the radius follows it
-  const bool global = parameters.structure == MapStructure::kdtree_global;
-  return fmt::format("photile {}, {} photons, quota {}, seed {}, {}, angle {}, maps {}{}{}",
-                     version_number(), parameters.photons.emitted_photons, options.quota,
-                     parameters.photons.seed, radius, parameters.angle_degrees, options.maps,
-                     global ? ", one tree" : "",
-                     parameters.film.direct_rays > 0 ? ", direct rays" : "");
+  return fmt::format("photile {}, {}", version_number(), photon_settings(options.parameters));
 }
 
 }  // namespace
@@ -52,11 +43,11 @@ RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, con
                                    std::span<Device> devices, const RenderOptions& options,
                                    LightLayers* reflections, Progress& progress) {
   std::optional<PreparedPhotons> prepared = load_maps(scene, options, progress);
-  SceneRenderer renderer(scene, devices, options.parameters, prepared ? &*prepared : nullptr,
-                         keep_maps(scene, options, progress), progress);
-  RenderResult result = renderer.render(hits, options.parameters.film, progress);
+  KeptMaps maps(scene, devices, options.parameters, prepared ? &*prepared : nullptr,
+                keep_maps(scene, options, progress), progress);
+  RenderResult result = maps.render(hits, options.parameters.film, progress);
   if (!reflections) return result;
-  RenderResult reflected = renderer.render_reflections(camera, options.parameters.film, progress);
+  RenderResult reflected = maps.render(ReflectedHits(camera), options.parameters.film, progress);
   *reflections = std::move(reflected.layers);
   return result;
 }

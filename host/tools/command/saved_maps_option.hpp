@@ -6,6 +6,7 @@
 
 #include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
+#include "render/hit_source.hpp"
 #include "tools/command/render_options.hpp"
 
 namespace photile::app {

@@ -16,7 +16,6 @@
 #include "photile/limits.hpp"
 #include "photile/path_tracer.hpp"
 #include "tools/command/commands.hpp"
-#include "tools/command/direct_options.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
 #include "tools/command/render_options.hpp"
@@ -61,7 +60,7 @@ Reference trace_reference(const Scene& scene, const Camera& camera, const LightM
         "warning: the path-traced reference lacks what mirrors and glass throw from point, spot "
         "and directional lights; give a complete one with --reference");
   }
-  PrimaryHitParameters film = options.render.parameters.film;
+  PrimaryHitParameters film = eye_rays(options.render.parameters);
   film.samples_per_pixel = std::max(1, options.reference_samples / 2);
   const std::uint64_t seed = film.seed;
   film.seed = trace::seed_of_repeat(seed, 0);  // paths of its own
@@ -87,6 +86,12 @@ Reference reference_of(const Scene& scene, const Camera& camera, const LightMix&
   progress.note(fmt::format("reference: {} paths a pixel, its own error {:.2g}%",
                             options.reference_samples, 100 * std::sqrt(reference.relative_mse)));
   return reference;
+}
+
+void check_size(const std::string& file, const Image& reference, const Film& film) {
+  if (reference.width == film.width && reference.height == film.height) return;
+  throw UsageError(fmt::format("{}: has {}x{} pixels, the picture {}x{}; give its size with --size",
+                               file, reference.width, reference.height, film.width, film.height));
 }
 
 void warn_of_noise(const Reference& reference, std::span<const TradePoint> points,
@@ -124,7 +129,7 @@ void write_files(const TradeFiles& files, const TradeOptions& options, const Ref
 void run_trade(TradeOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  apply_words(render);
+  check_settings(render);
   const TradeFiles files(options.folder);
   make_folder(options.folder);
   note_inputs_of(render);
@@ -144,6 +149,7 @@ void run_trade(TradeOptions& options) {
   set_film_size(render.parameters.film, render.size, camera);
 
   const Reference reference = reference_of(scene, camera, mix, options, progress);
+  check_size(options.reference, reference.picture, render.parameters.film);
   const std::vector<TradePoint> points =
       measure_trade({scene, camera, devices, mix, reference.picture}, render.parameters,
                     TradeAxes::around(render.parameters), progress);
@@ -173,8 +179,7 @@ void add_trade_command(CLI::App& photile) {
       ->transform(count_between(2, limits::max_samples_per_pixel))
       ->capture_default_str()
       ->excludes(reference);
-  add_setting_options(*command, options->render);
-  add_final_gather_option(*command, options->render);
+  add_picture_settings(*command, options->render);
   command->callback([options] { run_trade(*options); });
 }
 

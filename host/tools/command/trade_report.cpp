@@ -7,39 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/command/number_format.hpp"
+#include "tools/command/setting_options.hpp"
 
 namespace photile::app {
 namespace {
 
 constexpr std::array wanted_errors{0.10, 0.05, 0.02, 0.01};
-
-std::string settings_text(const TradePoint& point) {
-  const RenderParameters& parameters = point.parameters;
-  std::string text =
-      fmt::format("--photons {} -k {} --samples {}", parameters.photons.emitted_photons,
-                  parameters.neighbours, parameters.film.samples_per_pixel);
-  if (parameters.least_neighbours > 0) {
-    text += fmt::format(" --least-neighbours {}", parameters.least_neighbours);
-  }
-  if (point.varied == "radius") text += fmt::format(" --radius {:.4g}", parameters.radius);
-  if (point.varied == "angle") text += fmt::format(" --angle {}", parameters.angle_degrees);
-  if (point.varied == "cell") {
-    text += fmt::format(" --photons-per-cell {}", parameters.photons_per_cell);
-  }
-  if (point.varied == "area") text += fmt::format(" --area {}", name_of(parameters.area));
-  if (parameters.final_gather_rays > 0) {
-    text += fmt::format(" --final-gather {} --direct-rays {}", parameters.final_gather_rays,
-                        parameters.direct_rays_used());
-  } else if (parameters.film.direct_rays > 0) {
-    text += fmt::format(" --direct rays --direct-rays {}", parameters.film.direct_rays);
-  }
-  if (point.varied == "kernel") text += fmt::format(" --kernel {}", name_of(parameters.kernel));
-  if (point.varied == "maps") text += fmt::format(" --maps {}", name_of(parameters.maps));
-  if (point.varied == "structure") {
-    text += fmt::format(" --structure {}", name_of(parameters.structure));
-  }
-  return text;
-}
 
 const TradePoint* most_right(std::span<const TradePoint> points) {
   const auto least =
@@ -57,7 +30,7 @@ std::string row(const std::string& error, const std::string& first, const std::s
 std::string point_row(const std::string& error, const TradePoint& point) {
   return row(error, format_seconds(point.first_picture_seconds),
              fmt::format("{:.0f} ms", 1e3 * point.frame_seconds),
-             format_bytes(point.host_bytes + point.device_bytes), settings_text(point));
+             format_bytes(point.host_bytes + point.device_bytes), options_text(point.parameters));
 }
 
 }  // namespace
@@ -65,31 +38,20 @@ std::string point_row(const std::string& error, const TradePoint& point) {
 nlohmann::ordered_json trade_json(std::span<const TradePoint> points) {
   auto list = nlohmann::ordered_json::array();
   for (const TradePoint& p : points) {
-    list.push_back({{"varied", p.varied},
-                    {"photons", p.parameters.photons.emitted_photons},
-                    {"neighbours", p.parameters.neighbours},
-                    {"least_neighbours", p.parameters.least_neighbours},
-                    {"radius", p.radius},
-                    {"angle_degrees", p.parameters.angle_degrees},
-                    {"photons_per_cell", p.parameters.photons_per_cell},
-                    {"area", name_of(p.parameters.area_used())},
-                    {"kernel", name_of(p.parameters.kernel)},
-                    {"direct_rays", p.parameters.direct_rays_used()},
-                    {"final_gather_rays", p.parameters.final_gather_rays},
-                    {"maps", name_of(p.parameters.maps)},
-                    {"structure", name_of(p.parameters.structure)},
-                    {"samples", p.parameters.film.samples_per_pixel},
-                    {"photons_stored", p.stored_photons},
-                    {"relative_error", p.error.relative_error()},
-                    {"relative_mse", p.error.relative_mse},
-                    {"mean_ratio", p.error.mean_ratio},
-                    {"worst_region", p.error.worst_region},
-                    {"psnr", p.error.psnr},
-                    {"first_picture_seconds", p.first_picture_seconds},
-                    {"frame_seconds", p.frame_seconds},
-                    {"host_bytes", p.host_bytes},
-                    {"device_bytes", p.device_bytes},
-                    {"on_front", p.on_front}});
+    nlohmann::ordered_json row{{"varied", p.varied}};
+    row.update(settings_json(p.used, true));
+    row.update({{"photons_stored", p.stored_photons},
+                {"relative_error", p.error.relative_error()},
+                {"relative_mse", p.error.relative_mse},
+                {"mean_ratio", p.error.mean_ratio},
+                {"worst_region", p.error.worst_region},
+                {"psnr", p.error.psnr},
+                {"first_picture_seconds", p.first_picture_seconds},
+                {"frame_seconds", p.frame_seconds},
+                {"host_bytes", p.host_bytes},
+                {"device_bytes", p.device_bytes},
+                {"on_front", p.on_front}});
+    list.push_back(std::move(row));
   }
   return list;
 }

@@ -16,6 +16,7 @@
 #include "photile/quiet_progress.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/output_files.hpp"
+#include "tools/command/setting_options.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
@@ -102,22 +103,13 @@ void add_validate_command(CLI::App& photile) {
       ->capture_default_str();
   command->add_option("--case", options->only, "only cases with this in their names")
       ->type_name("TEXT");
-  command
-      ->add_option("--photons", photons.photons.emitted_photons,
-                   "paths of a measurement, of which there are 16 with seeds of their own")
-      ->type_name("N")
-      ->transform(count_between(limits::min_photons, limits::max_emitted_photons))
-      ->capture_default_str();
-  command->add_option("-k,--neighbours", photons.neighbours, "photons of an estimate")
-      ->type_name("N")
-      ->transform(count_between(1, limits::max_neighbours))
-      ->capture_default_str();
+  for (const char* name : {"photons_emitted", "neighbours"}) add_setting(*command, photons, name);
   command
       ->add_option("--paths", options->parameters.paths, "paths of a measurement by path tracing")
       ->type_name("N")
       ->transform(count_between(1, std::numeric_limits<int>::max()))
       ->capture_default_str();
-  command->add_option("--seed", photons.photons.seed, "the first of 16")
+  command->add_option("--seed", photons.seed, "the first of 16")
       ->type_name("N")
       ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max() - 16))
       ->capture_default_str();

@@ -102,18 +102,7 @@ std::optional<PixelSize> parse_size(std::string_view text) {
 }
 
 CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest) {
-  const std::string range = highest == std::numeric_limits<std::uint64_t>::max()
-                                ? fmt::format("a whole number from {}", lowest)
-                                : fmt::format("a whole number from {} to {}", lowest, highest);
-  const auto check = [=](std::string& text) -> std::string {
-    const auto count = parse_count(text);
-    if (!count || *count < lowest || *count > highest) {
-      return fmt::format("'{}' is not {}", text, range);
-    }
-    text = std::to_string(*count);
-    return {};
-  };
-  return {check, ""};
+  return within(WholeNumbers{lowest, highest});
 }
 
 CLI::Validator byte_size() {
@@ -150,23 +139,28 @@ CLI::Validator duration() {
 }
 
 CLI::Validator number_between(double lowest, double highest) {
-  const auto check = [=](std::string& text) -> std::string {
-    const auto number = parse_finite(text);
-    if (!number || *number < lowest || *number > highest) {
-      return fmt::format("'{}' is not a number from {} to {}", text, lowest, highest);
-    }
-    return {};
-  };
-  return {check, ""};
+  return within(Numbers{lowest, highest});
 }
 
-CLI::Validator positive_number() {
-  const auto check = [](std::string& text) -> std::string {
-    const auto number = parse_finite(text);
-    // What is zero or infinite as a float would come back as one from the kernels.
-    const bool usable = number && *number >= std::numeric_limits<float>::min() &&
-                        *number <= std::numeric_limits<float>::max();
-    return usable ? std::string{} : fmt::format("'{}' is not a number greater than 0", text);
+CLI::Validator positive_number() { return within(PositiveNumbers{}); }
+
+std::optional<SettingValue> parse_value(std::string_view text, const ValueRange& range) {
+  const auto as_value = [](const auto& parsed) {
+    return parsed ? std::optional<SettingValue>(*parsed) : std::nullopt;
+  };
+  const std::optional<SettingValue> value =
+      std::holds_alternative<WholeNumbers>(range) ? as_value(parse_count(text))
+      : std::holds_alternative<Words>(range)      ? std::optional<SettingValue>(text)
+                                                  : as_value(parse_finite(text));
+  return value && contains(range, *value) ? value : std::nullopt;
+}
+
+CLI::Validator within(const ValueRange& range) {
+  const auto check = [=](std::string& text) -> std::string {
+    const auto value = parse_value(text, range);
+    if (!value) return out_of_range(text, range);
+    if (std::holds_alternative<WholeNumbers>(range)) text = text_of(*value);
+    return {};
   };
   return {check, ""};
 }

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/value_range.hpp"
+
 namespace photile::app {
 
 /// A whole number: "500000", "5e5", "500k", "0.5M", "1G". Nothing if it is none, or beyond 64 bits.
@@ -29,6 +31,13 @@ struct PixelSize {
 
 /// "640x480". Nothing if it is none.
 std::optional<PixelSize> parse_size(std::string_view text);
+
+/// A value in the range: a whole number as `parse_count` reads it, a finite number, a word, which
+/// then is a view of `text`. Nothing if it is none.
+std::optional<SettingValue> parse_value(std::string_view text, const ValueRange& range);
+
+/// A value in the range.
+CLI::Validator within(const ValueRange& range);
 
 /// A count as `parse_count` reads it, in [lowest, highest].
 CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest);

@@ -30,7 +30,7 @@ struct ViewOptions {
 void run_view(ViewOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  apply_words(render);
+  check_settings(render);
   if (!std::filesystem::is_directory(options.outputs)) {
     throw UsageError(
         fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
@@ -83,7 +83,7 @@ void add_view_command(CLI::App& photile) {
       ->capture_default_str()
       ->group("Window");
   add_preview_option(*command, options->render, "Window");
-  add_setting_options(*command, options->render);
+  add_picture_settings(*command, options->render, {"final_gather_rays"});
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_view(*options); });
 }

@@ -18,7 +18,6 @@
 #include "photile/quiet_progress.hpp"
 #include "photile/scene_renderer.hpp"
 #include "tools/command/commands.hpp"
-#include "tools/command/direct_options.hpp"
 #include "tools/command/frame_record.hpp"
 #include "tools/command/output_files.hpp"
 #include "tools/command/render_options.hpp"
@@ -80,7 +79,7 @@ class Walk {
       if (png_names_) note_output(png_names_->of(number(frame)));
     }
     if (!options.sheet.empty()) {
-      const PrimaryHitParameters& film = options.render.parameters.film;
+      const Film& film = options.render.parameters.film;
       sheet_.emplace(std::min(count_, most_on_sheet), film.width, film.height);
     }
   }
@@ -124,7 +123,7 @@ class Walk {
     record.scene = scene_.source.filename().string();
     record.camera = camera.name;
     record.integrator = "photon-map";
-    record.parameters = options_.render.parameters;
+    record.used = options_.render.parameters;
     record.mix = mix_;
     for (const Device& device : devices_) record.devices.push_back(device.info());
     record.device_shares.assign(devices_.size(), 0.0);
@@ -148,14 +147,12 @@ class Walk {
   Image render(int frame) {
     const Camera camera = camera_at(frame);
     QuietProgress quiet(progress_);
-    const PrimaryHitParameters& film = options_.render.parameters.film;
+    const Film& film = options_.render.parameters.film;
     RenderResult result = renderer_->render(camera, film, quiet);
     RunRecord record = record_of(camera);
     const std::string settings = frame_settings(scene_digest_, record, camera);
-    record.radius = result.radius;
+    record.used = result.used;
     record.stored_photons = result.stored_photons;
-    record.passes = result.passes;
-    record.samples_per_pixel = result.samples_per_pixel;
     record.stages = result.statistics;
     const auto picture = mixed_picture(result.layers, mix_);
     set_camera_attributes(picture->header(), in_world(scene_, camera), film.width, film.height);
@@ -219,7 +216,7 @@ void check_names(const WalkOptions& options) {
 void run_walk(WalkOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  apply_words(render);
+  check_settings(render);
   check_names(options);
 
   const ThreadLimit threads(render.threads);
@@ -279,8 +276,7 @@ void add_walk_command(CLI::App& photile) {
       ->transform(count_between(0, limits::max_frames))
       ->capture_default_str()
       ->group("Motion");
-  add_setting_options(*command, options->render);
-  add_final_gather_option(*command, options->render);
+  add_picture_settings(*command, options->render);
   command->callback([options] { run_walk(*options); });
 }
 

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <initializer_list>
+#include <string_view>
 
 #include "photile/layered_picture.hpp"
-#include "photile/photon_tracer.hpp"
 #include "photile/picture_error.hpp"
-#include "photile/statistics.hpp"
-#include "render/film.hpp"
+#include "photile/quiet_progress.hpp"
+#include "render/rendering.hpp"
 #include "tools/trade/error_model.hpp"
 #include "tools/trade/quality_target.hpp"
 #include "trace/random_stream.hpp"
@@ -24,88 +24,82 @@ constexpr double least_variance = 1e-12;  ///< of a picture without noise: below
 struct SeedPictures {
   std::array<Image, pilot_neighbours.size()> pictures;             ///< per k
   std::array<double, pilot_neighbours.size()> estimate_seconds{};  ///< per k
+  /// Of the largest k: its groups serve the others, too.
   double fixed_seconds = 0, photon_seconds = 0, hit_seconds = 0, film_seconds = 0;
-  std::uint64_t hits = 0;
 };
+
+double seconds_of(const RenderResult& result, std::initializer_list<std::string_view> stages) {
+  double seconds = 0;
+  for (const StageStatistics& stage : result.statistics) {
+    if (std::find(stages.begin(), stages.end(), stage.stage) != stages.end()) {
+      seconds += stage.seconds;
+    }
+  }
+  return seconds;
+}
+
+/// A small picture of few photons, with one k for all hits and the radius that belongs to it.
+RenderParameters pilot_parameters(RenderParameters parameters) {
+  Film& film = parameters.film;
+  const double shrink = std::min(1.0, static_cast<double>(defaults::pilot_height) / film.height);
+  film.width = std::max(1, static_cast<int>(std::lround(shrink * film.width)));
+  film.height = std::max(1, static_cast<int>(std::lround(shrink * film.height)));
+  parameters.photons.emitted_photons =
+      std::min(parameters.photons.emitted_photons, defaults::pilot_photons);
+  parameters.passes = 1;
+  parameters.radius = 0;
+  parameters.least_neighbours = 0;
+  return parameters;
+}
 
 class Pilot {
  public:
   Pilot(const Scene& scene, const Camera& camera, Device& device, const LightMix& mix,
         const RenderParameters& parameters)
-      : scene_(scene), camera_(camera), device_(device), mix_(mix), parameters_(parameters) {
-    PrimaryHitParameters& film = parameters_.film;
-    const double shrink = std::min(1.0, static_cast<double>(defaults::pilot_height) / film.height);
-    film.width = std::max(1, static_cast<int>(std::lround(shrink * film.width)));
-    film.height = std::max(1, static_cast<int>(std::lround(shrink * film.height)));
-    parameters_.photons.emitted_photons =
-        std::min(parameters_.photons.emitted_photons, defaults::pilot_photons);
-  }
+      : scene_(scene), camera_(camera), device_(device), mix_(mix), parameters_(parameters) {}
 
-  const PrimaryHitParameters& film() const { return parameters_.film; }
+  const Film& film() const { return parameters_.film; }
   double photons() const { return static_cast<double>(parameters_.photons.emitted_photons); }
+  double structure_seconds() const { return scene_.cost.seconds; }
 
-  SeedPictures render(const RayScene& rays, std::uint64_t seed, const Progress& progress) {
-    parameters_.photons.seed = parameters_.film.seed = seed;
-    SeedPictures result;
-    progress.throw_if_cancelled();
-    const PhotonTracerResult traced = trace_photons(rays, parameters_.photons_used());
-    result.photon_seconds += traced.seconds;
-    const Photons& photons = traced.photons;
-
-    const Stopwatch group_watch;
-    const double radius = automatic_radius(photons, pilot_neighbours.back());
-    const NeighbourGroups groups =
-        find_map_groups(scene_, photons, parameters_.maps, {radius, parameters_.angle_degrees});
-    result.fixed_seconds += group_watch.seconds();
-
-    progress.throw_if_cancelled();
-    const PhotonMaps maps(device_, scene_, photons, groups,
-                          {.radius = radius, .photons_per_cell = parameters_.photons_per_cell});
-    result.photon_seconds += maps.statistics().seconds;
-    if (parameters_.area == AreaMode::clipped && surface_ == nullptr) {
-      surface_ = std::make_shared<const SurfaceIndex>(
-          index_surface(scene_, landed_on(scene_, photons), radius, parameters_.angle_degrees));
+  /// The photons are traced once: those of the largest k, whose groups are wide enough for all.
+  SeedPictures render(std::uint64_t seed, Progress& progress) {
+    parameters_.seed = seed;
+    SeedPictures seen;
+    PreparedPhotons kept;
+    const KeepPhotons keep = [&](const PreparedPhotons& prepared) { kept = prepared; };
+    for (std::size_t i = pilot_neighbours.size(); i-- > 0;) {
+      const bool first = i + 1 == pilot_neighbours.size();
+      parameters_.neighbours = pilot_neighbours[i];
+      QuietProgress quiet(progress);
+      Rendering rendering(scene_, {&device_, 1}, parameters_, quiet);
+      rendering.start(film());
+      if (first) {
+        rendering.prepare(0, nullptr, &keep);
+      } else {
+        PreparedPhotons again = kept;
+        again.radius = std::min(kept.radius, rendering.plan().radius(kept.photons));
+        rendering.prepare(0, &again, nullptr);
+      }
+      rendering.add_pass(CameraHits(camera_));
+      const RenderResult result = rendering.finish();
+      seen.pictures[i] = mixed_picture(result.layers, mix_)->root();
+      seen.estimate_seconds[i] = seconds_of(result, {"radiance estimate"});
+      if (!first) continue;
+      seen.fixed_seconds = seconds_of(result, {"neighbour groups", "surface index"});
+      seen.photon_seconds = seconds_of(result, {"trace photons", "build photon maps"});
+      seen.hit_seconds = seconds_of(result, {"primary hits", "final gather"});
+      seen.film_seconds = seconds_of(result, {"film"});
     }
-
-    const Stopwatch hit_watch;
-    const PrimaryHitBatch batch = trace_primary_hits(rays, camera_, parameters_.film, 0,
-                                                     parameters_.film.height, maps.map_of());
-    result.hit_seconds = hit_watch.seconds();
-    result.hits = batch.hits.size();
-    for (std::size_t i = 0; i < pilot_neighbours.size(); ++i) {
-      progress.throw_if_cancelled();
-      add_picture(i, photons, maps, batch, result);
-    }
-    return result;
+    return seen;
   }
 
  private:
-  void add_picture(std::size_t i, const Photons& photons, const PhotonMaps& maps,
-                   const PrimaryHitBatch& batch, SeedPictures& result) {
-    const int k = pilot_neighbours[i];
-    const double radius = std::min(automatic_radius(photons, k), maps.parameters().radius);
-    Estimator estimator(maps, scene_,
-                        {.neighbours = k,
-                         .radius = radius,
-                         .area = parameters_.area,
-                         .kernel = parameters_.kernel,
-                         .surface = surface_});
-    const Stopwatch estimate_watch;
-    const Estimates estimates = estimator.estimate(batch.hits);
-    result.estimate_seconds[i] = estimate_watch.seconds();
-    const Stopwatch film_watch;
-    LightLayers layers(film().width, film().height, scene_);
-    add_to_film(layers, batch, estimates, 1.0f / static_cast<float>(film().samples_per_pixel));
-    result.film_seconds = film_watch.seconds();
-    result.pictures[i] = mixed_picture(layers, mix_)->root();
-  }
-
-  const Scene& scene_;
+  const PreparedScene scene_;
   const Camera& camera_;
   Device& device_;
   const LightMix& mix_;
   RenderParameters parameters_;
-  std::shared_ptr<const SurfaceIndex> surface_;  ///< of the first photons, where areas are clipped
 };
 
 Image mean_of(const Image& a, const Image& b) {
@@ -138,13 +132,12 @@ trade::PilotErrors errors_of(const SeedPictures& a, const SeedPictures& b, const
 }
 
 /// Times of the second seed, whose kernels were compiled and buffers made by the first.
-TimeModel times_of(const SeedPictures& seed, const Pilot& pilot, double structure_seconds,
-                   const PrimaryHitParameters& picture) {
-  const PrimaryHitParameters& film = pilot.film();
+TimeModel times_of(const SeedPictures& seed, const Pilot& pilot, const Film& picture) {
+  const Film& film = pilot.film();
   const double samples = static_cast<double>(film.width) * film.height * film.samples_per_pixel;
   TimeModel model;
   model.samples_per_picture = static_cast<double>(picture.width) * picture.height;
-  model.fixed = structure_seconds + seed.fixed_seconds;
+  model.fixed = pilot.structure_seconds() + seed.fixed_seconds;
   model.per_photon = seed.photon_seconds / pilot.photons();
   const double least_k = pilot_neighbours.front(), most_k = pilot_neighbours.back();
   const double slope =
@@ -163,19 +156,17 @@ QualityModels measure_models(const Scene& scene, const Camera& camera, Device& d
                              Progress& progress) {
   progress.begin("measure quality", 2, "seeds");
   const Stopwatch stopwatch;
-  const RayScene rays(scene);
-  const double structure_seconds = stopwatch.seconds();
-  Pilot pilot(scene, camera, device, mix, parameters);
+  Pilot pilot(scene, camera, device, mix, pilot_parameters(parameters));
   const auto seed_of = [&](std::uint32_t repeat) {
-    return trace::seed_of_repeat(parameters.photons.seed, repeat);
+    return trace::seed_of_repeat(parameters.seed, repeat);
   };
-  const SeedPictures a = pilot.render(rays, seed_of(0), progress);
+  const SeedPictures a = pilot.render(seed_of(0), progress);
   progress.advance(1);
-  const SeedPictures b = pilot.render(rays, seed_of(1), progress);
+  const SeedPictures b = pilot.render(seed_of(1), progress);
   progress.advance(1);
   progress.end();
   return {.error = trade::fit_error_model(errors_of(a, b, pilot)),
-          .time = times_of(b, pilot, structure_seconds, parameters.film),
+          .time = times_of(b, pilot, parameters.film),
           .seconds = stopwatch.seconds()};
 }
 

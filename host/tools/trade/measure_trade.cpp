@@ -91,10 +91,10 @@ class Trade {
     vary("angle", axes_.angles, [](auto& p, double angle) { p.angle_degrees = angle; });
     vary("cell", axes_.photons_per_cell, [](auto& p, float count) { p.photons_per_cell = count; });
     vary("area", axes_.areas, [](auto& p, AreaMode area) { p.area = area; });
-    vary("direct rays", axes_.direct_rays, [](auto& p, int looks) { p.film.direct_rays = looks; });
+    vary("direct rays", axes_.direct_rays, [](auto& p, int looks) { p.direct_rays = looks; });
     vary("final gather", axes_.final_gather_rays, [](auto& p, int rays) {
       p.final_gather_rays = rays;
-      p.film.direct_rays = rays;  // cheaper ones; with fewer, their noise is all that is seen
+      p.direct_rays = rays;  // cheaper ones; with fewer, their noise is all that is seen
     });
     vary("kernel", axes_.kernels, [](auto& p, DensityKernel kernel) { p.kernel = kernel; });
     vary("maps", axes_.maps, [](auto& p, MapMode mode) { p.maps = mode; });
@@ -106,7 +106,7 @@ class Trade {
     const auto [result, seconds] = timed_render(parameters);
     TradePoint point{.varied = varied, .parameters = parameters};
     point.first_picture_seconds = seconds;
-    point.radius = result.radius;
+    point.used = result.used;
     point.stored_photons = result.stored_photons;
     point.error =
         picture_error(mixed_picture(result.layers, subject_.mix)->root(), subject_.reference);
@@ -115,7 +115,7 @@ class Trade {
       point.host_bytes += stage.host_bytes;
       point.device_bytes += stage.device_bytes;
     }
-    if (varied == "nothing") automatic_radius_ = result.radius;
+    if (varied == "nothing") automatic_radius_ = result.used.radius;
     points_.push_back(std::move(point));
     progress_.advance(1);
   }
@@ -129,12 +129,12 @@ class Trade {
 };
 
 void check(const TradeSubject& subject, const RenderParameters& parameters) {
-  const PrimaryHitParameters& film = parameters.film;
+  const Film& film = parameters.film;
   if (subject.reference.width != film.width || subject.reference.height != film.height) {
     throw UsageError("the reference has " + std::to_string(subject.reference.width) + "x" +
                      std::to_string(subject.reference.height) + " pixels, the picture " +
                      std::to_string(film.width) + "x" + std::to_string(film.height) +
-                     "; give its size with --size");
+                     "; they have to be of one size");
   }
 }
 

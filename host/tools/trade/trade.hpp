@@ -41,7 +41,7 @@ struct TradeAxes {
 struct TradePoint {
   std::string varied;  ///< "photons and neighbours", "radius", ...: what it was rendered for
   RenderParameters parameters = {};
-  double radius = 0;  ///< metres, the one used
+  RenderParameters used = {};  ///< RenderResult::used
   std::uint64_t stored_photons = 0;
   PictureError error = {};
   /// From the loaded scene to the picture, without the compilation of kernels.

@@ -37,7 +37,7 @@ TradeAxes TradeAxes::around(const RenderParameters& parameters) {
   for (const DensityKernel kernel : all_density_kernels) {
     if (kernel != parameters.kernel) axes.kernels.push_back(kernel);
   }
-  if (parameters.film.direct_rays == 0) axes.direct_rays = {1, 4};
+  if (parameters.direct_rays == 0) axes.direct_rays = {1, 4};
   if (parameters.final_gather_rays == 0) axes.final_gather_rays = {4, 16};
   axes.maps = {MapMode::naive, MapMode::triangle, MapMode::patch};
   for (const MapStructure structure : all_map_structures) {

@@ -74,7 +74,7 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
     rows.push_back({analytic.name, analytic.source, reading.place, reading.quantity,
                     reading.expected, std::nullopt, std::nullopt});
   }
-  const std::uint64_t seed_of_all = parameters.photons.photons.seed;
+  const std::uint64_t seed_of_all = parameters.photons.seed;
   if (parameters.by_photons) {
     RenderParameters photons = parameters.photons;
     photons.photons.emitted_photons = std::max<std::uint64_t>(
@@ -84,9 +84,9 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
     photons.neighbours =
         std::max(1, static_cast<int>(std::lround(analytic.neighbour_share * photons.neighbours)));
     const auto all = over_seeds(analytic, seed_of_all, [&](std::uint64_t seed) {
-      photons.photons.seed = photons.film.seed = seed;
+      photons.seed = seed;
       RenderResult result = measure(analytic.scene, sensors, devices, photons, progress);
-      photons.radius = result.radius;  // found once
+      photons.radius = result.used.radius;  // found once
       return std::move(result.layers);
     });
     for (std::size_t r = 0; r < rows.size(); ++r) rows[r].photons = all[r];

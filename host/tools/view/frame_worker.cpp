@@ -19,9 +19,8 @@ class FrameWorker::Interruption : public Progress {
   std::function<bool()> outdated_;
 };
 
-FrameWorker::FrameWorker(std::uint64_t seed, int most_samples, double frames_per_second)
-    : seed_(seed),
-      most_samples_(most_samples),
+FrameWorker::FrameWorker(int most_samples, double frames_per_second)
+    : most_samples_(most_samples),
       size_(frames_per_second),
       thread_([this](std::stop_token stop) { work(std::move(stop)); }) {}
 
@@ -73,12 +72,11 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
 }
 
 std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, const Task& task) {
-  PrimaryHitParameters film;
+  Film film;
   film.width = task.request.width;
   film.height = task.request.height;
   if (task.request.moving) std::tie(film.width, film.height) = size_.fit(film.width, film.height);
   film.samples_per_pixel = task.samples;
-  film.seed = seed_;
   // What is asked for while the viewer moves would end no frame at all.
   Interruption progress([&] {
     const std::lock_guard lock(mutex_);
@@ -96,10 +94,10 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   if (std::exchange(timed_maps_, task.maps.get()) == task.maps.get()) {
     size_.record(static_cast<double>(film.width) * film.height * task.samples, seconds);
   }
-  return std::make_shared<Frame>(Frame{std::move(result.layers), std::move(reflections),
-                                       task.maps->photons, task.request.camera,
-                                       result.samples_per_pixel, task.maps->emitted_photons,
-                                       task.maps->noise, seconds, std::move(result.statistics)});
+  return std::make_shared<Frame>(
+      Frame{std::move(result.layers), std::move(reflections), task.maps->photons,
+            task.request.camera, result.used.film.samples_per_pixel, task.maps->emitted_photons,
+            task.maps->noise, seconds, std::move(result.statistics)});
 }
 
 void FrameWorker::work(std::stop_token stop) {

@@ -30,7 +30,7 @@ class FrameWorker {
  public:
   ///   most_samples        per pixel, standing still
   ///   frames_per_second   aimed at while moving
-  FrameWorker(std::uint64_t seed, int most_samples, double frames_per_second);
+  FrameWorker(int most_samples, double frames_per_second);
   ~FrameWorker();
 
   void show(const FrameRequest& request);
@@ -58,7 +58,6 @@ class FrameWorker {
   bool next_task(std::stop_token stop, Task& task);
   std::shared_ptr<const Frame> render(const std::stop_token& stop, const Task& task);
 
-  const std::uint64_t seed_;
   const int most_samples_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;

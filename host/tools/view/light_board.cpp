@@ -16,7 +16,7 @@ bool tint(LightMix& mix, const LightControl& control) {
   try {
     const std::string value =
         control.kelvin > 0 ? fmt::format("{:.6g}K", control.kelvin) : hex_of(*control.color);
-    photile::apply(mix, {{control.name, value}});
+    change_lights(mix, {{control.name, value}});
     return true;
   } catch (const UsageError&) {
     return false;

@@ -50,8 +50,7 @@ class Viewer {
         window_(fmt::format("{} - photile", scene.source.filename().string()),
                 parameters_.render.film.width, parameters_.render.film.height),
         inspector_(scene),
-        frames_(parameters_.render.film.seed, parameters_.render.film.samples_per_pixel,
-                parameters_.frames_per_second) {
+        frames_(parameters_.render.film.samples_per_pixel, parameters_.frames_per_second) {
     if (!parameters_.preview.empty()) {
       preview_.emplace(parameters_.preview, scene.source.filename().string(), mix,
                        *parameters_.notes);

@@ -1,0 +1,67 @@
+#include "common/value_range.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace photile {
+namespace {
+
+std::string range_text(const WholeNumbers& range) {
+  return range.most == std::numeric_limits<std::uint64_t>::max()
+             ? fmt::format("a whole number from {}", range.least)
+             : fmt::format("a whole number from {} to {}", range.least, range.most);
+}
+
+std::string range_text(const Numbers& range) {
+  return fmt::format("a number from {} to {}", range.least, range.most);
+}
+
+std::string range_text(const PositiveNumbers&) { return "a number greater than 0"; }
+
+std::string range_text(const Words& range) {
+  return fmt::format("one of {}", fmt::join(range.words, ", "));
+}
+
+bool holds(const WholeNumbers& range, std::uint64_t value) {
+  return value >= range.least && value <= range.most;
+}
+
+bool holds(const Numbers& range, double value) {
+  return value >= range.least && value <= range.most;
+}
+
+bool holds(const PositiveNumbers&, double value) {
+  return value >= std::numeric_limits<float>::min() && value <= std::numeric_limits<float>::max();
+}
+
+bool holds(const Words& range, std::string_view value) {
+  return std::find(range.words.begin(), range.words.end(), value) != range.words.end();
+}
+
+template <class Range, class Value>
+bool holds(const Range&, const Value&) {
+  return false;
+}
+
+}  // namespace
+
+std::string text_of(const SettingValue& value) {
+  return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+}
+
+std::string text_of(const ValueRange& range) {
+  return std::visit([](const auto& r) { return range_text(r); }, range);
+}
+
+bool contains(const ValueRange& range, const SettingValue& value) {
+  return std::visit([](const auto& r, const auto& v) { return holds(r, v); }, range, value);
+}
+
+std::string out_of_range(std::string_view found, const ValueRange& range) {
+  return fmt::format("'{}' is not {}", found, text_of(range));
+}
+
+}  // namespace photile

@@ -1,0 +1,56 @@
+#include "render/kept_maps.hpp"
+
+#include <fmt/format.h>
+
+#include "photile/errors.hpp"
+#include "render/setting.hpp"
+
+namespace photile {
+
+KeptMaps::KeptMaps(const Scene& scene, std::span<Device> devices,
+                   const RenderParameters& parameters, PreparedPhotons* prepared,
+                   const KeepPhotons& keep, Progress& progress)
+    : scene_(scene), rendering_(scene_, devices, parameters, progress) {
+  if (rendering_.plan().gathers() && (prepared || keep)) {
+    throw UsageError(
+        "final gathering takes caustics from photons of their own, which saved maps do not hold: "
+        "trace the photons anew, or leave it out");
+  }
+  if (const int passes = rendering_.plan().passes(); passes > 1) {
+    throw SettingError(
+        setting_named("passes"),
+        fmt::format("{} photon passes: walks, views, saved maps and glare need all photons in "
+                    "memory at once; take fewer photons, or one pass where more memory may be had",
+                    passes));
+  }
+  rendering_.prepare(0, prepared, keep ? &keep : nullptr);
+}
+
+RenderResult KeptMaps::render(const HitSource& hits, const Film& film, Progress& progress) {
+  rendering_.report_to(progress);
+  rendering_.start(film);
+  rendering_.add_pass(hits);
+  return rendering_.finish();
+}
+
+struct SceneRenderer::Impl : KeptMaps {
+  using KeptMaps::KeptMaps;
+};
+
+SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
+                             const RenderParameters& parameters, PreparedPhotons* prepared,
+                             const KeepPhotons& keep, Progress& progress)
+    : impl_(std::make_unique<Impl>(scene, devices, parameters, prepared, keep, progress)) {}
+
+SceneRenderer::~SceneRenderer() = default;
+
+RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progress& progress) {
+  return impl_->render(CameraHits(camera), film, progress);
+}
+
+RenderResult SceneRenderer::render_reflections(const Camera& camera, const Film& film,
+                                               Progress& progress) {
+  return impl_->render(ReflectedHits(camera), film, progress);
+}
+
+}  // namespace photile

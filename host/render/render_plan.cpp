@@ -1,0 +1,107 @@
+#include "render/render_plan.hpp"
+
+#include <algorithm>
+
+#include "render/neighbour_choice.hpp"
+#include "render/pass_count.hpp"
+#include "render/pass_schedule.hpp"
+#include "render/setting.hpp"
+
+namespace photile {
+namespace {
+
+/// Without those whose light rays bring; where rays gather, those see direct light, too.
+PhotonTracerParameters all_photons(const RenderParameters& used) {
+  const bool gathers = used.final_gather_rays > 0;
+  return {.emitted_photons = used.photons.emitted_photons,
+          .quota = used.photons.quota,
+          .seed = used.seed,
+          .max_path_length = used.photons.max_path_length,
+          .roulette_start = used.photons.roulette_start,
+          .store_direct = used.direct_rays == 0 || gathers,
+          .keep_caustics = gathers};
+}
+
+}  // namespace
+
+PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
+  return {.width = parameters.film.width,
+          .height = parameters.film.height,
+          .samples_per_pixel = parameters.film.samples_per_pixel,
+          .seed = parameters.seed,
+          .max_specular_depth = parameters.max_specular_depth};
+}
+
+RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Progress& progress)
+    : used_(asked) {
+  check(asked);
+  if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
+  if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
+  if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
+}
+
+PhotonTracerParameters RenderPlan::tracing(int pass,
+                                           const std::vector<std::uint64_t>& paths_before) const {
+  PhotonTracerParameters parameters = all_photons(used_);
+  if (passes() == 1) return parameters;
+  const std::uint64_t all = used_.photons.emitted_photons;
+  const auto until = [&](int p) { return all / passes() * p + all % passes() * p / passes(); };
+  parameters.emitted_photons = std::max<std::uint64_t>(1, until(pass + 1) - until(pass));
+  parameters.paths_before = paths_before;
+  return parameters;
+}
+
+double RenderPlan::radius(const Photons& photons) const {
+  if (used_.radius > 0) return used_.radius;
+  // Where rays bring all the light there is, no photon is stored, and any radius serves.
+  if (!all_photons(used_).store_direct && photons.size() < 2) return 1;
+  return automatic_radius(photons, used_.neighbours);
+}
+
+MapMode RenderPlan::map_mode() const {
+  const bool global = used_.structure == MapStructure::kdtree_global;  // no use for patches
+  return global ? MapMode::triangle : used_.maps;
+}
+
+NeighbourGroupParameters RenderPlan::groups(double first_radius) const {
+  return {first_radius, used_.angle_degrees};
+}
+
+PhotonMapParameters RenderPlan::maps(int pass, double first_radius) const {
+  return {.radius = estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
+          .photons_per_cell = used_.photons_per_cell,
+          .structure = used_.structure};
+}
+
+std::vector<EstimateParameters> RenderPlan::estimates(
+    int pass, const std::shared_ptr<const SurfaceIndex>& surface) const {
+  const int most = estimate_of_pass(pass, {0, used_.neighbours}).neighbours;
+  const int least = used_.least_neighbours > 0 ? std::min(used_.least_neighbours, most) : most;
+  std::vector<EstimateParameters> levels;
+  for (const int neighbours : neighbour_levels(least, most)) {
+    levels.push_back({.neighbours = neighbours,
+                      .tuning = used_.tuning,
+                      .compiled_neighbours = used_.neighbours,
+                      .area = used_.area,
+                      .kernel = used_.kernel,
+                      .surface = surface});
+  }
+  return levels;
+}
+
+PrimaryHitParameters RenderPlan::hits(const Film& film, int pass) const {
+  RenderParameters parameters = used_;
+  parameters.film = film;
+  PrimaryHitParameters hits = eye_rays(parameters);
+  hits.samples_per_pixel = passes() * ((film.samples_per_pixel - 1) / passes() + 1);
+  hits.pass = pass;
+  hits.passes = passes();
+  hits.direct_rays = used_.direct_rays;  // as the photons are traced
+  return hits;
+}
+
+trace::FinalGatherParameters RenderPlan::gathering() const {
+  return {used_.final_gather_rays, used_.seed, used_.max_specular_depth};
+}
+
+}  // namespace photile

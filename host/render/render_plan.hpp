@@ -1,0 +1,59 @@
+// How a rendering is made: what is asked for, checked once, and all that follows from it. Every
+// stage has its own parameters from here, and from nowhere else.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "photile/estimator.hpp"
+#include "photile/neighbour_groups.hpp"
+#include "photile/photon_maps.hpp"
+#include "photile/photon_tracer.hpp"
+#include "photile/primary_hits.hpp"
+#include "photile/renderer.hpp"
+#include "trace/final_gather_rays.hpp"
+
+namespace photile {
+
+class RenderPlan {
+ public:
+  /// Traces a few paths where the number of passes follows from the memory. Errors: those of
+  /// `check` in render/setting.hpp and of automatic_passes.
+  RenderPlan(const RenderParameters& asked, const RayScene& rays, Progress& progress);
+
+  /// What is asked, with what follows from it in place: photon passes that fit in memory, looks at
+  /// lamps where rays gather, discs for naive maps. The radius is 0 where photons tell it.
+  const RenderParameters& used() const { return used_; }
+
+  int passes() const { return used_.passes; }
+  bool gathers() const { return used_.final_gather_rays > 0; }
+  bool clips_areas() const { return used_.area == AreaMode::clipped; }
+
+  /// Of this pass, whose paths follow those of the passes before.
+  ///   paths_before   of each light
+  PhotonTracerParameters tracing(int pass, const std::vector<std::uint64_t>& paths_before) const;
+
+  /// Of the first pass, metres: as asked, or by its photons.
+  double radius(const Photons& photons) const;
+
+  MapMode map_mode() const;
+  NeighbourGroupParameters groups(double first_radius) const;
+  PhotonMapParameters maps(int pass, double first_radius) const;
+
+  /// Of each k that hits choose from, ascending; just one unless they are to have their own.
+  ///   surface   where areas are clipped, else null
+  std::vector<EstimateParameters> estimates(
+      int pass, const std::shared_ptr<const SurfaceIndex>& surface) const;
+
+  /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
+  /// of neighbouring samples alike, those of another do not.
+  PrimaryHitParameters hits(const Film& film, int pass) const;
+
+  trace::FinalGatherParameters gathering() const;
+
+ private:
+  RenderParameters used_;
+};
+
+}  // namespace photile

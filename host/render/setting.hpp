@@ -1,0 +1,63 @@
+// The table of settings: each parameter of a rendering once, for everything that lists them:
+// checks, options of the command, records of a run, saved maps, the documentation.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/value_range.hpp"
+#include "photile/errors.hpp"
+#include "photile/renderer.hpp"
+
+namespace photile {
+
+/// A row of the table.
+struct Setting {
+  std::string_view name = {};    ///< in records and refusals, such as "photons_emitted"
+  std::string_view unit = {};    ///< "" = none
+  std::string_view option = {};  ///< "k,neighbours"; "" = no option of its own
+  std::string_view group = {};   ///< of options: Picture, Photons or Estimate
+  std::string_view reader = {};  ///< the stage that reads it
+  std::string_view help = {};
+  /// What holds where it is not given: then it is 0. "" = it always has a value in its range.
+  std::string_view otherwise = {};
+  ValueRange range = {};
+  /// What photons and their groups depend on, in words; "" = not on this. Null: they never do.
+  std::string (*kept)(const Setting& setting, const RenderParameters& parameters) = nullptr;
+
+  SettingValue (*value)(const RenderParameters& parameters) = nullptr;
+  void (*set)(RenderParameters& parameters, const SettingValue& value) = nullptr;
+
+  bool is_given(const RenderParameters& parameters) const;
+};
+
+/// All rows, by group.
+std::span<const Setting> settings();
+
+/// The row of this name, which has to be there.
+const Setting& setting_named(std::string_view name);
+
+/// Of the group Picture: what paths have, too.
+inline bool is_of_any_integrator(const Setting& setting) { return setting.group == "Picture"; }
+
+/// "45 degrees".
+std::string text_with_unit(const Setting& setting, const RenderParameters& parameters);
+
+/// What photons and neighbour groups depend on beside the scene, in words that a refusal can name.
+std::string photon_settings(const RenderParameters& parameters);
+
+/// A setting is out of its range. The message begins with its name.
+struct SettingError : UsageError {
+  SettingError(const Setting& setting, const std::string& problem)
+      : UsageError(std::string(setting.name) + ": " + problem),
+        setting(setting),
+        problem(problem) {}
+  const Setting& setting;
+  std::string problem;  ///< without the name
+};
+
+/// Errors: SettingError for the first setting out of its range, or that goes with no other.
+void check(const RenderParameters& parameters);
+
+}  // namespace photile
