@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/radius_range.hpp"
 #include "render/film.hpp"
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
@@ -168,7 +169,8 @@ std::vector<PhotonMaps> Rendering::build(const Photons& photons, double radius) 
 }
 
 double Rendering::radius_for(const Photons& photons) const {
-  if (parameters_.radius > 0) return parameters_.radius;
+  // Beyond the scene there is nothing to find.
+  if (parameters_.radius > 0) return std::min(parameters_.radius, scene_diagonal(scene_));
   // Where rays bring all the light there is, no photon is stored, and any radius serves.
   if (!parameters_.photons_used().store_direct && photons.size() < 2) return 1;
   return automatic_radius(photons, parameters_.neighbours);
