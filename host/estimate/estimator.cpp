@@ -11,6 +11,7 @@
 #include "estimate/query.hpp"
 #include "estimate/surface_buffers.hpp"
 #include "estimate/tuning.hpp"
+#include "geometry/radius_range.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -20,6 +21,14 @@ namespace photile {
 using estimate::HitBatches;
 using estimate::HitBatchNeeds;
 using estimate::HitBuffers;
+
+namespace {
+
+/// Photons that coincide make discs without an area; those are taken for discs of this radius, over
+/// that of the search or, where it is less, the size of the scene.
+constexpr double least_disc_over_radius = 1e-5;
+
+}  // namespace
 
 struct Estimator::Impl {
   const maps::MapStore& store;
@@ -44,15 +53,24 @@ struct Estimator::Impl {
                     ? parameters.surface
                     : std::make_shared<const SurfaceIndex>(index_surface(
                           scene, store.landed, store.parameters.radius, store.angle_degrees));
-      surface_buffers.emplace(store, *surface);
+      surface_buffers.emplace(store, scene, *surface);
     }
     query = estimate::make_query(
-        store, neighbours,
-        std::max(neighbours, static_cast<std::uint32_t>(parameters.compiled_neighbours)), radius,
-        parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
-        surface_buffers ? &*surface_buffers : nullptr,
-        kernel_used(parameters.kernel, parameters.neighbours));
+        store, {.neighbours = neighbours,
+                .compiled_neighbours = std::max(
+                    neighbours, static_cast<std::uint32_t>(parameters.compiled_neighbours)),
+                .radius = radius,
+                .least_radius = static_cast<float>(least_disc_over_radius *
+                                                   std::min<double>(radius, scene_diagonal(scene))),
+                .tuning = parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
+                .surface = clipped_to(),
+                .kernel = kernel_used(parameters.kernel, parameters.neighbours)});
     estimates.emplace(context, query->sums());
+  }
+
+  /// What areas are clipped to, or null.
+  const estimate::SurfaceBuffers* clipped_to() const {
+    return surface_buffers ? &*surface_buffers : nullptr;
   }
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
@@ -67,7 +85,7 @@ struct Estimator::Impl {
                 Estimates& result) {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
-                                                     surface.get(), store.needs);
+                                                     clipped_to(), store.needs);
     estimates->begin(static_cast<std::uint32_t>(count));
     estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
       query->estimate(page_hits, *estimates);

@@ -8,16 +8,12 @@ namespace {
 
 class GridQuery : public Query {
  public:
-  GridQuery(const maps::MapStore& store, std::uint32_t neighbours,
-            std::uint32_t compiled_neighbours, float radius, const EstimateTuning& tuning,
-            const SurfaceBuffers* surface, DensityKernel kernel)
+  GridQuery(const maps::MapStore& store, const QueryParameters& parameters)
       : store_(store),
         context_(device::context_of(*store.device)),
-        neighbours_(neighbours),
-        radius_(radius),
-        surface_(surface),
-        kernel_(kernel),
-        choice_(specialise(tuning, store.needs, static_cast<int>(compiled_neighbours))) {
+        parameters_(parameters),
+        choice_(specialise(parameters.tuning, store.needs,
+                           static_cast<int>(parameters.compiled_neighbours))) {
     choice_.work_group_size =
         std::min<std::size_t>(choice_.work_group_size, context_.info().max_work_group_size);
   }
@@ -26,15 +22,16 @@ class GridQuery : public Query {
 
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     device::Defines estimate_defines = defines(hits.page);
-    set_density_defines(estimate_defines, surface_, kernel_);
+    set_density_defines(estimate_defines, parameters_.surface, parameters_.kernel);
     const device::Kernel kernel =
         context_.kernel(choice_.kernel_file(), "estimate", estimate_defines);
     const maps::MapPage& page = hits.page;
-    with_scene_arguments(store_, hits, surface_, estimates, [&](const auto&... scene) {
+    with_scene_arguments(store_, hits, parameters_.surface, estimates, [&](const auto&... scene) {
       context_.run(kernel, choice_.work_items(hits.count), choice_.work_group_size, hits.count,
                    hits.first, hits.hits.position, hits.hits.map, page.first_map, page.grids,
                    page.cell_start, page.entry_stride, page.entry_position, page.entry_flux,
-                   page.entry_photon, scene..., neighbours_, radius_, estimates.irradiance);
+                   page.entry_photon, scene..., parameters_.neighbours, parameters_.radius,
+                   parameters_.least_radius, estimates.irradiance);
     });
   }
 
@@ -47,7 +44,7 @@ class GridQuery : public Query {
       context_.run(kernel, hits.count, maps::work_group_size, hits.count, hits.first,
                    hits.hits.position, hits.hits.map, page.first_map, page.grids, page.cell_start,
                    page.entry_stride, page.entry_position, page.entry_photon, normals...,
-                   neighbours_, radius_, photons, squared_radius);
+                   parameters_.neighbours, parameters_.radius, photons, squared_radius);
     });
   }
 
@@ -60,21 +57,15 @@ class GridQuery : public Query {
 
   const maps::MapStore& store_;
   device::Context& context_;
-  std::uint32_t neighbours_;
-  float radius_;
-  const SurfaceBuffers* surface_;
-  DensityKernel kernel_;
+  QueryParameters parameters_;
   Specialisation choice_;
 };
 
 }  // namespace
 
-std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       std::uint32_t compiled_neighbours, float radius,
-                                       const EstimateTuning& tuning, const SurfaceBuffers* surface,
-                                       DensityKernel kernel) {
-  return std::make_unique<GridQuery>(store, neighbours, compiled_neighbours, radius, tuning,
-                                     surface, kernel);
+std::unique_ptr<Query> make_grid_query(const maps::MapStore& store,
+                                       const QueryParameters& parameters) {
+  return std::make_unique<GridQuery>(store, parameters);
 }
 
 }  // namespace photile::estimate

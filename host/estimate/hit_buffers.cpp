@@ -50,14 +50,14 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped) {
   constexpr std::uint64_t surface = (6 * 3 + 2) * sizeof(float);
   constexpr std::uint64_t bump = 4 * sizeof(float);
   constexpr std::uint64_t normal = 3 * sizeof(float);
-  constexpr std::uint64_t place = 3 * sizeof(std::uint32_t);
+  constexpr std::uint64_t place = 3 * sizeof(std::uint32_t) + 3 * sizeof(float);
   return position_and_map + (needs.glossy ? surface : 0) + (needs.normal_maps ? bump : 0) +
          (normals || clipped ? normal : 0) + (clipped ? place : 0);
 }
 
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                       const SurfaceIndex* surface, const SceneNeeds& needs) {
+                       const SurfaceBuffers* surface, const SceneNeeds& needs) {
   const std::size_t count = maps.size();
   HitBuffers buffers;
   buffers.count = static_cast<std::uint32_t>(count);
@@ -65,15 +65,19 @@ HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::s
   buffers.position = context.upload(floats(hits.position, first, count), "hit positions");
   buffers.map = context.upload(maps, "maps of hits");
   if (surface != nullptr) {
-    normals = surface->normal;
+    const SurfaceIndex& index = surface->index;
+    normals = index.normal;
     std::vector<std::uint32_t> places;
+    std::vector<glm::vec3> inwards(count);
     places.reserve(3 * count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t own = hits.sided_triangle[first + i];
-      const std::uint32_t triangle = triangle_of(surface->original[own]);
-      places.insert(places.end(), {surface->facet[triangle], triangle, surface->sheet[own]});
+      const std::uint32_t triangle = triangle_of(index.original[own]);
+      places.insert(places.end(), {index.facet[triangle], triangle, index.sheet[own]});
+      inwards[i] = surface->centroid[triangle] - hits.position[first + i];
     }
     buffers.place = context.upload(std::span<const std::uint32_t>(places), "places of hits");
+    buffers.inwards = context.upload(floats(inwards, 0, count), "ways into triangles of hits");
   }
   if (!normals.empty()) {
     std::vector<glm::vec3> of_hits(count);

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "device/context.hpp"
+#include "estimate/surface_buffers.hpp"
 #include "photile/primary_hits.hpp"
-#include "photile/surface_index.hpp"
 
 namespace photile::estimate {
 
@@ -17,6 +17,7 @@ struct HitBuffers {
   device::Buffer<std::uint32_t> map;       ///< that the hit lies on
   device::Buffer<float> face_normal;       ///< 3 per hit: of its sided triangle; or empty
   device::Buffer<std::uint32_t> place;     ///< 3 per hit: facet, triangle, sheet; or empty
+  device::Buffer<float> inwards;           ///< 3 per hit: to its triangle's centroid; or empty
   device::Buffer<float> outgoing, normal;  ///< 3 per hit, unit
   device::Buffer<float> diffuse;           ///< 9 per hit: DiffusePart
   device::Buffer<float> f0;                ///< 3 per hit
@@ -36,6 +37,6 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 ///   needs     of which `glossy` and `normal_maps` ask for lobes
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                       const SurfaceIndex* surface, const SceneNeeds& needs);
+                       const SurfaceBuffers* surface, const SceneNeeds& needs);
 
 }  // namespace photile::estimate

@@ -40,19 +40,22 @@ class Query {
                        device::Buffer<float>& squared_radius) = 0;
 };
 
-/// Kernels are compiled for k up to `compiled_neighbours`. `tuning` counts for uniform grids only.
-/// `surface`: what areas are clipped to, or null for whole discs. `kernel`: what photons count.
-std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                  std::uint32_t compiled_neighbours, float radius,
-                                  const EstimateTuning& tuning, const SurfaceBuffers* surface,
-                                  DensityKernel kernel);
-std::unique_ptr<Query> make_grid_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       std::uint32_t compiled_neighbours, float radius,
-                                       const EstimateTuning& tuning, const SurfaceBuffers* surface,
-                                       DensityKernel kernel);
-std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       std::uint32_t compiled_neighbours, float radius,
-                                       const SurfaceBuffers* surface, DensityKernel kernel);
+/// What kernels are compiled for and given.
+struct QueryParameters {
+  std::uint32_t neighbours = 1;             ///< k
+  std::uint32_t compiled_neighbours = 1;    ///< kernels are compiled for k up to this
+  float radius = 0;                         ///< metres; no neighbour is farther
+  float least_radius = 0;                   ///< metres; smaller discs count as this
+  EstimateTuning tuning;                    ///< for uniform grids only
+  const SurfaceBuffers* surface = nullptr;  ///< what areas are clipped to, or null for whole discs
+  DensityKernel kernel = DensityKernel::constant;  ///< what photons count
+};
+
+std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParameters& parameters);
+std::unique_ptr<Query> make_grid_query(const maps::MapStore& store,
+                                       const QueryParameters& parameters);
+std::unique_ptr<Query> make_tree_query(const maps::MapStore& store,
+                                       const QueryParameters& parameters);
 
 /// Sets the symbols that kernels/estimate/area.clh and kernels/shared/density_kernel.clh ask for.
 inline void set_density_defines(device::Defines& defines, const SurfaceBuffers* surface,
@@ -88,7 +91,7 @@ void with_normal_arguments(const maps::MapStore& store, const PageHits& page_hit
   const HitBuffers& hits = page_hits.hits;
   const auto faces = [&](const auto&... normals) {
     if (surface != nullptr) {
-      launch(normals..., hits.face_normal, least_cosine, hits.place, surface->nodes,
+      launch(normals..., hits.face_normal, least_cosine, hits.place, hits.inwards, surface->nodes,
              surface->leaves);
     } else if (sizeof...(normals) > 0) {
       launch(normals..., hits.face_normal, least_cosine);

@@ -37,9 +37,10 @@ class Bench {
   /// Median of 5 runs over all hits, after one that warms up.
   double microseconds_per_hit(const EstimateTuning& tuning) {
     const maps::MapStore& store = maps::store_of(maps_of(tuning.photons_per_cell));
-    const auto query =
-        make_grid_query(store, neighbours_, neighbours_, static_cast<float>(sample_.radius), tuning,
-                        nullptr, DensityKernel::constant);
+    const auto query = make_grid_query(store, {.neighbours = neighbours_,
+                                               .compiled_neighbours = neighbours_,
+                                               .radius = static_cast<float>(sample_.radius),
+                                               .tuning = tuning});
     if (!estimates_) {  // the sums of a hit depend on k, not on the tuning
       estimates_.emplace(device::context_of(device_), query->sums());
       estimates_->begin(hits_.count);

@@ -84,9 +84,10 @@ void write_groups(const Chunk& chunk, std::uint32_t* members) {
 }  // namespace
 
 void check(const NeighbourGroupParameters& parameters) {
-  if (!(parameters.radius > 0) || !std::isfinite(parameters.radius)) {
-    throw UsageError(fmt::format("radius: {} m is out of range; give a positive number of metres",
-                                 parameters.radius));
+  if (!(parameters.radius > 0 && parameters.radius <= limits::max_radius)) {
+    throw UsageError(fmt::format(
+        "radius: {} m is out of range; give a positive number of metres, at most {:.3g}",
+        parameters.radius, limits::max_radius));
   }
   if (!(parameters.angle_degrees >= 0 && parameters.angle_degrees <= 180)) {
     throw UsageError(fmt::format("group angle: {} degrees is out of range; give 0 to 180 degrees",

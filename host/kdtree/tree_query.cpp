@@ -15,16 +15,13 @@ constexpr std::uint64_t global_list_bytes = 64u << 20;
 
 class TreeQuery : public Query {
  public:
-  TreeQuery(const maps::MapStore& store, std::uint32_t neighbours,
-            std::uint32_t compiled_neighbours, float radius, const SurfaceBuffers* surface,
-            DensityKernel kernel)
+  TreeQuery(const maps::MapStore& store, const QueryParameters& parameters)
       : store_(store),
         context_(device::context_of(*store.device)),
-        neighbours_(neighbours),
-        radius_(radius),
-        surface_(surface),
-        kernel_(kernel),
-        sums_(store.needs, compiled_neighbours) {
+        parameters_(parameters),
+        sums_(store.needs, parameters.compiled_neighbours) {
+    const std::uint32_t neighbours = parameters.neighbours;
+    const std::uint32_t compiled_neighbours = parameters.compiled_neighbours;
     if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
     if (compiled_neighbours <= private_list_limit) {
       defines_.set("LIST_CAPACITY", static_cast<long long>(compiled_neighbours));
@@ -46,16 +43,17 @@ class TreeQuery : public Query {
     maps::set_entry_defines(defines, store_.needs);
     sums_.set_defines(defines);
     if (store_.needs.normal_maps) defines.set("NORMAL_MAPS");
-    set_density_defines(defines, surface_, kernel_);
+    set_density_defines(defines, parameters_.surface, parameters_.kernel);
     const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
     const maps::MapPage& page = hits.page;
     with_lists([&](const auto&... lists) {
-      with_scene_arguments(store_, hits, surface_, estimates, [&](const auto&... scene) {
+      with_scene_arguments(store_, hits, parameters_.surface, estimates, [&](const auto&... scene) {
         context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
                      hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
                      page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
                      page.entry_position, page.entry_flux, page.entry_photon, lists..., scene...,
-                     neighbours_, radius_, estimates.irradiance);
+                     parameters_.neighbours, parameters_.radius, parameters_.least_radius,
+                     estimates.irradiance);
       });
     });
   }
@@ -70,8 +68,8 @@ class TreeQuery : public Query {
         context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
                      hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
                      page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
-                     page.entry_position, page.entry_photon, normals..., lists..., neighbours_,
-                     radius_, photons, squared_radius);
+                     page.entry_position, page.entry_photon, normals..., lists...,
+                     parameters_.neighbours, parameters_.radius, photons, squared_radius);
       });
     });
   }
@@ -95,10 +93,7 @@ class TreeQuery : public Query {
 
   const maps::MapStore& store_;
   device::Context& context_;
-  std::uint32_t neighbours_;
-  float radius_;
-  const SurfaceBuffers* surface_;
-  DensityKernel kernel_;
+  QueryParameters parameters_;
   LightSums sums_;
   device::Defines defines_;
   std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();
@@ -108,27 +103,22 @@ class TreeQuery : public Query {
 
 }  // namespace
 
-std::unique_ptr<Query> make_tree_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                       std::uint32_t compiled_neighbours, float radius,
-                                       const SurfaceBuffers* surface, DensityKernel kernel) {
-  return std::make_unique<TreeQuery>(store, neighbours, compiled_neighbours, radius, surface,
-                                     kernel);
+std::unique_ptr<Query> make_tree_query(const maps::MapStore& store,
+                                       const QueryParameters& parameters) {
+  return std::make_unique<TreeQuery>(store, parameters);
 }
 
-std::unique_ptr<Query> make_query(const maps::MapStore& store, std::uint32_t neighbours,
-                                  std::uint32_t compiled_neighbours, float radius,
-                                  const EstimateTuning& tuning, const SurfaceBuffers* surface,
-                                  DensityKernel kernel) {
+std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParameters& parameters) {
   switch (store.parameters.structure) {
     case MapStructure::kdtree_2d:
     case MapStructure::kdtree_3d:
     case MapStructure::kdtree_global:
-      return make_tree_query(store, neighbours, compiled_neighbours, radius, surface, kernel);
+      return make_tree_query(store, parameters);
     case MapStructure::uniform_grid:
     case MapStructure::brute_force:
       break;
   }
-  return make_grid_query(store, neighbours, compiled_neighbours, radius, tuning, surface, kernel);
+  return make_grid_query(store, parameters);
 }
 
 }  // namespace photile::estimate

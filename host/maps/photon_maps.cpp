@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "geometry/radius_range.hpp"
 #include "maps/build_maps.hpp"
 #include "maps/check_photons.hpp"
 #include "maps/map_store.hpp"
@@ -16,11 +17,9 @@
 namespace photile {
 namespace {
 
-void check(const Photons& photons, const NeighbourGroups& groups,
+void check(const Scene& scene, const Photons& photons, const NeighbourGroups& groups,
            const PhotonMapParameters& parameters) {
-  if (!(parameters.radius > 0) || !std::isfinite(parameters.radius)) {
-    throw UsageError(fmt::format("radius {} m: must be a positive number", parameters.radius));
-  }
+  check_radius(scene, parameters.radius);
   if (parameters.radius > groups.radius) {
     throw UsageError(fmt::format("radius {} m is larger than the neighbour groups' {} m",
                                  parameters.radius, groups.radius));
@@ -60,7 +59,7 @@ PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photon
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
                        Progress& progress) {
   check_scene(scene);
-  check(photons, groups, parameters);
+  check(scene, photons, groups, parameters);
   const Stopwatch stopwatch;
   progress.begin("build photon maps", 0, "references");
   store_ = std::make_unique<maps::MapStore>(device, needs_of(scene), parameters);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/radius_range.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
@@ -37,6 +38,8 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
   check(asked);
   if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
+  // Beyond the scene there is nothing to find.
+  if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
   if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
 }
 

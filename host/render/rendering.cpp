@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "photile/errors.hpp"
 #include "render/film.hpp"
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"

@@ -1,11 +1,10 @@
 #include "photile/surface_index.hpp"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <cmath>
+#include <algorithm>
 
-#include "photile/errors.hpp"
+#include "geometry/radius_range.hpp"
 #include "photile/scene_builder.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"
@@ -64,12 +63,12 @@ std::uint64_t SurfaceIndex::bytes() const {
 
 SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& landed,
                            double radius, double angle_degrees) {
-  if (!(radius > 0) || !std::isfinite(radius)) {
-    throw UsageError(fmt::format("radius {} m: must be a positive number", radius));
-  }
   check_scene(scene);
+  check_radius(scene, radius);
   SurfaceIndex index;
   index.radius = radius;
+  // Tolerances are in proportion to the radius. Beyond the scene there is no other surface.
+  radius = std::min(radius, scene_diagonal(scene));
   index.angle_degrees = angle_degrees;
   surface::SurfaceMesh mesh(scene);
   const surface::Facets facets = surface::find_facets(mesh, radius);

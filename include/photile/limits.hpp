@@ -18,6 +18,15 @@ inline constexpr int max_neighbours = 1'000'000;    ///< k
 inline constexpr int max_direct_rays = 4096;        ///< looks at lamps from a hit
 inline constexpr int max_final_gather_rays = 4096;  ///< from a hit; each has its random numbers
 
+// Radii of search
+/// Metres. The square of a hundred-thousandth of it is a normal float, and so is its inverse.
+inline constexpr double min_radius = 1e-13;
+/// Over the diagonal of the scene: squares of distances over a hundred-thousandth of the radius stay
+/// within the range of a float.
+inline constexpr double min_radius_over_scene = 1e-9;
+/// Metres: beyond the largest scene. Its square is within the range of a float.
+inline constexpr double max_radius = 1e13;
+
 // Neighbour groups
 /// 4 GB of members; a radius as large as the scene would fill any memory.
 inline constexpr std::uint64_t max_group_members = 1'000'000'000;

@@ -19,6 +19,7 @@
 //   first_map              the page's first map
 //   entry_stride           plane distance of entry_position, entry_flux, entry_incoming
 //   k, radius              at most k neighbours, none farther than radius
+//   least_radius           that a smaller disc is taken to have
 //   others                 see estimate/arguments.clh
 // Before: the estimates are zero.
 // After: those of hits on maps with photons are written. irradiance[(hit * LIGHT_COUNT + light) * 3
@@ -29,7 +30,8 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                        __global const PhotileGrid* grids, __global const uint* cell_start,
                        uint entry_stride, __global const float* entry_position,
                        __global const float* entry_flux, __global const uint* entry_photon,
-                       SCENE_ARGUMENTS uint k, float radius, __global float* irradiance) {
+                       SCENE_ARGUMENTS uint k, float radius, float least_radius,
+                       __global float* irradiance) {
   const Entries entries = GIVEN_ENTRIES;
   const Hits hits = GIVEN_HITS;
   const Estimates estimates = GIVEN_ESTIMATES;
@@ -49,7 +51,7 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     expected_map = map;
     Hit hit;
     load_hit(&hits, index, &hit);
-    expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected,
-                            &estimates CLIPPED_VALUES);
+    expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, least_radius,
+                            expected, &estimates CLIPPED_VALUES);
   }
 }

@@ -14,7 +14,8 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                        __global const PhotileGrid* grids, __global const uint* cell_start,
                        uint entry_stride, __global const float* entry_position,
                        __global const float* entry_flux, __global const uint* entry_photon,
-                       SCENE_ARGUMENTS uint k, float radius, __global float* irradiance) {
+                       SCENE_ARGUMENTS uint k, float radius, float least_radius,
+                       __global float* irradiance) {
   const Entries entries = GIVEN_ENTRIES;
   const Hits hits = GIVEN_HITS;
   const Estimates estimates = GIVEN_ESTIMATES;
@@ -42,6 +43,6 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     search.filter = filter;
 #endif
     nearest_in_rings(&list, &search, grid, cell_start);
-    estimate_list(&entries, &list, &hit, k, radius, &estimates CLIPPED_VALUES);
+    estimate_list(&entries, &list, &hit, k, least_radius, &estimates CLIPPED_VALUES);
   }
 }

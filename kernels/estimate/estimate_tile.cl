@@ -17,7 +17,7 @@
 // next are left in `undone`.
 bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
                    __global const uint* cell_start, const Hits* hits, uint first, uint count,
-                   uint k, float radius, float* expected, int* undone,
+                   uint k, float radius, float least_radius, float* expected, int* undone,
                    const Estimates* estimates CLIPPED_PARAMETERS) {
   Tile tile;
   float coordinates[3][VECTOR_WIDTH];
@@ -70,14 +70,15 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
   wide_store(squared_disc, disc);
 #endif
 #ifdef WEIGHTED
-  const wide_float per_squared_radius = 1.0f / fmax(squared_disc, least_squared_radius(radius));
+  const wide_float per_squared_radius = 1.0f / fmax(squared_disc, (least_radius * least_radius));
 #endif
 #ifdef CLIPPED
   for (uint lane = 0; lane < count; ++lane) {
     Hit hit;
     load_hit(hits, first + lane, &hit);
     // Photons off a hit's plane are left out hit by hit.
-    if (clip_disc_of_hit(surface, &hit, disc[lane], radius, clearance, area + lane) != INFINITY) {
+    if (clip_disc_of_hit(surface, &hit, disc[lane], least_radius, clearance, area + lane) !=
+        INFINITY) {
       return false;
     }
   }
@@ -124,7 +125,7 @@ bool estimate_tile(const Entries* entries, __global const PhotileGrid* grid,
   wide_store(select((wide_float)(squared_radius), beyond, full), disc);
 #endif
 #ifndef CLIPPED
-  for (uint lane = 0; lane < count; ++lane) area[lane] = estimate_area(disc[lane], radius);
+  for (uint lane = 0; lane < count; ++lane) area[lane] = estimate_area(disc[lane], least_radius);
 #endif
   wide_store((found < wanted) & tile.active, undone);
   for (uint light = 0; light < LIGHT_COUNT; ++light) {
@@ -148,7 +149,8 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
                        __global const PhotileGrid* grids, __global const uint* cell_start,
                        uint entry_stride, __global const float* entry_position,
                        __global const float* entry_flux, __global const uint* entry_photon,
-                       SCENE_ARGUMENTS uint k, float radius, __global float* irradiance) {
+                       SCENE_ARGUMENTS uint k, float radius, float least_radius,
+                       __global float* irradiance) {
   const Entries entries = GIVEN_ENTRIES;
   const Hits hits = GIVEN_HITS;
   const Estimates estimates = GIVEN_ESTIMATES;
@@ -174,14 +176,14 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     // Hits on a mixed map differ in which candidates they may take.
     if (count >= LEAST_TILE && k > 1 && !grid->mixed) {
       one_by_one = !estimate_tile(&entries, grid, cell_start, &hits, first, count, k, radius,
-                                  &expected, undone, &estimates CLIPPED_VALUES);
+                                  least_radius, &expected, undone, &estimates CLIPPED_VALUES);
     }
 #endif
     for (uint i = 0; i < count; ++i) {
       if (!one_by_one && !undone[i]) continue;
       Hit hit;
       load_hit(&hits, first + i, &hit);
-      expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, expected,
+      expected = estimate_hit(&entries, grid, cell_start, &hit, k, radius, least_radius, expected,
                               &estimates CLIPPED_VALUES);
     }
     first += count;

@@ -21,7 +21,8 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
 #ifdef LIST_IN_GLOBAL_MEMORY
                        __global float* list_distance, __global uint* list_entry,
 #endif
-                       SCENE_ARGUMENTS uint k, float radius, __global float* irradiance) {
+                       SCENE_ARGUMENTS uint k, float radius, float least_radius,
+                       __global float* irradiance) {
   const Entries entries = GIVEN_ENTRIES;
   const Hits hits = GIVEN_HITS;
   const Estimates estimates = GIVEN_ESTIMATES;
@@ -54,6 +55,6 @@ __kernel void estimate(uint hit_count, uint first_hit, __global const float* hit
     nearest_in_tree(&tree, root[map - first_map], hit.position, frames + (map - first_map), &list);
     if (list.size == 0) continue;
 
-    estimate_list(&entries, &list, &hit, k, radius, &estimates CLIPPED_VALUES);
+    estimate_list(&entries, &list, &hit, k, least_radius, &estimates CLIPPED_VALUES);
   }
 }

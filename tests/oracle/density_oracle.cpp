@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 
 #include "oracle/kernel_weights.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -18,9 +19,20 @@ void leave_out_last(OracleNeighbours& near, int k) {
   near.squared_distance.pop_back();
 }
 
-/// A disc is never counted smaller than a thousandth of the radius (kernels/estimate/area.clh).
-double squared_disc(const OracleNeighbours& near, double radius) {
-  return std::max(near.squared_radius, radius * radius * 1e-6);
+double diagonal_of(const Scene& scene) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const glm::vec3& vertex : scene.vertices) {
+    low = glm::min(low, glm::dvec3(vertex));
+    high = glm::max(high, glm::dvec3(vertex));
+  }
+  return glm::length(high - low);
+}
+
+/// A disc is never counted smaller than a hundred-thousandth of the radius, or of the scene where
+/// that is smaller (kernels/estimate/area.clh).
+double squared_disc(const OracleNeighbours& near, double radius, double diagonal) {
+  const double least = 1e-5 * std::min(radius, diagonal);
+  return std::max(near.squared_radius, least * least);
 }
 
 }  // namespace
@@ -30,7 +42,8 @@ DensityOracle::DensityOracle(const Scene& scene, const Photons& photons, PhotonF
     : photons_(photons),
       filter_(filter),
       cos_angle_(std::cos(glm::radians(angle_degrees))),
-      light_count_(needs_of(scene).light_count) {
+      light_count_(needs_of(scene).light_count),
+      diagonal_(diagonal_of(scene)) {
   normals_.reserve(2 * scene.triangle_count());
   for (std::uint32_t map = 0; map < 2 * scene.triangle_count(); ++map) {
     normals_.push_back(sided_normal(scene, map));
@@ -73,7 +86,7 @@ std::vector<glm::dvec3> DensityOracle::irradiance(const glm::dvec3& hit,
   if (k == 1) kernel = DensityKernel::constant;
   OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
   leave_out_last(near, k);
-  const double squared = squared_disc(near, radius);
+  const double squared = squared_disc(near, radius, diagonal_);
   return sums(near, std::sqrt(squared), kernel, glm::pi<double>() * squared * mean_weight(kernel));
 }
 
@@ -83,7 +96,7 @@ std::vector<glm::dvec3> DensityOracle::irradiance(const ClippedArea& surface, co
   if (k == 1) kernel = DensityKernel::constant;
   OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
   leave_out_last(near, k);
-  const double disc = std::sqrt(squared_disc(near, radius));
+  const double disc = std::sqrt(squared_disc(near, radius, diagonal_));
   OracleNeighbours in_slab;
   for (std::size_t i = 0; i < near.photons.size(); ++i) {
     const glm::dvec3 offset = glm::dvec3(photons_.position[near.photons[i]]) - hit;

@@ -54,6 +54,7 @@ class DensityOracle {
   PhotonFilter filter_;
   double cos_angle_;
   std::size_t light_count_;
+  double diagonal_;
   std::vector<glm::dvec3> normals_;  ///< per sided triangle
 };
 

@@ -1,0 +1,15 @@
+// The radii of search that the arithmetic holds for.
+#pragma once
+
+#include "photile/scene.hpp"
+
+namespace photile {
+
+/// Metres between opposite corners of the box around the scene: nothing is farther from anything.
+double scene_diagonal(const Scene& scene);
+
+/// Errors: UsageError, with the remedy, where `radius`, metres, is not a number in the range of
+/// limits.hpp.
+void check_radius(const Scene& scene, double radius);
+
+}  // namespace photile
