@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "geometry/radius_range.hpp"
+#include "photile/errors.hpp"
 #include "photile/scene_builder.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"
