@@ -59,7 +59,7 @@ Subject interior(const std::string& name, Scene scene, const BenchOptions& optio
 class AreaBench {
  public:
   explicit AreaBench(const BenchOptions& options)
-      : repeats_(options.quick ? 1 : options.repeats.most),
+      : repeats_(options.repeats.most),
         record_("area", options),
         device_({.selector = options.device, .profile = true}) {
     record_.set_device(device_.info());

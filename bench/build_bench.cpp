@@ -68,7 +68,6 @@ void run_case(const Workload& workload, std::uint64_t photon_count, const BenchO
 bool run(BenchOptions& options, std::vector<std::uint64_t> counts) {
   if (options.quick) {
     counts = {20'000};
-    options.repeats = {1, 1};
   }
   BenchRecord record("build", options);
   Device device({.selector = options.device});

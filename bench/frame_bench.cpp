@@ -54,7 +54,6 @@ bool run(BenchOptions& options) {
   if (options.quick) {
     sizes = {{32, 24}};
     paths.emitted_photons = 20'000;
-    options.repeats = {1, 1};
   }
   BenchRecord record("frame", options);
   Device device({.selector = options.device});

@@ -150,7 +150,6 @@ bool run(BenchOptions& options) {
   Size size;
   if (options.quick) {
     size = {10'000, 32, 1u << 20};
-    options.repeats = {1, 1};
   }
   constexpr std::uint32_t several = 7;  // those of the living room
   KernelsBench bench(options, size);

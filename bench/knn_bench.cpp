@@ -34,12 +34,11 @@ struct Settings {
   int width = 512, height = 512;
 
   void make_quick() {
-    workloads = {"plane", "living-room"};
-    photons = {2'000};
-    neighbours = {defaults::neighbours};
+    if (workloads.empty()) workloads = {"plane", "living-room"};
+    if (photons.empty()) photons = {2'000};
+    if (neighbours.empty()) neighbours = {defaults::neighbours};
     plane_queries = 4'096;
     width = height = 32;
-    common.repeats = {1, 1};
   }
 };
 
@@ -315,6 +314,9 @@ int main(int argument_count, char** arguments) {
   add_options(command, settings.common);
   command.add_option("--photons", settings.photons, "photon counts");
   command.add_option("--neighbours,-k", settings.neighbours, "values of k");
-  command.add_option("--workloads", settings.workloads, "plane, living-room, classroom");
+  std::vector<std::string> workloads;
+  for (const Plan& plan : plans()) workloads.push_back(plan.workload);
+  command.add_option("--workloads", settings.workloads, "what is measured; default: all")
+      ->check(CLI::IsMember(workloads));
   return run_bench(command, argument_count, arguments, [&] { return run(settings); });
 }

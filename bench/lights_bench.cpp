@@ -127,7 +127,6 @@ bool run(BenchOptions& options) {
   Size size;
   if (options.quick) {
     size = {{1, 4, limits::max_single_part_lights + 1}, 20'000, 4, 64, 48};
-    options.repeats = {1, 1};
   }
   LightsBench(size, options).run();
   return true;

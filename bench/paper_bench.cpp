@@ -20,7 +20,6 @@ bool run(BenchOptions& options) {
   Size size;
   if (options.quick) {
     size = {8, 20'000, 32};
-    options.repeats = {1, 1};
   }
   BenchRecord record("paper", options);
   Device device({.selector = options.device, .profile = true});

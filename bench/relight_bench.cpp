@@ -66,7 +66,6 @@ bool run(BenchOptions& options) {
   Size size;
   if (options.quick) {
     size = {64, 48, 4, 1u << 20};
-    options.repeats = {1, 1};
   }
   BenchRecord record("relight", options);
   record.set("width", size.width);

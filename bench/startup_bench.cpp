@@ -151,7 +151,6 @@ struct StartTimings {
 };
 
 bool run(BenchOptions& options) {
-  if (options.quick) options.repeats = {1, 1};
   BenchRecord record("startup", options);
   record.set_device(Device({.selector = options.device}).info());
   for (std::size_t i = 0; i < variants.size(); ++i) {

@@ -39,10 +39,12 @@ double load_average() {
 }  // namespace
 
 void add_options(CLI::App& command, BenchOptions& options) {
-  command.add_flag("--quick", options.quick, "tiny sizes, one repeat: a smoke test");
-  command.add_option("--repeats", options.repeats.most, "timed repeats of each case")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  command.add_flag("--quick", options.quick,
+                   "tiny sizes, and one repeat without --repeats: a smoke test");
+  CLI::Option* repeats =
+      command.add_option("--repeats", options.repeats.most, "timed repeats of each case")
+          ->check(CLI::Range(1, 1000))
+          ->capture_default_str();
   command
       .add_option("--seconds-per-case", options.repeats.seconds_per_case,
                   "a case that took longer ends after three repeats; knn asks fewer queries then")
@@ -50,6 +52,9 @@ void add_options(CLI::App& command, BenchOptions& options) {
       ->capture_default_str();
   command.add_option("--device", options.device, "OpenCL device, as for photile --device");
   command.add_option("-o,--output", options.output, "JSON file");
+  command.callback([&options, repeats] {
+    if (options.quick && repeats->empty()) options.repeats.most = 1;
+  });
 }
 
 nlohmann::json to_json(const Timing& timing) {

@@ -12,13 +12,14 @@
 namespace photile::bench {
 
 struct BenchOptions {
-  bool quick = false;  ///< tiny sizes and one repeat: shows that the bench works, times nothing
+  bool quick = false;  ///< tiny sizes: shows that the bench works, times nothing
   Repeats repeats;
   std::filesystem::path output;  ///< JSON file; empty = none
   std::string device;  ///< selector as for `photile --device`; "" = PHOTILE_DEVICE or best
 };
 
-/// Adds the options that every bench has.
+/// Adds the options that every bench has. With --quick there is one repeat, unless --repeats says
+/// otherwise.
 void add_options(CLI::App& command, BenchOptions& options);
 
 /// Times as {"median", "min", "max", "samples"}, in seconds.
