@@ -15,6 +15,7 @@ import subprocess
 import sys
 
 import scene_arguments
+import trade_plot
 from report_section import read_section, replace_section
 
 ROOT = scene_arguments.ROOT
@@ -132,7 +133,7 @@ def main():
         if not options.redraw:
             subprocess.run([options.photile, "trade", scene, "-o", out, *more], check=True)
         record = json.loads((out / "trade.json").read_text())
-        (folder / f"{name}.svg").write_text((out / "trade.svg").read_text())
+        trade_plot.draw(record, folder / f"{name}.svg")
         measured_on = texts[name].rstrip().splitlines()[-1] if options.redraw else machine(record)
         texts[name] = section(name, record, measured_on)
     replace_section(PAGE, "trade_report.py", "".join(texts.values()).rstrip() + "\n")

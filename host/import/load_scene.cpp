@@ -1,8 +1,8 @@
 // From a file of either format to a scene that later stages can trust.
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <new>
 #include <utility>
@@ -26,9 +26,8 @@ namespace {
 using namespace scene_io;
 
 void import_by_extension(ImportContext& context) {
-  std::string extension = context.folder.scene_file().extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension =
+      OIIO::Strutil::lower(context.folder.scene_file().extension().string());
   if (extension == ".obj") {
     import_obj(context);
   } else if (extension == ".gltf" || extension == ".glb") {

@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,9 +31,8 @@ std::string format_of(const std::string& name, std::span<const unsigned char> by
   if (text.starts_with("BM"sv)) return "bmp";
   if (text.starts_with("GIF8"sv)) return "gif";
   if (text.starts_with("RIFF"sv) && text.substr(8).starts_with("WEBP"sv)) return "webp";
-  std::string extension = std::filesystem::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension =
+      OIIO::Strutil::lower(std::filesystem::path(name).extension().string());
   if (extension == ".tga") return "targa";
   if (extension == ".ppm" || extension == ".pgm" || extension == ".pnm") return "pnm";
   return "";

@@ -1,4 +1,5 @@
 // `photile render` as a whole: what it writes, and that the same seed gives the same bits.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -157,6 +158,24 @@ TEST_CASE("a profiled render lists the time of each kernel") {
                                        "16x12", "-o", folder / "a.png", "--profile"});
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors, Contains("\nkernel ") && Contains("launches"));
+}
+
+TEST_CASE("microseconds per hit leave out what compiling kernels took") {
+  const FileFolder folder;
+  const Outcome outcome =
+      run_photile({"render", write_box(folder), "-o", folder / "box.exr", "--size", "16x12",
+                   "--photons", "2k", "--no-cache", "--stats", folder / "box.json", "-q"});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  const auto record = nlohmann::json::parse(folder.read("box.json"));
+  const auto stage = std::find_if(record["stages"].begin(), record["stages"].end(),
+                                  [](const auto& s) { return s["stage"] == "radiance estimate"; });
+  REQUIRE(stage != record["stages"].end());
+  const auto& figures = (*stage)["figures"];
+  const double compiling = figures["kernel compilation seconds"];
+  CHECK(compiling > 0);
+  CHECK(figures["hits"].get<double>() * figures["microseconds per hit"].get<double>() ==
+        Approx(1e6 * ((*stage)["seconds"].get<double>() - compiling)).epsilon(1e-6));
 }
 
 }  // namespace photile::test

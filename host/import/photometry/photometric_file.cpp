@@ -1,10 +1,8 @@
 #include "import/photometry/photometric_file.hpp"
 
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <string_view>
 
 #include "import/photometry/eulumdat_reader.hpp"
@@ -13,16 +11,6 @@
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {
-namespace {
-
-bool is_eulumdat(const std::string& name) {
-  std::string extension = std::filesystem::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension == ".ldt";
-}
-
-}  // namespace
 
 IntensityDistribution read_photometry(const std::string& name, std::span<const unsigned char> bytes,
                                       Warnings& warnings) {
@@ -32,8 +20,9 @@ IntensityDistribution read_photometry(const std::string& name, std::span<const u
       throw ResourceError(
           fmt::format("{} bytes; the limit is {}", bytes.size(), limits::max_photometry_bytes));
     }
-    IntensityDistribution distribution =
-        is_eulumdat(name) ? read_eulumdat(name, text, warnings) : read_ies(name, text, warnings);
+    IntensityDistribution distribution = OIIO::Strutil::iends_with(name, ".ldt")
+                                             ? read_eulumdat(name, text, warnings)
+                                             : read_ies(name, text, warnings);
     if (!(distribution.flux() > 0.0)) throw ResourceError("all intensities are 0");
     return distribution;
   } catch (const ResourceError& error) {

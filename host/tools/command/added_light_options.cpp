@@ -1,8 +1,7 @@
-#include "tools/command/added_light_options.hpp"
-
 #include <CLI/CLI.hpp>
 #include <vector>
 
+#include "tools/command/scene_options.hpp"
 #include "tools/command/validators.hpp"
 
 namespace photile::app {

@@ -60,7 +60,8 @@ ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const*
 int run_command_line(int argument_count, const char* const* arguments) {
   ExitCode code = ExitCode::failure;
   try {
-    CLI::App photile("Photon mapping on OpenCL devices, one photon map per triangle.", "photile");
+    CLI::App photile("Photon mapping on OpenCL devices, a layer of the picture per light.",
+                     "photile");
     define(photile);
     const RunFiles files;
     code = parse_and_run(photile, argument_count, arguments);

@@ -87,9 +87,6 @@ void run_compare(const CompareOptions& options) {
   std::vector<std::filesystem::path> outputs;
   if (!options.picture.empty()) outputs.emplace_back(options.picture);
   if (!options.json.empty()) outputs.emplace_back(options.json);
-  if (!options.picture.empty() && outputs.front().extension() != ".png") {
-    throw UsageError(fmt::format("{}: the comparison ends in .png; rename it", options.picture));
-  }
   note_input(options.first);
   note_input(options.second);
   check_outputs(outputs);
@@ -125,10 +122,9 @@ void add_compare_command(CLI::App& photile) {
   command->add_option("SECOND", options->second, "picture that the first is compared with")
       ->required()
       ->type_name("");
-  command
-      ->add_option("-o,--output", options->picture,
-                   "both and their difference in false colour, .png")
-      ->type_name("FILE");
+  command->add_option("-o,--output", options->picture, "both and their difference in false colour")
+      ->type_name("FILE.png")
+      ->check(file_ending_in(".png"));
   command->add_option("--json", options->json, "write the errors as JSON")->type_name("FILE");
   command
       ->add_option("-s,--scale", options->scale,

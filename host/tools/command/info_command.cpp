@@ -7,7 +7,6 @@
 
 #include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
-#include "tools/command/added_light_options.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/scene_options.hpp"
 #include "tools/command/scene_report.hpp"

@@ -1,10 +1,9 @@
 #include "tools/command/picture_outputs.hpp"
 
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -13,31 +12,14 @@
 #include "tools/report/sheet.hpp"
 
 namespace photile::app {
-namespace {
-
-std::string lower_case_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-/// Errors: UsageError unless `file` ends in .png.
-void check_png(const std::filesystem::path& file, const char* option) {
-  if (lower_case_extension(file) == ".png") return;
-  throw UsageError(
-      fmt::format("{}: {} writes a file that ends in .png; rename it", file.string(), option));
-}
-
-}  // namespace
-
 void add_picture_options(CLI::App& command, PictureOptions& options) {
   command.add_option("-o,--output", options.outputs, "picture to write, .exr or .png; repeatable")
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group("Output");
   command.add_option("--png", options.png, "tone-mapped picture to write")
-      ->type_name("FILE")
+      ->type_name("FILE.png")
+      ->check(file_ending_in(".png"))
       ->allow_extra_args(false)
       ->group("Output");
   command.add_option("--exposure", options.exposure, "stops, for PNG only")
@@ -50,7 +32,10 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
                 "1 cd/m2 or 1 W/(m2 sr) becomes white, before --exposure")
       ->group("Output");
   const auto add_drawing = [&](const char* name, std::string& file, const char* what) {
-    command.add_option(name, file, what)->type_name("FILE.png")->group("Output");
+    command.add_option(name, file, what)
+        ->type_name("FILE.png")
+        ->check(file_ending_in(".png"))
+        ->group("Output");
   };
   add_drawing("--illuminance", options.illuminance,
               "lux on the surfaces that are seen, in false colour with a legend");
@@ -64,18 +49,13 @@ PictureOutputs::PictureOutputs(const PictureOptions& options)
       tone_mapping_{!options.no_automatic_exposure, options.exposure},
       false_colour_(options.false_colour) {
   for (const std::string& file : options.outputs) {
-    const std::string extension = lower_case_extension(file);
-    if (extension != ".exr" && extension != ".png") {
+    const bool exr = OIIO::Strutil::iends_with(file, ".exr");
+    if (!exr && !OIIO::Strutil::iends_with(file, ".png")) {
       throw UsageError(fmt::format("{}: an output ends in .exr or .png; rename it", file));
     }
-    (extension == ".exr" ? exr_ : png_).emplace_back(file);
+    (exr ? exr_ : png_).emplace_back(file);
   }
-  for (const std::string& file : options.png) {
-    check_png(file, "--png");
-    png_.emplace_back(file);
-  }
-  if (!illuminance_.empty()) check_png(illuminance_, "--illuminance");
-  if (!luminance_.empty()) check_png(luminance_, "--luminance");
+  png_.insert(png_.end(), options.png.begin(), options.png.end());
 }
 
 std::vector<std::filesystem::path> PictureOutputs::files() const {

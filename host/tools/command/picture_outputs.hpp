@@ -32,8 +32,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options);
 /// Files to be written, each with its format.
 class PictureOutputs {
  public:
-  /// Errors: UsageError for a name that does not end in .exr or .png, where one of them is asked
-  /// for.
+  /// Errors: UsageError for a picture whose name ends in neither .exr nor .png.
   explicit PictureOutputs(const PictureOptions& options);
 
   bool empty() const { return files().empty(); }

@@ -10,13 +10,14 @@
 
 #include "common/output_file.hpp"
 #include "device/context.hpp"
+#include "image/glare.hpp"
+#include "image/srgb.hpp"
 #include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/path_tracer.hpp"
 #include "render/hit_source.hpp"
 #include "tools/command/commands.hpp"
-#include "tools/command/glare_output.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
 #include "tools/command/quality_options.hpp"
@@ -30,6 +31,7 @@
 #include "tools/command/threads.hpp"
 #include "tools/command/tuning_report.hpp"
 #include "tools/preview/live_preview.hpp"
+#include "tools/view/snapshots.hpp"
 
 namespace photile::app {
 namespace {
@@ -38,10 +40,6 @@ PictureOutputs check_outputs_of(const RenderOptions& options) {
   PictureOutputs outputs(options.pictures);
   if (outputs.empty() && options.glare.empty()) {
     throw UsageError("no output; give -o FILE.exr or -o FILE.png");
-  }
-  if (!options.glare.empty() && std::filesystem::path(options.glare).extension() != ".png") {
-    throw UsageError(
-        fmt::format("{}: --glare writes a file that ends in .png; rename it", options.glare));
   }
   auto files = outputs.files();
   if (!options.statistics.empty()) files.emplace_back(options.statistics);
@@ -163,6 +161,21 @@ LightLayers render_by_paths(const Scene& scene, const Camera& camera, const View
   record.samples_per_pixel = record.parameters.film.samples_per_pixel;
   record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
   return std::move(result.layers);
+}
+
+/// Writes the file that --glare names, and tells what is marked. `reflections` are the part of
+/// `layers` that came by reflection. Errors: OutputError.
+void write_glare(const RenderOptions& options, const LightLayers& layers,
+                 const LightLayers& reflections, const LightMix& mix, Progress& progress) {
+  const image::Glare glare = image::find_glare(layers, reflections, mix, options.glare_limit);
+  const Image displayed =
+      tone_map(mixed_picture(layers, mix)->root(),
+               {!options.pictures.no_automatic_exposure, options.pictures.exposure});
+  std::vector<std::uint8_t> rgb = image::srgb8_texels(displayed);
+  image::draw_marks(glare.marks, rgb);
+  view::write_screenshot(options.glare, layers.width, layers.height, rgb);
+  const PowerUnit unit = mix.lights.empty() ? PowerUnit::lumen : mix.lights.front().unit;
+  for (const std::string& line : image::glare_lines(glare, unit)) progress.note(line);
 }
 
 void run_render(const CLI::App& command, RenderOptions& options) {

@@ -12,7 +12,6 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "tools/command/added_light_options.hpp"
 #include "tools/command/direct_options.hpp"
 #include "tools/command/quality_options.hpp"
 #include "tools/command/scene_options.hpp"
@@ -260,6 +259,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       .add_option("--glare", options.glare,
                   "picture in which reflections above a limit are marked, in a colour per light")
       ->type_name("FILE.png")
+      ->check(file_ending_in(".png"))
       ->group("Output");
   command
       .add_option("--glare-limit", options.glare_limit,

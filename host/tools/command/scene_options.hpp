@@ -11,8 +11,11 @@ class App;
 
 namespace photile::app {
 
-/// Adds the options to a subcommand, in the help's group `group`; those that add or change lights
-/// are in added_light_options.hpp.
+/// Adds the options to a subcommand, in the help's group `group`.
 void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::string& group);
+
+/// Adds those that add lights to the scene or change them. Malformed ones are errors of the command
+/// line.
+void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::string& group);
 
 }  // namespace photile::app

@@ -23,7 +23,6 @@
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
-#include "tools/command/trade_plot.hpp"
 #include "tools/command/trade_report.hpp"
 #include "tools/command/validators.hpp"
 #include "tools/command/version.hpp"
@@ -40,12 +39,11 @@ struct TradeOptions {
 
 /// The files that the command writes.
 struct TradeFiles {
-  std::filesystem::path csv, json, plot, reference;
+  std::filesystem::path csv, json, reference;
 
   explicit TradeFiles(const std::filesystem::path& folder)
       : csv(folder / "trade.csv"),
         json(folder / "trade.json"),
-        plot(folder / "trade.svg"),
         reference(folder / "reference.exr") {}
 };
 
@@ -117,7 +115,6 @@ void write_files(const TradeFiles& files, const TradeOptions& options, const Ref
     write_exr(files.reference, reference.picture);
   }
   write_file(files.csv, trade_csv(points));
-  write_file(files.plot, trade_plot(points, record["scene"].get<std::string>()));
   write_file(files.json,
              record.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
@@ -130,7 +127,7 @@ void run_trade(TradeOptions& options) {
   make_folder(options.folder);
   note_inputs_of(render);
   note_input(options.reference);
-  std::vector<std::filesystem::path> outputs{files.csv, files.json, files.plot};
+  std::vector<std::filesystem::path> outputs{files.csv, files.json};
   if (options.reference.empty()) outputs.push_back(files.reference);
   check_outputs(outputs);
 
@@ -159,7 +156,7 @@ void add_trade_command(CLI::App& photile) {
   auto options = std::make_shared<TradeOptions>();
   CLI::App* command = photile.add_subcommand(
       "trade", "Measure time and error of many settings on a view, around those given");
-  command->add_option("-o,--output", options->folder, "folder for trade.csv, .json and .svg")
+  command->add_option("-o,--output", options->folder, "folder for trade.csv and trade.json")
       ->required()
       ->type_name("FOLDER");
   CLI::Option* reference =

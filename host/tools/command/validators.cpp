@@ -1,12 +1,13 @@
 #include "tools/command/validators.hpp"
 
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <span>
 
 #include "photile/limits.hpp"
 
@@ -36,21 +37,19 @@ std::optional<std::uint64_t> whole(double number) {
   return static_cast<std::uint64_t>(value);
 }
 
-/// 1000 for "k" and so on; 0 if `suffix` is no suffix.
-double factor_of(char suffix) {
-  switch (suffix) {
-    case 'k':
-    case 'K':
-      return 1e3;
-    case 'm':
-    case 'M':
-      return 1e6;
-    case 'g':
-    case 'G':
-      return 1e9;
-    default:
-      return 0;
+struct Unit {
+  std::string_view name;
+  double factor;
+};
+
+/// The number before the first of `units` that ends `text`, times its factor.
+std::optional<double> parse_with_unit(std::string_view text, std::span<const Unit> units) {
+  for (const Unit& unit : units) {
+    if (!text.ends_with(unit.name)) continue;
+    const auto number = parse_finite(text.substr(0, text.size() - unit.name.size()));
+    return number ? std::optional(*number * unit.factor) : std::nullopt;
   }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -58,31 +57,24 @@ double factor_of(char suffix) {
 std::optional<std::uint64_t> parse_count(std::string_view text) {
   // Digits alone keep all 64 bits; a double would round a large seed.
   if (const auto digits = parse_number<std::uint64_t>(text)) return digits;
-  double factor = 1;
-  if (!text.empty() && factor_of(text.back()) != 0) {
-    factor = factor_of(text.back());
-    text.remove_suffix(1);
-  }
-  const auto number = parse_finite(text);
-  if (!number) return std::nullopt;
-  return whole(*number * factor);
+  static constexpr std::array<Unit, 7> units{
+      {{"k", 1e3}, {"K", 1e3}, {"m", 1e6}, {"M", 1e6}, {"g", 1e9}, {"G", 1e9}, {"", 1}}};
+  const auto number = parse_with_unit(text, units);
+  return number ? whole(*number) : std::nullopt;
 }
 
 std::optional<std::uint64_t> parse_bytes(std::string_view text) {
-  static constexpr std::array units{std::pair{"KiB", 0x1p10}, std::pair{"MiB", 0x1p20},
-                                    std::pair{"GiB", 0x1p30}, std::pair{"TiB", 0x1p40},
-                                    std::pair{"kB", 1e3},     std::pair{"MB", 1e6},
-                                    std::pair{"GB", 1e9},     std::pair{"TB", 1e12}};
-  double factor = 1;
-  for (const auto& [unit, bytes] : units) {
-    if (!text.ends_with(unit)) continue;
-    factor = bytes;
-    text.remove_suffix(std::string_view(unit).size());
-    break;
-  }
-  const auto number = parse_finite(text);
-  if (!number) return std::nullopt;
-  return whole(*number * factor);
+  static constexpr std::array<Unit, 9> units{{{"KiB", 0x1p10},
+                                              {"MiB", 0x1p20},
+                                              {"GiB", 0x1p30},
+                                              {"TiB", 0x1p40},
+                                              {"kB", 1e3},
+                                              {"MB", 1e6},
+                                              {"GB", 1e9},
+                                              {"TB", 1e12},
+                                              {"", 1}}};
+  const auto number = parse_with_unit(text, units);
+  return number ? whole(*number) : std::nullopt;
 }
 
 std::optional<double> parse_share(std::string_view text) {
@@ -94,16 +86,10 @@ std::optional<double> parse_share(std::string_view text) {
 }
 
 std::optional<double> parse_duration(std::string_view text) {
-  // "min" before "s" and "ms": the first that matches is taken.
-  static constexpr std::array units{std::pair{"min", 60.0}, std::pair{"ms", 1e-3},
-                                    std::pair{"s", 1.0}};
-  for (const auto& [unit, seconds] : units) {
-    if (!text.ends_with(unit)) continue;
-    const auto number = parse_finite(text.substr(0, text.size() - std::string_view(unit).size()));
-    if (!number || *number <= 0) return std::nullopt;
-    return *number * seconds;
-  }
-  return std::nullopt;
+  // "ms" before "s": the first that matches is taken.
+  static constexpr std::array<Unit, 3> units{{{"min", 60}, {"ms", 1e-3}, {"s", 1}}};
+  const auto seconds = parse_with_unit(text, units);
+  return seconds > 0.0 ? seconds : std::nullopt;
 }
 
 std::optional<PixelSize> parse_size(std::string_view text) {
@@ -194,6 +180,14 @@ CLI::Validator picture_size() {
                          limits::max_image_side);
     }
     return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator file_ending_in(const std::string& ending) {
+  const auto check = [=](std::string& file) -> std::string {
+    if (OIIO::Strutil::iends_with(file, ending)) return {};
+    return fmt::format("'{}' does not end in {}; rename it", file, ending);
   };
   return {check, ""};
 }

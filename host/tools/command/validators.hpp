@@ -51,4 +51,8 @@ CLI::Validator positive_number();
 /// A size as `parse_size` reads it, within the limits of pictures.
 CLI::Validator picture_size();
 
+/// The name of a file that ends so, in small letters or capitals.
+///   ending   ".png"
+CLI::Validator file_ending_in(const std::string& ending);
+
 }  // namespace photile::app

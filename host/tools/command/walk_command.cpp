@@ -205,22 +205,12 @@ class Walk {
 };
 
 void check_names(const WalkOptions& options) {
-  const auto ends_in = [](const std::string& file, const char* extension) {
-    if (std::filesystem::path(file).extension() != extension) {
-      throw UsageError(fmt::format("{}: has to end in {}; rename it", file, extension));
-    }
-  };
-  ends_in(options.output, ".exr");
   std::vector<std::filesystem::path> files{
       walk::FrameNames(options.output).of(options.first_number)};
   if (!options.png.empty()) {
-    ends_in(options.png, ".png");
     files.push_back(walk::FrameNames(options.png).of(options.first_number));
   }
-  if (!options.sheet.empty()) {
-    ends_in(options.sheet, ".png");
-    files.emplace_back(options.sheet);
-  }
+  if (!options.sheet.empty()) files.emplace_back(options.sheet);
   note_inputs_of(options.render);
   note_input(options.path);
   check_outputs(files);
@@ -253,9 +243,11 @@ void add_walk_command(CLI::App& photile) {
   command->add_option("-o,--output", options->output, "frames to write, such as frame.####.exr")
       ->required()
       ->type_name("PATTERN.exr")
+      ->check(file_ending_in(".exr"))
       ->group("Output");
   command->add_option("--png", options->png, "frames as PNG, with the exposure of the first")
       ->type_name("PATTERN.png")
+      ->check(file_ending_in(".png"))
       ->group("Output");
   command->add_option("--exposure", options->render.pictures.exposure, "stops, for PNG only")
       ->type_name("STOPS")
@@ -263,7 +255,8 @@ void add_walk_command(CLI::App& photile) {
       ->capture_default_str()
       ->group("Output");
   command->add_option("--contact-sheet", options->sheet, "all frames on one PNG")
-      ->type_name("FILE")
+      ->type_name("FILE.png")
+      ->check(file_ending_in(".png"))
       ->group("Output");
   CLI::Option* path = command
                           ->add_option("--camera-path", options->path,
