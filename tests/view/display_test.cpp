@@ -2,9 +2,13 @@
 #include "tools/view/display.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
 
 #include "image/glare.hpp"
 #include "photile/errors.hpp"
+#include "test_scenes.hpp"
+#include "tools/report/number_text.hpp"
 #include "tools/report/palette.hpp"
 #include "two_lights.hpp"
 
@@ -34,11 +38,48 @@ TEST_CASE("illuminance is the sum over lights of power times layer") {
 
 TEST_CASE("a reading has each light's part of luminance and illuminance") {
   const auto readings = readings_at(two_pixels(), mix_of(10, 100), 0, 0);
-  CHECK(readings[0].illuminance == Approx(30));
-  CHECK(readings[1].illuminance == Approx(100));
-  CHECK(readings[0].luminance == Approx(10));
-  CHECK(readings[1].luminance == Approx(50));
-  CHECK(readings_at(two_pixels(), mix_of(10, 100), 2, 0)[1].illuminance == 0);
+  CHECK(readings[0].illuminance.value == Approx(30));
+  CHECK(readings[1].illuminance.value == Approx(100));
+  CHECK(readings[0].luminance.value == Approx(10));
+  CHECK(readings[1].luminance.value == Approx(50));
+  CHECK(readings_at(two_pixels(), mix_of(10, 100), 2, 0)[1].illuminance.value == 0);
+}
+
+TEST_CASE("a reading's standard error is that of the photons it was counted from") {
+  Frame frame = two_pixels();
+  frame.noise = {100, {1, 9}};  // photons as 3 x 1 to 1 x 9: 25 and 75 of them
+  const auto readings = readings_at(frame, mix_of(10, 100), 0, 0);
+  CHECK(readings[0].illuminance.standard_error == Approx(30 / std::sqrt(25.0)));
+  CHECK(readings[1].illuminance.standard_error == Approx(100 / std::sqrt(75.0)));
+  CHECK(readings[0].luminance.standard_error == Approx(10 / std::sqrt(25.0)));
+  const LightReading sum = sum_of(readings);
+  CHECK(sum.illuminance.value == Approx(130));
+  CHECK(sum.illuminance.standard_error == Approx(std::sqrt(36 + 10000 / 75.0)));
+  // Photons of one weight: the error is that of their number.
+  const LightReading even = sum_of(readings_at(frame, mix_of(1, 9), 0, 0));
+  CHECK(even.illuminance.standard_error == Approx(even.illuminance.value / std::sqrt(100.0)));
+  CHECK(readings_at(frame, mix_of(10, 100), 1, 0)[0].illuminance.standard_error == 0);
+}
+
+TEST_CASE("what an estimate's noise depends on follows from k, the kernel and the paths") {
+  const Scene scene = test::furnished_room(4);
+  RenderParameters parameters;
+  parameters.neighbours = 52;
+  parameters.photons.emitted_photons = 10'000;
+  EstimateNoise noise = EstimateNoise::of(scene, parameters);
+  CHECK(noise.photons == 50);
+  CHECK(std::accumulate(noise.paths.begin(), noise.paths.end(), std::uint64_t{0}) == 10'000);
+  parameters.kernel = DensityKernel::cone;
+  CHECK(EstimateNoise::of(scene, parameters).photons == Approx(50 / 1.5));
+}
+
+TEST_CASE("a number has as many digits as its error leaves meaning") {
+  using measuring::text_with_error;
+  CHECK(text_with_error(229.3, 32.4) == "230 +-30");
+  CHECK(text_with_error(294.06, 0.22) == "294.1 +-0.2");
+  CHECK(text_with_error(12345, 1234) == "12000 +-1000");
+  CHECK(text_with_error(0.00123, 0.00034) == "0.0012 +-0.0003");
+  CHECK(text_with_error(229.34, 0) == "229.3");
 }
 
 TEST_CASE("illuminance is in lux where lamps are in watts, too") {
@@ -47,8 +88,8 @@ TEST_CASE("illuminance is in lux where lamps are in watts, too") {
   mix.lumen_per_watt = 179;
   CHECK(mixed_illuminance(two_pixels().layers, mix) == std::vector<float>{130 * 179, 200 * 179});
   const auto readings = readings_at(two_pixels(), mix, 0, 0);
-  CHECK(readings[1].illuminance == Approx(100 * 179));
-  CHECK(readings[1].luminance == Approx(50));  // W/(m2 sr)
+  CHECK(readings[1].illuminance.value == Approx(100 * 179));
+  CHECK(readings[1].luminance.value == Approx(50));  // W/(m2 sr)
 }
 
 TEST_CASE("the picture is scaled by stops and encoded as sRGB") {

@@ -1,6 +1,7 @@
 #include "tools/view/display.hpp"
 
 #include <cmath>
+#include <numeric>
 
 #include "image/glare.hpp"
 #include "image/pixel_lights.hpp"
@@ -88,14 +89,41 @@ double automatic_stops(const Frame& frame, const LightMix& mix) {
 std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, int x, int y) {
   std::vector<LightReading> readings(mix.lights.size());
   if (x < 0 || y < 0 || x >= frame.layers.width || y >= frame.layers.height) return readings;
+  // A layer holds the light of power 1: times paths it is as the number of photons.
+  std::vector<double> photons(mix.lights.size());
   for_each_light(frame.layers, static_cast<std::size_t>(x), static_cast<std::size_t>(y),
                  [&](std::size_t light, float illuminance, const glm::vec3& radiance) {
                    const MixedLight& mixed = mix.lights[light];
-                   readings[light] = {
-                       mixed.power * luminance(glm::dvec3(mixed.tint) * glm::dvec3(radiance)),
-                       lux_of(mixed, mix) * static_cast<double>(illuminance)};
+                   readings[light].luminance.value =
+                       mixed.power * luminance(glm::dvec3(mixed.tint) * glm::dvec3(radiance));
+                   readings[light].illuminance.value =
+                       lux_of(mixed, mix) * static_cast<double>(illuminance);
+                   if (light >= frame.noise.paths.size()) return;
+                   photons[light] = static_cast<double>(illuminance) *
+                                    static_cast<double>(frame.noise.paths[light]);
                  });
+  const double all = std::accumulate(photons.begin(), photons.end(), 0.0);
+  for (std::size_t light = 0; light < readings.size(); ++light) {
+    if (!(photons[light] > 0) || !(frame.noise.photons > 0)) continue;
+    const double relative = 1 / std::sqrt(frame.noise.photons * photons[light] / all);
+    for (measuring::Measured* part : {&readings[light].luminance, &readings[light].illuminance}) {
+      part->standard_error = relative * part->value;
+    }
+  }
   return readings;
+}
+
+LightReading sum_of(std::span<const LightReading> readings) {
+  const auto add = [](measuring::Measured& sum, const measuring::Measured& part) {
+    sum.value += part.value;
+    sum.standard_error = std::hypot(sum.standard_error, part.standard_error);
+  };
+  LightReading sum;
+  for (const LightReading& reading : readings) {
+    add(sum.luminance, reading.luminance);
+    add(sum.illuminance, reading.illuminance);
+  }
+  return sum;
 }
 
 }  // namespace photile::view

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "measuring/grid_statistics.hpp"
 #include "photile/defaults.hpp"
 #include "photile/light_mix.hpp"
 #include "tools/report/false_colour.hpp"
@@ -43,11 +45,17 @@ std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& 
 
 /// What one light gives to a pixel.
 struct LightReading {
-  double luminance = 0;    ///< cd/m2 or W/(m2 sr)
-  double illuminance = 0;  ///< lux
+  measuring::Measured luminance;    ///< cd/m2 or W/(m2 sr)
+  measuring::Measured illuminance;  ///< lux
 };
 
-/// Per light of the mix, at a pixel of the frame. Errors: none; pixels outside read 0.
+/// Per light of the mix, at a pixel of the frame. Standard errors are those of photons that fall
+/// independently of each other: 1 / sqrt(n) of a reading by n photons, where the photons of an
+/// estimate are shared out as the lights' readings and paths have them. What an estimate blurs is
+/// not in them. Errors: none; pixels outside read 0.
 std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, int x, int y);
+
+/// The readings of all lights together.
+LightReading sum_of(std::span<const LightReading> readings);
 
 }  // namespace photile::view

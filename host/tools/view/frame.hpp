@@ -4,13 +4,24 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "photile/camera.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
 #include "tools/view/photon_map_view.hpp"
 
 namespace photile::view {
+
+/// What the noise of an estimate depends on.
+struct EstimateNoise {
+  /// Photons of one estimate, as many as equal weights would need for its noise; 0 = not known.
+  double photons = 0;
+  std::vector<std::uint64_t> paths;  ///< of each layer's lights
+
+  static EstimateNoise of(const Scene& scene, const RenderParameters& parameters);
+};
 
 struct Frame {
   LightLayers layers;
@@ -20,8 +31,9 @@ struct Frame {
   Camera camera;                                      ///< in the scene's coordinates
   int samples_per_pixel = 1;
   std::uint64_t emitted_photons = 0;  ///< paths of the maps it was estimated from
-  double seconds = 0;                 ///< that it took
-  RunStatistics statistics;           ///< of its stages
+  EstimateNoise noise;
+  double seconds = 0;        ///< that it took
+  RunStatistics statistics;  ///< of its stages
 };
 
 }  // namespace photile::view

@@ -96,9 +96,10 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   if (std::exchange(timed_maps_, task.maps.get()) == task.maps.get()) {
     size_.record(static_cast<double>(film.width) * film.height * task.samples, seconds);
   }
-  return std::make_shared<Frame>(Frame{
-      std::move(result.layers), std::move(reflections), task.maps->photons, task.request.camera,
-      result.samples_per_pixel, task.maps->emitted_photons, seconds, std::move(result.statistics)});
+  return std::make_shared<Frame>(Frame{std::move(result.layers), std::move(reflections),
+                                       task.maps->photons, task.request.camera,
+                                       result.samples_per_pixel, task.maps->emitted_photons,
+                                       task.maps->noise, seconds, std::move(result.statistics)});
 }
 
 void FrameWorker::work(std::stop_token stop) {

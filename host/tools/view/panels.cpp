@@ -14,8 +14,6 @@
 namespace photile::view {
 namespace {
 
-using measuring::number_text;
-
 // Sizes in pixels.
 constexpr float panel_width = 300;
 constexpr float label_width = 75;  ///< right of inputs
@@ -69,6 +67,10 @@ void draw_frame_times(const PanelReadings& readings) {
   }
 }
 
+std::string text_of(const measuring::Measured& measured) {
+  return measuring::text_with_error(measured.value, measured.standard_error);
+}
+
 /// What reaches the clicked place, in all and by each light.
 void draw_probe(PanelState& state, const Frame* frame) {
   if (!state.probe || !frame) return;
@@ -82,20 +84,19 @@ void draw_probe(PanelState& state, const Frame* frame) {
     const int x = static_cast<int>(state.probe->x * frame->layers.width);
     const int y = static_cast<int>(state.probe->y * frame->layers.height);
     const auto readings = readings_at(*frame, mix, x, y);
-    LightReading sum;
-    for (const LightReading& reading : readings) {
-      sum.illuminance += reading.illuminance;
-      sum.luminance += reading.luminance;
+    const LightReading sum = sum_of(readings);
+    ImGui::Text("illuminance %s lx", text_of(sum.illuminance).c_str());
+    ImGui::Text("luminance   %s %s", text_of(sum.luminance).c_str(), luminance_unit(mix));
+    if (ImGui::IsItemHovered()) {
+      ImGui::SetTooltip("+- standard error of an estimate from the nearest photons");
     }
-    ImGui::Text("illuminance %s lx", number_text(sum.illuminance, 4).c_str());
-    ImGui::Text("luminance   %s %s", number_text(sum.luminance, 4).c_str(), luminance_unit(mix));
     ImGui::Separator();
     for (std::size_t light = 0; light < readings.size(); ++light) {
       const LightReading& its = readings[light];
-      if (its.illuminance == 0 && its.luminance == 0) continue;
+      if (its.illuminance.value == 0 && its.luminance.value == 0) continue;
       // Names last: they may be long.
-      ImGui::TextWrapped("%8s lx %4.0f%%  %s", number_text(its.illuminance, 4).c_str(),
-                         100 * its.illuminance / std::max(sum.illuminance, 1e-300),
+      ImGui::TextWrapped("%12s lx %4.0f%%  %s", text_of(its.illuminance).c_str(),
+                         100 * its.illuminance.value / std::max(sum.illuminance.value, 1e-300),
                          mix.lights[light].name.c_str());
     }
   }

@@ -23,7 +23,7 @@ struct InspectablePhotons {
 /// A sided triangle and what an estimate on it may find.
 struct PhotonMapView {
   std::uint32_t sided_triangle = none;
-  /// Sided triangles of its neighbour group (Graglia et al. 2012, section 4) without itself,
+  /// Sided triangles of its neighbour group (Graglia et al. 2012, section 2.1) without itself,
   /// ascending: at most the radius away, with a normal that agrees.
   std::vector<std::uint32_t> group;
   /// Sided triangles that share its map without being of its group, ascending.

@@ -103,6 +103,7 @@ std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, Prepared
   generation->renderer = std::make_unique<SceneRenderer>(scene_, generation->devices, parameters,
                                                          prepared, keep, *listener_);
   generation->emitted_photons = paths;
+  generation->noise = EstimateNoise::of(scene_, parameters);
   return generation;
 }
 

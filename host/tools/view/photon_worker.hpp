@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "photile/scene_renderer.hpp"
+#include "tools/view/frame.hpp"
 #include "tools/view/photon_map_view.hpp"
 
 namespace photile::view {
@@ -22,6 +23,7 @@ struct MapGeneration {
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
   std::uint64_t emitted_photons = 0;
+  EstimateNoise noise;
   std::shared_ptr<const InspectablePhotons> photons;
 };
 
