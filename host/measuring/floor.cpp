@@ -20,7 +20,7 @@ namespace {
 const double steepest_cosine = std::cos(glm::radians(5.0));
 constexpr double level_thickness = 0.02;  // metres
 constexpr double least_room = 1.2;        // metres above a floor
-constexpr int most_crossings = 1000;
+constexpr int most_surfaces_below = 1000;
 constexpr double least_share = 0.5;      // of the widest level
 constexpr std::uint32_t samples = 8192;  // places whose headroom is looked at
 constexpr double plan_pixels = 1024;     // along the longer side
@@ -57,7 +57,7 @@ void measure_floor_of(const Room& room, const RayScene& rays, const PlanAxes& ax
     double above = glm::dot(place, axes.up);
     const double lowest = above - Room::most_height;
     glm::vec3 from(place);
-    for (int i = 0; i < most_crossings; ++i) {
+    for (int i = 0; i < most_surfaces_below; ++i) {
       const auto hit = trace::intersect(rays, from, down);
       if (!hit) break;
       const auto surface = trace::surface_hit(rays.scene(), *hit, down);

@@ -1,4 +1,4 @@
-// Neighbour groups: which sided triangles share photons (Graglia et al. 2012, section 4).
+// Neighbour groups: which sided triangles share photons (Graglia et al. 2012, section 2.1).
 #pragma once
 
 #include <array>

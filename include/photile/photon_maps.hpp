@@ -1,5 +1,5 @@
 // Photon maps on the device: one 2D uniform grid per sided triangle (Graglia et al. 2012,
-// section 5) or patch, or a structure to compare it with.
+// section 2.2) or patch, or a structure to compare it with.
 #pragma once
 
 #include <array>

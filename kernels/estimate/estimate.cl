@@ -1,4 +1,4 @@
-// The radiance estimate (Jensen 2001, equation 7.6; Graglia et al. 2012, section 5): per hit and
+// The radiance estimate (Jensen 2001, equation 7.6; Graglia et al. 2012): per hit and
 // light, the flux of the nearest photons over the area they fell on.
 //
 // Symbols the host defines:
