@@ -56,7 +56,7 @@ TEST_CASE("a reading's standard error is that of the photons it was counted from
   CHECK(sum.illuminance.value == Approx(130));
   CHECK(sum.illuminance.standard_error == Approx(std::sqrt(36 + 10000 / 75.0)));
   // Photons of one weight: the error is that of their number.
-  const LightReading even = sum_of(readings_at(frame, mix_of(9, 1), 0, 0));
+  const LightReading even = sum_of(readings_at(frame, mix_of(1, 9), 0, 0));
   CHECK(even.illuminance.standard_error == Approx(even.illuminance.value / std::sqrt(100.0)));
   CHECK(readings_at(frame, mix_of(10, 100), 1, 0)[0].illuminance.standard_error == 0);
 }

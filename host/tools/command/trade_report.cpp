@@ -22,15 +22,15 @@ const TradePoint* most_right(std::span<const TradePoint> points) {
   return least == points.end() ? nullptr : &*least;
 }
 
-std::string row(const std::string& error, const std::string& first, const std::string& frame,
-                const std::string& memory, const std::string& settings) {
+std::string trade_row(const std::string& error, const std::string& first, const std::string& frame,
+                      const std::string& memory, const std::string& settings) {
   return fmt::format("{:>6}{:>15}{:>13}{:>12}  {}", error, first, frame, memory, settings);
 }
 
 std::string point_row(const std::string& error, const TradePoint& point) {
-  return row(error, format_seconds(point.first_picture_seconds),
-             fmt::format("{:.0f} ms", 1e3 * point.frame_seconds),
-             format_bytes(point.host_bytes + point.device_bytes), options_text(point.parameters));
+  return trade_row(error, format_seconds(point.first_picture_seconds),
+                   fmt::format("{:.0f} ms", 1e3 * point.frame_seconds),
+                   format_bytes(point.host_bytes + point.device_bytes), options_text(point.parameters));
 }
 
 }  // namespace
@@ -74,12 +74,12 @@ std::string trade_csv(std::span<const TradePoint> points) {
 
 std::vector<std::string> trade_table(std::span<const TradePoint> points) {
   std::vector<std::string> lines{
-      row("error", "first picture", "each frame", "memory", "fastest settings")};
+      trade_row("error", "first picture", "each frame", "memory", "fastest settings")};
   for (const double wanted : wanted_errors) {
     const TradePoint* fastest = fastest_within(points, wanted);
     const std::string error = fmt::format("{:.0f}%", 100 * wanted);
     lines.push_back(fastest ? point_row(error, *fastest)
-                            : row(error, "-", "-", "-", "none of those tried"));
+                            : trade_row(error, "-", "-", "-", "none of those tried"));
   }
   if (const TradePoint* best = most_right(points)) {
     lines.push_back(point_row(fmt::format("{:.1f}%", 100 * best->error.relative_error()), *best) +
