@@ -15,6 +15,7 @@
 
 #include "device/context.hpp"
 #include "device/program_source.hpp"
+#include "tools/command/exit_code.hpp"
 
 namespace {
 
@@ -53,6 +54,6 @@ int main(int count, char** arguments) {
     return probe(count > 1 ? arguments[1] : "run", use_cache);
   } catch (const photile::Error& error) {
     fmt::print(stderr, "photile: {}\n", error.what());
-    return static_cast<int>(error.exit_code());
+    return static_cast<int>(photile::app::exit_code_of(error));
   }
 }

@@ -183,7 +183,7 @@ TEST_CASE("a pool shows the radiance of its closed form, by paths", "[immersed]"
   check_pool(albedo, 0.05, [](const Scene& scene, const auto& cameras, std::uint64_t seed) {
     std::vector<LightLayers> layers;
     for (const Camera& camera : cameras) {
-      layers.push_back(trace_paths(scene, camera, parameters_of(1, 256, seed).film).layers);
+      layers.push_back(trace_paths(scene, camera, eye_rays(parameters_of(1, 256, seed))).layers);
     }
     return layers;
   });
@@ -198,7 +198,7 @@ TEST_CASE("a pool by rays to lamps and by final gathering is the same pool", "[i
   const int gathering_rays = GENERATE(0, 4);
   check_pool(0.5, 0.05, [&](const Scene& scene, const auto& cameras, std::uint64_t seed) {
     RenderParameters parameters = parameters_of(80'000, 144, seed);
-    parameters.film.direct_rays = 1;
+    parameters.direct_rays = 1;
     parameters.final_gather_rays = gathering_rays;
     return by_maps(scene, cameras, parameters);
   });
@@ -247,7 +247,7 @@ TEST_CASE("a box cast in glass looks the same by photon maps and by paths", "[im
     parameters.film.width = parameters.film.height = side;
     const auto maps = render(scene, camera, test::device(), parameters).layers.layers[0];
     parameters.film.samples_per_pixel = 4'000;
-    const auto paths = trace_paths(scene, camera, parameters.film).layers.layers[0];
+    const auto paths = trace_paths(scene, camera, eye_rays(parameters)).layers.layers[0];
     for (std::size_t pixel = 0; pixel < radiance.size(); ++pixel) {
       radiance[pixel].push_back(luminance(maps.radiance[pixel]) / luminance(paths.radiance[pixel]));
       illuminance[pixel].push_back(static_cast<double>(maps.illuminance[pixel]) /

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "tools/command/number_format.hpp"
 #include "tools/command/setting_options.hpp"
 #include "tools/command/version.hpp"
 
