@@ -161,8 +161,8 @@ class SceneCheck {
     for (const auto& [color, most] :
          {std::pair(material.diffuse, 1.0f), std::pair(material.specular, 1.0f),
           std::pair(material.transmission, std::numeric_limits<float>::max())}) {
-      if (std::min({color.x, color.y, color.z}) >= 0 &&
-          std::max({color.x, color.y, color.z}) <= most) {
+      const auto lies_within = [most = most](float part) { return part >= 0 && part <= most; };
+      if (lies_within(color.x) && lies_within(color.y) && lies_within(color.z)) {
         continue;
       }
       refuse(scene_, fmt::format("{} has the colour ({}, {}, {}); reflectances lie in [0, 1]",

@@ -244,8 +244,9 @@ std::uint32_t SceneBuilder::add_distant(Light light, double irradiance) {
   light.kind = LightKind::directional;
   light.power = irradiance;
   constexpr double degrees = 57.29577951308232;
+  constexpr double rounding = 1e-5;  // of 90 degrees in a float of radians
   if (!(light.angular_diameter >= 0) ||
-      light.angular_diameter * degrees > limits::max_sun_diameter_degrees) {
+      light.angular_diameter * degrees > limits::max_sun_diameter_degrees + rounding) {
     impl_->refuse(fmt::format("light '{}' has a disc of {} degrees; at most {} are possible",
                               light.name, light.angular_diameter * degrees,
                               limits::max_sun_diameter_degrees));
