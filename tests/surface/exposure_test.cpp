@@ -50,10 +50,9 @@ TEST_CASE("a floor that is covered by less than half counts as open") {
 }
 
 TEST_CASE("what is higher than a fifth of the radius, or lit from below, covers nothing") {
-  test::SceneBuilder builder;
-  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
-  const auto exposure = [&](float height, bool lit_below) {
-    test::SceneBuilder room = builder;
+  const auto exposure = [](float height, bool lit_below) {
+    test::SceneBuilder room;
+    const std::uint32_t white = room.add(test::diffuse(glm::vec3(0.5f)));
     room.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
     room.grid({0, 0, height}, {1, 0, 0}, {0, 1, 0}, 1, white);
     const Scene scene = room.build();
