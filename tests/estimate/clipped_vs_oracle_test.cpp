@@ -67,6 +67,52 @@ void add_star(Scene& scene, const glm::vec3& centre, const glm::vec3& u, const g
   for (int i = 0; i < corners; ++i) test::add_triangle(scene, centre, corner(i), corner(i + 1));
 }
 
+/// One facet round a slit from `centre` along `u`: the triangle above it has the whole edge, those
+/// below meet in a T-junction on it. And a needle of 6 degrees beside it.
+void add_slit_and_needle(Scene& scene, const glm::vec3& centre, const glm::vec3& u,
+                         const glm::vec3& v) {
+  const auto at = [&](float x, float y) { return centre + x * u + y * v; };
+  test::add_triangle(scene, at(0, 0), at(1, 0), at(0.5f, 1));
+  test::add_triangle(scene, at(0, 0), at(0.5f, 1), at(-1, 0));
+  test::add_triangle(scene, at(0, 0), at(-1, 0), at(0.5f, -1));
+  test::add_triangle(scene, at(0, 0), at(0.5f, -1), at(0.4f, 0));
+  test::add_triangle(scene, at(0.4f, 0), at(0.5f, -1), at(1, 0));
+  test::add_triangle(scene, at(2, 0), at(3, 0), at(3, 0.1f));
+}
+
+/// Each corner of any triangle that lies on another one's border, as a hit on that one.
+void add_hits_on_junctions(PrimaryHits& hits, const Scene& scene) {
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    const auto corners = scene.corners(t);
+    for (int i = 0; i < 3; ++i) {
+      const glm::dvec3 a(corners[i]), b(corners[(i + 1) % 3]);
+      for (const glm::vec3& vertex : scene.vertices) {
+        const glm::dvec3 p(vertex);
+        const double beside = glm::length(glm::cross(p - a, b - a)) / glm::length(b - a);
+        const double along = glm::dot(p - a, b - a) / glm::dot(b - a, b - a);
+        if (beside > 1e-5 || along < 0.01 || along > 0.99) continue;
+        hits.position.push_back(vertex);
+        hits.sided_triangle.push_back(sided(t, 0));
+        hits.diffuse_albedo.emplace_back(0.5f);
+      }
+    }
+  }
+}
+
+/// Each hit again, off its place by each of these lengths towards the middle of its triangle.
+void add_hits_nearby(PrimaryHits& hits, const Scene& scene) {
+  const std::size_t count = hits.position.size();
+  for (const double length : {1e-6, 1e-5, 1e-4, 1e-3}) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [a, b, c] = scene.corners(triangle_of(hits.sided_triangle[i]));
+      const glm::vec3 way = (a + b + c) / 3.0f - hits.position[i];
+      hits.position.push_back(hits.position[i] + static_cast<float>(length) * glm::normalize(way));
+      hits.sided_triangle.push_back(hits.sided_triangle[i]);
+      hits.diffuse_albedo.emplace_back(0.5f);
+    }
+  }
+}
+
 /// Each corner of each triangle, and the middle of each edge, as hits on that triangle.
 PrimaryHits hits_on_vertices_and_edges(const Scene& scene) {
   PrimaryHits hits;
@@ -110,6 +156,20 @@ TEST_CASE("clipped irradiance on vertices and edges to the last bit equals the o
   const Photons photons = test::uniform_photons(scene, 12'000, 51);
   const DensityKernel kernel = GENERATE(DensityKernel::constant, DensityKernel::cone);
   check_clipped(scene, photons, hits_on_vertices_and_edges(scene), 0.2, 50, kernel);
+}
+
+TEST_CASE(
+    "slits, T-junctions and needles are clipped as by the oracle, at and near their corners") {
+  Scene scene = test::empty_scene();
+  add_slit_and_needle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_slit_and_needle(scene, {10, 3, 5}, {0.6f, 0.2f, 0.4f}, {-0.4f, 0.3f, 0.45f});
+  const Photons photons = test::uniform_photons(scene, 12'000, 55);
+  PrimaryHits hits = hits_on_vertices_and_edges(scene);
+  add_hits_on_junctions(hits, scene);
+  REQUIRE(hits.position.size() >= 2 * (6 * 6 + 1));
+  add_hits_nearby(hits, scene);
+  hits.pixel.resize(hits.position.size());
+  check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::constant);
 }
 
 TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode",
