@@ -54,7 +54,8 @@ TEST_CASE("paths and photon maps see the same light in a closed box, away from i
     parameters.radius = 0.1;
     by_photons.push_back(
         tile_mean(render(scene, camera, test::device(), parameters).layers, 0, 0, 0, 16));
-    by_paths.push_back(tile_mean(trace_paths(scene, camera, parameters.film).layers, 0, 0, 0, 16));
+    by_paths.push_back(
+        tile_mean(trace_paths(scene, camera, eye_rays(parameters)).layers, 0, 0, 0, 16));
   }
   CHECK_VERDICT(means_agree(by_photons, by_paths, 0.015 * by_paths[0]));
 }
@@ -72,7 +73,7 @@ TEST_CASE("paths and photon maps see the same light in the living room, light by
     parameters.photons.emitted_photons = 400'000;
     parameters.photons.quota = PhotonQuota::equal;
     const LightLayers photons = render(scene, scene.cameras[0], test::device(), parameters).layers;
-    const LightLayers paths = trace_paths(scene, scene.cameras[0], parameters.film).layers;
+    const LightLayers paths = trace_paths(scene, scene.cameras[0], eye_rays(parameters)).layers;
     for (std::size_t light = 0; light < lights; ++light) {
       by_photons[light].push_back(tile_mean(photons, light, 0, 0, 36));
       by_paths[light].push_back(tile_mean(paths, light, 0, 0, 36));

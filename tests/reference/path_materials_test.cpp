@@ -54,7 +54,7 @@ void check_agreement(const Scene& scene) {
     parameters.photons.emitted_photons = 200'000;
     parameters.radius = 0.1;
     const double photons = mean_radiance(render(scene, camera, test::device(), parameters).layers);
-    const double paths = mean_radiance(trace_paths(scene, camera, parameters.film).layers);
+    const double paths = mean_radiance(trace_paths(scene, camera, eye_rays(parameters)).layers);
     differences.push_back(photons - paths);
     mean += paths / 16;
   }
