@@ -64,15 +64,27 @@ auto& field(auto& owner) {
   }
 }
 
+using Kept = decltype(Setting::kept);
+
 /// A row whose value is a field of the parameters, or of one of their parts.
 template <auto... members>
-Setting row(Setting setting) {
-  setting.value = [](const P& parameters) { return value_of(field<members...>(parameters)); };
-  setting.set = [](P& parameters, const SettingValue& value) {
-    assign(field<members...>(parameters), value);
-  };
-  return setting;
+Setting row(std::string_view name, std::string_view option, std::string_view reader,
+            ValueRange range, std::string_view help, Kept kept, std::string_view otherwise = {},
+            std::string_view unit = {}) {
+  return {.name = name,
+          .unit = unit,
+          .option = option,
+          .reader = reader,
+          .help = help,
+          .otherwise = otherwise,
+          .range = std::move(range),
+          .kept = kept,
+          .value = [](const P& parameters) { return value_of(field<members...>(parameters)); },
+          .set = [](P& parameters,
+                    const SettingValue& value) { assign(field<members...>(parameters), value); }};
 }
+
+constexpr Kept not_kept = nullptr;
 
 std::string kept_as_it_is(const Setting& setting, const RenderParameters& parameters) {
   return fmt::format("{} {}", setting.name, text_with_unit(setting, parameters));
@@ -99,175 +111,86 @@ std::string kept_for_direct_light(const Setting& setting, const RenderParameters
 }
 
 constexpr std::uint64_t most_int = std::numeric_limits<int>::max();
+constexpr std::uint64_t most_seed = std::numeric_limits<std::uint64_t>::max();
 
-std::vector<Setting> picture_settings() {
-  constexpr std::string_view group = "Picture", hits = "primary hits";
+std::vector<Setting> picture_rows() {
+  constexpr std::string_view hits = "primary hits";
   return {
-      row<&P::film, &Film::width>({.name = "width",
-                                   .unit = "pixels",
-                                   .group = group,
-                                   .reader = hits,
-                                   .help = "of the picture",
-                                   .range = WholeNumbers{1, limits::max_image_side}}),
-      row<&P::film, &Film::height>({.name = "height",
-                                    .unit = "pixels",
-                                    .group = group,
-                                    .reader = hits,
-                                    .help = "of the picture",
-                                    .range = WholeNumbers{1, limits::max_image_side}}),
+      row<&P::film, &Film::width>("width", "", hits, WholeNumbers{1, limits::max_image_side},
+                                  "of the picture", not_kept, "", "pixels"),
+      row<&P::film, &Film::height>("height", "", hits, WholeNumbers{1, limits::max_image_side},
+                                   "of the picture", not_kept, "", "pixels"),
       row<&P::film, &Film::samples_per_pixel>(
-          {.name = "samples_per_pixel",
-           .option = "samples",
-           .group = group,
-           .reader = hits,
-           .help = "primary rays per pixel, over all passes; at least one in each",
-           .range = WholeNumbers{1, limits::max_samples_per_pixel}}),
-      row<&P::seed>({.name = "seed",
-                     .option = "seed",
-                     .group = group,
-                     .reader = "all",
-                     .help = "the same seed gives the same picture",
-                     .range = WholeNumbers{0, std::numeric_limits<std::uint64_t>::max()},
-                     .kept = kept_as_it_is}),
-      row<&P::max_specular_depth>({.name = "max_specular_depth",
-                                   .group = group,
-                                   .reader = hits,
-                                   .help = "mirrors and glass that a ray from the eye follows",
-                                   .range = WholeNumbers{0, 1'000'000}}),
+          "samples_per_pixel", "samples", hits, WholeNumbers{1, limits::max_samples_per_pixel},
+          "primary rays per pixel, over all passes; at least one in each", not_kept),
+      row<&P::seed>("seed", "seed", "all", WholeNumbers{0, most_seed},
+                    "the same seed gives the same picture", kept_as_it_is),
+      row<&P::max_specular_depth>("max_specular_depth", "", hits, WholeNumbers{0, 1'000'000},
+                                  "mirrors and glass that a ray from the eye follows", not_kept),
   };
 }
 
 std::vector<Setting> photon_rows() {
-  constexpr std::string_view group = "Photons", paths = "trace photons";
+  constexpr std::string_view paths = "trace photons";
   return {
       row<&P::photons, &PhotonPaths::emitted_photons>(
-          {.name = "photons_emitted",
-           .option = "photons",
-           .group = group,
-           .reader = paths,
-           .help = "paths over all lights",
-           .range = WholeNumbers{limits::min_photons, limits::max_emitted_photons},
-           .kept = kept_as_it_is}),
+          "photons_emitted", "photons", paths,
+          WholeNumbers{limits::min_photons, limits::max_emitted_photons}, "paths over all lights",
+          kept_as_it_is),
       row<&P::photons, &PhotonPaths::quota>(
-          {.name = "quota",
-           .option = "quota",
-           .group = group,
-           .reader = paths,
-           .help = "how the lights share the paths: by power, equally, or half by each",
-           .range = words_of(all_photon_quotas),
-           .kept = kept_as_it_is}),
+          "quota", "quota", paths, words_of(all_photon_quotas),
+          "how the lights share the paths: by power, equally, or half by each", kept_as_it_is),
       row<&P::photons, &PhotonPaths::max_path_length>(
-          {.name = "max_path_length",
-           .group = group,
-           .reader = paths,
-           .help = "surfaces that a photon meets at most",
-           .range = WholeNumbers{1, most_int},
-           .kept = kept_as_it_is}),
+          "max_path_length", "", paths, WholeNumbers{1, most_int},
+          "surfaces that a photon meets at most", kept_as_it_is),
       row<&P::photons, &PhotonPaths::roulette_start>(
-          {.name = "roulette_start",
-           .group = group,
-           .reader = paths,
-           .help = "first bounce at which a path may end by chance",
-           .range = WholeNumbers{1, most_int},
-           .kept = kept_as_it_is}),
-      row<&P::passes>({.name = "passes",
-                       .option = "passes",
-                       .group = group,
-                       .reader = "all",
-                       .help = "photon passes, each of its share of the paths",
-                       .otherwise = "as many as the host's memory asks for",
-                       .range = WholeNumbers{1, limits::max_passes}}),
+          "roulette_start", "", paths, WholeNumbers{1, most_int},
+          "first bounce at which a path may end by chance", kept_as_it_is),
+      row<&P::passes>("passes", "passes", "all", WholeNumbers{1, limits::max_passes},
+                      "photon passes, each of its share of the paths", not_kept,
+                      "as many as the host's memory asks for"),
   };
 }
 
 std::vector<Setting> estimate_rows() {
-  constexpr std::string_view group = "Estimate", estimate = "radiance estimate";
+  constexpr std::string_view estimate = "radiance estimate", groups = "neighbour groups",
+                             build = "build photon maps";
   return {
-      row<&P::neighbours>({.name = "neighbours",
-                           .option = "k,neighbours",
-                           .group = group,
-                           .reader = estimate,
-                           .help = "photons of an estimate",
-                           .range = WholeNumbers{1, limits::max_neighbours},
-                           .kept = kept_for_radius}),
+      row<&P::neighbours>("neighbours", "k,neighbours", estimate,
+                          WholeNumbers{1, limits::max_neighbours}, "photons of an estimate",
+                          kept_for_radius),
       row<&P::least_neighbours>(
-          {.name = "least_neighbours",
-           .option = "least-neighbours",
-           .group = group,
-           .reader = estimate,
-           .help =
-               "each hit has its own number of neighbours, from this one up, as its bias allows",
-           .otherwise = "all hits have the same",
-           .range = WholeNumbers{1, limits::max_neighbours}}),
-      row<&P::radius>({.name = "radius",
-                       .unit = "m",
-                       .option = "radius",
-                       .group = group,
-                       .reader = "neighbour groups",
-                       .help = "no photon farther away counts",
-                       .otherwise = "twice the median distance to the k-th photon",
-                       .range = PositiveNumbers{},
-                       .kept = kept_if_given}),
-      row<&P::angle_degrees>({.name = "angle_degrees",
-                              .unit = "degrees",
-                              .option = "angle",
-                              .group = group,
-                              .reader = "neighbour groups",
-                              .help = "largest angle between the normals of a group",
-                              .range = Numbers{0, 180},
-                              .kept = kept_as_it_is}),
-      row<&P::area>(
-          {.name = "area",
-           .option = "area",
-           .group = group,
-           .reader = "surface index",
-           .help = "that photons are divided by; disc: dark borders and corners, all that naive "
-                   "maps have",
-           .range = words_of(all_area_modes)}),
-      row<&P::kernel>(
-          {.name = "kernel",
-           .option = "kernel",
-           .group = group,
-           .reader = estimate,
-           .help = "that photons are weighted by; cone, epanechnikov: less blur, more noise",
-           .range = words_of(all_density_kernels)}),
-      row<&P::maps>({.name = "maps",
-                     .option = "maps",
-                     .group = group,
-                     .reader = "neighbour groups",
-                     .help = "naive: dark edges; patch: triangles share maps",
-                     .range = words_of(all_map_modes),
-                     .kept = kept_as_it_is}),
-      row<&P::structure>({.name = "structure",
-                          .option = "structure",
-                          .group = group,
-                          .reader = "build photon maps",
-                          .help = "how photons are found; same neighbours",
-                          .range = words_of(all_map_structures),
-                          .kept = kept_for_tree}),
-      row<&P::photons_per_cell>({.name = "photons_per_cell",
-                                 .option = "photons-per-cell",
-                                 .group = group,
-                                 .reader = "build photon maps",
-                                 .help = "fineness of the grids",
-                                 .range = PositiveNumbers{}}),
+          "least_neighbours", "least-neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
+          "each hit has its own number of neighbours, from this one up, as its bias allows",
+          not_kept, "all hits have the same"),
+      row<&P::radius>("radius", "radius", groups, PositiveNumbers{},
+                      "no photon farther away counts", kept_if_given,
+                      "twice the median distance to the k-th photon", "m"),
+      row<&P::angle_degrees>("angle_degrees", "angle", groups, Numbers{0, 180},
+                             "largest angle between the normals of a group", kept_as_it_is, "",
+                             "degrees"),
+      row<&P::area>("area", "area", "surface index", words_of(all_area_modes),
+                    "that photons are divided by; disc: dark borders and corners, all that naive "
+                    "maps have",
+                    not_kept),
+      row<&P::kernel>("kernel", "kernel", estimate, words_of(all_density_kernels),
+                      "that photons are weighted by; cone, epanechnikov: less blur, more noise",
+                      not_kept),
+      row<&P::maps>("maps", "maps", groups, words_of(all_map_modes),
+                    "naive: dark edges; patch: triangles share maps", kept_as_it_is),
+      row<&P::structure>("structure", "structure", build, words_of(all_map_structures),
+                         "how photons are found; same neighbours", kept_for_tree),
+      row<&P::photons_per_cell>("photons_per_cell", "photons-per-cell", build, PositiveNumbers{},
+                                "fineness of the grids", not_kept),
       row<&P::direct_rays>(
-          {.name = "direct_rays",
-           .option = "direct-rays",
-           .group = group,
-           .reader = "primary hits",
-           .help = "looks at lamps from a hit, which leave light straight from lamps to rays",
-           .otherwise = "photons bring it; one look where rays gather",
-           .range = WholeNumbers{1, limits::max_direct_rays},
-           .kept = kept_for_direct_light}),
+          "direct_rays", "direct-rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
+          "looks at lamps from a hit, which leave light straight from lamps to rays",
+          kept_for_direct_light, "photons bring it; one look where rays gather"),
       row<&P::final_gather_rays>(
-          {.name = "final_gather_rays",
-           .option = "final-gather",
-           .group = group,
-           .reader = "final gather",
-           .help = "rays from each hit that gather the light of other surfaces; direct light by "
-                   "rays",
-           .range = WholeNumbers{0, limits::max_final_gather_rays}}),
+          "final_gather_rays", "final-gather", "final gather",
+          WholeNumbers{0, limits::max_final_gather_rays},
+          "rays from each hit that gather the light of other surfaces; direct light by rays",
+          not_kept),
   };
 }
 
@@ -280,10 +203,14 @@ bool Setting::is_given(const RenderParameters& parameters) const {
 
 std::span<const Setting> settings() {
   static const std::vector<Setting> table = [] {
-    std::vector<Setting> rows = picture_settings();
-    for (const auto& more : {photon_rows(), estimate_rows()}) {
+    std::vector<Setting> rows;
+    const auto append = [&](std::string_view group, std::vector<Setting> more) {
+      for (Setting& setting : more) setting.group = group;
       rows.insert(rows.end(), more.begin(), more.end());
-    }
+    };
+    append("Picture", picture_rows());
+    append("Photons", photon_rows());
+    append("Estimate", estimate_rows());
     return rows;
   }();
   return table;
