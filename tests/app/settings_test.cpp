@@ -1,4 +1,5 @@
 // Every setting of the table is an option, in the records of a run, and in the documentation.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
