@@ -29,6 +29,17 @@ EXTREMES = ("estimate", "extremes: photons within*")
 PATHS = (("reference", "~[slow]"),)
 
 MUTANTS = (
+    # Light maps
+    Mutant("light maps split nothing", "host/light_maps/light_maps.cpp",
+           "return high - low > high * (parameters.contrast + noise);", "return false;",
+           (("light_maps", "Cells are split where light varies*"),)),
+    Mutant("weights of neighbouring nodes swapped", "host/light_maps/tiles.hpp",
+           "within.x * (1 - within.y),", "(1 - within.x) * within.y,",
+           (("light_maps", "Light maps give back light that varies linearly*"),)),
+    Mutant("estimates at nodes depend on those before", "host/render/rendering.cpp",
+           "tuning.hits_per_item = 1;", "",
+           (("light_maps", "What was looked at before changes no bit of a picture"),)),
+
     # Physics of photons
     Mutant("k for k - 1", "kernels/estimate/estimate_hit.clh",
            "if (k > 1) return smallest_lane(beyond);", "",

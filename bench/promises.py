@@ -33,7 +33,7 @@ INTERIORS = ("kitchen", "classroom")
 SIZE = "256x192"
 ERRORS = (0.3, 0.2)
 BUDGETS = (0.5,)  # seconds
-FRAME_STAGES = ("primary hits", "radiance estimate", "film")
+FRAME_STAGES = ("primary hits", "light maps", "radiance estimate", "film")
 
 
 def arguments():

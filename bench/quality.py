@@ -116,8 +116,9 @@ def photile(command, scene, size, folder, options):
     costs = {"first": first}
     if frame_processor is not None:
         costs["frame"] = {"processor": frame_processor,
-                          "seconds": sum(stages[stage] for stage in
-                                         ("primary hits", "radiance estimate", "film"))}
+                          "seconds": sum(stages.get(stage, 0) for stage in
+                                         ("primary hits", "light maps", "radiance estimate",
+                                          "film"))}
     return picture_error.read_picture(picture), costs
 
 

@@ -145,13 +145,15 @@ Photons traced_photons(const RayScene& rays, std::uint64_t count) {
   return trace_photons(rays, parameters).photons;
 }
 
-std::optional<Scene> classroom() {
+std::optional<Scene> shared_interior(const std::string& name) {
   const char* folder = std::getenv("PHOTILE_SHARED_SCENES");
   const std::filesystem::path file =
       std::filesystem::path(folder ? folder : PHOTILE_SOURCE_DIR "/../shared/scenes") /
-      "classroom/classroom-diffuse.gltf";
+      name / (name + "-diffuse.gltf");
   if (!std::filesystem::exists(file)) return std::nullopt;
   return load_scene(file);
 }
+
+std::optional<Scene> classroom() { return shared_interior("classroom"); }
 
 }  // namespace photile::bench

@@ -59,8 +59,9 @@ PrimaryHits in_map_order(const PrimaryHits& hits, const NeighbourGroups& groups)
 /// About `count` stored photons: from as many paths as a probe says leave so many.
 Photons traced_photons(const RayScene& rays, std::uint64_t count);
 
-/// The classroom of the shared scenes (PHOTILE_SHARED_SCENES, else ../shared/scenes beside the
-/// repository), diffuse; nothing where that folder is missing.
+/// An interior of the shared scenes (PHOTILE_SHARED_SCENES, else ../shared/scenes beside the
+/// repository), "classroom" or "kitchen", diffuse; nothing where that folder is missing.
+std::optional<Scene> shared_interior(const std::string& name);
 std::optional<Scene> classroom();
 
 /// Diffuse, half of the light reflected.

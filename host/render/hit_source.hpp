@@ -22,6 +22,9 @@ class HitSource {
                                 int first_row, int last_row,
                                 std::span<const std::uint32_t> map_of) const = 0;
 
+  /// Whether light maps pay: hits lie so close that many share nodes.
+  virtual bool dense() const { return false; }
+
   /// Whether somebody watches the film fill: renderers then finish fewer rows at a time.
   virtual bool watched() const { return false; }
   /// Rows [first, last) of the film are as far as they will be for a while: `share` of their light
@@ -32,6 +35,7 @@ class HitSource {
 class CameraHits : public HitSource {
  public:
   explicit CameraHits(const Camera& camera) : camera_(camera) {}
+  bool dense() const override { return true; }
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
 

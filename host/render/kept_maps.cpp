@@ -48,6 +48,14 @@ RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progr
   return impl_->render(CameraHits(camera), film, progress);
 }
 
+std::size_t SceneRenderer::draw(const Camera& camera, int width, int height,
+                                std::span<const glm::vec3> powers, int rounds,
+                                std::span<glm::vec3> picture, Progress& progress) {
+  return impl_->frames().draw(camera, width, height, powers, rounds, picture, progress);
+}
+
+bool SceneRenderer::draws() const { return impl_->reads_light_maps(); }
+
 RenderResult SceneRenderer::render_reflections(const Camera& camera, const Film& film,
                                                Progress& progress) {
   return impl_->render(ReflectedHits(camera), film, progress);

@@ -13,6 +13,10 @@ class KeptMaps {
 
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress);
 
+  /// Quick pictures, where light maps are read.
+  LightMapFrames& frames() { return rendering_.frames(); }
+  bool reads_light_maps() const { return rendering_.plan().reads_light_maps(); }
+
  private:
   const PreparedScene scene_;
   Rendering rendering_;

@@ -25,8 +25,8 @@ void StageCost::add(double more_seconds, std::uint64_t more_host_bytes,
 }
 
 void RenderCosts::start_picture() {
-  hits = gather = estimate = film = {};
-  rays = gather_rays = hit_count = 0;
+  hits = gather = light_maps = estimate = film = {};
+  rays = gather_rays = light_map_nodes = hit_count = 0;
   estimate_compile_seconds = 0;
 }
 
@@ -59,11 +59,14 @@ RunStatistics RenderCosts::statistics() const {
                             {"rays per second", number(gather_rays) / gather.seconds},
                             {"caustic photons", number(caustic_photons)}}));
   }
+  if (light_maps.seconds > 0) {
+    stages.push_back(stage("light maps", light_maps, {{"new nodes", number(light_map_nodes)}}));
+  }
   std::vector<std::pair<std::string, double>> estimate_figures{
       {"hits", number(hit_count)},
       {"kernel compilation seconds", estimate_compile_seconds},
-      {"microseconds per hit", 1e6 * (estimate.seconds - estimate_compile_seconds) /
-                                   std::max(1.0, number(hit_count))}};
+      {"microseconds per hit",
+       1e6 * (estimate.seconds - estimate_compile_seconds) / std::max(1.0, number(hit_count))}};
   estimate_figures.insert(estimate_figures.end(), shares.begin(), shares.end());
   stages.push_back(stage("radiance estimate", estimate, std::move(estimate_figures)));
   stages.push_back(stage("film", film));

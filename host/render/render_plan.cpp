@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/radius_range.hpp"
+#include "render/light_map_estimates.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
@@ -38,6 +39,10 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
   check(asked);
   if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
+  if (asked.light_maps == LightMapMode::automatic) {
+    const bool at_hits = gathers() || asked.maps == MapMode::naive;
+    used_.light_maps = at_hits ? LightMapMode::off : LightMapMode::on;
+  }
   // Beyond the scene there is nothing to find.
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
   if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
@@ -90,6 +95,13 @@ std::vector<EstimateParameters> RenderPlan::estimates(
                       .surface = surface});
   }
   return levels;
+}
+
+LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const Photons& photons,
+                                          std::span<const double> powers) const {
+  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
+  return light_map_parameters(photons, estimate.neighbours, estimate.radius, used_.angle_degrees,
+                              used_.light_map_detail, powers);
 }
 
 PrimaryHitParameters RenderPlan::hits(const Film& film, int pass) const {

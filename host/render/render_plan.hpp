@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "photile/estimator.hpp"
@@ -28,6 +29,7 @@ class RenderPlan {
 
   int passes() const { return used_.passes; }
   bool gathers() const { return used_.final_gather_rays > 0; }
+  bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
   bool clips_areas() const { return used_.area == AreaMode::clipped; }
 
   /// Of this pass, whose paths follow those of the passes before.
@@ -45,6 +47,11 @@ class RenderPlan {
   ///   surface   where areas are clipped, else null
   std::vector<EstimateParameters> estimates(
       int pass, const std::shared_ptr<const SurfaceIndex>& surface) const;
+
+  /// Of light maps from the photons of this pass.
+  ///   powers   per layer
+  LightMapParameters light_maps(int pass, double first_radius, const Photons& photons,
+                                std::span<const double> powers) const;
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "photile/errors.hpp"
 #include "render/film.hpp"
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
@@ -16,6 +17,15 @@ namespace {
 std::int64_t hits_per_batch(int neighbours) {
   return (std::int64_t{1} << 20) * defaults::neighbours /
          std::max(defaults::neighbours, neighbours);
+}
+
+/// Where nodes of light maps are estimated, which must not depend on each other: work-items that
+/// estimate several hits make use of one for the next, whose sums then have another order.
+EstimateTuning each_alone(const std::optional<EstimateTuning>& given, const Device& device) {
+  EstimateTuning tuning = given.value_or(shipped_tuning(device.info()));
+  tuning.strategy = EstimateStrategy::select;
+  tuning.hits_per_item = 1;
+  return tuning;
 }
 
 /// Least number of batches of a picture that somebody watches.
@@ -48,10 +58,17 @@ void Rendering::start(const Film& film) {
 }
 
 void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {
+  frames_.reset();
+  light_maps_.reset();
   photons_.reset();
   caustics_.reset();
   Maps maps = trace_and_build(pass, prepared, keep);
-  const std::vector<EstimateParameters> levels = plan_.estimates(pass, surface_);
+  std::vector<EstimateParameters> levels = plan_.estimates(pass, surface_);
+  if (plan_.reads_light_maps()) {
+    for (EstimateParameters& level : levels) {
+      level.tuning = each_alone(level.tuning, devices_.front());
+    }
+  }
   const auto estimators_of = [&](std::vector<PhotonMaps>& built) {
     return MapEstimators(devices_, scene_, std::move(built), levels, layer_powers_);
   };
@@ -115,6 +132,9 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
     radius_ = prepared ? prepared->radius : plan_.radius(traced.photons);
     find_groups(traced.photons, prepared);  // once: no later radius is larger
     find_surface(traced.photons);
+  }
+  if (plan_.reads_light_maps()) {
+    light_map_parameters_ = plan_.light_maps(pass, radius_, traced.photons, layer_powers_);
   }
   if (keep) {
     PreparedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
@@ -185,15 +205,18 @@ int Rendering::rows_per_batch(const HitSource& source) const {
                                     (film_.samples_per_pixel / film_.passes) *
                                     std::max(1, plan_.used().final_gather_rays);
   const int most = source.watched() ? (film_.height - 1) / watched_batches + 1 : film_.height;
+  // Where light maps are read, only their nodes take long.
+  const int neighbours = reads_light_maps(source) ? defaults::neighbours : plan_.used().neighbours;
   return static_cast<int>(
-      std::clamp<std::int64_t>(hits_per_batch(plan_.used().neighbours) / hits_per_row, 1, most));
+      std::clamp<std::int64_t>(hits_per_batch(neighbours) / hits_per_row, 1, most));
 }
 
 void Rendering::add_rows(const HitSource& source, int first, int last) {
   const Stopwatch hit_watch;
   const PrimaryHitBatch batch = source.trace(rays_, film_, first, last, photons_->map_of());
   costs_.hits.add(hit_watch.seconds());
-  const Estimates estimates = estimate(batch.hits, first, last);
+  const Estimates estimates =
+      reads_light_maps(source) ? read_light_maps(batch.hits) : estimate(batch.hits, first, last);
   const Stopwatch film_watch;
   add_to_film(layers_, batch, estimates, 1.0f / static_cast<float>(film_.samples_per_pixel));
   costs_.film.add(film_watch.seconds());
@@ -219,6 +242,32 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
   costs_.estimate_compile_seconds += compile_seconds() - compiled;
   costs_.gather_rays += gather.costs().rays;
   costs_.hit_count += gather.costs().estimated;
+  return estimates;
+}
+
+LightMapEstimates& Rendering::light_maps() {
+  if (!light_maps_) light_maps_.emplace(scene_, light_map_parameters_, *photons_);
+  return *light_maps_;
+}
+
+LightMapFrames& Rendering::frames() {
+  if (!frames_) frames_.emplace(rays_, light_maps().maps(), light_maps().source());
+  return *frames_;
+}
+
+Estimates Rendering::read_light_maps(const PrimaryHits& hits) {
+  const Stopwatch stopwatch;
+  LightMapEstimates& light_maps = this->light_maps();
+  const std::uint64_t alone_before = light_maps.hits_alone();
+  const std::uint64_t nodes_before = light_maps.maps().statistics().nodes;
+  const double filled_before = light_maps.fill_seconds();
+  Estimates estimates = light_maps.estimate(hits, *progress_);
+  const LightMapStatistics maps = light_maps.maps().statistics();
+  const double fill_seconds = light_maps.fill_seconds() - filled_before;
+  costs_.light_maps.add(fill_seconds, maps.value_bytes + maps.index_bytes);
+  costs_.light_map_nodes += maps.nodes - nodes_before;
+  costs_.estimate.add(stopwatch.seconds() - fill_seconds);
+  costs_.hit_count += light_maps.hits_alone() - alone_before;
   return estimates;
 }
 

@@ -11,6 +11,8 @@
 #include "photile/scene_renderer.hpp"
 #include "photile/surface_index.hpp"
 #include "render/hit_source.hpp"
+#include "render/light_map_estimates.hpp"
+#include "render/light_map_frames.hpp"
 #include "render/map_estimators.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
@@ -49,6 +51,9 @@ class Rendering {
   /// Adds what is seen by the photons of the prepared pass.
   void add_pass(const HitSource& source);
 
+  /// Quick pictures from the light maps of the prepared pass; the plan reads light maps.
+  LightMapFrames& frames();
+
   /// The picture since `start`.
   RenderResult finish();
 
@@ -67,6 +72,11 @@ class Rendering {
   int rows_per_batch(const HitSource& source) const;
   void add_rows(const HitSource& source, int first, int last);
   Estimates estimate(const PrimaryHits& hits, int first_row, int last_row);
+  bool reads_light_maps(const HitSource& source) const {
+    return plan_.reads_light_maps() && source.dense();
+  }
+  LightMapEstimates& light_maps();
+  Estimates read_light_maps(const PrimaryHits& hits);
   double compile_seconds() const;
 
   const RayScene& rays_;
@@ -82,6 +92,9 @@ class Rendering {
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
   const std::vector<double> layer_powers_;
   std::optional<MapEstimators> photons_, caustics_;  ///< of the pass
+  LightMapParameters light_map_parameters_;
+  std::optional<LightMapEstimates> light_maps_;  ///< of the pass, made when they are first read
+  std::optional<LightMapFrames> frames_;         ///< of these light maps
   int pass_ = 0;
   std::vector<double> shares_;
   RenderCosts costs_;

@@ -18,6 +18,7 @@ const auto& all_values(MapMode) { return all_map_modes; }
 const auto& all_values(MapStructure) { return all_map_structures; }
 const auto& all_values(AreaMode) { return all_area_modes; }
 const auto& all_values(DensityKernel) { return all_density_kernels; }
+const auto& all_values(LightMapMode) { return all_light_map_modes; }
 const auto& all_values(PhotonQuota) { return all_photon_quotas; }
 
 template <class Values>
@@ -191,6 +192,14 @@ std::vector<Setting> estimate_rows() {
           WholeNumbers{0, limits::max_final_gather_rays},
           "rays from each hit that gather the light of other surfaces; direct light by rays",
           not_kept),
+      row<&P::light_maps>("light_maps", "light-maps", "light maps", words_of(all_light_map_modes),
+                          "matt surfaces are read between nodes; auto: but where rays gather, and "
+                          "not with naive maps; off: an estimate at each hit",
+                          not_kept),
+      row<&P::light_map_detail>("light_map_detail", "light-map-detail", "light maps",
+                                PositiveNumbers{},
+                                "between the finest nodes of light maps, at most", not_kept,
+                                "an eighth of the coarsest, by the photons", "m"),
   };
 }
 
@@ -245,6 +254,11 @@ void check(const RenderParameters& parameters) {
     if (setting.name == "least_neighbours" && parameters.least_neighbours > parameters.neighbours) {
       throw SettingError(setting, fmt::format("{} is more than the {} neighbours",
                                               parameters.least_neighbours, parameters.neighbours));
+    }
+    if (setting.name == "light_maps" && parameters.light_maps == LightMapMode::on &&
+        parameters.final_gather_rays > 0) {
+      throw SettingError(setting,
+                         "light maps hold the photon estimate, which rays that gather replace");
     }
     if (setting.name == "structure" && parameters.structure == MapStructure::kdtree_global &&
         parameters.maps == MapMode::naive) {

@@ -10,6 +10,7 @@
 #include "photile/estimate_tuning.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/light_maps.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/photon_tracer.hpp"
@@ -66,6 +67,8 @@ struct RenderParameters {
   /// up where they end; at the hit itself only caustics are (docs/final-gathering.md). 0 = all
   /// light is looked up at the hit.
   int final_gather_rays = 0;
+  LightMapMode light_maps = LightMapMode::off;  ///< see docs/light-maps.md
+  double light_map_detail = 0;  ///< metres between the finest nodes, at most; 0 = by the photons
 };
 
 /// The rays of a whole picture by these parameters, as trace_paths takes them.

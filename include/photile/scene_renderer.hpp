@@ -36,6 +36,19 @@ class SceneRenderer {
   RenderResult render(const Camera& camera, const Film& film,
                       Progress& progress = Progress::none());
 
+  /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a pixel,
+  /// glossy surfaces as if they were matt (host/render/light_map_frames.hpp). For parameters that
+  /// ask for light maps.
+  ///   powers    per layer: power x tint
+  ///   rounds    levels of missing nodes that are valued first, where pixels need them
+  ///   picture   width x height, linear RGB radiance
+  /// Returns how many pixels show a coarser level than they should.
+  std::size_t draw(const Camera& camera, int width, int height, std::span<const glm::vec3> powers,
+                   int rounds, std::span<glm::vec3> picture, Progress& progress = Progress::none());
+
+  /// Whether `draw` has light maps to draw from.
+  bool draws() const;
+
   /// The part of that picture which comes by a mirror, by glass that bends or reflects it, or by a
   /// glossy lobe.
   RenderResult render_reflections(const Camera& camera, const Film& film,

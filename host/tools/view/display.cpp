@@ -21,8 +21,11 @@ Image root_of(const Frame& frame, const LightMix& mix) {
   Image image;
   image.width = frame.layers.width;
   image.height = frame.layers.height;
-  std::vector<glm::vec3> rgb(image.pixels());
-  combine_layers(frame.layers, mix, rgb);
+  std::vector<glm::vec3> rgb = frame.mixed;
+  if (rgb.empty()) {
+    rgb.resize(image.pixels());
+    combine_layers(frame.layers, mix, rgb);
+  }
   for (int channel = 0; channel < 3; ++channel) {
     std::vector<float>& plane = image.add(std::string(1, "RGB"[channel]));
     for (std::size_t pixel = 0; pixel < rgb.size(); ++pixel) plane[pixel] = rgb[pixel][channel];
@@ -56,6 +59,14 @@ double lux_of(const MixedLight& light, const LightMix& mix) {
 
 }  // namespace
 
+std::vector<glm::vec3> scales_of(const LightMix& mix) {
+  std::vector<glm::vec3> scales;
+  for (const MixedLight& light : mix.lights) {
+    scales.emplace_back(light.power * glm::dvec3(light.tint));
+  }
+  return scales;
+}
+
 std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& mix) {
   const auto width = static_cast<std::size_t>(layers.width);
   std::vector<float> result(width * static_cast<std::size_t>(layers.height));
@@ -71,7 +82,9 @@ std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& 
 }
 
 DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings) {
-  if (settings.mode == DisplayMode::illuminance) return false_coloured(frame, mix, settings);
+  if (settings.mode == DisplayMode::illuminance && frame.mixed.empty()) {
+    return false_coloured(frame, mix, settings);
+  }
   DisplayedFrame result = tone_mapped(root_of(frame, mix), settings.exposure);
   // The first frames of the mode may still be without.
   if (settings.mode == DisplayMode::glare && frame.reflections) {
@@ -88,7 +101,8 @@ double automatic_stops(const Frame& frame, const LightMix& mix) {
 
 std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, int x, int y) {
   std::vector<LightReading> readings(mix.lights.size());
-  if (x < 0 || y < 0 || x >= frame.layers.width || y >= frame.layers.height) return readings;
+  if (!frame.mixed.empty() || x < 0 || y < 0 || x >= frame.layers.width || y >= frame.layers.height)
+    return readings;
   // A layer holds the light of power 1: times paths it is as the number of photons.
   std::vector<double> photons(mix.lights.size());
   for_each_light(frame.layers, static_cast<std::size_t>(x), static_cast<std::size_t>(y),

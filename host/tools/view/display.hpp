@@ -43,6 +43,9 @@ double automatic_stops(const Frame& frame, const LightMix& mix);
 /// Illuminance of the surface that each pixel sees, lux.
 std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& mix);
 
+/// Power x tint of each layer: what quick frames are mixed by.
+std::vector<glm::vec3> scales_of(const LightMix& mix);
+
 /// What one light gives to a pixel.
 struct LightReading {
   measuring::Measured luminance;    ///< cd/m2 or W/(m2 sr)
@@ -52,7 +55,7 @@ struct LightReading {
 /// Per light of the mix, at a pixel of the frame. Standard errors are those of photons that fall
 /// independently of each other: 1 / sqrt(n) of a reading by n photons, where the photons of an
 /// estimate are shared out as the lights' readings and paths have them. What an estimate blurs is
-/// not in them. Errors: none; pixels outside read 0.
+/// not in them. Errors: none; pixels outside, and all of a quick frame, read 0.
 std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, int x, int y);
 
 /// The readings of all lights together.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,7 +25,9 @@ struct EstimateNoise {
 };
 
 struct Frame {
-  LightLayers layers;
+  LightLayers layers;  ///< of a quick frame only width and height
+  /// A quick frame of a moving viewer: the light of all lamps together, linear RGB; else empty.
+  std::vector<glm::vec3> mixed;
   /// The part of it that came by reflection, where it was asked for.
   std::optional<LightLayers> reflections;
   std::shared_ptr<const InspectablePhotons> photons;  ///< of the maps it was estimated from

@@ -71,7 +71,29 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   return true;
 }
 
+/// The whole window, however many nodes are missing: a level of them is valued for each frame, so
+/// that new surface is seen coarsely at once, and the rate does not drop for long.
+std::shared_ptr<const Frame> FrameWorker::draw(const Task& task) {
+  const Stopwatch stopwatch;
+  Frame frame;
+  frame.layers.width = task.request.width;
+  frame.layers.height = task.request.height;
+  frame.mixed.resize(static_cast<std::size_t>(frame.layers.width) *
+                     static_cast<std::size_t>(frame.layers.height));
+  task.maps->renderer->draw(task.request.camera, frame.layers.width, frame.layers.height,
+                            task.request.powers, 1, frame.mixed);
+  frame.photons = task.maps->photons;
+  frame.camera = task.request.camera;
+  frame.emitted_photons = task.maps->emitted_photons;
+  frame.noise = task.maps->noise;
+  frame.seconds = stopwatch.seconds();
+  return std::make_shared<Frame>(std::move(frame));
+}
+
 std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, const Task& task) {
+  if (task.request.moving && !task.request.powers.empty() && task.maps->renderer->draws()) {
+    return draw(task);
+  }
   Film film;
   film.width = task.request.width;
   film.height = task.request.height;
@@ -94,10 +116,16 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   if (std::exchange(timed_maps_, task.maps.get()) == task.maps.get()) {
     size_.record(static_cast<double>(film.width) * film.height * task.samples, seconds);
   }
-  return std::make_shared<Frame>(
-      Frame{std::move(result.layers), std::move(reflections), task.maps->photons,
-            task.request.camera, result.used.film.samples_per_pixel, task.maps->emitted_photons,
-            task.maps->noise, seconds, std::move(result.statistics)});
+  return std::make_shared<Frame>(Frame{std::move(result.layers),
+                                       {},
+                                       std::move(reflections),
+                                       task.maps->photons,
+                                       task.request.camera,
+                                       result.used.film.samples_per_pixel,
+                                       task.maps->emitted_photons,
+                                       task.maps->noise,
+                                       seconds,
+                                       std::move(result.statistics)});
 }
 
 void FrameWorker::work(std::stop_token stop) {

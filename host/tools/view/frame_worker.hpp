@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #include "tools/view/frame.hpp"
 #include "tools/view/frame_size.hpp"
@@ -22,6 +23,9 @@ struct FrameRequest {
   /// whole and get more and more samples.
   bool moving = false;
   bool reflections = false;  ///< asks for Frame::reflections
+  /// Per layer, power x tint: asks for quick frames while the viewer moves, where there are light
+  /// maps. Empty: frames with layers are wanted.
+  std::vector<glm::vec3> powers = {};
 };
 
 /// Renders what was asked for last from the newest maps. A frame in the making is finished while
@@ -57,6 +61,7 @@ class FrameWorker {
   void work(std::stop_token stop);
   bool next_task(std::stop_token stop, Task& task);
   std::shared_ptr<const Frame> render(const std::stop_token& stop, const Task& task);
+  std::shared_ptr<const Frame> draw(const Task& task);
 
   const int most_samples_;
   mutable std::mutex mutex_;

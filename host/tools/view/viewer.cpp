@@ -112,7 +112,10 @@ class Viewer {
         width != asked_width_ || height != asked_height_) {
       // A window that is made small to nothing keeps its last picture.
       if (width > 0 && height > 0) {
-        frames_.show({viewpoint_.camera(), width, height, moving, reflections});
+        // Layers are needed for all but the picture itself.
+        const bool quick = display_.mode == DisplayMode::picture && !display_.photon_map;
+        frames_.show({viewpoint_.camera(), width, height, moving, reflections,
+                      quick ? scales_of(lights_.mix()) : std::vector<glm::vec3>()});
       }
       was_moving_ = moving;
       had_reflections_ = reflections;
@@ -136,6 +139,7 @@ class Viewer {
 
   /// Frames of a moving viewer are too small to be of use elsewhere.
   void show_preview() {
+    if (!frame_->mixed.empty()) return;
     if (frame_->layers.width != window_.width() || frame_->layers.height != window_.height())
       return;
     preview_->picture(frame_->layers, lights_.mix());
@@ -202,7 +206,7 @@ class Viewer {
   }
 
   void keep_frame() {
-    if (!frame_) return;
+    if (!frame_ || !frame_->mixed.empty()) return;
     keep("view", ".exr", [&](const std::filesystem::path& file) {
       write_frame(file, scene_, *frame_, lights_.mix());
     });

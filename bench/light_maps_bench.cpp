@@ -1,0 +1,167 @@
+// Frames from light maps: filling the nodes of a first view, a frame of filled nodes, a step, a
+// look back, and mixing lights.
+#include <cmath>
+#include <random>
+
+#include "light_maps/charts.hpp"
+#include "light_maps/node_mix.hpp"
+#include "photile/photon_tracer.hpp"
+#include "photile/renderer.hpp"
+#include "photile/statistics.hpp"
+#include "render/light_map_estimates.hpp"
+#include "render/light_map_frames.hpp"
+#include "render/neighbour_choice.hpp"
+#include "support/bench_record.hpp"
+#include "support/workload.hpp"
+#include "tools/view/viewpoint.hpp"
+
+namespace {
+
+using namespace photile;
+using namespace photile::bench;
+
+struct Settings {
+  std::uint64_t paths = 4'000'000;
+  int neighbours = 250;
+  std::vector<std::pair<int, int>> sizes{{512, 512}, {1920, 1080}};
+  std::size_t mixed_nodes = 130'000;
+};
+
+/// Where a viewer is who has walked and turned.
+Camera moved(const Scene& scene, double metres, double degrees) {
+  view::Viewpoint viewpoint(scene.cameras.front());
+  viewpoint.turn(glm::radians(degrees), 0);
+  viewpoint.walk(metres, 0, 0);
+  return viewpoint.camera();
+}
+
+void measure_scene(const std::string& name, const Scene& scene, Device& device,
+                   const Settings& settings, const BenchOptions& options, BenchRecord& record) {
+  const RayScene rays(scene);
+  PhotonTracerParameters tracing;
+  tracing.emitted_photons = settings.paths;
+  tracing.quota = PhotonQuota::power;
+  const Photons photons = trace_photons(rays, tracing).photons;
+  const double radius = automatic_radius(photons, settings.neighbours);
+  const NeighbourGroups groups = default_groups(scene, photons, radius);
+  const auto surface = std::make_shared<const SurfaceIndex>(
+      index_surface(scene, landed_on(scene, photons), radius, defaults::group_angle_degrees));
+  EstimateTuning alone = shipped_tuning(device.info());
+  alone.hits_per_item = 1;
+  const EstimateParameters estimate{
+      .neighbours = settings.neighbours, .tuning = alone, .surface = surface};
+  const std::vector<double> powers = layer_powers(scene);
+  std::vector<PhotonMaps> maps;
+  maps.emplace_back(device, scene, photons, groups, PhotonMapParameters{.radius = radius});
+  MapEstimators estimators(std::span(&device, 1), scene, std::move(maps), std::span(&estimate, 1),
+                           powers);
+  const LightMapParameters light_maps = light_map_parameters(
+      photons, settings.neighbours, radius, defaults::group_angle_degrees, 0, powers);
+  std::vector<glm::vec3> scales;
+  for (const double power : powers) scales.emplace_back(power);
+
+  const auto draw = [&](LightMapFrames& frames, const Camera& camera, int width, int height,
+                        int rounds) {
+    std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));
+    const Stopwatch stopwatch;
+    frames.draw(camera, width, height, scales, rounds, picture, Progress::none());
+    return stopwatch.seconds();
+  };
+  {
+    LightMapEstimates warm(scene, light_maps, estimators);  // compiles the kernels
+    LightMapFrames frames(rays, warm.maps(), warm.source());
+    draw(frames, scene.cameras.front(), 32, 32, LightMaps::all_rounds);
+  }
+  LightMapEstimates estimates(scene, light_maps, estimators);
+  LightMapFrames frames(rays, estimates.maps(), estimates.source());
+  const auto [width, height] = settings.sizes.front();
+  const double fill = draw(frames, scene.cameras.front(), width, height, LightMaps::all_rounds);
+  const LightMapStatistics first = estimates.maps().statistics();
+  nlohmann::json row{{"scene", name},
+                     {"paths", settings.paths},
+                     {"stored", photons.size()},
+                     {"k", settings.neighbours},
+                     {"spacing", estimates.maps().charts().spacing()},
+                     {"levels", light_maps.levels},
+                     {"charts", first.charts},
+                     {"chart seconds", first.chart_seconds},
+                     {"first view seconds", fill},
+                     {"nodes", first.nodes},
+                     {"tiles", first.tiles},
+                     {"lights", powers.size()},
+                     {"value bytes a light", first.value_bytes / powers.size()},
+                     {"index bytes", first.index_bytes}};
+  for (const auto& [w, h] : settings.sizes) {
+    draw(frames, scene.cameras.front(), w, h, LightMaps::all_rounds);
+    const Timing timing = measure_returned(
+        options.repeats, [&] { return draw(frames, scene.cameras.front(), w, h, 0); });
+    row[std::to_string(w) + "x" + std::to_string(h)] = to_json(timing);
+  }
+  const auto look = [&](const char* what, double metres, double degrees) {
+    const std::uint64_t before = estimates.maps().statistics().nodes;
+    const double seconds =
+        draw(frames, moved(scene, metres, degrees), width, height, LightMaps::all_rounds);
+    row[what] = {{"seconds", seconds}, {"nodes", estimates.maps().statistics().nodes - before}};
+  };
+  look("step of 5 cm and 2 degrees", 0.05, 2);
+  look("turn of 40 degrees", 0, 40);
+  look("look back", 0, 180);
+  record.add(row);
+}
+
+void measure_mixing(std::size_t nodes, std::size_t lights, const BenchOptions& options,
+                    BenchRecord& record) {
+  Estimates values;
+  values.irradiance.resize(nodes * lights);
+  std::mt19937 random(1);
+  for (glm::vec3& value : values.irradiance) {
+    value = glm::vec3(static_cast<float>(random() & 0xffff) / 65536.0f);
+  }
+  std::vector<glm::vec3> powers(lights, glm::vec3(1.0f));
+  light_maps::NodeMix mixed;
+  const auto mix = [&](bool all) {
+    for (std::size_t i = 0; i < (all ? lights : 1); ++i) powers[i] *= 1.01f;
+    const Stopwatch stopwatch;
+    mixed.mix(values, nodes, powers);
+    return stopwatch.seconds();
+  };
+  mix(true);
+  const Timing all = measure_returned(options.repeats, [&] { return mix(true); });
+  record.add({{"mixed nodes", nodes}, {"lights", lights}, {"all", to_json(all)}});
+}
+
+bool run(BenchOptions& options) {
+  Settings settings;
+  if (options.quick) {
+    settings.paths = 20'000;
+    settings.neighbours = 50;
+    settings.sizes = {{32, 24}};
+    settings.mixed_nodes = 1'000;
+    options.repeats = {1, 1};
+  }
+  BenchRecord record("light_maps", options);
+  Device device({.selector = options.device});
+  record.set_device(device.info());
+  for (const std::size_t lights : {std::size_t{7}, std::size_t{64}, std::size_t{256}}) {
+    measure_mixing(settings.mixed_nodes, lights, options, record);
+  }
+  measure_scene("living room", living_room(), device, settings, options, record);
+  if (!options.quick) {
+    for (const char* name : {"classroom", "kitchen"}) {
+      if (const auto scene = shared_interior(name)) {
+        measure_scene(name, *scene, device, settings, options, record);
+      }
+    }
+  }
+  record.write();
+  return true;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  BenchOptions options;
+  CLI::App command("Frames from light maps", "light_maps");
+  add_options(command, options);
+  return run_bench(command, argument_count, arguments, [&] { return run(options); });
+}

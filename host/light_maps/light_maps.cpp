@@ -1,0 +1,285 @@
+#include "photile/light_maps.hpp"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tsl/robin_map.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "light_maps/charts.hpp"
+#include "light_maps/node_points.hpp"
+#include "light_maps/tiles.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/statistics.hpp"
+
+namespace photile {
+namespace light_maps {
+
+struct NodePlaceHash {
+  std::size_t operator()(const NodePlace& node) const {
+    std::uint64_t hash = (std::uint64_t{node.x} << 32 | node.y) * 0x9E3779B97F4A7C15ull;
+    hash = (hash ^ hash >> 32 ^ node.chart) * 0xD6E8FEB86659FD93ull;
+    return static_cast<std::size_t>(hash ^ hash >> 32);
+  }
+};
+
+namespace {
+
+/// Hits that one task looks up: large enough to make its cost vanish, small enough to share work.
+constexpr std::size_t hits_per_lookup_task = 1024;
+
+/// Places of the finest lattice are counted in 32 bits.
+int levels_that_fit(const Charts& charts, int wanted) {
+  std::uint64_t cells = 1;
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    cells = std::max<std::uint64_t>({cells, charts[i].columns + 8, charts[i].rows + 8});
+  }
+  while (wanted > 1 && cells << (wanted - 1) > std::uint64_t{1} << 31) --wanted;
+  return wanted;
+}
+
+void check(const LightMapParameters& parameters, std::size_t layers) {
+  if (!(parameters.spacing > 0) || !std::isfinite(parameters.spacing)) {
+    throw UsageError(
+        fmt::format("light maps: a spacing of {} m is not a positive number", parameters.spacing));
+  }
+  if (parameters.levels < 1 || parameters.levels > limits::max_light_map_levels) {
+    throw UsageError(fmt::format("light maps: {} levels are not between 1 and {}",
+                                 parameters.levels, limits::max_light_map_levels));
+  }
+  if (parameters.powers.size() != layers) {
+    throw UsageError(fmt::format("light maps: {} powers for {} layers of light",
+                                 parameters.powers.size(), layers));
+  }
+}
+
+}  // namespace
+}  // namespace light_maps
+
+std::string_view name_of(LightMapMode mode) {
+  switch (mode) {
+    case LightMapMode::off:
+      return "off";
+    case LightMapMode::on:
+      return "on";
+    case LightMapMode::automatic:
+      return "auto";
+  }
+  return "unknown";
+}
+
+using light_maps::Charts;
+using light_maps::MissingCell;
+using light_maps::NodePlace;
+using light_maps::NodePlaceHash;
+using light_maps::Tile;
+using light_maps::Tiles;
+
+struct LightMaps::Impl {
+  Impl(const Scene& from, const LightMapParameters& given)
+      : scene(from),
+        needs(needs_of(from)),
+        parameters(given),
+        charts(scene, parameters.spacing, parameters.angle_degrees),
+        levels(light_maps::levels_that_fit(charts, parameters.levels)),
+        tiles(charts) {
+    if (needs.many_lights()) values.first.push_back(0);
+  }
+
+  /// Cells that the hits need next, each once, ascending; leaves those hits in `pending`.
+  std::vector<MissingCell> missing_cells(const PrimaryHits& hits,
+                                         std::vector<std::uint32_t>& pending) const;
+  /// Numbers of the nodes at the corners of cells; new ones are appended to `added`.
+  void number_corners(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
+                      std::vector<NodePlace>& added);
+  /// Takes numbers back.
+  void forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
+              std::span<const NodePlace> added);
+  void value(std::span<const NodePlace> nodes, NodeSource& source);
+  bool differ(const std::array<std::uint32_t, 4>& nodes) const;
+
+  const Scene& scene;
+  const SceneNeeds needs;
+  const LightMapParameters parameters;
+  Charts charts;
+  const int levels;
+  Tiles tiles;
+  tsl::robin_map<NodePlace, std::uint32_t, NodePlaceHash> node_at;
+  Estimates values;             ///< of nodes
+  std::vector<float> together;  ///< per node: luminance of all lights at their powers
+  std::uint64_t cells = 0;
+  double chart_seconds = 0;
+};
+
+std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
+                                                        std::vector<std::uint32_t>& pending) const {
+  struct Found {
+    std::vector<MissingCell> cells;
+    std::vector<std::uint32_t> hits;
+  };
+  const std::size_t tasks =
+      (pending.size() + light_maps::hits_per_lookup_task - 1) / light_maps::hits_per_lookup_task;
+  std::vector<Found> found(tasks);
+  tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+    Found& own = found[task];
+    const std::size_t end = std::min(pending.size(), (task + 1) * light_maps::hits_per_lookup_task);
+    for (std::size_t i = task * light_maps::hits_per_lookup_task; i < end; ++i) {
+      const std::uint32_t hit = pending[i];
+      NodeBlend blend;
+      const auto missing =
+          tiles.find(charts.chart_of()[hits.sided_triangle[hit]], hits.position[hit], blend);
+      if (!missing) continue;
+      own.hits.push_back(hit);
+      if (own.cells.empty() || own.cells.back() != *missing) own.cells.push_back(*missing);
+    }
+    std::sort(own.cells.begin(), own.cells.end());
+    own.cells.erase(std::unique(own.cells.begin(), own.cells.end()), own.cells.end());
+  });
+  std::vector<MissingCell> cells;
+  pending.clear();
+  for (const Found& own : found) {
+    cells.insert(cells.end(), own.cells.begin(), own.cells.end());
+    pending.insert(pending.end(), own.hits.begin(), own.hits.end());
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+void LightMaps::Impl::number_corners(
+    std::span<const std::pair<std::uint32_t, std::uint32_t>> wanted,
+    std::vector<NodePlace>& added) {
+  for (const auto& [index, cell] : wanted) {
+    Tile& tile = tiles[index];
+    const int shift = levels - 1 - static_cast<int>(tile.level);
+    for (std::uint32_t corner = 0; corner < 4; ++corner) {
+      const std::uint32_t x = (cell & 7) + (corner & 1), y = (cell >> 3) + (corner >> 1);
+      std::uint32_t& node = tile.node[y * 9 + x];
+      if (node != none) continue;
+      const NodePlace place{tile.chart, (tile.x + x) << shift, (tile.y + y) << shift};
+      const auto next = static_cast<std::uint32_t>(together.size() + added.size());
+      const auto [entry, is_new] = node_at.insert({place, next});
+      if (is_new) added.push_back(place);
+      node = entry->second;
+    }
+  }
+}
+
+void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
+                             std::span<const NodePlace> added) {
+  for (const NodePlace& place : added) node_at.erase(place);
+  for (const auto& [index, cell] : cells) {
+    for (std::uint32_t& node : tiles[index].node) {
+      if (node != none && node >= together.size()) node = none;
+    }
+  }
+}
+
+void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source) {
+  if (nodes.empty()) return;
+  Estimates estimates =
+      source.irradiance(light_maps::node_points(scene, charts, nodes, levels, needs.glossy));
+  estimates.radiance.clear();
+  const std::size_t lights = parameters.powers.size();
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    double sum = 0;
+    const auto add = [&](std::size_t light, std::size_t i) {
+      sum += parameters.powers[light] * luminance(glm::dvec3(estimates.irradiance[i]));
+    };
+    if (needs.many_lights()) {
+      for (std::size_t i = estimates.first[node]; i < estimates.first[node + 1]; ++i) {
+        add(estimates.light[i], i);
+      }
+    } else {
+      for (std::size_t light = 0; light < lights; ++light) add(light, node * lights + light);
+    }
+    together.push_back(static_cast<float>(sum));
+  }
+  values.append(std::move(estimates));
+}
+
+/// By more than contrast and noise allow.
+bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes) const {
+  double low = together[nodes[0]], high = low;
+  for (const std::uint32_t node : nodes) {
+    low = std::min(low, double{together[node]});
+    high = std::max(high, double{together[node]});
+  }
+  const double full =
+      parameters.sparse_irradiance > 0 ? std::min(1.0, high / parameters.sparse_irradiance) : 1.0;
+  const double noise = 1 / std::sqrt(parameters.neighbours * full);
+  return high - low > high * (parameters.contrast + noise);
+}
+
+LightMaps::LightMaps(const Scene& scene, const LightMapParameters& parameters) {
+  light_maps::check(parameters, needs_of(scene).light_count);
+  const Stopwatch stopwatch;
+  impl_ = std::make_unique<Impl>(scene, parameters);
+  impl_->chart_seconds = stopwatch.seconds();
+}
+
+LightMaps::~LightMaps() = default;
+LightMaps::LightMaps(LightMaps&&) noexcept = default;
+
+void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress& progress,
+                     int rounds) {
+  std::vector<std::uint32_t> pending(hits.size());
+  std::iota(pending.begin(), pending.end(), 0u);
+  Tiles& tiles = impl_->tiles;
+  for (int round = 0; round < rounds; ++round) {
+    progress.throw_if_cancelled();
+    const std::vector<MissingCell> missing = impl_->missing_cells(hits, pending);
+    if (missing.empty()) return;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
+    for (const MissingCell& cell : missing) cells.emplace_back(tiles.tile_of(cell), cell.cell);
+    std::vector<NodePlace> added;
+    impl_->number_corners(cells, added);
+    try {
+      impl_->value(added, source);
+    } catch (...) {
+      impl_->forget(cells, added);
+      throw;
+    }
+    for (const auto& [tile, cell] : cells) {
+      tiles[tile].known |= std::uint64_t{1} << cell;
+      const std::uint32_t first = (cell >> 3) * 9 + (cell & 7);
+      const auto& node = tiles[tile].node;
+      if (static_cast<int>(tiles[tile].level) + 1 < impl_->levels &&
+          impl_->differ({node[first], node[first + 1], node[first + 9], node[first + 10]})) {
+        tiles.split(tile, cell);
+      }
+    }
+    impl_->cells += cells.size();
+  }
+}
+
+bool LightMaps::find(std::uint32_t sided_triangle, const glm::vec3& position,
+                     NodeBlend& blend) const {
+  return !impl_->tiles.find(impl_->charts.chart_of()[sided_triangle], position, blend);
+}
+
+const Charts& LightMaps::charts() const { return impl_->charts; }
+const Tiles& LightMaps::tiles() const { return impl_->tiles; }
+
+const Estimates& LightMaps::values() const { return impl_->values; }
+
+LightMapStatistics LightMaps::statistics() const {
+  const Estimates& values = impl_->values;
+  return {.nodes = impl_->together.size(),
+          .tiles = impl_->tiles.size(),
+          .cells = impl_->cells,
+          .charts = impl_->charts.size(),
+          .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
+                         values.first.size() * sizeof(std::uint64_t) +
+                         values.light.size() * sizeof(std::uint16_t) +
+                         impl_->together.size() * sizeof(float),
+          .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +
+                         impl_->node_at.size() * 2 * sizeof(std::pair<NodePlace, std::uint32_t>),
+          .chart_seconds = impl_->chart_seconds};
+}
+
+}  // namespace photile

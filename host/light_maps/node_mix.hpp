@@ -1,0 +1,31 @@
+// The light of all lights together at the nodes of light maps.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "photile/estimator.hpp"
+
+namespace photile::light_maps {
+
+/// Irradiance of the lights together, linear RGB, at their powers and tints.
+class NodeMix {
+ public:
+  /// Brings the mix to these powers: all nodes anew where a power changed, else those that are new.
+  /// Work is shared by TBB.
+  ///   values   what the nodes hold, see LightMaps::values
+  ///   powers   per layer: power x tint
+  void mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers);
+
+  /// Per node; the fourth is nothing.
+  std::span<const glm::vec4> light() const { return light_; }
+  std::span<const glm::vec3> powers() const { return powers_; }
+
+ private:
+  std::vector<glm::vec3> powers_;
+  std::vector<glm::vec4> light_;
+};
+
+}  // namespace photile::light_maps

@@ -1,0 +1,152 @@
+#include "render/light_map_estimates.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "estimate/estimate_writer.hpp"
+#include "estimate/map_order.hpp"
+#include "photile/limits.hpp"
+#include "photile/statistics.hpp"
+#include "render/reflected_radiance.hpp"
+
+namespace photile {
+namespace {
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t hits_per_blend_task = 1024;
+
+/// Mean flux of a photon at the powers, luminance.
+double mean_photon(const Photons& photons, std::span<const double> powers) {
+  double sum = 0;
+  for (std::size_t i = 0; i < photons.size(); ++i) {
+    const std::size_t layer = photons.light.empty() ? 0 : photons.light[i];
+    sum += powers[layer] * luminance(glm::dvec3(photons.flux[i]));
+  }
+  return photons.size() == 0 ? 0 : sum / static_cast<double>(photons.size());
+}
+
+/// Writes the light of hits one after another, from light maps or from their own estimates.
+class Blend {
+ public:
+  Blend(const SceneNeeds& needs, const LightMaps& maps, const PrimaryHits& hits,
+        const Estimates& alone, std::span<const std::uint32_t> place)
+      : needs_(needs), maps_(maps), hits_(hits), alone_(alone), place_(place) {}
+
+  /// Of hits [first, last).
+  Estimates of(std::size_t first, std::size_t last) const {
+    Estimates estimates;
+    estimate::EstimateWriter writer(needs_, estimates);
+    for (std::size_t hit = first; hit < last; ++hit) {
+      if (place_[hit] == none) {
+        add_from_maps(hit, writer);
+      } else {
+        add_alone(hit, place_[hit], writer);
+      }
+      writer.end_hit();
+    }
+    return estimates;
+  }
+
+ private:
+  void add_from_maps(std::size_t hit, estimate::EstimateWriter& writer) const {
+    NodeBlend blend;
+    maps_.find(hits_.sided_triangle[hit], hits_.position[hit], blend);
+    const Estimates& values = maps_.values();
+    const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
+    for (std::size_t i = 0; i < blend.node.size(); ++i) {
+      for_each_estimate(values, blend.node[i], needs_.light_count,
+                        [&](std::size_t layer, std::size_t value) {
+                          const glm::vec3 light = blend.weight[i] * values.irradiance[value];
+                          writer.add(static_cast<std::uint32_t>(layer), light, reflects * light);
+                        });
+    }
+  }
+
+  void add_alone(std::size_t hit, std::uint32_t place, estimate::EstimateWriter& writer) const {
+    for_each_estimate(alone_, place, needs_.light_count, [&](std::size_t layer, std::size_t value) {
+      const glm::vec3& light = alone_.irradiance[value];
+      writer.add(static_cast<std::uint32_t>(layer), light,
+                 alone_.radiance.empty()
+                     ? hits_.diffuse_albedo[hit] * glm::one_over_pi<float>() * light
+                     : alone_.radiance[value]);
+    });
+  }
+
+  const SceneNeeds& needs_;
+  const LightMaps& maps_;
+  const PrimaryHits& hits_;
+  const Estimates& alone_;
+  std::span<const std::uint32_t> place_;  ///< per hit: that of its own estimate, or none
+};
+
+}  // namespace
+
+LightMapParameters light_map_parameters(const Photons& photons, int neighbours, double radius,
+                                        double angle_degrees, double detail,
+                                        std::span<const double> powers) {
+  // The radius is so many times the distance to the k-th photon of a typical estimate.
+  const double reach = radius / defaults::radius_over_median_kth_distance;
+  LightMapParameters parameters;
+  const double steps = std::round(std::log2(reach / defaults::light_map_spacing));
+  parameters.spacing = defaults::light_map_spacing * std::exp2(steps);
+  if (detail > 0) {
+    // One more where the division is a rounding above a power of two would halve the detail again.
+    const double halvings = std::ceil(std::log2(parameters.spacing / detail) - 1e-9);
+    parameters.levels =
+        1 + static_cast<int>(std::clamp(halvings, 0.0, limits::max_light_map_levels - 1.0));
+  }
+  parameters.angle_degrees = angle_degrees;
+  parameters.neighbours = neighbours;
+  // Where k photons are just within the radius.
+  parameters.sparse_irradiance =
+      neighbours * mean_photon(photons, powers) / (glm::pi<double>() * radius * radius);
+  parameters.powers.assign(powers.begin(), powers.end());
+  return parameters;
+}
+
+LightMapEstimates::LightMapEstimates(const Scene& scene, const LightMapParameters& parameters,
+                                     MapEstimators& photons)
+    : scene_(scene), needs_(needs_of(scene)), photons_(photons), maps_(scene, parameters) {}
+
+Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress) {
+  std::vector<std::uint32_t> served, alone, place(hits.size(), none);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
+    if (serves(hits.sided_triangle[hit])) {
+      served.push_back(hit);
+      continue;
+    }
+    place[hit] = static_cast<std::uint32_t>(alone.size());
+    alone.push_back(hit);
+  }
+  const Stopwatch stopwatch;
+  if (alone.empty()) {
+    maps_.fill(hits, *this, progress);
+  } else {
+    maps_.fill(estimate::reordered(hits, 0, served), *this, progress);
+  }
+  fill_seconds_ += stopwatch.seconds();
+  hits_alone_ += alone.size();
+  const Estimates own =
+      alone.empty() ? Estimates{} : photons_.estimate(estimate::reordered(hits, 0, alone));
+  const Blend blend(needs_, maps_, hits, own, place);
+  std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const std::size_t first = part * hits_per_blend_task;
+    parts[part] = blend.of(first, std::min(hits.size(), first + hits_per_blend_task));
+  });
+  Estimates all;
+  if (needs_.many_lights()) all.first.push_back(0);
+  for (Estimates& part : parts) all.append(std::move(part));
+  return all;
+}
+
+bool LightMapEstimates::serves(std::uint32_t sided_triangle) const {
+  const Material& material =
+      scene_.materials[scene_.triangle_material[triangle_of(sided_triangle)]];
+  return !material.glossy() && material.normal_texture == none;
+}
+
+}  // namespace photile

@@ -1,0 +1,57 @@
+// Estimates read from light maps where those serve a hit, and made at the hit where they do not.
+#pragma once
+
+#include <span>
+
+#include "photile/light_maps.hpp"
+#include "photile/photons.hpp"
+#include "photile/progress.hpp"
+#include "render/map_estimators.hpp"
+
+namespace photile {
+
+/// Light maps for photons of this density: nodes lie as far apart as the photons that a typical
+/// estimate takes, at the coarsest level, in steps of two.
+///   neighbours   k
+///   radius       of the photon maps, metres
+///   detail       metres, > 0: spacing of the finest nodes, at most; 0 = an eighth of the coarsest
+///   powers       per layer of the scene
+LightMapParameters light_map_parameters(const Photons& photons, int neighbours, double radius,
+                                        double angle_degrees, double detail,
+                                        std::span<const double> powers);
+
+class LightMapEstimates : private NodeSource {
+ public:
+  /// References are kept.
+  ///   photons   whose estimates of hits do not depend on the hits beside them
+  LightMapEstimates(const Scene& scene, const LightMapParameters& parameters,
+                    MapEstimators& photons);
+
+  /// Of hits in any order. Hits whose surface has a specular lobe or a normal map are estimated
+  /// where they are. Errors: as DeviceEstimators; Interrupted.
+  Estimates estimate(const PrimaryHits& hits, const Progress& progress);
+
+  LightMaps& maps() { return maps_; }
+  const LightMaps& maps() const { return maps_; }
+  NodeSource& source() { return *this; }
+
+  /// Hits that were estimated where they are, so far.
+  std::uint64_t hits_alone() const { return hits_alone_; }
+  double fill_seconds() const { return fill_seconds_; }
+
+ private:
+  Estimates irradiance(const PrimaryHits& nodes) override { return photons_.estimate(nodes); }
+
+  /// Whether the light of a surface can be read: it has no specular lobe and no normal map, which
+  /// ask where light comes from.
+  bool serves(std::uint32_t sided_triangle) const;
+
+  const Scene& scene_;
+  const SceneNeeds needs_;
+  MapEstimators& photons_;
+  LightMaps maps_;
+  std::uint64_t hits_alone_ = 0;
+  double fill_seconds_ = 0;
+};
+
+}  // namespace photile

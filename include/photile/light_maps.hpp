@@ -1,0 +1,121 @@
+// Light maps: irradiance kept where it falls, at nodes on the surface, and read between them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "photile/defaults.hpp"
+#include "photile/estimator.hpp"
+#include "photile/primary_hits.hpp"
+#include "photile/progress.hpp"
+#include "photile/scene.hpp"
+
+namespace photile {
+
+namespace defaults {
+inline constexpr double light_map_spacing = 0.04;   ///< metres, of the coarsest nodes
+inline constexpr int light_map_levels = 4;          ///< the finest is an eighth
+inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
+}  // namespace defaults
+
+namespace limits {
+inline constexpr int max_light_map_levels = 12;  ///< of refinement: places fit 32 bits
+}  // namespace limits
+
+/// Whether pictures of cameras read the light of matt surfaces from light maps.
+enum class LightMapMode {
+  off,       ///< an estimate at each hit: the method of the paper
+  on,        ///< nodes, which the photon estimate values
+  automatic  ///< on, but where rays gather, and not with naive maps
+};
+
+/// "off", "on", "auto".
+std::string_view name_of(LightMapMode mode);
+inline constexpr std::array all_light_map_modes = {LightMapMode::off, LightMapMode::on,
+                                                   LightMapMode::automatic};
+
+namespace light_maps {
+class Charts;  // host/light_maps/charts.hpp
+class Tiles;   // host/light_maps/tiles.hpp
+}  // namespace light_maps
+
+/// What the nodes of light maps get their light from.
+class NodeSource {
+ public:
+  virtual ~NodeSource() = default;
+  /// Irradiance at points of the surface, each light at power 1; radiance is not looked at. What a
+  /// point gets must not depend on the others, or on their order.
+  virtual Estimates irradiance(const PrimaryHits& nodes) = 0;
+};
+
+struct LightMapParameters {
+  double spacing = defaults::light_map_spacing;  ///< metres, > 0: of the coarsest nodes, at most
+  int levels = defaults::light_map_levels;       ///< the finest is spacing / 2^(levels - 1)
+  double angle_degrees = defaults::group_angle_degrees;  ///< of neighbours on a sheet
+  /// Cells are split where their corners differ by this part of the brightest, and by its noise.
+  double contrast = defaults::light_map_contrast;
+  double neighbours = defaults::neighbours;  ///< noise is 1 / sqrt of so many photons ...
+  /// ... and of fewer below this irradiance at the lights' powers, where not so many are found.
+  double sparse_irradiance = 0;
+  std::vector<double> powers;  ///< per layer of the scene, at which cells are compared
+};
+
+struct LightMapStatistics {
+  std::uint64_t nodes = 0;
+  std::uint64_t tiles = 0;        ///< of 8 x 8 cells
+  std::uint64_t cells = 0;        ///< compared
+  std::uint64_t charts = 0;       ///< planes with lattices of their own
+  std::uint64_t value_bytes = 0;  ///< of the nodes' light
+  std::uint64_t index_bytes = 0;  ///< of all that finds it
+  double chart_seconds = 0;       ///< of finding charts, once
+};
+
+/// Four nodes and their weights, which sum to 1.
+struct NodeBlend {
+  std::array<std::uint32_t, 4> node;
+  std::array<float, 4> weight;
+};
+
+/// Irradiance of every light at the nodes of lattices in the planes of the surface, finer where it
+/// varies. Nodes are valued when hits first need them. Where nodes are, what they hold and which
+/// cells are split depends on the scene, the parameters and the source alone, and not on what was
+/// looked at before: see docs/light-maps.md.
+class LightMaps {
+ public:
+  /// Finds the charts. `scene` must outlive it.
+  /// Errors: UsageError for parameters out of range.
+  LightMaps(const Scene& scene, const LightMapParameters& parameters);
+  ~LightMaps();
+  LightMaps(LightMaps&&) noexcept;
+
+  /// Values all nodes that these hits on opaque surfaces need, or those of the next `rounds` levels
+  /// that each of them lacks. Errors: those of the source, after which all is as it was;
+  /// Interrupted.
+  void fill(const PrimaryHits& hits, NodeSource& source, const Progress& progress,
+            int rounds = all_rounds);
+  static constexpr int all_rounds = 1 << 30;
+
+  /// The nodes around a point of an opaque surface. Thread-safe between fills. Where nodes are not
+  /// valued yet it returns false, and the nodes of the finest level that is there; the first is
+  /// `none` where no level is.
+  bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
+
+  /// What nodes hold, in the form of estimates: node n is hit n.
+  const Estimates& values() const;
+
+  LightMapStatistics statistics() const;
+
+  const light_maps::Charts& charts() const;
+  const light_maps::Tiles& tiles() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace photile

@@ -1,0 +1,158 @@
+// Pictures that read light maps, beside the estimate at each hit, closed forms and each other.
+#include <catch2/catch.hpp>
+#include <cmath>
+#define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include <tbb/global_control.h>
+
+#include <glm/gtc/constants.hpp>
+
+#include "photile/renderer.hpp"
+#include "photile/scene_renderer.hpp"
+#include "render/hit_source.hpp"
+#include "render/pictures.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+
+using namespace photile;
+using test::room_camera;
+using test::same_bits;
+
+namespace {
+
+RenderParameters with_light_maps() {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = 30'000;
+  parameters.film.width = 64;
+  parameters.film.height = 48;
+  parameters.film.samples_per_pixel = 2;
+  parameters.light_maps = LightMapMode::on;
+  return parameters;
+}
+
+/// Rows of many lights, a lamp and its copies side by side.
+Scene many_lamps() {
+  Scene scene = test::furnished_room(2);
+  while (scene.lights.size() < 20) {
+    Light light = scene.lights.back();
+    light.name = "lamp " + std::to_string(scene.lights.size());
+    light.position.x = 0.2f * static_cast<float>(scene.lights.size());
+    scene.lights.push_back(light);
+  }
+  return scene;
+}
+
+/// Mean over pixels of (value - expected)^2 / expected^2 of the first light, on a plate of albedo 1
+/// under a lamp of 1 W straight above its middle, seen from above.
+double error_of_lamp(const LightLayers& layers, double height, double side) {
+  double sum = 0;
+  for (int y = 0; y < layers.height; ++y) {
+    for (int x = 0; x < layers.width; ++x) {
+      const double px = ((x + 0.5) / layers.width - 0.5) * side;
+      const double py = ((y + 0.5) / layers.height - 0.5) * side;
+      const double squared = px * px + py * py + height * height;
+      const double irradiance = height / (4 * glm::pi<double>() * std::pow(squared, 1.5));
+      const double value =
+          layers.layers[0].illuminance[static_cast<std::size_t>(y * layers.width + x)];
+      sum += std::pow(value / irradiance - 1, 2);
+    }
+  }
+  return sum / (layers.width * layers.height);
+}
+
+}  // namespace
+
+TEST_CASE("Light maps are no farther from a lamp's closed form than estimates at hits",
+          "[light_map_pictures]") {
+  test::SceneBuilder builder;
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 3, builder.add(test::diffuse(glm::vec3(1.0f))));
+  builder.add(test::point_light("lamp", {0, 0, 1}, 1.0));
+  const Scene scene = builder.build();
+  RenderParameters parameters = with_light_maps();
+  parameters.photons.emitted_photons = 400'000;
+  parameters.neighbours = 200;
+  parameters.film.width = parameters.film.height = 48;
+  const Camera camera = test::above(0, 0, 30, 2.4);
+  const double by_maps =
+      error_of_lamp(render(scene, camera, test::device(), parameters).layers, 1, 2.4);
+  parameters.light_maps = LightMapMode::off;
+  const double at_hits =
+      error_of_lamp(render(scene, camera, test::device(), parameters).layers, 1, 2.4);
+  CAPTURE(by_maps, at_hits);
+  CHECK(at_hits < 2.0 / 200);  // noise of k photons, and some bias
+  CHECK(by_maps <= 1.02 * at_hits);
+}
+
+TEST_CASE("Pictures that read light maps are the same bits on one, two and three threads",
+          "[light_map_pictures]") {
+  for (const Scene& scene : {test::furnished_room(3), many_lamps()}) {
+    std::vector<LightLayers> pictures;
+    for (const std::size_t threads : {1u, 2u, 3u}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      pictures.push_back(render(scene, room_camera(), test::device(), with_light_maps()).layers);
+    }
+    CHECK(same_bits(pictures[0], pictures[1]));
+    CHECK(same_bits(pictures[0], pictures[2]));
+  }
+}
+
+TEST_CASE("What was looked at before changes no bit of a picture", "[light_map_pictures]") {
+  const Scene scene = test::furnished_room(2);
+  const RenderParameters parameters = with_light_maps();
+  SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters);
+  Film coarse = parameters.film;
+  coarse.width = 16, coarse.height = 12, coarse.samples_per_pixel = 1;
+  renderer.render(Camera::look_at({0.5, 0.3, 1.5}, {2, 2, 0.5}, {0, 0, 1}, 1.0), coarse);
+  renderer.render(room_camera(), coarse);
+  const RenderResult kept = renderer.render(room_camera(), parameters.film);
+  const RenderResult again = renderer.render(room_camera(), parameters.film);
+  const RenderResult fresh = render(scene, room_camera(), test::device(), parameters);
+  CHECK(same_bits(kept.layers, fresh.layers));
+  CHECK(same_bits(again.layers, fresh.layers));
+}
+
+TEST_CASE("Rows traced in several batches change no bit of a picture", "[light_map_pictures]") {
+  const Scene scene = test::furnished_room(2);
+  const RenderParameters parameters = with_light_maps();
+  const RenderResult whole = render(scene, room_camera(), test::device(), parameters);
+  int batches = 0;
+  const Camera camera = room_camera();
+  const WatchedHits watched(camera, [&](const LightLayers&, int, int, double) { ++batches; });
+  const RenderResult parts = render_hits(
+      scene, watched, parameters.film, std::span(&test::device(), 1), parameters, Progress::none());
+  CHECK(batches > 1);
+  CHECK(same_bits(whole.layers, parts.layers));
+}
+
+TEST_CASE("A hit on a wall reads the same light from wherever it is seen", "[light_map_pictures]") {
+  // Cameras that look straight at the same points of a plate, from nearer and farther.
+  test::SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));
+  builder.add(test::point_light("lamp", {0.3f, 0.2f, 1}, 1.0));
+  const Scene scene = builder.build();
+  RenderParameters parameters = with_light_maps();
+  SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters);
+  const RenderResult first = renderer.render(test::above(0, 0, 10, 1.6), parameters.film);
+  renderer.render(test::above(0.2, 0.1, 3, 1.0), parameters.film);
+  const RenderResult later = renderer.render(test::above(0, 0, 10, 1.6), parameters.film);
+  CHECK(same_bits(first.layers, later.layers));
+}
+
+TEST_CASE("Glossy surfaces keep the estimate at the hit", "[light_map_pictures]") {
+  // Only the table is glossy: pixels that see nothing else are those of an estimate at each hit.
+  test::SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));
+  builder.grid({-0.5f, -0.5f, 0.3f}, {1, 0, 0}, {0, 1, 0}, 1,
+               builder.add(test::glossy(glm::vec3(0.4f), glm::vec3(0.05f), 0.3f)));
+  builder.add(test::point_light("lamp", {0.3f, 0.2f, 1}, 1.0));
+  const Scene scene = builder.build();
+  RenderParameters parameters = with_light_maps();
+  const Camera camera = test::above(0, 0, 10, 0.6);
+  const RenderResult maps = render(scene, camera, test::device(), parameters);
+  parameters.light_maps = LightMapMode::off;
+  const RenderResult hits = render(scene, camera, test::device(), parameters);
+  const auto& a = maps.layers.layers[0].radiance;
+  const auto& b = hits.layers.layers[0].radiance;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    REQUIRE(a[i].x == Approx(b[i].x).epsilon(1e-5));  // sums of photons in another order
+  }
+}

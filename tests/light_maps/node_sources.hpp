@@ -1,0 +1,96 @@
+// Light at nodes by formulas, and the light maps filled from it.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "photile/light_maps.hpp"
+#include "photile/progress.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+
+/// One light, whose irradiance is a function of the place; counts what it was asked.
+class FormulaSource : public NodeSource {
+ public:
+  using Formula = std::function<float(const glm::vec3& position, std::uint32_t sided_triangle)>;
+  explicit FormulaSource(Formula formula) : formula_(std::move(formula)) {}
+
+  Estimates irradiance(const PrimaryHits& nodes) override {
+    Estimates estimates;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      estimates.irradiance.emplace_back(formula_(nodes.position[i], nodes.sided_triangle[i]));
+    }
+    asked += nodes.size();
+    return estimates;
+  }
+
+  std::size_t asked = 0;
+
+ private:
+  Formula formula_;
+};
+
+/// The scene with one light in place of its own.
+inline Scene with_one_lamp(Scene scene) {
+  scene.lights = {point_light("the lamp", {0.5f, 0.5f, 1.0f})};
+  std::fill(scene.triangle_light.begin(), scene.triangle_light.end(), none);
+  return scene;
+}
+
+/// One light of power 1, noise left out.
+inline LightMapParameters quiet_parameters(double spacing = 0.04, int levels = 4) {
+  LightMapParameters parameters;
+  parameters.spacing = spacing;
+  parameters.levels = levels;
+  parameters.neighbours = 1e12;
+  parameters.powers = {1.0};
+  return parameters;
+}
+
+inline void add_hit(PrimaryHits& hits, const glm::vec3& position, std::uint32_t sided_triangle) {
+  hits.position.push_back(position);
+  hits.sided_triangle.push_back(sided_triangle);
+  hits.pixel.push_back(0);
+  hits.throughput.emplace_back(1.0f);
+  hits.diffuse_albedo.emplace_back(1.0f);
+}
+
+/// count^2 points on each sided triangle, away from its corners and edges by half a step.
+inline PrimaryHits points_on(const Scene& scene, int count) {
+  PrimaryHits hits;
+  for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
+    const auto [a, b, c] = scene.corners(triangle_of(s));
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; i + j < count; ++j) {
+        const float n = static_cast<float>(count) + 0.5f;
+        const float u = (static_cast<float>(i) + 0.5f) / n, v = (static_cast<float>(j) + 0.5f) / n;
+        add_hit(hits, a + u * (b - a) + v * (c - a), s);
+      }
+    }
+  }
+  return hits;
+}
+
+/// What light maps say of a point; all of its nodes are valued.
+inline float read(const LightMaps& maps, const glm::vec3& position, std::uint32_t sided_triangle) {
+  NodeBlend blend;
+  if (!maps.find(sided_triangle, position, blend)) return -1.0f;
+  float sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sum += blend.weight[i] * maps.values().irradiance[blend.node[i]].x;
+  }
+  return sum;
+}
+
+inline std::vector<float> read_all(const LightMaps& maps, const PrimaryHits& hits) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    values.push_back(read(maps, hits.position[i], hits.sided_triangle[i]));
+  }
+  return values;
+}
+
+}  // namespace photile::test
