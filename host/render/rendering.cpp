@@ -24,7 +24,7 @@ constexpr int watched_batches = 16;
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene) : rays(scene) {
-  cost.add(stopwatch.seconds(), rays.bytes());
+  cost.add(stopwatch.taken(), rays.bytes());
 }
 
 Rendering::Rendering(const PreparedScene& scene, std::span<Device> devices,
@@ -34,6 +34,7 @@ Rendering::Rendering(const PreparedScene& scene, std::span<Device> devices,
       devices_(devices),
       progress_(&progress),
       plan_(parameters, rays_, progress),
+      kernels_(scene_, devices, plan_.used()),
       paths_before_(scene_.lights.size()),
       layer_powers_(layer_powers(scene_)) {
   if (devices.empty()) throw UsageError("rendering needs a device; give at least one");
@@ -51,12 +52,14 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   photons_.reset();
   caustics_.reset();
   Maps maps = trace_and_build(pass, prepared, keep);
+  const Stopwatch stopwatch;
   const std::vector<EstimateParameters> levels = plan_.estimates(pass, surface_);
   const auto estimators_of = [&](std::vector<PhotonMaps>& built) {
     return MapEstimators(devices_, scene_, std::move(built), levels, layer_powers_);
   };
   photons_.emplace(estimators_of(maps.photons));
   if (!maps.caustics.empty()) caustics_.emplace(estimators_of(maps.caustics));
+  costs_.estimators.add(stopwatch.taken());
   pass_ = pass;
 }
 
@@ -83,6 +86,15 @@ double Rendering::compile_seconds() const {
   return most;
 }
 
+void Rendering::release() {
+  const Stopwatch stopwatch;
+  photons_.reset();
+  caustics_.reset();
+  surface_.reset();
+  groups_ = {};
+  costs_.release.add(stopwatch.taken());
+}
+
 RenderResult Rendering::finish() {
   costs_.film.host_bytes = layers_.bytes();
   costs_.shares.clear();
@@ -104,15 +116,19 @@ RenderResult Rendering::finish() {
 /// The photons are gone when this returns: the maps hold copies.
 Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
                                            const KeepPhotons* keep) {
+  const Stopwatch trace_watch;
   PhotonTracerResult traced;
   if (prepared) {
     traced.photons = std::move(prepared->photons);
   } else {
     traced = trace_photons(rays_, plan_.tracing(pass, paths_before_), *progress_);
   }
+  costs_.trace.add(trace_watch.taken(), traced.photons.bytes() + traced.caustics.bytes());
   count(traced);
   if (pass == 0) {
+    const Stopwatch radius_watch;
     radius_ = prepared ? prepared->radius : plan_.radius(traced.photons);
+    costs_.radius.add(radius_watch.taken());
     find_groups(traced.photons, prepared);  // once: no later radius is larger
     find_surface(traced.photons);
   }
@@ -128,12 +144,16 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
   costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
   if (traced.caustics.size() > 0) maps.caustics = build(traced.caustics, parameters);
+  const Stopwatch release_watch;
+  traced = {};
+  costs_.release.add(release_watch.taken());
   return maps;
 }
 
 std::vector<PhotonMaps> Rendering::build(const Photons& photons,
                                          const PhotonMapParameters& parameters) {
   const Stopwatch stopwatch;
+  kernels_.wait();
   std::vector<PhotonMaps> maps =
       build_maps_on_each(devices_, scene_, photons, groups_, parameters, *progress_);
   std::uint64_t device_bytes = 0, spilled_bytes = 0;
@@ -141,7 +161,7 @@ std::vector<PhotonMaps> Rendering::build(const Photons& photons,
     device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
     spilled_bytes += one.statistics().spilled_bytes;
   }
-  costs_.build.add(stopwatch.seconds(), spilled_bytes, device_bytes);
+  costs_.build.add(stopwatch.taken(), spilled_bytes, device_bytes);
   const PhotonMapStatistics& built = maps.front().statistics();
   costs_.references += built.references;
   costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
@@ -156,15 +176,15 @@ void Rendering::count(const PhotonTracerResult& traced) {
   }
   costs_.stored_photons += traced.photons.size();
   costs_.caustic_photons += traced.caustics.size();
-  costs_.trace.add(traced.seconds, traced.photons.bytes() + traced.caustics.bytes());
 }
 
 void Rendering::find_groups(const Photons& photons, PreparedPhotons* prepared) {
   const Stopwatch stopwatch;
   groups_ = prepared ? std::move(prepared->groups)
-                     : find_map_groups(scene_, photons, plan_.map_mode(), plan_.groups(radius_),
-                                       *progress_);
-  costs_.group.add(stopwatch.seconds(), groups_.bytes());
+                     : find_map_groups(
+                           scene_, photons, plan_.map_mode(), plan_.groups(radius_), *progress_,
+                           plan_.passes() > 1 ? MapUsers::any_photons : MapUsers::these_photons);
+  costs_.group.add(stopwatch.taken(), groups_.bytes());
   costs_.group_members = groups_.members.size();
   costs_.groups = groups_.offsets.size() - 1;
   costs_.patches = groups_.patches.count();
@@ -175,7 +195,7 @@ void Rendering::find_surface(const Photons& photons) {
   const Stopwatch stopwatch;
   surface_ = std::make_shared<const SurfaceIndex>(
       index_surface(scene_, landed_on(scene_, photons), radius_, plan_.used().angle_degrees));
-  costs_.surface.add(stopwatch.seconds(), surface_->bytes());
+  costs_.surface.add(stopwatch.taken(), surface_->bytes());
   costs_.sheets = surface_->sheets;
   costs_.surface_leaves = surface_->leaves.size();
 }
@@ -192,11 +212,11 @@ int Rendering::rows_per_batch(const HitSource& source) const {
 void Rendering::add_rows(const HitSource& source, int first, int last) {
   const Stopwatch hit_watch;
   const PrimaryHitBatch batch = source.trace(rays_, film_, first, last, photons_->map_of());
-  costs_.hits.add(hit_watch.seconds());
+  costs_.hits.add(hit_watch.taken());
   const Estimates estimates = estimate(batch.hits, first, last);
   const Stopwatch film_watch;
   add_to_film(layers_, batch, estimates, 1.0f / static_cast<float>(film_.samples_per_pixel));
-  costs_.film.add(film_watch.seconds());
+  costs_.film.add(film_watch.taken());
   costs_.rays += batch.rays;
 }
 
@@ -206,7 +226,7 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
   const double compiled = compile_seconds();
   if (!plan_.gathers()) {
     Estimates estimates = photons_->estimate(hits);
-    costs_.estimate.add(stopwatch.seconds());
+    costs_.estimate.add(stopwatch.taken());
     costs_.estimate_compile_seconds += compile_seconds() - compiled;
     costs_.hit_count += hits.size();
     return estimates;
@@ -214,8 +234,8 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
   FinalGather gather(rays_, *photons_, caustics_ ? &*caustics_ : nullptr, plan_.gathering());
   Estimates estimates = gather.estimate(hits, path_numbers(hits, film_, first_row, last_row),
                                         hits_per_batch(plan_.used().neighbours), *progress_);
-  costs_.gather.add(gather.costs().ray_seconds);
-  costs_.estimate.add(stopwatch.seconds() - gather.costs().ray_seconds);
+  costs_.gather.add(gather.costs().rays_time);
+  costs_.estimate.add(stopwatch.taken() - gather.costs().rays_time);
   costs_.estimate_compile_seconds += compile_seconds() - compiled;
   costs_.gather_rays += gather.costs().rays;
   costs_.hit_count += gather.costs().estimated;

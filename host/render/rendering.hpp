@@ -11,6 +11,7 @@
 #include "photile/scene_renderer.hpp"
 #include "photile/surface_index.hpp"
 #include "render/hit_source.hpp"
+#include "render/kernel_preparation.hpp"
 #include "render/map_estimators.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
@@ -49,6 +50,9 @@ class Rendering {
   /// Adds what is seen by the photons of the prepared pass.
   void add_pass(const HitSource& source);
 
+  /// Lets go of the maps, once all that was wanted is in the picture.
+  void release();
+
   /// The picture since `start`.
   RenderResult finish();
 
@@ -74,6 +78,7 @@ class Rendering {
   std::span<Device> devices_;
   Progress* progress_;
   const RenderPlan plan_;
+  KernelPreparation kernels_;
   PrimaryHitParameters film_;
   LightLayers layers_;
   std::vector<std::uint64_t> paths_before_;  ///< per light
