@@ -49,19 +49,20 @@ def estimate_cost(k):
 # Least bytes that a kernel of the build moves, per photon, reference, cell and map
 # (docs/kernels.md), for the records of a diffuse scene with one light. A shape serves two maps.
 BUILD_BYTES = {
-    "count_photons": (20, 4, 0, 0),  # position, own map, list
+    "find_entered": (24, 0, 0, 0),   # position, triangle, list; bits
+    "count_photons": (12, 4, 0, 0),  # triangle, list, bits
     "size_grids": (0, 0, 0, 130),    # half a shape, count, crowding; grid, cells
     "place_grids": (0, 0, 0, 8),
-    "count_cells": (20, 8, 0, 0),
+    "count_cells": (24, 8, 0, 0),
     "sum_blocks": (0, 0, 4, 0),
     "scan_blocks": (0, 0, 8, 0),
-    "scatter": (20, 12, 0, 0),
+    "scatter": (24, 12, 0, 0),
     "sort_cells": (0, 8, 4, 0),
     "gather_entries": (0, 52, 0, 0),  # reference, position and flux; position and flux
-    "gather_normals": (0, 28, 0, 0),  # reference, normal; normal
+    "gather_normals": (0, 20, 0, 0),  # reference, triangle; normal
 }
-# What maps of patches add: normals of photons, and a flag per map.
-PATCH_BYTES = {"count_photons": (12, 0, 0, 4), "size_grids": (0, 0, 0, 4)}
+# What maps of patches add: a flag per map.
+PATCH_BYTES = {"count_photons": (0, 0, 0, 4), "size_grids": (0, 0, 0, 4)}
 
 
 def build_bytes(row):

@@ -24,8 +24,10 @@ void check_range(const RawBuffer& buffer, std::size_t bytes, std::size_t offset,
 
 }  // namespace
 
-RawBuffer::RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory)
-    : handle_(handle), bytes_(bytes), memory_(std::move(memory)) {
+RawBuffer::RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory,
+                     std::shared_ptr<void> queue)
+    : handle_(handle), bytes_(bytes), memory_(std::move(memory)), queue_(std::move(queue)) {
+  if (memory_ == nullptr) return;
   memory_->live += bytes_;
   memory_->peak = std::max(memory_->peak, memory_->live.load());
 }
@@ -33,19 +35,21 @@ RawBuffer::RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCoun
 RawBuffer::RawBuffer(RawBuffer&& other) noexcept
     : handle_(std::exchange(other.handle_, nullptr)),
       bytes_(std::exchange(other.bytes_, 0)),
-      memory_(std::move(other.memory_)) {}
+      memory_(std::move(other.memory_)),
+      queue_(std::move(other.queue_)) {}
 
 RawBuffer& RawBuffer::operator=(RawBuffer&& other) noexcept {
   std::swap(handle_, other.handle_);
   std::swap(bytes_, other.bytes_);
   std::swap(memory_, other.memory_);
+  std::swap(queue_, other.queue_);
   return *this;
 }
 
 RawBuffer::~RawBuffer() {
   if (handle_ == nullptr) return;
   clReleaseMemObject(static_cast<cl_mem>(handle_));
-  memory_->live -= bytes_;
+  if (memory_ != nullptr) memory_->live -= bytes_;
 }
 
 RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_bytes,
@@ -103,26 +107,42 @@ void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
   impl_->check(status, "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
 }
 
+bool Context::shares_host_memory() const { return impl_->info.type == DeviceType::cpu; }
+
+RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_view what) {
+  cl_int created = CL_SUCCESS;
+  // The kernels that get it only read: the constness comes back in their arguments.
+  const cl_mem memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR,
+                                       bytes, const_cast<void*>(data), &created);
+  impl_->check(created, "clCreateBuffer", fmt::format("sharing {} ({} bytes)", what, bytes));
+  clRetainCommandQueue(impl_->queue.get());
+  return RawBuffer(memory, bytes, nullptr,
+                   std::shared_ptr<void>(impl_->queue.get(), [](void* queue) {
+                     clFinish(static_cast<cl_command_queue>(queue));
+                     clReleaseCommandQueue(static_cast<cl_command_queue>(queue));
+                   }));
+}
+
 void Context::fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
-                         std::size_t bytes) {
-  check_range(buffer, bytes, 0, "fill");
+                         std::size_t bytes, std::size_t first) {
+  check_range(buffer, bytes, first, "fill");
   if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
     const cl_int status = impl_->persevere([&] {
-      return clEnqueueFillBuffer(impl_->queue.get(), memory_of(buffer), pattern, pattern_bytes, 0,
-                                 bytes, 0, nullptr, nullptr);
+      return clEnqueueFillBuffer(impl_->queue.get(), memory_of(buffer), pattern, pattern_bytes,
+                                 first, bytes, 0, nullptr, nullptr);
     });
     impl_->check(status, "clEnqueueFillBuffer", fmt::format("{} bytes", bytes));
     return;
   }
   // OpenCL fills with powers of two only: other elements are written block by block.
-  const auto* const first = static_cast<const unsigned char*>(pattern);
+  const auto* const element = static_cast<const unsigned char*>(pattern);
   const std::size_t block_elements = std::max<std::size_t>(1, (1u << 20) / pattern_bytes);
   std::vector<unsigned char> block;
   for (std::size_t i = 0; i < block_elements && block.size() < bytes; ++i) {
-    block.insert(block.end(), first, first + pattern_bytes);
+    block.insert(block.end(), element, element + pattern_bytes);
   }
   for (std::size_t offset = 0; offset < bytes; offset += block.size()) {
-    write_bytes(buffer, block.data(), std::min(block.size(), bytes - offset), offset);
+    write_bytes(buffer, block.data(), std::min(block.size(), bytes - offset), first + offset);
   }
 }
 

@@ -68,10 +68,14 @@ class RawBuffer {
 
  private:
   friend class Context;
-  RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory);
+  /// `memory` counts the bytes; null where they are the host's. Those are in use until the queue is
+  /// empty: the deleter of `queue` waits for it.
+  RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory,
+            std::shared_ptr<void> queue = {});
   void* handle_ = nullptr;
   std::size_t bytes_ = 0;
   std::shared_ptr<MemoryCounter> memory_;
+  std::shared_ptr<void> queue_;
 };
 
 /// A device buffer of `size()` elements of T. A buffer of zero elements is a valid kernel argument.
@@ -178,6 +182,13 @@ class Context {
     write(buffer, values);
     return buffer;
   }
+  /// A buffer that kernels read and that holds `values`, which must stay as they are for its life:
+  /// over the host's memory itself where the device is the host's processor, else a copy.
+  template <class T>
+  Buffer<T> share(std::span<const T> values, std::string_view what) {
+    if (!shares_host_memory() || values.empty()) return upload(values, what);
+    return Buffer<T>(share_bytes(values.data(), values.size_bytes(), what), values.size());
+  }
   template <class T>
   void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
     write_bytes(buffer.raw(), values.data(), values.size_bytes(), first * sizeof(T));
@@ -209,7 +220,13 @@ class Context {
   /// Sets the first `count` elements.
   template <class T>
   void fill(Buffer<T>& buffer, T value, std::size_t count) {
-    if (count != 0) fill_bytes(buffer.raw(), &value, sizeof(T), count * sizeof(T));
+    fill(buffer, value, 0, count);
+  }
+  /// Sets elements [first, first + count).
+  template <class T>
+  void fill(Buffer<T>& buffer, T value, std::size_t first, std::size_t count) {
+    if (count == 0) return;
+    fill_bytes(buffer.raw(), &value, sizeof(T), count * sizeof(T), first * sizeof(T));
   }
 
   /// The kernel `name` of the embedded kernel file `file` (path below kernels/, e.g.
@@ -251,7 +268,9 @@ class Context {
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
   void fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
-                  std::size_t bytes);
+                  std::size_t bytes, std::size_t offset);
+  bool shares_host_memory() const;
+  RawBuffer share_bytes(const void* data, std::size_t bytes, std::string_view what);
   template <class T>
   void set_argument(const Kernel& kernel, unsigned index, const Buffer<T>& buffer) {
     set_buffer_argument(kernel, index, buffer.raw());

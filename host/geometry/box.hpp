@@ -1,6 +1,7 @@
 // Axis-parallel boxes.
 #pragma once
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <limits>
 
@@ -31,8 +32,12 @@ using Box = BoxOf<float>;
 
 /// Square of the distance between two boxes; infinite if one is empty.
 inline float squared_distance(const Box& a, const Box& b) {
-  const glm::vec3 gap = glm::max(glm::vec3(0.0f), glm::max(a.lower - b.upper, b.lower - a.upper));
-  return glm::dot(gap, gap);
+  const auto squared_gap = [&](int axis) {
+    const float gap =
+        std::max(0.0f, std::max(a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis]));
+    return gap * gap;
+  };
+  return squared_gap(0) + squared_gap(1) + squared_gap(2);
 }
 
 }  // namespace photile::geometry

@@ -12,7 +12,8 @@
 
 namespace photile::geometry {
 
-/// Split at the median of the boxes' centres along the longest axis, down to leaves of 4.
+/// Split at the median of the boxes' centres along the longest axis, down to leaves of 4. Large
+/// trees are built in parallel; what is visited, and in which order, does not depend on it.
 class BoxTree {
  public:
   BoxTree() = default;
@@ -33,7 +34,7 @@ class BoxTree {
           if (visit(order_[i])) return;
         }
       } else {
-        std::uint32_t near = node + 1, far = here.first;
+        std::uint32_t near = here.first, far = here.first + 1;
         float near_distance = squared_distance(nodes_[near].box, box);
         float far_distance = squared_distance(nodes_[far].box, box);
         if (far_distance < near_distance) {
@@ -54,11 +55,10 @@ class BoxTree {
  private:
   struct Node {
     Box box;
-    std::uint32_t first = 0;  ///< of a leaf's boxes in the order; else the second child
-    std::uint32_t count = 0;  ///< of a leaf's boxes; 0 in inner nodes, whose first child follows
+    std::uint32_t first = 0;  ///< of a leaf's boxes in the order; else of the two children
+    std::uint32_t count = 0;  ///< of a leaf's boxes; 0 in inner nodes
   };
-
-  void build(std::span<const Box> boxes, std::uint32_t first, std::uint32_t last);
+  class Builder;
 
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <vector>
 
+#include "groups/photon_blocks.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -24,76 +25,21 @@
 namespace photile {
 namespace {
 
-constexpr std::size_t max_queries = 1024;        ///< photons whose k-th neighbour is looked for
-constexpr std::size_t max_subsample = 1u << 18;  ///< photons looked at for each
+constexpr std::size_t max_queries = 1024;  ///< photons whose k-th neighbour is looked for
+constexpr std::size_t max_subsample = 1u << 18;
 
 /// Median of the Gamma distribution of shape k and scale 1 (Choi 1994; 0.9% low for k = 1, less for
 /// others).
 double gamma_median(double k) { return k - 1.0 / 3.0 + 8.0 / (405.0 * k); }
 
-/// Index of the i-th of `count` samples spread over `size` elements, each in the middle of its
-/// share.
-std::size_t spread_index(std::size_t i, std::size_t count, std::size_t size) {
-  return (2 * i + 1) * size / (2 * count);
-}
-
-/// Structure of arrays, so that the distance loop runs in vectors.
-struct Subsample {
-  std::vector<float> x, y, z;
-  std::size_t size() const { return x.size(); }
-};
-
-Subsample thin(const std::vector<glm::vec3>& positions) {
-  const std::size_t size = std::min(positions.size(), max_subsample);
-  Subsample result;
-  for (std::vector<float>* axis : {&result.x, &result.y, &result.z}) axis->resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    const glm::vec3& p = positions[spread_index(i, size, positions.size())];
-    result.x[i] = p.x, result.y[i] = p.y, result.z[i] = p.z;
-  }
-  return result;
-}
-
-void squared_distances(const Subsample& photons, const glm::vec3& query, std::vector<float>& out) {
-  const float *x = photons.x.data(), *y = photons.y.data(), *z = photons.z.data();
-  float* squared = out.data();
-  const std::size_t size = photons.size();
-  for (std::size_t i = 0; i < size; ++i) {
-    const float dx = x[i] - query.x, dy = y[i] - query.y, dz = z[i] - query.z;
-    squared[i] = dx * dx + dy * dy + dz * dz;
-  }
-}
-
-/// The m-th smallest value, m from 1 on. A few values are kept in a heap: most of the others are
-/// then refused by one comparison.
-float mth_smallest(std::vector<float>& values, std::size_t m) {
-  constexpr std::size_t largest_heap = 4096;
-  if (m > largest_heap) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(m - 1),
-                     values.end());
-    return values[m - 1];
-  }
-  const auto heap_end = values.begin() + static_cast<std::ptrdiff_t>(m);
-  std::make_heap(values.begin(), heap_end);
-  for (auto value = heap_end; value != values.end(); ++value) {
-    if (*value >= values.front()) continue;
-    std::pop_heap(values.begin(), heap_end);
-    *std::prev(heap_end) = *value;
-    std::push_heap(values.begin(), heap_end);
-  }
-  return values.front();
-}
-
 /// Median over the queries of the squared distance to the m-th other photon of the subsample. The
 /// queries are members of the subsample: each is its own nearest.
-double median_squared_distance(const Subsample& photons, std::size_t m) {
+double median_squared_distance(const groups::PhotonBlocks& photons, std::size_t m) {
   std::vector<float> squared(std::min(photons.size(), max_queries));
-  tbb::enumerable_thread_specific<std::vector<float>> scratch(photons.size());
+  tbb::enumerable_thread_specific<std::vector<float>> scratch;
   tbb::parallel_for(std::size_t{0}, squared.size(), [&](std::size_t i) {
-    const std::size_t query = spread_index(i, squared.size(), photons.size());
-    std::vector<float>& distances = scratch.local();
-    squared_distances(photons, {photons.x[query], photons.y[query], photons.z[query]}, distances);
-    squared[i] = mth_smallest(distances, m + 1);
+    squared[i] = photons.squared_distance(groups::spread_index(i, squared.size(), photons.size()),
+                                          m, scratch.local());
   });
   const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
   std::nth_element(squared.begin(), middle, squared.end());
@@ -113,7 +59,7 @@ double automatic_radius(const Photons& photons, int k) {
                     "emit more photons or give a radius",
                     photons.size()));
   }
-  const Subsample subsample = thin(photons.position);
+  const groups::PhotonBlocks subsample(photons.position, max_subsample);
   const double share = static_cast<double>(subsample.size()) / static_cast<double>(photons.size());
   const double rank =
       std::clamp(std::round(k * share), 1.0, static_cast<double>(subsample.size() - 1));

@@ -25,14 +25,13 @@ std::uint32_t members_of(std::uint32_t neighbour) {
 /// Neighbours of the triangles of one chunk, one ascending list after the other.
 struct Chunk {
   std::vector<std::uint32_t> neighbours;
-  std::vector<std::uint32_t> list_sizes;  ///< per triangle: neighbours
-  /// Per triangle: members of the group of either side. Both groups have one size: what agrees with
-  /// a normal is the mirror image of what agrees with its opposite.
-  std::vector<std::uint64_t> group_sizes;
+  std::vector<std::uint32_t> list_sizes;   ///< per triangle: neighbours
+  std::vector<std::uint64_t> group_sizes;  ///< per sided triangle: members
 };
 
 std::vector<Chunk> find_chunks(std::size_t triangle_count, double radius,
-                               const AppendNeighbours& append_neighbours, Progress& progress) {
+                               const AppendNeighbours& append_neighbours,
+                               std::span<const std::uint8_t> landed, Progress& progress) {
   std::vector<Chunk> chunks((triangle_count + triangles_per_chunk - 1) / triangles_per_chunk);
   std::atomic<std::uint64_t> total_members{0};
   tbb::enumerable_thread_specific<std::vector<std::uint32_t>> scratch;
@@ -44,14 +43,25 @@ std::vector<Chunk> find_chunks(std::size_t triangle_count, double radius,
     neighbours.clear();
     for (std::size_t triangle = first; triangle < last; ++triangle) {
       const std::size_t before = neighbours.size();
-      append_neighbours(static_cast<std::uint32_t>(triangle), neighbours);
+      std::uint64_t members = 0;
+      const auto wanted = [&](std::size_t side) {
+        return landed.empty() || landed[2 * triangle + side] != 0;
+      };
+      if (wanted(0) || wanted(1)) {
+        append_neighbours(static_cast<std::uint32_t>(triangle), neighbours);
+      }
+      // Both groups have one size: what agrees with a normal is the mirror image of what agrees
+      // with its opposite.
       const std::uint64_t group_size = std::accumulate(
           neighbours.begin() + static_cast<std::ptrdiff_t>(before), neighbours.end(),
           std::uint64_t{0},
           [](std::uint64_t sum, std::uint32_t neighbour) { return sum + members_of(neighbour); });
       chunks[c].list_sizes.push_back(static_cast<std::uint32_t>(neighbours.size() - before));
-      chunks[c].group_sizes.push_back(group_size);
-      if ((total_members += 2 * group_size) > limits::max_group_members) {
+      for (const std::size_t side : {0u, 1u}) {
+        chunks[c].group_sizes.push_back(wanted(side) ? group_size : 0);
+        members += chunks[c].group_sizes.back();
+      }
+      if ((total_members += members) > limits::max_group_members) {
         throw UsageError(fmt::format(
             "radius: {} m puts more than {} members into the neighbour groups of {} triangles; "
             "give a smaller radius or group angle",
@@ -67,8 +77,10 @@ std::vector<Chunk> find_chunks(std::size_t triangle_count, double radius,
 /// Writes the groups of both sides of a chunk's triangles from members[offset] on.
 void write_groups(const Chunk& chunk, std::uint32_t* members) {
   const std::uint32_t* list = chunk.neighbours.data();
-  for (const std::uint32_t size : chunk.list_sizes) {
+  for (std::size_t triangle = 0; triangle < chunk.list_sizes.size(); ++triangle) {
+    const std::uint32_t size = chunk.list_sizes[triangle];
     for (std::uint32_t side = 0; side < 2; ++side) {
+      if (chunk.group_sizes[2 * triangle + side] == 0) continue;
       for (std::uint32_t i = 0; i < size; ++i) {
         const std::uint32_t neighbour = list[i] / 4;
         const bool agrees_with_0 = list[i] & (side == 0 ? equal_sides : opposite_sides);
@@ -97,20 +109,20 @@ void check(const NeighbourGroupParameters& parameters) {
 
 NeighbourGroups collect_groups(std::size_t triangle_count,
                                const NeighbourGroupParameters& parameters,
-                               const AppendNeighbours& append_neighbours, Progress& progress) {
+                               const AppendNeighbours& append_neighbours, Progress& progress,
+                               std::span<const std::uint8_t> landed) {
   progress.begin("find neighbour groups", triangle_count, "triangles");
   NeighbourGroups result;
   result.radius = parameters.radius;
   result.angle_degrees = parameters.angle_degrees;
 
   std::vector<Chunk> chunks =
-      find_chunks(triangle_count, parameters.radius, append_neighbours, progress);
+      find_chunks(triangle_count, parameters.radius, append_neighbours, landed, progress);
 
   result.offsets.reserve(2 * triangle_count + 1);
   result.offsets.push_back(0);
   for (const Chunk& chunk : chunks) {
     for (const std::uint64_t size : chunk.group_sizes) {
-      result.offsets.push_back(result.offsets.back() + size);
       result.offsets.push_back(result.offsets.back() + size);
     }
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "photile/neighbour_groups.hpp"
@@ -37,8 +38,12 @@ void check(const NeighbourGroupParameters& parameters);
 
 /// Groups of both sides of all triangles, searched in parallel. Errors: UsageError when they have
 /// more members than limits.hpp allows; Interrupted.
+///   landed   per sided triangle: 1 where a group is wanted, 0 where an empty one will do; empty:
+///   all
+///            are wanted
 NeighbourGroups collect_groups(std::size_t triangle_count,
                                const NeighbourGroupParameters& parameters,
-                               const AppendNeighbours& append_neighbours, Progress& progress);
+                               const AppendNeighbours& append_neighbours, Progress& progress,
+                               std::span<const std::uint8_t> landed = {});
 
 }  // namespace photile::groups

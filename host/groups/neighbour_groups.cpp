@@ -67,7 +67,7 @@ bool normals_agree(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
 
 NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       const NeighbourGroupParameters& parameters,
-                                      Progress& progress) {
+                                      Progress& progress, std::span<const std::uint8_t> landed) {
   check(parameters);
   check_scene(scene);
   const Search search(scene, parameters);
@@ -76,7 +76,7 @@ NeighbourGroups find_neighbour_groups(const Scene& scene,
       [&](std::uint32_t triangle, std::vector<std::uint32_t>& neighbours) {
         search.append_neighbours(triangle, neighbours);
       },
-      progress);
+      progress, landed);
 }
 
 NeighbourGroups naive_groups(const Scene& scene) {

@@ -9,7 +9,6 @@
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_bvh.hpp"
 #include "groups/group_lists.hpp"
-#include "groups/proximity_test.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/scene_builder.hpp"
 
@@ -24,33 +23,33 @@ using geometry::triangle_box;
 /// Patches of fewer triangles are searched one triangle after the other.
 constexpr std::size_t fewest_for_tree = 8;
 
-/// The normals of a patch's members: a direction, and the largest angle to it in radians.
+/// The normals of a patch's members: a direction, and the cosine of the largest angle that a normal
+/// may make with it and agree with some member's.
 struct NormalCone {
   glm::dvec3 axis{0.0};
-  double half_angle = 0;
+  double least_cosine = 1;
 
-  explicit NormalCone(std::span<const TriangleBound> members) {
-    for (const TriangleBound& member : members) axis += member.normal;
-    axis = glm::length(axis) > 0 ? glm::normalize(axis) : members.front().normal;
-    for (const TriangleBound& member : members) {
-      half_angle = std::max(half_angle, angle_between(axis, member.normal));
-    }
-  }
-
-  static double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
-    return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
-  }
-
-  /// Sides on which a normal may agree with some member's, and all sides on which it does.
-  std::uint32_t sides_within(const glm::dvec3& normal, double angle) const {
+  NormalCone() = default;
+  /// `angle`: radians, largest between normals that agree.
+  NormalCone(std::span<const glm::dvec3> normals, double angle) {
     constexpr double slack = 1e-2;  // radians; far above the rounding of either test
-    const double between = angle_between(axis, normal), most = angle + half_angle + slack;
-    return (between <= most ? equal_sides : 0) |
-           (glm::pi<double>() - between <= most ? opposite_sides : 0);
+    for (const glm::dvec3& normal : normals) axis += normal;
+    axis = glm::length(axis) > 0 ? glm::normalize(axis) : normals.front();
+    double least = 1;
+    for (const glm::dvec3& normal : normals) least = std::min(least, glm::dot(axis, normal));
+    const double most = std::acos(std::clamp(least, -1.0, 1.0)) + angle + slack;
+    least_cosine = most < glm::pi<double>() ? std::cos(most) : -2;
+  }
+
+  /// All sides on which a normal agrees with some member's, and perhaps more.
+  std::uint32_t sides_within(const glm::dvec3& normal) const {
+    const double cosine = glm::dot(axis, normal);
+    return (cosine >= least_cosine ? equal_sides : 0) |
+           (-cosine >= least_cosine ? opposite_sides : 0);
   }
 };
 
-/// The patches near a triangle that hold a triangle of its group.
+/// The patches near a triangle that hold a triangle near it whose normal agrees.
 class PatchSearch {
  public:
   PatchSearch(const Scene& scene, const Patches& patches,
@@ -59,43 +58,36 @@ class PatchSearch {
         patches_(patches),
         // Room for the rounding of squared_distance(), a few parts in 10^7.
         limit_(static_cast<float>(parameters.radius * parameters.radius * (1 + 1e-5))),
-        angle_(glm::radians(parameters.angle_degrees)),
-        cos_angle_(std::cos(angle_)),
-        proximity_(scene, parameters.radius),
-        bounds_(scene.triangle_count()),
+        cos_angle_(std::cos(glm::radians(parameters.angle_degrees))),
+        normals_(scene.triangle_count()),
         boxes_(scene.triangle_count()),
         trees_(patches.count()) {
-    tbb::parallel_for(std::size_t{0}, bounds_.size(), [&](std::size_t i) {
-      const std::uint32_t triangle = triangle_of(patches.members[i]);
-      bounds_[i] = proximity_.bound(triangle);
-      if (side_of(patches.members[i]) == 1) bounds_[i].normal = -bounds_[i].normal;
-      boxes_[i] = triangle_box(scene, triangle);
+    tbb::parallel_for(std::size_t{0}, boxes_.size(), [&](std::size_t i) {
+      normals_[i] = sided_normal(scene, patches.members[i]);
+      boxes_[i] = triangle_box(scene, triangle_of(patches.members[i]));
     });
-    std::vector<Box> patch_boxes(patches.count());
+    patch_boxes_.resize(patches.count());
+    cones_.resize(patches.count());
+    const double angle = glm::radians(parameters.angle_degrees);
     tbb::parallel_for(std::size_t{0}, patches.count(), [&](std::size_t patch) {
-      const std::span<const Box> boxes = boxes_of(patch);
-      for (const Box& box : boxes) patch_boxes[patch].extend(box);
+      const std::span<const Box> boxes = members_of(boxes_, patch);
+      for (const Box& box : boxes) patch_boxes_[patch].extend(box);
       if (boxes.size() >= fewest_for_tree) trees_[patch] = BoxTree(boxes);
+      cones_[patch] = NormalCone(members_of(normals_, patch), angle);
     });
-    patch_tree_ = BoxTree(patch_boxes);
-    patch_boxes_ = std::move(patch_boxes);
-    cones_.reserve(patches.count());
-    for (std::size_t patch = 0; patch < patches.count(); ++patch) {
-      cones_.emplace_back(
-          std::span(bounds_).subspan(patches.first_of[patch], patches.of(patch).size()));
-    }
+    patch_tree_ = BoxTree(patch_boxes_);
   }
 
   void append_neighbours(std::uint32_t triangle, std::vector<std::uint32_t>& neighbours) const {
     const std::size_t first_of_list = neighbours.size();
-    const TriangleBound own = proximity_.bound(triangle);
+    const glm::dvec3 normal = sided_normal(scene_, sided(triangle, 0));
     const Box box = triangle_box(scene_, triangle);
     const std::uint32_t own_map = patches_.map_of[sided(triangle, 0)];
     patch_tree_.visit_within(box, limit_, [&](std::uint32_t patch) {
       if (!(squared_distance(patch_boxes_[patch], box) <= limit_)) return false;
       std::uint32_t sides = 0;
       if (patch == own_map / 2) sides = own_map % 2 == 0 ? equal_sides : opposite_sides;
-      sides = sides_near(own, box, patch, sides);
+      sides = sides_near(normal, box, patch, sides);
       if (sides != 0) neighbours.push_back(4 * patch + sides);
       return false;
     });
@@ -103,30 +95,28 @@ class PatchSearch {
   }
 
  private:
-  std::span<const Box> boxes_of(std::size_t patch) const {
-    return std::span(boxes_).subspan(patches_.first_of[patch], patches_.of(patch).size());
+  template <class Value>
+  std::span<const Value> members_of(const std::vector<Value>& values, std::size_t patch) const {
+    return std::span(values).subspan(patches_.first_of[patch], patches_.of(patch).size());
   }
 
-  /// Which sides of the patch have a triangle within the radius that agrees; `found` are known.
-  std::uint32_t sides_near(const TriangleBound& own, const Box& box, std::uint32_t patch,
+  /// Which sides of the patch have a triangle near the box that agrees; `found` are known.
+  std::uint32_t sides_near(const glm::dvec3& normal, const Box& box, std::uint32_t patch,
                            std::uint32_t found) const {
-    const std::uint32_t first = patches_.first_of[patch];
-    const std::uint32_t wanted = found | cones_[patch].sides_within(own.normal, angle_);
+    const std::uint32_t wanted = found | cones_[patch].sides_within(normal);
     if (found == wanted) return found;
+    const std::span<const Box> boxes = members_of(boxes_, patch);
+    const std::span<const glm::dvec3> normals = members_of(normals_, patch);
     const auto visit = [&](std::uint32_t member) {
-      const TriangleBound& other = bounds_[first + member];
-      const std::uint32_t sides = agreeing_sides(own.normal, other.normal, cos_angle_);
-      if ((sides & ~found) != 0 && squared_distance(boxes_[first + member], box) <= limit_ &&
-          proximity_.within(own, other)) {
-        found |= sides;
+      if (squared_distance(boxes[member], box) <= limit_) {
+        found |= agreeing_sides(normal, normals[member], cos_angle_);
       }
       return found == wanted;
     };
-    const std::size_t count = patches_.of(patch).size();
-    if (count >= fewest_for_tree) {
+    if (boxes.size() >= fewest_for_tree) {
       trees_[patch].visit_within(box, limit_, visit);
     } else {
-      for (std::uint32_t member = 0; member < count && !visit(member); ++member) {
+      for (std::uint32_t member = 0; member < boxes.size() && !visit(member); ++member) {
       }
     }
     return found;
@@ -135,12 +125,10 @@ class PatchSearch {
   const Scene& scene_;
   const Patches& patches_;
   float limit_;
-  double angle_;  ///< radians
   double cos_angle_;
-  ProximityTest proximity_;
-  std::vector<TriangleBound> bounds_;  ///< per member; normals of the member's side
-  std::vector<Box> boxes_;             ///< per member
-  std::vector<BoxTree> trees_;         ///< over the members of a patch; empty for few
+  std::vector<glm::dvec3> normals_;  ///< per member, of its side
+  std::vector<Box> boxes_;           ///< per member
+  std::vector<BoxTree> trees_;       ///< over the members of a patch; empty for few
   std::vector<Box> patch_boxes_;
   std::vector<NormalCone> cones_;
   BoxTree patch_tree_;
@@ -149,10 +137,11 @@ class PatchSearch {
 }  // namespace
 
 NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
-                                  const NeighbourGroupParameters& parameters, Progress& progress) {
+                                  const NeighbourGroupParameters& parameters, Progress& progress,
+                                  std::span<const std::uint8_t> landed) {
   check(parameters);
   check_scene(scene);
-  if (patches.empty()) return find_neighbour_groups(scene, parameters, progress);
+  if (patches.empty()) return find_neighbour_groups(scene, parameters, progress, landed);
   NeighbourGroups result;
   {
     const PatchSearch search(scene, patches, parameters);
@@ -161,7 +150,7 @@ NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
         [&](std::uint32_t triangle, std::vector<std::uint32_t>& neighbours) {
           search.append_neighbours(triangle, neighbours);
         },
-        progress);
+        progress, landed);
   }
   result.patches = std::move(patches);
   return result;

@@ -26,6 +26,7 @@ struct PatchShape {
   double area = 0;             ///< of the triangles, one side, square metres
   double least_cosine = 1;     ///< of the angle between a normal and the axis, without sign
 
+  const glm::dvec3& direction(int i) const { return i == 0 ? u_axis : i == 1 ? v_axis : axis; }
   double width(int i) const { return high[i] - low[i]; }
   double thickness() const { return width(2); }
   double diagonal() const { return glm::length(high - low); }

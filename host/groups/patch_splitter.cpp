@@ -1,9 +1,11 @@
 #include "groups/patch_splitter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace photile::groups {
@@ -26,6 +28,10 @@ constexpr double least_cover = 0.5;
 
 constexpr std::size_t triangles_per_task = 2048;
 
+constexpr int most_gap_steps = 1024;
+
+constexpr std::size_t most_judged = 1024;  ///< triangles by which a split is judged
+
 double angle_excess(double cosine) {
   return std::max(0.0, std::acos(std::min(1.0, cosine)) / std::acos(least_cosine) - 1.0);
 }
@@ -36,10 +42,14 @@ PatchSplitter::PatchSplitter(const Scene& scene, double radius)
     : scene_(scene), radius_(radius), facts_(scene) {}
 
 std::vector<PatchPart> PatchSplitter::split() {
-  std::vector<std::uint32_t> all(scene_.triangle_count());
-  std::iota(all.begin(), all.end(), 0u);
+  PatchPart all;
+  all.triangles.resize(scene_.triangle_count());
+  std::iota(all.triangles.begin(), all.triangles.end(), 0u);
   tbb::task_group tasks;
-  if (!all.empty()) split(std::move(all), tasks);
+  if (!all.triangles.empty()) {
+    all.shape = shape_of(scene_, facts_, all.triangles);
+    split(std::move(all), tasks);
+  }
   tasks.wait();
   std::vector<PatchPart> parts(std::make_move_iterator(parts_.begin()),
                                std::make_move_iterator(parts_.end()));
@@ -50,49 +60,54 @@ std::vector<PatchPart> PatchSplitter::split() {
   return parts;
 }
 
-void PatchSplitter::split(std::vector<std::uint32_t> triangles, tbb::task_group& tasks) {
+void PatchSplitter::split(PatchPart part, tbb::task_group& tasks) {
   for (;;) {
-    const PatchShape shape = shape_of(scene_, facts_, triangles);
-    if (triangles.size() == 1 || serves_as_patch(shape, triangles)) {
-      std::sort(triangles.begin(), triangles.end());
-      parts_.push_back({std::move(triangles), shape});
+    if (part.triangles.size() == 1 || serves_as_patch(part)) {
+      std::sort(part.triangles.begin(), part.triangles.end());
+      parts_.push_back(std::move(part));
       return;
     }
-    Halves halves = best_split(shape, triangles);
-    if (halves.second.size() > triangles_per_task) {
+    Halves halves = best_split(part);
+    if (halves.second.triangles.size() > triangles_per_task) {
       // A task must be copyable and constant: what it consumes is held by pointer.
-      auto second = std::make_shared<std::vector<std::uint32_t>>(std::move(halves.second));
+      auto second = std::make_shared<PatchPart>(std::move(halves.second));
       tasks.run([this, second, &tasks] { split(std::move(*second), tasks); });
     } else {
       split(std::move(halves.second), tasks);
     }
-    triangles = std::move(halves.first);
+    part = std::move(halves.first);
   }
 }
 
-bool PatchSplitter::serves_as_patch(const PatchShape& shape,
-                                    std::span<const std::uint32_t> triangles) const {
+bool PatchSplitter::serves_as_patch(const PatchPart& part) const {
+  const PatchShape& shape = part.shape;
   if (shape.diagonal() <= small_diagonal * radius_) return true;
   return shape.thickness() <= most_thickness * radius_ && shape.least_cosine >= least_cosine &&
-         covered_part(scene_, shape, triangles, radius_) >= least_cover;
+         covered_part(scene_, shape, part.triangles, radius_) >= least_cover;
 }
 
 /// The area of references that a part will need: its own, more of it the farther the part is from
-/// serving as a patch, and a border as wide as the radius.
-double PatchSplitter::cost(std::span<const std::uint32_t> triangles) const {
-  const PatchShape shape = shape_of(scene_, facts_, triangles);
+/// serving as a patch, and a border as wide as the radius. A sample of many triangles says enough
+/// to choose between splits.
+double PatchSplitter::cost(const PatchPart& part) const {
+  const std::size_t step = part.triangles.size() / most_judged + 1;
+  std::vector<std::uint32_t> sample;
+  for (std::size_t i = 0; i < part.triangles.size(); i += step) {
+    sample.push_back(part.triangles[i]);
+  }
+  PatchShape shape = shape_of(scene_, facts_, sample);
+  shape.area *= static_cast<double>(part.triangles.size()) / static_cast<double>(sample.size());
   const double height_excess = std::max(0.0, shape.thickness() / (most_thickness * radius_) - 1.0);
   return shape.area * (height_excess + angle_excess(shape.least_cosine)) +
          2 * radius_ * (shape.width(0) + shape.width(1));
 }
 
 /// Between the two normals that differ most.
-PatchSplitter::Halves PatchSplitter::by_normal(const PatchShape& shape,
-                                               std::span<const std::uint32_t> triangles) const {
+PatchSplitter::Halves PatchSplitter::by_normal(const PatchPart& part) const {
   const auto farthest_from = [&](const glm::dvec3& direction) {
     double least = 2;
-    std::uint32_t farthest = triangles.front();
-    for (const std::uint32_t t : triangles) {
+    std::uint32_t farthest = part.triangles.front();
+    for (const std::uint32_t t : part.triangles) {
       const double cosine = std::abs(glm::dot(glm::dvec3(facts_.normal[t]), direction));
       if (cosine < least) {
         least = cosine;
@@ -101,73 +116,91 @@ PatchSplitter::Halves PatchSplitter::by_normal(const PatchShape& shape,
     }
     return glm::dvec3(facts_.normal[farthest]);
   };
-  const glm::dvec3 a = farthest_from(shape.axis);
+  const glm::dvec3 a = farthest_from(part.shape.axis);
   const glm::dvec3 b = farthest_from(a);
   Halves halves;
-  for (const std::uint32_t t : triangles) {
+  for (const std::uint32_t t : part.triangles) {
     const glm::dvec3 normal(facts_.normal[t]);
     const bool nearer_a = std::abs(glm::dot(normal, a)) > std::abs(glm::dot(normal, b));
-    (nearer_a ? halves.first : halves.second).push_back(t);
+    (nearer_a ? halves.first : halves.second).triangles.push_back(t);
   }
   return halves;
 }
 
-/// At the widest gap between triangles along an axis of the shape, or in the middle of the box
-/// where there is none.
-PatchSplitter::Halves PatchSplitter::along(const PatchShape& shape, int axis,
-                                           std::span<const std::uint32_t> triangles) const {
+/// In the widest gap between triangles along an axis of the shape, or in the middle of the box
+/// where there is none. Gaps are looked for in steps of the box, from an eighth of a triangle on
+/// average down to a thousandth of the box.
+PatchSplitter::Halves PatchSplitter::along(const PatchPart& part, int axis) const {
   struct Interval {
     double low, high;
   };
+  const PatchShape& shape = part.shape;
+  const glm::dvec3& direction = shape.direction(axis);
   std::vector<Interval> intervals;
-  intervals.reserve(triangles.size());
-  for (const std::uint32_t t : triangles) {
-    const auto corners = local_corners(scene_, shape, t);
-    intervals.push_back({std::min({corners[0][axis], corners[1][axis], corners[2][axis]}),
-                         std::max({corners[0][axis], corners[1][axis], corners[2][axis]})});
+  intervals.reserve(part.triangles.size());
+  for (const std::uint32_t t : part.triangles) {
+    const auto corners = scene_.corners(t);
+    const double a = glm::dot(glm::dvec3(corners[0]), direction);
+    const double b = glm::dot(glm::dvec3(corners[1]), direction);
+    const double c = glm::dot(glm::dvec3(corners[2]), direction);
+    intervals.push_back({std::min({a, b, c}), std::max({a, b, c})});
   }
-  std::vector<Interval> sorted = intervals;
-  std::sort(sorted.begin(), sorted.end(),
-            [](const Interval& a, const Interval& b) { return a.low < b.low; });
+  const int steps = static_cast<int>(std::min<std::size_t>(8 * intervals.size(), most_gap_steps));
+  const double step = shape.width(axis) / steps;
+  const auto step_of = [&](double height) {
+    return std::clamp(static_cast<int>((height - shape.low[axis]) / step), 0, steps - 1);
+  };
+  std::array<int, most_gap_steps + 1>
+      begins{};  // intervals that begin in a step less those that end
+  for (const Interval& interval : intervals) {
+    ++begins[step_of(interval.low)];
+    --begins[step_of(interval.high) + 1];
+  }
   double border = 0.5 * (shape.low[axis] + shape.high[axis]);
-  double widest = 0, reached = sorted.front().high;
-  for (const Interval& interval : sorted) {
-    if (interval.low - reached > widest) {
-      widest = interval.low - reached;
-      border = 0.5 * (interval.low + reached);
+  int widest = 0;
+  for (int i = 0, covering = 0, reached = 0; i < steps; ++i) {
+    covering += begins[i];
+    if (covering == 0) continue;
+    if (i - reached > widest) {
+      widest = i - reached;
+      border = shape.low[axis] + 0.5 * (reached + i) * step;
     }
-    reached = std::max(reached, interval.high);
+    reached = i + 1;
   }
   Halves halves;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
     const bool below = 0.5 * (intervals[i].low + intervals[i].high) < border;
-    (below ? halves.first : halves.second).push_back(triangles[i]);
+    (below ? halves.first : halves.second).triangles.push_back(part.triangles[i]);
   }
   return halves;
 }
 
-PatchSplitter::Halves PatchSplitter::best_split(const PatchShape& shape,
-                                                std::span<const std::uint32_t> triangles) const {
+PatchSplitter::Halves PatchSplitter::best_split(const PatchPart& part) const {
+  const PatchShape& shape = part.shape;
   std::vector<Halves> splits;
-  splits.push_back(along(shape, shape.width(0) >= shape.width(1) ? 0 : 1, triangles));
+  splits.push_back(along(part, shape.width(0) >= shape.width(1) ? 0 : 1));
   const bool leaning = shape.least_cosine < least_cosine;
   const bool thick = shape.thickness() > most_thickness * radius_;
   if (leaning || thick) {
-    splits.push_back(along(shape, 2, triangles));
-    splits.push_back(by_normal(shape, triangles));
+    splits.push_back(along(part, 2));
+    splits.push_back(by_normal(part));
   }
-  Halves* best = nullptr;
-  for (Halves& halves : splits) {
-    if (!halves.valid()) continue;
+  std::erase_if(splits, [](const Halves& halves) { return !halves.valid(); });
+  if (splits.empty()) {  // coincident layers that no plane divides
+    const auto begin = part.triangles.begin(), end = part.triangles.end();
+    const auto middle = begin + static_cast<std::ptrdiff_t>(part.triangles.size() / 2);
+    splits.push_back({{{begin, middle}, {}}, {{middle, end}, {}}});
+  }
+  Halves best = std::move(splits.front());
+  if (splits.size() > 1) best.cost = cost(best.first) + cost(best.second);
+  for (Halves& halves : std::span(splits).subspan(1)) {
     halves.cost = cost(halves.first) + cost(halves.second);
-    if (best == nullptr || halves.cost < best->cost) best = &halves;
+    if (halves.cost < best.cost) best = std::move(halves);
   }
-  if (best != nullptr) return std::move(*best);
-  // Coincident layers that no plane divides.
-  const std::size_t half = triangles.size() / 2;
-  return {{triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half)},
-          {triangles.begin() + static_cast<std::ptrdiff_t>(half), triangles.end()},
-          0};
+  for (PatchPart* half : {&best.first, &best.second}) {
+    half->shape = shape_of(scene_, facts_, half->triangles);
+  }
+  return best;
 }
 
 }  // namespace photile::groups

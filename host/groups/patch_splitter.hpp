@@ -6,7 +6,6 @@
 #include <tbb/task_group.h>
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "groups/patch_shape.hpp"
@@ -33,17 +32,17 @@ class PatchSplitter {
 
  private:
   struct Halves {
-    std::vector<std::uint32_t> first, second;
+    PatchPart first, second;
     double cost = 0;
-    bool valid() const { return !first.empty() && !second.empty(); }
+    bool valid() const { return !first.triangles.empty() && !second.triangles.empty(); }
   };
 
-  void split(std::vector<std::uint32_t> triangles, tbb::task_group& tasks);
-  bool serves_as_patch(const PatchShape& shape, std::span<const std::uint32_t> triangles) const;
-  double cost(std::span<const std::uint32_t> triangles) const;
-  Halves by_normal(const PatchShape& shape, std::span<const std::uint32_t> triangles) const;
-  Halves along(const PatchShape& shape, int axis, std::span<const std::uint32_t> triangles) const;
-  Halves best_split(const PatchShape& shape, std::span<const std::uint32_t> triangles) const;
+  void split(PatchPart part, tbb::task_group& tasks);
+  bool serves_as_patch(const PatchPart& part) const;
+  double cost(const PatchPart& part) const;
+  Halves by_normal(const PatchPart& part) const;
+  Halves along(const PatchPart& part, int axis) const;
+  Halves best_split(const PatchPart& part) const;
 
   const Scene& scene_;
   double radius_;

@@ -1,6 +1,8 @@
 // Patches that are joined, either side by side or turned over.
 #pragma once
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -39,20 +41,23 @@ class PatchUnion {
 template <class Offset>
 void rename_maps(std::vector<Offset>& offsets, std::vector<std::uint32_t>& maps,
                  const PatchUnion& patches) {
-  std::size_t written = 0;
-  Offset first = offsets.front();
-  for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
-    const Offset last = offsets[i + 1];
-    const auto begin = maps.begin() + static_cast<std::ptrdiff_t>(written);
-    auto end = begin;
-    for (Offset j = first; j < last; ++j) *end++ = patches.map(maps[j]);
+  const std::size_t lists = offsets.size() - 1;
+  std::vector<std::uint32_t> sizes(lists);
+  tbb::parallel_for(std::size_t{0}, lists, [&](std::size_t i) {
+    const auto begin = maps.begin() + static_cast<std::ptrdiff_t>(offsets[i]);
+    const auto end = maps.begin() + static_cast<std::ptrdiff_t>(offsets[i + 1]);
+    std::transform(begin, end, begin, [&](std::uint32_t map) { return patches.map(map); });
     std::sort(begin, end);
-    end = std::unique(begin, end);
-    written = static_cast<std::size_t>(end - maps.begin());
-    offsets[i + 1] = static_cast<Offset>(written);
-    first = last;
+    sizes[i] = static_cast<std::uint32_t>(std::unique(begin, end) - begin);
+  });
+  auto written = maps.begin();
+  for (std::size_t i = 0; i < lists; ++i) {
+    const auto begin = maps.begin() + static_cast<std::ptrdiff_t>(offsets[i]);
+    offsets[i] = static_cast<Offset>(written - maps.begin());
+    written = std::copy(begin, begin + sizes[i], written);
   }
-  maps.resize(written);
+  offsets.back() = static_cast<Offset>(written - maps.begin());
+  maps.erase(written, maps.end());
   maps.shrink_to_fit();
 }
 

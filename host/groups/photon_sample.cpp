@@ -1,5 +1,7 @@
 #include "groups/photon_sample.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -25,12 +27,17 @@ PhotonSample::PhotonSample(std::span<const PatchShape> shapes, const NeighbourGr
                            const Photons& photons) {
   const std::size_t step = std::max<std::size_t>(1, photons.size() / sample_size);
   for (std::size_t i = step / 2; i < photons.size(); i += step) {
-    const glm::dvec3 position(photons.position[i]);
-    for (const std::uint32_t map : groups.of(photons.sided_triangle[i])) {
-      if (is_within(shapes[map / 2], position, groups.radius)) maps_.push_back(map);
+    position_.emplace_back(photons.position[i]);
+  }
+  std::vector<std::vector<std::uint32_t>> maps(position_.size());
+  tbb::parallel_for(std::size_t{0}, position_.size(), [&](std::size_t i) {
+    for (const std::uint32_t map : groups.of(photons.sided_triangle[step / 2 + i * step])) {
+      if (is_within(shapes[map / 2], position_[i], groups.radius)) maps[i].push_back(map);
     }
+  });
+  for (const std::vector<std::uint32_t>& entered : maps) {
+    maps_.insert(maps_.end(), entered.begin(), entered.end());
     first_of_.push_back(static_cast<std::uint32_t>(maps_.size()));
-    position_.push_back(position);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "kdtree/kdtree_builder.hpp"
 #include "maps/build_kernels.hpp"
@@ -29,6 +30,12 @@ namespace {
 
 using device::Context;
 
+/// Lies over store.normals where the device shares memory.
+device::Buffer<float> upload_normals(Context& context, const MapStore& store) {
+  const float* const first = store.normals.empty() ? nullptr : &store.normals.front().x;
+  return context.share(std::span(first, 3 * store.normals.size()), "normals of triangles");
+}
+
 /// The radius that photons must lie within of a triangle to enter its map: grown by what rounding
 /// may do to positions as large as the scene's, so that no neighbour is lost.
 float reach_of(const Scene& scene, double radius) {
@@ -42,15 +49,17 @@ float reach_of(const Scene& scene, double radius) {
 
 /// An array of a photon page takes at most a 32nd of the memory, so that the page takes about an
 /// eighth.
-std::unique_ptr<PhotonPages> photon_pages(Context& context, const MapStore& store,
-                                          const CandidateMaps& candidates, const Photons& photons,
-                                          Progress& progress) {
+std::unique_ptr<PhotonPages> photon_pages(const Build& build, const CandidateMaps& candidates,
+                                          const Photons& photons, Progress& progress) {
+  Context& context = build.context;
   return std::make_unique<PhotonPages>(
       context,
       [&](std::uint64_t max_bytes) { return plan_photon_pages(photons, candidates, max_bytes); },
       [&](PhotonRange range) {
         progress.throw_if_cancelled();
-        return upload_photon_page(context, photons, store.normals, store.map_of, candidates, range);
+        PhotonPage page = upload_photon_page(context, photons, candidates, range);
+        find_entered(build, page);
+        return page;
       },
       std::min(context.largest_buffer(), context.memory_limit() / 32));
 }
@@ -60,10 +69,9 @@ std::unique_ptr<PhotonPages> photon_pages(Context& context, const MapStore& stor
 PageLimits page_limits(const Context& context, const MapStore& store, float photons_per_cell,
                        bool normals) {
   const std::uint64_t record = bytes_per_entry(store.needs) + (normals ? 3 * sizeof(float) : 0);
-  // Two cells for what photons_per_cell asks of one: grids reach beyond the photons. Each is
-  // counted and has a start.
+  // Two cells for what photons_per_cell asks of one: grids reach beyond the photons.
   const double cells = 2.0 / photons_per_cell;
-  const auto cell_bytes = static_cast<std::uint64_t>(std::ceil(2 * sizeof(std::uint32_t) * cells));
+  const auto cell_bytes = static_cast<std::uint64_t>(std::ceil(sizeof(std::uint32_t) * cells));
   return {.largest_buffer = context.largest_buffer(),
           .page_bytes = context.memory_limit() / 2,
           .bytes_per_entry = record + cell_bytes,
@@ -114,7 +122,8 @@ MapPage build_page(const Build& build, const Photons& photons, const CountedMaps
   if (is_tree(store.parameters.structure)) {
     build_trees(build.context, store.parameters.structure, photons, counted.photons, page);
   }
-  gather_entries(build.kernels, store.needs, *build.photon_pages, counted.any_mixed(range), page);
+  gather_entries(build.kernels, store.needs, *build.photon_pages,
+                 counted.any_mixed(range) ? &build.normals : nullptr, range.tile.has_value(), page);
   build.context.finish();
   return page;
 }
@@ -200,7 +209,9 @@ void build_maps(MapStore& store, const Photons& photons, MapPlan plan, Progress&
   build.shapes =
       context.upload(std::span<const PhotileMapShape>(plan.surfaces.shapes), "map shapes");
   build.crowding = context.upload(std::span<const float>(plan.crowding), "photon crowding");
-  build.photon_pages = photon_pages(context, store, plan.candidates, photons, progress);
+  build.map_of = context.share(std::span(std::as_const(store.map_of)), "maps of triangles");
+  build.normals = upload_normals(context, store);
+  build.photon_pages = photon_pages(build, plan.candidates, photons, progress);
   plan.surfaces = {};
   count_photons(build, plan.crowding.size());
   const CountedMaps counted{read_all(context, build.counts.photons),
@@ -244,11 +255,10 @@ void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map
       [&](std::uint64_t) {
         return std::vector<PhotonRange>{{0, count}};
       },
-      [&](PhotonRange range) {
-        return upload_photon_records(context, photons, store.normals, range);
-      },
+      [&](PhotonRange range) { return upload_photon_records(context, photons, range); },
       context.largest_buffer());
-  gather_entries(build_kernels(store, false), store.needs, pages, true, page);
+  const device::Buffer<float> normals = upload_normals(context, store);
+  gather_entries(build_kernels(store, false), store.needs, pages, &normals, false, page);
   context.finish();
   store.statistics.maps = 1;
   store.statistics.largest_map = count;

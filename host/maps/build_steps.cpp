@@ -21,12 +21,11 @@ void try_to_count(Build& build) {
   build.context.fill(build.counts.mixed, 0u);
   for (const PhotonPage& page : *build.photon_pages) {
     const auto launch = [&](const auto&... patches) {
-      build.run("count_photons", page.count, page.count, page.position, page.own_map, page.list,
-                page.list_offsets, page.list_members, build.shapes, build.corners,
-                build.squared_reach, build.counts.photons, patches...);
+      build.run_over(page, build.kernels, "count_photons", page.entered, build.counts.photons,
+                     patches...);
     };
     if (build.patches) {
-      launch(page.normal, build.counts.mixed);
+      launch(build.normals, build.counts.mixed);
     } else {
       launch();
     }
@@ -38,7 +37,7 @@ std::uint32_t total_cells(Context& context, const Buffer<std::uint32_t>& cells_o
   const std::vector<std::uint32_t> cells = read_all(context, cells_of_map);
   const std::uint64_t total = std::accumulate(cells.begin(), cells.end(), std::uint64_t{0});
   const std::uint64_t most =
-      std::min(context.largest_buffer() / sizeof(std::uint32_t), max_items) - 1;
+      std::min(context.largest_buffer() / sizeof(std::uint32_t), max_items) - 2;
   if (total > most) {
     throw DeviceMemoryError(fmt::format(
         "photon maps of {} grid cells, more than the {} that the device's largest buffer "
@@ -67,6 +66,11 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
 }
 
 }  // namespace
+
+void find_entered(const Build& build, PhotonPage& page) {
+  page.entered = build.context.allocate<std::uint32_t>(page.count, "maps that photons enter");
+  build.run_over(page, build.kernels, "find_entered", page.entered);
+}
 
 void count_photons(Build& build, std::size_t map_count) {
   build.counts.photons = build.context.allocate<std::uint32_t>(map_count, "photons per map");
@@ -100,11 +104,8 @@ MapTiling tiling_of(const Build& build, std::uint32_t map) {
                                                     "bins of a photon map");
   build.context.fill(bins, 0u);
   for (const PhotonPage& photons : build.photon_pages->entering(map, map + 1)) {
-    build.tile_kernels.run("count_bins", photons.count, work_group_size, photons.count,
-                           photons.position, photons.own_map, photons.list, photons.list_offsets,
-                           photons.list_members, build.shapes, build.corners, build.squared_reach,
-                           map, page.grids, tiling.bin_width(), tiling.bin_height(),
-                           tiling.columns(), bins);
+    build.run_over(photons, build.tile_kernels, "count_bins", photons.entered, map, page.grids,
+                   tiling.bin_width(), tiling.bin_height(), tiling.columns(), bins);
   }
   tiling.set_photons(read_all(build.context, bins));
   return tiling;
@@ -119,17 +120,10 @@ void place_grids(const Build& build, MapPage& page) {
 }
 
 void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile) {
-  auto cell_count = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell counts");
-  page.cell_start = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell offsets",
-                                                          device::MemoryPages::large);
-  build.context.fill(cell_count, 0u);
-  const auto launch = [&](const char* kernel, const PhotonPage& photons, const auto&... outputs) {
-    const auto run = [&](const device::KernelSet& kernels, const auto&... bounds) {
-      kernels.run(kernel, photons.count, work_group_size, photons.count, photons.position,
-                  photons.own_map, photons.list, photons.list_offsets, photons.list_members,
-                  build.shapes, build.corners, build.squared_reach, page.first_map, page.last_map,
-                  page.grids, outputs..., bounds...);
-    };
+  page.cell_start = build.context.allocate<std::uint32_t>(
+      std::size_t{page.cell_count} + 2, "cell offsets", device::MemoryPages::large);
+  build.context.fill(page.cell_start, 0u);
+  const auto with_tile = [&](const auto& run) {
     if (tile) {
       run(build.tile_kernels, tile->first_column, tile->first_row, tile->last_column,
           tile->last_row);
@@ -137,23 +131,32 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
       run(build.kernels);
     }
   };
-  const auto photon_pages = build.photon_pages->entering(page.first_map, page.last_map);
-  for (const PhotonPage& photons : photon_pages) launch("count_cells", photons, cell_count);
-  if (tile) {
-    build.tile_kernels.run("narrow_gaps", tile->height(), work_group_size, page.grids, cell_count,
+  const auto over_photons = [&](const PhotonPage& photons, const char* kernel,
+                                const auto&... outputs) {
+    with_tile([&](const device::KernelSet& kernels, const auto&... bounds) {
+      build.run_over(photons, kernels, kernel, photons.entered, page.first_map, page.last_map,
+                     page.grids, page.cell_start, outputs..., bounds...);
+    });
+  };
+  const auto over_gaps = [&](const char* kernel) {
+    if (!tile) return;
+    build.tile_kernels.run(kernel, tile->height(), work_group_size, page.grids, page.cell_start,
                            tile->first_column, tile->first_row, tile->last_column, tile->last_row);
-  }
-  exclusive_prefix_sum(build.kernels, cell_count, page.cell_start);
-  build.context.read(page.cell_start, std::span(&page.entry_count, 1), page.cell_count);
+  };
+  const auto photon_pages = build.photon_pages->entering(page.first_map, page.last_map);
+  for (const PhotonPage& photons : photon_pages) over_photons(photons, "count_cells");
+  over_gaps("narrow_gaps");
+  exclusive_prefix_sum(build.kernels, page.cell_start);
+  build.context.read(page.cell_start, std::span(&page.entry_count, 1),
+                     std::size_t{page.cell_count} + 1);
+  over_gaps("skip_gaps");
 
   page.entry_photon = build.context.allocate<std::uint32_t>(page.entry_count, "photon references");
   if (tile) build.context.fill(page.entry_photon, none);  // that gaps have
   for (const PhotonPage& photons : photon_pages) {
-    launch("scatter", photons, page.cell_start, cell_count, photons.first_photon,
-           page.entry_photon);
+    over_photons(photons, "scatter", photons.first_photon, page.entry_photon);
   }
   build.run("sort_cells", page.cell_count, page.cell_count, page.cell_start, page.entry_photon);
-  build.context.finish();  // cell_count is released here
 }
 
 }  // namespace photile::maps

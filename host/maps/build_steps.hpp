@@ -31,6 +31,8 @@ struct Build {
   float squared_reach;  ///< square metres: within it of a triangle photons enter its map
   float radius;         ///< metres, of the search
   float photons_per_cell;
+  device::Buffer<std::uint32_t> map_of = {};    ///< per sided triangle
+  device::Buffer<float> normals = {};           ///< 3 per sided triangle; only with patches
   device::Buffer<PhotileMapShape> shapes = {};  ///< per pair of maps
   device::Buffer<float> crowding = {};          ///< per map
   device::Buffer<float> corners = {};           ///< 9 floats per triangle that is alone in its maps
@@ -41,9 +43,20 @@ struct Build {
   void run(const char* kernel, std::size_t size, const Args&... args) const {
     kernels.run(kernel, size, work_group_size, args...);
   }
+  /// A kernel of `set` over the photons of a page: CANDIDATES of kernels/grid/entry.clh, `args`.
+  template <class... Args>
+  void run_over(const PhotonPage& page, const device::KernelSet& set, const char* kernel,
+                const Args&... args) const {
+    set.run(kernel, page.count, work_group_size, page.count, page.position, page.sided_triangle,
+            map_of, page.list, page.first_list, page.list_offsets, page.list_members, shapes,
+            corners, squared_reach, args...);
+  }
 };
 
 // Errors: DeviceMemoryError, after which a step may be taken again on smaller pages.
+
+/// Fills page.entered.
+void find_entered(const Build& build, PhotonPage& page);
 
 /// Counts the photons of `map_count` maps: build.counts.
 void count_photons(Build& build, std::size_t map_count);

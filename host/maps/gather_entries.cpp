@@ -5,14 +5,19 @@
 namespace photile::maps {
 
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
-                    PhotonPages& photon_pages, bool normals, MapPage& page) {
+                    PhotonPages& photon_pages, const device::Buffer<float>* normals, bool gaps,
+                    MapPage& page) {
   device::Context& context = build.context();
   page.entry_stride = entry_stride(page.entry_count);
-  // Vector loads reach into the padding; what they find there is masked, but must be a number.
+  // Vector loads reach into padding and gaps; what they find there is masked, but must be a number.
   const auto planes = [&](std::string_view what) {
     auto buffer = context.allocate<float>(3 * std::size_t{page.entry_stride}, what,
                                           device::MemoryPages::large);
-    context.fill(buffer, 0.0f);
+    const std::size_t first_empty = gaps ? 0 : page.entry_count;
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+      context.fill(buffer, 0.0f, plane * page.entry_stride + first_empty,
+                   page.entry_stride - first_empty);
+    }
     return buffer;
   };
   page.entry_position = planes("photon map positions");
@@ -23,7 +28,7 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
                                        "photon map lights", device::MemoryPages::large);
   }
   if (needs.glossy) page.entry_incoming = planes("photon map directions");
-  if (normals) page.entry_normal = planes("photon map normals");
+  if (normals != nullptr) page.entry_normal = planes("photon map normals");
   for (const PhotonPage& photons : photon_pages.entering(page.first_map, page.last_map)) {
     const auto run = [&](const char* kernel, const auto&... arrays) {
       build.run(kernel, page.entry_count, work_group_size, page.entry_count, page.entry_stride,
@@ -45,7 +50,9 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
     } else {
       with_directions();
     }
-    if (normals) run("gather_normals", photons.normal, page.entry_normal);
+    if (normals != nullptr) {
+      run("gather_normals", photons.sided_triangle, *normals, page.entry_normal);
+    }
   }
 }
 

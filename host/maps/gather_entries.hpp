@@ -8,8 +8,11 @@
 namespace photile::maps {
 
 /// `build`: see build_kernels. Before: page.entry_count and page.entry_photon are set. After: the
-/// other entry buffers that the scene needs are filled, normals among them if `normals`.
+/// other entry buffers that the scene needs are filled.
+///   normals   3 floats per sided triangle, where the entries keep normals; else null
+///   gaps      whether there are entries without a photon, as in tiles
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
-                    PhotonPages& photon_pages, bool normals, MapPage& page);
+                    PhotonPages& photon_pages, const device::Buffer<float>* normals, bool gaps,
+                    MapPage& page);
 
 }  // namespace photile::maps

@@ -37,7 +37,7 @@ struct PageBuffers {
 
   // Grids; in the plane of its triangle also the frame of a 2D tree.
   device::Buffer<PhotileGrid> grids;         ///< per map
-  device::Buffer<std::uint32_t> cell_start;  ///< per cell, and the end of the last
+  device::Buffer<std::uint32_t> cell_start;  ///< per cell, and the end of the last, twice
 
   // Trees.
   device::Buffer<std::uint32_t> tree_root;  ///< per map; none without photons

@@ -14,12 +14,12 @@ std::uint64_t PageLimits::most_entries() const {
 
 std::uint64_t PageLimits::bytes(std::uint64_t entries, std::uint64_t maps,
                                 std::uint64_t cells) const {
-  constexpr std::uint64_t bytes_per_cell = 2 * sizeof(std::uint32_t);  // a count and a start
+  constexpr std::uint64_t bytes_per_cell = sizeof(std::uint32_t);
   return entries * bytes_per_entry + maps * bytes_per_map + cells * bytes_per_cell;
 }
 
 bool PageLimits::fit(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells) const {
-  const std::uint64_t most_cells = std::min(largest_buffer / sizeof(std::uint32_t), max_items) - 1;
+  const std::uint64_t most_cells = std::min(largest_buffer / sizeof(std::uint32_t), max_items) - 2;
   return entries <= most_entries() && maps <= largest_buffer / sizeof(PhotileGrid) &&
          cells <= most_cells && bytes(entries, maps, cells) <= page_bytes;
 }

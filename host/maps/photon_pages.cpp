@@ -77,51 +77,34 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
 }
 
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
-                                 std::span<const glm::vec3> normals, PhotonRange range) {
+                                 PhotonRange range) {
   PhotonPage page;
   page.first_photon = range.first;
   page.count = range.last - range.first;
-  page.position = context.upload(floats(photons.position, range), "photon positions");
-  page.flux = context.upload(floats(photons.flux, range), "photon flux");
-  page.light = context.upload(part(photons.light, range), "photon lights");
-  page.incoming = context.upload(floats(photons.incoming, range), "photon directions");
-  if (!normals.empty()) {
-    std::vector<glm::vec3> normal(page.count);
-    for (std::uint32_t i = 0; i < page.count; ++i) {
-      normal[i] = normals[photons.sided_triangle[range.first + i]];
-    }
-    page.normal = context.upload(floats(normal, {0, page.count}), "photon normals");
-  }
+  page.position = context.share(floats(photons.position, range), "photon positions");
+  page.sided_triangle = context.share(part(photons.sided_triangle, range), "photons' triangles");
+  page.flux = context.share(floats(photons.flux, range), "photon flux");
+  page.light = context.share(part(photons.light, range), "photon lights");
+  page.incoming = context.share(floats(photons.incoming, range), "photon directions");
   return page;
 }
 
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
-                              std::span<const glm::vec3> normals,
-                              std::span<const std::uint32_t> map_of,
                               const CandidateMaps& candidates, PhotonRange range) {
-  PhotonPage page = upload_photon_records(context, photons, normals, range);
-  std::vector<std::uint32_t> own_map(page.count);
-  std::transform(photons.sided_triangle.begin() + range.first,
-                 photons.sided_triangle.begin() + range.last, own_map.begin(),
-                 [&](std::uint32_t sided_triangle) { return map_of[sided_triangle]; });
-  page.own_map = context.upload(std::span<const std::uint32_t>(own_map), "maps of photons");
-
+  PhotonPage page = upload_photon_records(context, photons, range);
   const std::uint64_t first_list = candidates.first_list_of[photons.sided_triangle[range.first]];
   const std::uint64_t end_list =
       candidates.first_list_of[photons.sided_triangle[range.last - 1] + 1];
   const std::uint64_t first_member = candidates.offsets[first_list];
-  std::vector<std::uint32_t> list(page.count);
-  for (std::uint32_t i = 0; i < page.count; ++i) {
-    list[i] = static_cast<std::uint32_t>(candidates.list_of_photon[range.first + i] - first_list);
-  }
+  page.first_list = static_cast<std::uint32_t>(first_list);
   std::vector<std::uint32_t> offsets(end_list - first_list + 1);
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     offsets[i] = static_cast<std::uint32_t>(candidates.offsets[first_list + i] - first_member);
   }
-  page.list = context.upload(std::span<const std::uint32_t>(list), "candidate lists of photons");
+  page.list = context.share(part(candidates.list_of_photon, range), "candidate lists of photons");
   page.list_offsets =
       context.upload(std::span<const std::uint32_t>(offsets), "candidate list offsets");
-  page.list_members = context.upload(
+  page.list_members = context.share(
       std::span<const std::uint32_t>(candidates.members.data() + first_member, offsets.back()),
       "candidate maps");
   return page;

@@ -20,15 +20,16 @@ struct PhotonPage {
   std::uint32_t first_photon = 0;
   std::uint32_t count = 0;
 
-  device::Buffer<float> position;              ///< 3 per photon
-  device::Buffer<std::uint32_t> own_map;       ///< of the photon's sided triangle
+  device::Buffer<float> position;  ///< 3 per photon
+  device::Buffer<std::uint32_t> sided_triangle;
   device::Buffer<float> flux;                  ///< 3 per photon
   device::Buffer<std::uint16_t> light;         ///< empty for a single light
   device::Buffer<float> incoming;              ///< 3 per photon; empty unless glossy
-  device::Buffer<float> normal;                ///< 3 per photon: of its sided triangle; or empty
-  device::Buffer<std::uint32_t> list;          ///< of each photon, relative to the page's first
-  device::Buffer<std::uint32_t> list_offsets;  ///< relative to the page's first member
+  device::Buffer<std::uint32_t> list;          ///< of each photon, among all lists
+  std::uint32_t first_list = 0;                ///< the page's first
+  device::Buffer<std::uint32_t> list_offsets;  ///< relative to the page's first list and member
   device::Buffer<std::uint32_t> list_members;
+  device::Buffer<std::uint32_t> entered;  ///< kernels/grid/count_photons.cl, find_entered
 };
 
 /// The bounds of one page: photons [first, last), which enter maps of [first_map, last_map) at
@@ -47,16 +48,12 @@ struct PhotonRange {
 std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes);
 
-/// Records only, without candidate maps.
-///   normals   per sided triangle, where maps need them; else empty
+/// Records only, without candidate maps. Photons must stay as they are for the life of the page.
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
-                                 std::span<const glm::vec3> normals, PhotonRange range);
+                                 PhotonRange range);
 
-/// With candidate maps.
-///   map_of   per sided triangle
+/// With candidate maps, which must stay, too, but for `entered`.
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
-                              std::span<const glm::vec3> normals,
-                              std::span<const std::uint32_t> map_of,
                               const CandidateMaps& candidates, PhotonRange range);
 
 /// The photons of a build, page by page: on the device while there is memory, uploaded again where

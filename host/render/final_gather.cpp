@@ -84,7 +84,7 @@ Estimates FinalGather::gathered(const PrimaryHits& hits, const Estimates& causti
   const Stopwatch stopwatch;
   const trace::FinalGatherRays rays =
       trace::trace_final_gather(rays_, hits, first, count, number, parameters_, photons_.map_of());
-  costs_.ray_seconds += stopwatch.seconds();
+  costs_.rays_time += stopwatch.taken();
   costs_.rays += rays.traced;
   costs_.estimated += rays.ends.size();
   const Estimates at_ends = photons_.estimate(rays.ends);

@@ -7,6 +7,7 @@
 #include "photile/estimator.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
+#include "photile/statistics.hpp"
 #include "render/map_estimators.hpp"
 #include "trace/final_gather_rays.hpp"
 
@@ -33,7 +34,7 @@ class FinalGather {
 
   /// What all estimates took so far.
   struct Costs {
-    double ray_seconds = 0;       ///< that tracing took
+    TimeTaken rays_time;          ///< that tracing took
     std::uint64_t rays = 0;       ///< traced
     std::uint64_t estimated = 0;  ///< points where photons were looked up
   };

@@ -127,7 +127,7 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   } else {
     maps_.fill(estimate::reordered(hits, 0, served), *this, progress);
   }
-  fill_seconds_ += stopwatch.seconds();
+  fill_time_ += stopwatch.taken();
   hits_alone_ += alone.size();
   const Estimates own =
       alone.empty() ? Estimates{} : photons_.estimate(estimate::reordered(hits, 0, alone));

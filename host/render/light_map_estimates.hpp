@@ -37,7 +37,7 @@ class LightMapEstimates : private NodeSource {
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
-  double fill_seconds() const { return fill_seconds_; }
+  TimeTaken fill_time() const { return fill_time_; }
 
  private:
   Estimates irradiance(const PrimaryHits& nodes) override { return photons_.estimate(nodes); }
@@ -51,7 +51,7 @@ class LightMapEstimates : private NodeSource {
   MapEstimators& photons_;
   LightMaps maps_;
   std::uint64_t hits_alone_ = 0;
-  double fill_seconds_ = 0;
+  TimeTaken fill_time_;
 };
 
 }  // namespace photile

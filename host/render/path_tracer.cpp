@@ -40,14 +40,14 @@ PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source
       progress.throw_if_cancelled();
       const Stopwatch hit_watch;
       const PrimaryHitBatch batch = source.trace(rays, film, first, last, {});
-      hits.add(hit_watch.seconds());
+      hits.add(hit_watch.taken());
       const Stopwatch path_watch;
       const Estimates estimates =
           estimator.estimate(batch.hits, path_numbers(batch.hits, film, first, last), progress);
-      paths.add(path_watch.seconds());
+      paths.add(path_watch.taken());
       const Stopwatch film_watch;
       add_to_film(layers, batch, estimates, 1.0f / static_cast<float>(film.samples_per_pixel));
-      film_cost.add(film_watch.seconds());
+      film_cost.add(film_watch.taken());
       rays_seen += static_cast<double>(batch.rays);
       path_count += static_cast<double>(batch.hits.size());
       source.show(layers, first, last, (film.pass + 1.0) / film.passes);
@@ -56,13 +56,14 @@ PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source
   }
   progress.end();
   film_cost.host_bytes = layers.bytes();
-  return {.layers = std::move(layers),
-          .statistics = {stage("ray tracing structure", prepared.cost),
-                         stage("primary hits", hits, {{"rays", rays_seen}}),
-                         stage("trace paths", paths,
-                               {{"paths", path_count},
-                                {"paths per second", path_count / std::max(1e-9, paths.seconds)}}),
-                         stage("film", film_cost)}};
+  return {
+      .layers = std::move(layers),
+      .statistics = {stage("ray tracing structure", prepared.cost),
+                     stage("primary hits", hits, {{"rays", rays_seen}}),
+                     stage("trace paths", paths,
+                           {{"paths", path_count},
+                            {"paths per second", path_count / std::max(1e-9, paths.time.seconds)}}),
+                     stage("film", film_cost)}};
 }
 
 PathTracerResult trace_paths(const Scene& scene, const Camera& camera,

@@ -13,6 +13,7 @@ RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& 
     rendering.prepare(pass, nullptr, nullptr);
     rendering.add_pass(hits);
   }
+  rendering.release();
   return rendering.finish();
 }
 

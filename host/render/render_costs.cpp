@@ -14,12 +14,17 @@ double ratio(std::uint64_t a, std::uint64_t b) {
 
 StageStatistics stage(const char* name, const StageCost& cost,
                       std::vector<std::pair<std::string, double>> figures) {
-  return {name, cost.seconds, cost.host_bytes, cost.device_bytes, std::move(figures)};
+  return {name,
+          cost.time.seconds,
+          cost.time.processor_seconds,
+          cost.host_bytes,
+          cost.device_bytes,
+          std::move(figures)};
 }
 
-void StageCost::add(double more_seconds, std::uint64_t more_host_bytes,
+void StageCost::add(const TimeTaken& more_time, std::uint64_t more_host_bytes,
                     std::uint64_t more_device_bytes) {
-  seconds += more_seconds;
+  time += more_time;
   host_bytes = std::max(host_bytes, more_host_bytes);
   device_bytes = std::max(device_bytes, more_device_bytes);
 }
@@ -37,7 +42,8 @@ RunStatistics RenderCosts::statistics() const {
       stage("trace photons", trace,
             {{"emitted photons", number(emitted_photons)},
              {"stored photons", number(stored_photons)},
-             {"stored photons per second", number(stored_photons) / trace.seconds}}),
+             {"stored photons per second", number(stored_photons) / trace.time.seconds}}),
+      stage("automatic radius", radius),
       stage("neighbour groups", group,
             {{"members", number(group_members)},
              {"members per sided triangle", ratio(group_members, groups)},
@@ -51,25 +57,27 @@ RunStatistics RenderCosts::statistics() const {
              {"references per photon", ratio(references, stored_photons)},
              {"largest map", number(largest_map)},
              {"kernel compilation seconds", compile_seconds}}),
+      stage("prepare estimates", estimators),
       stage("primary hits", hits,
-            {{"rays", number(rays)}, {"rays per second", number(rays) / hits.seconds}})};
+            {{"rays", number(rays)}, {"rays per second", number(rays) / hits.time.seconds}})};
   if (gather_rays > 0) {
     stages.push_back(stage("final gather", gather,
                            {{"rays", number(gather_rays)},
-                            {"rays per second", number(gather_rays) / gather.seconds},
+                            {"rays per second", number(gather_rays) / gather.time.seconds},
                             {"caustic photons", number(caustic_photons)}}));
   }
-  if (light_maps.seconds > 0) {
+  if (light_maps.time.seconds > 0) {
     stages.push_back(stage("light maps", light_maps, {{"new nodes", number(light_map_nodes)}}));
   }
   std::vector<std::pair<std::string, double>> estimate_figures{
       {"hits", number(hit_count)},
       {"kernel compilation seconds", estimate_compile_seconds},
-      {"microseconds per hit",
-       1e6 * (estimate.seconds - estimate_compile_seconds) / std::max(1.0, number(hit_count))}};
+      {"microseconds per hit", 1e6 * (estimate.time.seconds - estimate_compile_seconds) /
+                                   std::max(1.0, number(hit_count))}};
   estimate_figures.insert(estimate_figures.end(), shares.begin(), shares.end());
   stages.push_back(stage("radiance estimate", estimate, std::move(estimate_figures)));
   stages.push_back(stage("film", film));
+  stages.push_back(stage("release memory", release));
   return stages;
 }
 

@@ -10,13 +10,13 @@
 
 namespace photile {
 
-/// Seconds add up over passes; bytes are those of the pass that took most.
+/// Times add up over passes; bytes are those of the pass that took most.
 struct StageCost {
-  double seconds = 0;
+  TimeTaken time;
   std::uint64_t host_bytes = 0;
   std::uint64_t device_bytes = 0;
 
-  void add(double seconds, std::uint64_t host_bytes = 0, std::uint64_t device_bytes = 0);
+  void add(const TimeTaken& time, std::uint64_t host_bytes = 0, std::uint64_t device_bytes = 0);
 };
 
 /// What a stage cost, as a record of a run has it.
@@ -25,7 +25,8 @@ StageStatistics stage(const char* name, const StageCost& cost,
 
 /// Counts add up over passes.
 struct RenderCosts {
-  StageCost structure, trace, group, surface, build, hits, gather, light_maps, estimate, film;
+  StageCost structure, trace, radius, group, surface, build, estimators, hits, gather, light_maps,
+      estimate, film, release;
   std::uint64_t emitted_photons = 0, stored_photons = 0, caustic_photons = 0;
   std::uint64_t group_members = 0, groups = 0, patches = 0;
   std::uint64_t sheets = 0, surface_leaves = 0;

@@ -34,7 +34,7 @@ constexpr int watched_batches = 16;
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene) : rays(scene) {
-  cost.add(stopwatch.seconds(), rays.bytes());
+  cost.add(stopwatch.taken(), rays.bytes());
 }
 
 Rendering::Rendering(const PreparedScene& scene, std::span<Device> devices,
@@ -44,6 +44,7 @@ Rendering::Rendering(const PreparedScene& scene, std::span<Device> devices,
       devices_(devices),
       progress_(&progress),
       plan_(parameters, rays_, progress),
+      kernels_(scene_, devices, plan_.used()),
       paths_before_(scene_.lights.size()),
       layer_powers_(layer_powers(scene_)) {
   if (devices.empty()) throw UsageError("rendering needs a device; give at least one");
@@ -63,6 +64,7 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   photons_.reset();
   caustics_.reset();
   Maps maps = trace_and_build(pass, prepared, keep);
+  const Stopwatch stopwatch;
   std::vector<EstimateParameters> levels = plan_.estimates(pass, surface_);
   if (plan_.reads_light_maps()) {
     for (EstimateParameters& level : levels) {
@@ -74,6 +76,7 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   };
   photons_.emplace(estimators_of(maps.photons));
   if (!maps.caustics.empty()) caustics_.emplace(estimators_of(maps.caustics));
+  costs_.estimators.add(stopwatch.taken());
   pass_ = pass;
 }
 
@@ -100,6 +103,17 @@ double Rendering::compile_seconds() const {
   return most;
 }
 
+void Rendering::release() {
+  const Stopwatch stopwatch;
+  frames_.reset();
+  light_maps_.reset();
+  photons_.reset();
+  caustics_.reset();
+  surface_.reset();
+  groups_ = {};
+  costs_.release.add(stopwatch.taken());
+}
+
 RenderResult Rendering::finish() {
   costs_.film.host_bytes = layers_.bytes();
   costs_.shares.clear();
@@ -121,15 +135,19 @@ RenderResult Rendering::finish() {
 /// The photons are gone when this returns: the maps hold copies.
 Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
                                            const KeepPhotons* keep) {
+  const Stopwatch trace_watch;
   PhotonTracerResult traced;
   if (prepared) {
     traced.photons = std::move(prepared->photons);
   } else {
     traced = trace_photons(rays_, plan_.tracing(pass, paths_before_), *progress_);
   }
+  costs_.trace.add(trace_watch.taken(), traced.photons.bytes() + traced.caustics.bytes());
   count(traced);
   if (pass == 0) {
+    const Stopwatch radius_watch;
     radius_ = prepared ? prepared->radius : plan_.radius(traced.photons);
+    costs_.radius.add(radius_watch.taken());
     find_groups(traced.photons, prepared);  // once: no later radius is larger
     find_surface(traced.photons);
   }
@@ -148,12 +166,16 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
   costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
   if (traced.caustics.size() > 0) maps.caustics = build(traced.caustics, parameters);
+  const Stopwatch release_watch;
+  traced = {};
+  costs_.release.add(release_watch.taken());
   return maps;
 }
 
 std::vector<PhotonMaps> Rendering::build(const Photons& photons,
                                          const PhotonMapParameters& parameters) {
   const Stopwatch stopwatch;
+  kernels_.wait();
   std::vector<PhotonMaps> maps =
       build_maps_on_each(devices_, scene_, photons, groups_, parameters, *progress_);
   std::uint64_t device_bytes = 0, spilled_bytes = 0;
@@ -161,7 +183,7 @@ std::vector<PhotonMaps> Rendering::build(const Photons& photons,
     device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
     spilled_bytes += one.statistics().spilled_bytes;
   }
-  costs_.build.add(stopwatch.seconds(), spilled_bytes, device_bytes);
+  costs_.build.add(stopwatch.taken(), spilled_bytes, device_bytes);
   const PhotonMapStatistics& built = maps.front().statistics();
   costs_.references += built.references;
   costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
@@ -176,15 +198,15 @@ void Rendering::count(const PhotonTracerResult& traced) {
   }
   costs_.stored_photons += traced.photons.size();
   costs_.caustic_photons += traced.caustics.size();
-  costs_.trace.add(traced.seconds, traced.photons.bytes() + traced.caustics.bytes());
 }
 
 void Rendering::find_groups(const Photons& photons, PreparedPhotons* prepared) {
   const Stopwatch stopwatch;
   groups_ = prepared ? std::move(prepared->groups)
-                     : find_map_groups(scene_, photons, plan_.map_mode(), plan_.groups(radius_),
-                                       *progress_);
-  costs_.group.add(stopwatch.seconds(), groups_.bytes());
+                     : find_map_groups(
+                           scene_, photons, plan_.map_mode(), plan_.groups(radius_), *progress_,
+                           plan_.passes() > 1 ? MapUsers::any_photons : MapUsers::these_photons);
+  costs_.group.add(stopwatch.taken(), groups_.bytes());
   costs_.group_members = groups_.members.size();
   costs_.groups = groups_.offsets.size() - 1;
   costs_.patches = groups_.patches.count();
@@ -195,7 +217,7 @@ void Rendering::find_surface(const Photons& photons) {
   const Stopwatch stopwatch;
   surface_ = std::make_shared<const SurfaceIndex>(
       index_surface(scene_, landed_on(scene_, photons), radius_, plan_.used().angle_degrees));
-  costs_.surface.add(stopwatch.seconds(), surface_->bytes());
+  costs_.surface.add(stopwatch.taken(), surface_->bytes());
   costs_.sheets = surface_->sheets;
   costs_.surface_leaves = surface_->leaves.size();
 }
@@ -214,12 +236,12 @@ int Rendering::rows_per_batch(const HitSource& source) const {
 void Rendering::add_rows(const HitSource& source, int first, int last) {
   const Stopwatch hit_watch;
   const PrimaryHitBatch batch = source.trace(rays_, film_, first, last, photons_->map_of());
-  costs_.hits.add(hit_watch.seconds());
+  costs_.hits.add(hit_watch.taken());
   const Estimates estimates =
       reads_light_maps(source) ? read_light_maps(batch.hits) : estimate(batch.hits, first, last);
   const Stopwatch film_watch;
   add_to_film(layers_, batch, estimates, 1.0f / static_cast<float>(film_.samples_per_pixel));
-  costs_.film.add(film_watch.seconds());
+  costs_.film.add(film_watch.taken());
   costs_.rays += batch.rays;
 }
 
@@ -229,7 +251,7 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
   const double compiled = compile_seconds();
   if (!plan_.gathers()) {
     Estimates estimates = photons_->estimate(hits);
-    costs_.estimate.add(stopwatch.seconds());
+    costs_.estimate.add(stopwatch.taken());
     costs_.estimate_compile_seconds += compile_seconds() - compiled;
     costs_.hit_count += hits.size();
     return estimates;
@@ -237,8 +259,8 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
   FinalGather gather(rays_, *photons_, caustics_ ? &*caustics_ : nullptr, plan_.gathering());
   Estimates estimates = gather.estimate(hits, path_numbers(hits, film_, first_row, last_row),
                                         hits_per_batch(plan_.used().neighbours), *progress_);
-  costs_.gather.add(gather.costs().ray_seconds);
-  costs_.estimate.add(stopwatch.seconds() - gather.costs().ray_seconds);
+  costs_.gather.add(gather.costs().rays_time);
+  costs_.estimate.add(stopwatch.taken() - gather.costs().rays_time);
   costs_.estimate_compile_seconds += compile_seconds() - compiled;
   costs_.gather_rays += gather.costs().rays;
   costs_.hit_count += gather.costs().estimated;
@@ -260,13 +282,13 @@ Estimates Rendering::read_light_maps(const PrimaryHits& hits) {
   LightMapEstimates& light_maps = this->light_maps();
   const std::uint64_t alone_before = light_maps.hits_alone();
   const std::uint64_t nodes_before = light_maps.maps().statistics().nodes;
-  const double filled_before = light_maps.fill_seconds();
+  const TimeTaken filled_before = light_maps.fill_time();
   Estimates estimates = light_maps.estimate(hits, *progress_);
   const LightMapStatistics maps = light_maps.maps().statistics();
-  const double fill_seconds = light_maps.fill_seconds() - filled_before;
-  costs_.light_maps.add(fill_seconds, maps.value_bytes + maps.index_bytes);
+  const TimeTaken filling = light_maps.fill_time() - filled_before;
+  costs_.light_maps.add(filling, maps.value_bytes + maps.index_bytes);
   costs_.light_map_nodes += maps.nodes - nodes_before;
-  costs_.estimate.add(stopwatch.seconds() - fill_seconds);
+  costs_.estimate.add(stopwatch.taken() - filling);
   costs_.hit_count += light_maps.hits_alone() - alone_before;
   return estimates;
 }

@@ -11,6 +11,7 @@
 #include "photile/scene_renderer.hpp"
 #include "photile/surface_index.hpp"
 #include "render/hit_source.hpp"
+#include "render/kernel_preparation.hpp"
 #include "render/light_map_estimates.hpp"
 #include "render/light_map_frames.hpp"
 #include "render/map_estimators.hpp"
@@ -54,6 +55,9 @@ class Rendering {
   /// Quick pictures from the light maps of the prepared pass; the plan reads light maps.
   LightMapFrames& frames();
 
+  /// Lets go of the maps, once all that was wanted is in the picture.
+  void release();
+
   /// The picture since `start`.
   RenderResult finish();
 
@@ -84,6 +88,7 @@ class Rendering {
   std::span<Device> devices_;
   Progress* progress_;
   const RenderPlan plan_;
+  KernelPreparation kernels_;
   PrimaryHitParameters film_;
   LightLayers layers_;
   std::vector<std::uint64_t> paths_before_;  ///< per light

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/box_tree.hpp"
 #include "groups/group_lists.hpp"
 
 namespace photile::surface {
@@ -78,14 +79,21 @@ class Projection {
 
 class ExposureFinder {
  public:
-  ExposureFinder(const SurfaceMesh& mesh, const PlaneTree& planes, const Sheets& sheets,
+  ExposureFinder(const SurfaceMesh& mesh, const Facets& facets, const Sheets& sheets,
                  const std::vector<std::uint8_t>& lit, double radius, double angle_degrees)
       : mesh_(mesh),
-        planes_(planes),
+        facets_(facets),
         sheets_(sheets),
         lit_(lit),
         radius_(radius),
-        cos_angle_(std::cos(glm::radians(angle_degrees))) {}
+        cos_angle_(std::cos(glm::radians(angle_degrees))) {
+    for (std::uint32_t t = 0; t < mesh.corner.size(); ++t) {
+      if (!mesh.counts(t) || (!is_dark(sided(t, 0)) && !is_dark(sided(t, 1)))) continue;
+      dark_.push_back(t);
+      dark_boxes_.push_back(geometry::triangle_box(mesh.scene, t));
+    }
+    dark_tree_ = geometry::BoxTree(dark_boxes_);
+  }
 
   float exposure_of(std::uint32_t own) const {
     if (is_dark(own)) return 1;
@@ -130,8 +138,12 @@ class ExposureFinder {
     // A cover lies within the slab, and so where it covers within the prism over the triangle.
     const geometry::Box prism =
         box_of_prism(own_corners, -coincident * radius_ * normal, reach * radius_ * normal);
-    planes_.visit_others(triangle_of(own), prism, 0, [&](std::uint32_t triangle) {
+    const std::uint32_t own_plane = facets_.plane[triangle_of(own)];
+    dark_tree_.visit_within(prism, 0, [&](std::uint32_t i) {
       constexpr bool enough = false;  // all of them are wanted
+      const std::uint32_t triangle = dark_[i];
+      if (geometry::squared_distance(dark_boxes_[i], prism) > 0) return enough;
+      if (facets_.plane[triangle] == own_plane) return enough;
       if (!faces_in_the_dark(triangle, normal)) return enough;
       const Corners corners = corners_of(triangle);
       if (outline.is_apart_from(corners)) return enough;
@@ -150,18 +162,21 @@ class ExposureFinder {
   }
 
   const SurfaceMesh& mesh_;
-  const PlaneTree& planes_;
+  const Facets& facets_;
   const Sheets& sheets_;
   const std::vector<std::uint8_t>& lit_;
   double radius_, cos_angle_;
+  std::vector<std::uint32_t> dark_;  ///< triangles with a side that no light reaches
+  std::vector<geometry::Box> dark_boxes_;
+  geometry::BoxTree dark_tree_;
 };
 
 }  // namespace
 
-std::vector<float> find_exposure(const SurfaceMesh& mesh, const PlaneTree& planes,
+std::vector<float> find_exposure(const SurfaceMesh& mesh, const Facets& facets,
                                  const Sheets& sheets, const std::vector<std::uint8_t>& lit,
                                  double radius, double angle_degrees) {
-  const ExposureFinder finder(mesh, planes, sheets, lit, radius, angle_degrees);
+  const ExposureFinder finder(mesh, facets, sheets, lit, radius, angle_degrees);
   std::vector<float> exposure(mesh.original.size(), 1.0f);
   tbb::parallel_for(std::size_t{0}, exposure.size(), [&](std::size_t i) {
     const auto s = static_cast<std::uint32_t>(i);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "surface/plane_tree.hpp"
+#include "surface/facets.hpp"
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
 
@@ -15,7 +15,7 @@ namespace photile::surface {
 /// surface faces it on which no photon landed. 1 where that is half of them or more: surface that
 /// is covered in places counts as open, so that it is right where it is.
 ///   lit   per sheet
-std::vector<float> find_exposure(const SurfaceMesh& mesh, const PlaneTree& planes,
+std::vector<float> find_exposure(const SurfaceMesh& mesh, const Facets& facets,
                                  const Sheets& sheets, const std::vector<std::uint8_t>& lit,
                                  double radius, double angle_degrees);
 

@@ -81,7 +81,7 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& 
   tbb::parallel_for(std::size_t{0}, index.normal.size(), [&](std::size_t s) {
     index.normal[s] = glm::vec3(sided_normal(scene, static_cast<std::uint32_t>(s)));
   });
-  index.exposure = surface::find_exposure(mesh, planes, sheets, lit_sheets(index, landed), radius,
+  index.exposure = surface::find_exposure(mesh, facets, sheets, lit_sheets(index, landed), radius,
                                           angle_degrees);
   index.facet = facets.of_triangle;
   const auto pieces = surface::find_pieces(mesh, facets, planes, radius, angle_degrees);

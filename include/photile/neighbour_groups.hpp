@@ -42,27 +42,40 @@ struct NeighbourGroups {
 /// distance, Eberly) whose normals differ by at most the angle. A bounding volume hierarchy finds
 /// the candidates; work is shared by TBB. The result does not depend on the number of threads.
 /// Errors: UsageError when the radius is not positive and finite or the angle is outside [0, 180].
+///   landed   per sided triangle: 1 where photons are that need a group; others get an empty one.
+///            Empty: all get theirs
 NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       const NeighbourGroupParameters& parameters,
-                                      Progress& progress = Progress::none());
+                                      Progress& progress = Progress::none(),
+                                      std::span<const std::uint8_t> landed = {});
 
-/// As above, with the maps of patches for members: each that has a triangle in the sided triangle's
-/// group. Found patch by patch, so that time grows with the patches near a triangle and not with
-/// the triangles.
+/// As above, with the maps of patches for members, and by boxes: each map that holds a sided
+/// triangle whose normal agrees and whose box lies at most `radius` from the box of the sided
+/// triangle. That is a few more than have a triangle in its group; what those hold in vain, no
+/// query finds. Found patch by patch, so that time grows with the patches near a triangle and not
+/// with the triangles.
 NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
                                   const NeighbourGroupParameters& parameters,
-                                  Progress& progress = Progress::none());
+                                  Progress& progress = Progress::none(),
+                                  std::span<const std::uint8_t> landed = {});
 
 /// Joins patches that hold mostly the same photons, judged by a sample: each joined pair saves the
 /// references they share. Patches whose queries would look at most photons in vain stay apart. What
 /// a query finds is the same.
 NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons);
 
+/// Which photons will be entered in maps by groups.
+enum class MapUsers {
+  these_photons,  ///< those the groups are made for: sided triangles without any get empty groups
+  any_photons     ///< others besides, wherever they land
+};
+
 /// Groups for maps of a mode, as the renderer uses them: the patches that it asks for, their
 /// groups, patches joined.
 NeighbourGroups find_map_groups(const Scene& scene, const Photons& photons, MapMode mode,
                                 const NeighbourGroupParameters& parameters,
-                                Progress& progress = Progress::none());
+                                Progress& progress = Progress::none(),
+                                MapUsers users = MapUsers::these_photons);
 
 /// Groups of one: every map holds the photons of its own sided triangle only (figure 1 of the
 /// paper: dark edges). Their radius is infinite: no other triangle's photon is ever looked for.

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@ namespace photile {
 struct StageStatistics {
   std::string stage;               ///< "trace photons", "build photon maps", ...
   double seconds = 0;              ///< wall clock
+  double processor_seconds = 0;    ///< of all threads of the process, whatever they did meanwhile
   std::uint64_t host_bytes = 0;    ///< memory that the stage's result keeps on the host
   std::uint64_t device_bytes = 0;  ///< memory that the stage's result keeps on the device
   /// Named figures of the stage, in the order they were added ("photons per second", 1.9e6).
@@ -22,15 +24,36 @@ struct StageStatistics {
 /// The stages of a run, in order.
 using RunStatistics = std::vector<StageStatistics>;
 
-/// Wall-clock seconds since construction.
+/// What something took.
+struct TimeTaken {
+  double seconds = 0;            ///< wall clock
+  double processor_seconds = 0;  ///< of all threads of the process
+
+  TimeTaken& operator+=(const TimeTaken& more) {
+    seconds += more.seconds;
+    processor_seconds += more.processor_seconds;
+    return *this;
+  }
+  TimeTaken operator-(const TimeTaken& part) const {
+    return {seconds - part.seconds, processor_seconds - part.processor_seconds};
+  }
+};
+
+/// Time since construction.
 class Stopwatch {
  public:
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
+  TimeTaken taken() const { return {seconds(), processor_now() - processor_start_}; }
 
  private:
+  static double processor_now() {
+    return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
+  }
+
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double processor_start_ = processor_now();
 };
 
 }  // namespace photile

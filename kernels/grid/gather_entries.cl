@@ -40,15 +40,16 @@ __kernel void gather_entries(uint entry_count, uint entry_stride, __global const
 }
 
 // For pages with a map whose queries compare normals.
-//   normal   3 floats per photon: of its sided triangle
+//   sided_triangle   per photon
+//   normal           3 floats per sided triangle
 __kernel void gather_normals(uint entry_count, uint entry_stride, __global const uint* entry_photon,
-                             uint first_photon, uint photon_count, __global const float* normal,
+                             uint first_photon, uint photon_count,
+                             __global const uint* sided_triangle, __global const float* normal,
                              __global float* entry_normal) {
   for (uint i = get_global_id(0); i < entry_count; i += get_global_size(0)) {
     const uint photon = entry_photon[i] - first_photon;
     if (photon >= photon_count) continue;
-    for (uint c = 0; c < 3; ++c) {
-      entry_normal[c * entry_stride + i] = normal[3 * photon + c];
-    }
+    const uint s = sided_triangle[photon];
+    for (uint c = 0; c < 3; ++c) entry_normal[c * entry_stride + i] = normal[3 * s + c];
   }
 }

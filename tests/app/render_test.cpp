@@ -137,8 +137,13 @@ TEST_CASE("the statistics are JSON with every stage, the parameters and the ligh
     names.push_back(stage["stage"]);
     seconds += stage["seconds"].get<double>();
     CHECK(stage["seconds"] >= 0);
+    CHECK(stage["processor_seconds"] >= 0);
   }
+  CHECK_THAT(names, Catch::VectorContains(std::string("load libraries")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("open devices")));
   CHECK_THAT(names, Catch::VectorContains(std::string("load scene")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("automatic radius")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("release memory")));
   CHECK_THAT(names, Catch::VectorContains(std::string("write pictures")));
   CHECK(names.size() >= 6);  // and trace, group, build, estimate between them
   CHECK(seconds <= statistics["total_seconds"].get<double>());

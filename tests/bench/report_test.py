@@ -108,16 +108,16 @@ class Kernels(unittest.TestCase):
         moved, operations = report_kernels.estimate_cost(50)
         self.assertEqual((round(moved, -2), round(operations, -2)), (4000, 3600))
 
-    def test_patches_add_normals_of_photons_and_flags_of_maps_to_what_the_build_moves(self):
+    def test_patches_add_flags_of_maps_to_what_the_build_moves(self):
         row = {"photons": 1000, "references": 100, "cells": 10, "maps": 1, "patches": False}
 
         def moved(kernel, **changes):
             return report_kernels.build_bytes({**row, "kernel": kernel, **changes})
-        self.assertEqual(moved("count_photons"), 20 * 1000 + 4 * 100)
-        self.assertEqual(moved("count_photons", patches=True), 32 * 1000 + 4 * 100 + 4)
+        self.assertEqual(moved("count_photons"), 12 * 1000 + 4 * 100)
+        self.assertEqual(moved("count_photons", patches=True), 12 * 1000 + 4 * 100 + 4)
         self.assertEqual(moved("size_grids", patches=True), 130 + 4)
         self.assertEqual(moved("scatter", patches=True), moved("scatter"))
-        self.assertEqual(moved("gather_normals", patches=True), (4 + 2 * 12) * 100)
+        self.assertEqual(moved("gather_normals", patches=True), (4 + 4 + 12) * 100)
         self.assertIsNone(moved("estimate"))
 
 

@@ -38,6 +38,34 @@ TEST_CASE("a write and a read at an offset touch those elements only") {
   CHECK(part == std::vector<int>{-3, 7});
 }
 
+TEST_CASE("fill sets a range and leaves the rest") {
+  Context context({});
+  auto buffer = context.upload<int>(counted(6), "values");
+  context.fill(buffer, 9, 2, 3);
+  context.fill(buffer, 8, 0, 0);
+  std::vector<int> back(6);
+  context.read<int>(buffer, back);
+  CHECK(back == std::vector<int>{0, 1, 9, 9, 9, 5});
+}
+
+TEST_CASE("a shared buffer holds the host's values, and outlives its context") {
+  const auto values = counted(1000);
+  photile::device::Buffer<int> outliving;
+  {
+    Context context({});
+    const std::uint64_t before = context.allocated_bytes();
+    outliving = context.share<int>(values, "values");
+    if (context.info().type == photile::DeviceType::cpu) {
+      CHECK(context.allocated_bytes() == before);
+    }
+    REQUIRE(outliving.size() == 1000);
+    std::vector<int> back(1000);
+    context.read<int>(outliving, back);
+    CHECK(back == values);
+    CHECK(context.share<int>({}, "nothing").size() == 0);
+  }
+}
+
 TEST_CASE("a transfer past the end of a buffer is refused") {
   Context context({});
   auto buffer = context.allocate<int>(10, "values");

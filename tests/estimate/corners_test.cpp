@@ -33,6 +33,7 @@ Scene plain(Scene scene) {
   for (Material& material : scene.materials) material = Material{};
   scene.lights.resize(1);
   scene.lights[0].kind = LightKind::point;
+  scene.lights[0].triangles.clear();
   for (std::uint32_t& light : scene.triangle_light) light = none;
   return scene;
 }

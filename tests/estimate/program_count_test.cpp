@@ -3,6 +3,7 @@
 
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
+#include "render/kernel_preparation.hpp"
 
 using namespace photile;
 
@@ -17,4 +18,21 @@ TEST_CASE("building maps and estimating from them take one program each") {
   CHECK(device.programs_built() + device.programs_from_cache() == 1);
   Estimator(maps, scene, {}).estimate(test::uniform_hits(scene, 93, 92));
   CHECK(device.programs_built() + device.programs_from_cache() == 2);
+}
+
+TEST_CASE("no kernel is left to compile once those of a scene are prepared") {
+  Scene scene = test::empty_scene(GENERATE(1u, 3u));
+  test::add_torus(scene, 0.3f, 0.1f, 16, 8);  // normals of all directions
+  const Photons photons = test::uniform_photons(scene, 4096, 91);
+  Device device;
+  RenderParameters parameters;
+  parameters.neighbours = 20;
+  KernelPreparation(scene, std::span(&device, 1), parameters).wait();
+  const std::uint64_t prepared = device.programs_built() + device.programs_from_cache();
+  CHECK(prepared == 2);
+  const PhotonMaps maps(device, scene, photons,
+                        find_map_groups(scene, photons, parameters.maps, {0.2}), {.radius = 0.2});
+  CHECK(maps.statistics().mixed_maps > 0);
+  Estimator(maps, scene, {.neighbours = 20}).estimate(test::uniform_hits(scene, 93, 92));
+  CHECK(device.programs_built() + device.programs_from_cache() == prepared);
 }

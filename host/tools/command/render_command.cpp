@@ -17,9 +17,11 @@
 #include "photile/layered_picture.hpp"
 #include "photile/path_tracer.hpp"
 #include "render/hit_source.hpp"
+#include "render/render_costs.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
+#include "tools/command/process_time.hpp"
 #include "tools/command/quality_options.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
@@ -83,10 +85,7 @@ StageStatistics timed_stage(const char* name, Progress& progress, const Work& wo
   const Stopwatch stopwatch;
   work();
   progress.end();
-  StageStatistics cost;
-  cost.stage = name;
-  cost.seconds = stopwatch.seconds();
-  return cost;
+  return stage(name, {stopwatch.taken()});
 }
 
 void tell_kernels(Device& device, bool profile, Progress& progress) {
@@ -174,17 +173,19 @@ void write_glare(const RenderOptions& options, const LightLayers& layers,
 
 void run_render(const CLI::App& command, RenderOptions& options) {
   handle_signals();
-  const Stopwatch stopwatch;
+  RunRecord record;
+  record.stages.push_back(stage("load libraries", {since_process_start()}));
   check_settings(options);
   if (options.integrator == Integrator::path) refuse_photon_map_options(command);
   const PictureOutputs outputs = check_outputs_of(options);
 
   const ThreadLimit threads(options.threads);
   TerminalProgress progress(options.quiet);
+  const Stopwatch device_watch;
   std::vector<Device> devices = devices_for(options, progress);
+  record.stages.push_back(stage("open devices", {device_watch.taken()}));
 
   Scene scene;
-  RunRecord record;
   record.stages.push_back(timed_stage("load scene", progress,
                                       [&] { scene = load_scene(options.scene, options.load); }));
   record.mix = mix_of(scene, options);
@@ -214,7 +215,7 @@ void run_render(const CLI::App& command, RenderOptions& options) {
     outputs.write(*picture, progress);
     if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
   }));
-  record.total_seconds = stopwatch.seconds();
+  record.total = since_process_start();
   if (!options.statistics.empty()) {
     write_file(
         options.statistics,

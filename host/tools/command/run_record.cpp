@@ -27,6 +27,7 @@ std::string times_text(const RunStatistics& stages) {
 json stage_json(const StageStatistics& stage) {
   json entry{{"stage", stage.stage},
              {"seconds", stage.seconds},
+             {"processor_seconds", stage.processor_seconds},
              {"host_bytes", stage.host_bytes},
              {"device_bytes", stage.device_bytes},
              {"figures", json::object()}};
@@ -89,7 +90,8 @@ json run_json(const RunRecord& record) {
               {"lumen_per_watt", record.mix.lumen_per_watt},
               {"lights", json::array()},
               {"stages", json::array()},
-              {"total_seconds", record.total_seconds},
+              {"total_seconds", record.total.seconds},
+              {"total_processor_seconds", record.total.processor_seconds},
               {"peak_host_bytes", peak_host_bytes()}};
   if (record.has_photons()) result["photons_stored"] = record.stored_photons;
   for (const MixedLight& light : record.mix.lights) {

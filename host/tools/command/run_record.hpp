@@ -27,7 +27,7 @@ struct RunRecord {
   LightMix mix;
   std::uint64_t stored_photons = 0;
   RunStatistics stages;
-  double total_seconds = 0;
+  TimeTaken total;  ///< of the process
 };
 
 /// Sets the string attributes `photile.*` of a picture.

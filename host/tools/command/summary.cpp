@@ -20,10 +20,10 @@ std::string figures_text(const StageStatistics& stage) {
 }
 
 /// One row of the summary; no blanks at its end.
-std::string row(const std::string& stage, const std::string& seconds, const std::string& host,
-                const std::string& device, const std::string& figures) {
-  std::string line =
-      fmt::format("{:<22}{:>10}{:>12}{:>12}  {}", stage, seconds, host, device, figures);
+std::string row(const std::string& stage, const std::string& seconds, const std::string& processor,
+                const std::string& host, const std::string& device, const std::string& figures) {
+  std::string line = fmt::format("{:<22}{:>9}{:>11}{:>12}{:>12}  {}", stage, seconds, processor,
+                                 host, device, figures);
   line.erase(line.find_last_not_of(' ') + 1);
   return line;
 }
@@ -31,12 +31,14 @@ std::string row(const std::string& stage, const std::string& seconds, const std:
 }  // namespace
 
 std::vector<std::string> summary_table(const RunRecord& record) {
-  std::vector<std::string> lines{row("stage", "seconds", "host", "device", "figures")};
+  std::vector<std::string> lines{row("stage", "seconds", "processor", "host", "device", "figures")};
   for (const StageStatistics& stage : record.stages) {
-    lines.push_back(row(stage.stage, fmt::format("{:.3f}", stage.seconds), memory(stage.host_bytes),
+    lines.push_back(row(stage.stage, fmt::format("{:.3f}", stage.seconds),
+                        fmt::format("{:.3f}", stage.processor_seconds), memory(stage.host_bytes),
                         memory(stage.device_bytes), figures_text(stage)));
   }
-  lines.push_back(row("total", fmt::format("{:.3f}", record.total_seconds),
+  lines.push_back(row("total", fmt::format("{:.3f}", record.total.seconds),
+                      fmt::format("{:.3f}", record.total.processor_seconds),
                       memory(peak_host_bytes()), "", "(host: peak of the process)"));
   return lines;
 }

@@ -33,7 +33,9 @@ void CL_CALLBACK unmap(cl_mem, void* data) {
 
 CL_API_ENTRY cl_mem CL_API_CALL create_buffer(cl_context context, cl_mem_flags flags, size_t size,
                                               void* host, cl_int* status) {
-  if (size == 0 || (flags & CL_MEM_USE_HOST_PTR)) {
+  // What the program only reads in its own memory is copied; what it writes there must stay there.
+  const bool shared = (flags & CL_MEM_USE_HOST_PTR) != 0;
+  if (size == 0 || (shared && !(flags & CL_MEM_READ_ONLY))) {
     return next->clCreateBuffer(context, flags, size, host, status);
   }
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
@@ -48,7 +50,7 @@ CL_API_ENTRY cl_mem CL_API_CALL create_buffer(cl_context context, cl_mem_flags f
   ::mprotect(fence, page, PROT_NONE);
   char* const begin = fence - size;
   std::memset(begin, 0xFF, size);
-  if (flags & CL_MEM_COPY_HOST_PTR) std::memcpy(begin, host, size);
+  if (shared || (flags & CL_MEM_COPY_HOST_PTR)) std::memcpy(begin, host, size);
   flags &= ~static_cast<cl_mem_flags>(CL_MEM_COPY_HOST_PTR | CL_MEM_ALLOC_HOST_PTR);
   const cl_mem buffer =
       next->clCreateBuffer(context, flags | CL_MEM_USE_HOST_PTR, size, begin, status);

@@ -1,0 +1,99 @@
+#include "render/kernel_preparation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "estimate/tuning_sample.hpp"
+#include "photile/errors.hpp"
+#include "photile/estimator.hpp"
+#include "photile/neighbour_groups.hpp"
+#include "photile/photon_maps.hpp"
+
+namespace photile {
+namespace {
+
+/// Whether a map may hold photons of different normals that agree: queries then compare normals, by
+/// kernels of their own. Of many triangles some always do.
+bool may_mix_normals(const Scene& scene, double angle_degrees) {
+  constexpr std::size_t many = 256;
+  constexpr double alike = 1 - 1e-4;
+  const std::size_t count = scene.triangle_count();
+  if (count > many) return true;
+  const double least_cosine = std::cos(glm::radians(angle_degrees));
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = 0; b < a; ++b) {
+      const double cosine =
+          std::abs(glm::dot(sided_normal(scene, sided(a, 0)), sided_normal(scene, sided(b, 0))));
+      if (cosine >= least_cosine && cosine < alike) return true;
+    }
+  }
+  return false;
+}
+
+/// A point of the unit square once the half below its diagonal is turned up by 80 degrees about it:
+/// the normals of the halves differ by more than most groups allow, and either's by less from those
+/// of a patch that holds both.
+glm::vec3 folded(const glm::vec3& point) {
+  if (point.x <= point.y) return point;
+  const float angle = glm::radians(80.0f), middle = 0.5f * (point.x + point.y);
+  const float across = 0.5f * (point.x - point.y);
+  return {middle + across * std::cos(angle), middle - across * std::cos(angle),
+          std::sqrt(2.0f) * across * std::sin(angle)};
+}
+
+estimate::TuningSample sample_of(const Scene& scene, const RenderParameters& parameters) {
+  constexpr estimate::TuningSampleSize size{.photons = 1000, .hits_per_side = 16};
+  estimate::TuningSample sample =
+      estimate::make_tuning_sample(needs_of(scene), parameters.neighbours, size);
+  sample.radius = 2;  // the square is one patch
+  if (needs_of(scene).normal_maps) {
+    for (Material& material : sample.scene.materials) material.normal_texture = 0;
+    for (HitLobe& lobe : sample.hits.lobe) lobe.smooth_normal = lobe.normal;
+  }
+  if (!may_mix_normals(scene, parameters.angle_degrees)) return sample;
+  for (auto* points : {&sample.scene.vertices, &sample.photons.position, &sample.hits.position}) {
+    std::transform(points->begin(), points->end(), points->begin(), folded);
+  }
+  return sample;
+}
+
+bool is_fresh(const Device& device) {
+  return device.programs_built() + device.programs_from_cache() == 0;
+}
+
+void prepare(Device& device, const estimate::TuningSample& sample,
+             const RenderParameters& parameters) {
+  try {
+    const NeighbourGroups groups = find_map_groups(sample.scene, sample.photons, parameters.maps,
+                                                   {sample.radius, parameters.angle_degrees});
+    const PhotonMaps maps(device, sample.scene, sample.photons, groups,
+                          {sample.radius, parameters.photons_per_cell, parameters.structure});
+    Estimator(maps, sample.scene,
+              {.neighbours = parameters.neighbours,
+               .tuning = parameters.tuning,
+               .area = parameters.area,
+               .kernel = parameters.kernel})
+        .estimate(sample.hits);
+  } catch (const DeviceMemoryError&) {
+  }
+}
+
+}  // namespace
+
+KernelPreparation::KernelPreparation(const Scene& scene, std::span<Device> devices,
+                                     const RenderParameters& parameters) {
+  if (std::none_of(devices.begin(), devices.end(), is_fresh)) return;
+  done_ = std::async(std::launch::async, [&scene, devices, &parameters] {
+    const estimate::TuningSample sample = sample_of(scene, parameters);
+    for (Device& device : devices) {
+      if (is_fresh(device)) prepare(device, sample, parameters);
+    }
+  });
+}
+
+void KernelPreparation::wait() {
+  if (done_.valid()) done_.get();
+}
+
+}  // namespace photile
