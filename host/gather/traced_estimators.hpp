@@ -16,7 +16,7 @@ namespace photile {
 class TracedEstimators {
  public:
   /// References are kept. Errors: those of the stages.
-  ///   parameters   photons, maps, radius and estimate; the film does not count
+  ///   parameters   photons, maps, radius and estimate; what pictures are made of does not count
   TracedEstimators(const RayScene& rays, std::span<Device> devices,
                    const RenderParameters& parameters, Progress& progress = Progress::none());
   TracedEstimators(const TracedEstimators&) = delete;

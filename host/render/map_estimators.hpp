@@ -27,7 +27,7 @@ class MapEstimators {
   std::span<const std::uint32_t> map_of() const { return maps_.front().map_of(); }
 
   /// k, or the most that a hit has where it has its own.
-  int neighbours() const { return levels_.back(); }
+  int neighbours() const { return neighbours_.back(); }
   /// Of the maps, metres.
   double radius() const { return maps_.front().parameters().radius; }
 

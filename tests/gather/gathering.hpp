@@ -17,7 +17,7 @@ namespace photile::test {
 inline RenderParameters looked_up(std::uint64_t photons, std::uint64_t seed = 1) {
   RenderParameters parameters;
   parameters.photons.emitted_photons = photons;
-  parameters.photons.seed = seed;
+  parameters.seed = seed;
   parameters.neighbours = 100;
   return parameters;
 }
