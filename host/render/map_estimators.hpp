@@ -26,6 +26,11 @@ class MapEstimators {
   /// Per sided triangle, as PhotonMaps has it: the order of hits.
   std::span<const std::uint32_t> map_of() const { return maps_.front().map_of(); }
 
+  /// k, or the most that a hit has where it has its own.
+  int neighbours() const { return neighbours_.back(); }
+  /// Of the maps, metres.
+  double radius() const { return maps_.front().parameters().radius; }
+
   /// Each device's part of all hits so far.
   std::vector<double> shares() const { return estimators_.back().shares(); }
 

@@ -1,0 +1,38 @@
+// Takes noise from irradiance at points that see much the same.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gather/gathered_irradiance.hpp"
+
+namespace photile {
+
+/// Which points are neighbours on one surface, in compressed sparse rows: point i is linked to
+/// to[first[i] .. first[i + 1]). Who links says what one surface is.
+struct PointLinks {
+  std::vector<std::uint32_t> first;  ///< one more than there are points
+  std::vector<std::uint32_t> to;
+
+  std::span<const std::uint32_t> of(std::size_t point) const {
+    return std::span(to).subspan(first[point], first[point + 1] - first[point]);
+  }
+};
+
+struct IrradianceFilterParameters {
+  int rounds = 8;  ///< light spreads over one link a round
+  /// Differences of so many standard errors count less by e.
+  double tolerated_errors = 3;
+};
+
+/// Replaces each point's light by the mean of it and its neighbours', weighted by exp(-d^2 / (9
+/// (se_a^2 + se_b^2))), d the difference of the luminance of all lights at `layer_powers` and se
+/// its standard errors, a few times over. All lights and batches have the same weights, so that
+/// layers stay exactly linear in the powers and errors are known afterwards, too. Points of no
+/// error stay what they are, but for equal ones. Does not depend on threads.
+GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointLinks& links,
+                                     std::span<const double> layer_powers,
+                                     const IrradianceFilterParameters& parameters = {});
+
+}  // namespace photile

@@ -1,0 +1,80 @@
+// Irradiance at points of surfaces by rays: to lamps, and to the surfaces around, where photon
+// estimates are looked up.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gather/gathered_irradiance.hpp"
+#include "photile/defaults.hpp"
+#include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
+#include "render/map_estimators.hpp"
+#include "trace/light_sampler.hpp"
+
+namespace photile {
+
+struct IrradianceGatherParameters {
+  /// From each point to the surfaces around; 0 = indirect light is left out.
+  int rays = 144;
+  /// At lamps from each point; 0 = direct light is left out.
+  int looks = 96;
+  /// Rays and looks are shared by so many independent batches, rounded up to a whole number in
+  /// each: their scatter is the error.
+  int batches = 8;
+  /// Of cells whose ends share an estimate, metres; 0 = half of the photon maps' radius.
+  double cell_side = 0;
+  std::uint64_t seed = defaults::seed;
+  int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
+};
+
+/// Gathers the light of each layer at points, in three parts that together are all light
+/// (docs/irradiance-gathering.md): straight from lamps, by looks at them; over mirrors or through
+/// glass that bends it and nothing else, by the photons that brought it; all other, by rays with
+/// the density of the cosine that look the photons of all light up where they end.
+///
+/// Ends that lie close together share one estimate: that of the end of lowest number of point, then
+/// lowest number of ray, among those of all points gathered at once. Ends on surfaces whose lobe
+/// reflects much have estimates of their own; those of weaker lobes count as if they reflected the
+/// same light diffusely.
+class IrradianceGather {
+ public:
+  /// References are kept.
+  ///   photons    of all light; k of about 100 serves
+  ///   caustics   of those that came by mirrors and glass alone; null where there are none
+  /// Errors: UsageError for parameters out of range; InputError for an area light without area.
+  IrradianceGather(const RayScene& rays, MapEstimators& photons, MapEstimators* caustics,
+                   const IrradianceGatherParameters& parameters);
+
+  /// Irradiance at points, in their order. Depends on the set of points and their numbers, not on
+  /// their order or on threads.
+  ///   points   position, sided_triangle, diffuse_albedo and, in glossy scenes, outgoing and lobe
+  ///   number   of each point, below 2^48, all different: the same number and point have the same
+  ///            rays
+  /// Errors: as DeviceEstimators; Interrupted, when `progress` says so.
+  GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
+                            const Progress& progress = Progress::none());
+
+  /// What all calls took so far.
+  struct Costs {
+    double ray_seconds = 0;       ///< tracing rays to surfaces
+    double cell_seconds = 0;      ///< finding the cells of their ends
+    double estimate_seconds = 0;  ///< photons, at ends and at points
+    double sum_seconds = 0;       ///< looks at lamps, and sums
+    std::uint64_t rays = 0;       ///< to surfaces; those along mirrors and glass included
+    std::uint64_t ends = 0;       ///< that met a surface
+    std::uint64_t estimated = 0;  ///< places where photons were looked up
+  };
+  const Costs& costs() const { return costs_; }
+
+ private:
+  const RayScene& rays_;
+  MapEstimators& photons_;
+  MapEstimators* caustics_;
+  IrradianceGatherParameters parameters_;
+  trace::LightSampler lamps_;
+  Costs costs_;
+};
+
+}  // namespace photile

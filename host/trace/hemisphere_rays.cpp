@@ -1,0 +1,101 @@
+#include "trace/hemisphere_rays.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+
+#include "trace/flush_denormals.hpp"
+#include "trace/hit_point.hpp"
+#include "trace/sampling.hpp"
+#include "trace/sobol.hpp"
+
+namespace photile::trace {
+namespace {
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t points_per_task = 16;
+
+struct TaskEnds {
+  EyeRecord ends;
+  std::vector<std::size_t> count;  ///< of each point
+};
+
+/// All rays of a point.
+///   run_point   its place in the run
+void trace_point(const EyeSetup& setup, const HemisphereParameters& parameters,
+                 const SurfacePoint& point, std::uint64_t number, std::uint32_t run_point,
+                 EyeRecord& ends) {
+  const auto batches = static_cast<std::uint32_t>(parameters.batches);
+  const auto rays = static_cast<std::uint32_t>(parameters.rays);
+  const RandomStream of_point(parameters.seed, number, 0);
+  const Frame frame(point.normal);
+  const glm::vec3 throughput(glm::pi<float>() / static_cast<float>(rays));
+  for (std::uint32_t batch = 0; batch < batches; ++batch) {
+    const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
+    for (std::uint32_t i = 0; i < rays; ++i) {
+      const glm::vec2 place(sobol_point(i, scramble));
+      const glm::vec3 direction =
+          frame.to_world(sample_cosine_hemisphere(std::min(place.x, 0x1.fffffep-1f), place.y));
+      // A stream for each, apart from the point's own.
+      const RandomStream random(parameters.seed, number, batch * rays + i + 1);
+      follow_eye_ray(setup,
+                     {point.origin_towards(direction), direction, throughput,
+                      (run_point * batches + batch) * rays + i},
+                     random, ends);
+    }
+  }
+}
+
+HemisphereRays join(std::vector<TaskEnds> tasks) {
+  HemisphereRays all;
+  all.first.push_back(0);
+  std::vector<std::size_t> first_of;
+  for (const TaskEnds& task : tasks) {
+    first_of.push_back(all.first.back());
+    for (const std::size_t count : task.count) all.first.push_back(all.first.back() + count);
+    all.ends.rays += task.ends.rays;
+  }
+  all.ends.hits.resize(all.first.back());
+  const bool glossy = std::any_of(tasks.begin(), tasks.end(),
+                                  [](const TaskEnds& task) { return !task.ends.glossy.empty(); });
+  if (glossy) all.ends.glossy.resize(all.first.back());
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
+    const EyeRecord& ends = tasks[task].ends;
+    const auto at = static_cast<std::ptrdiff_t>(first_of[task]);
+    std::copy(ends.hits.begin(), ends.hits.end(), all.ends.hits.begin() + at);
+    if (glossy) std::copy(ends.glossy.begin(), ends.glossy.end(), all.ends.glossy.begin() + at);
+  });
+  return all;
+}
+
+}  // namespace
+
+HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points, std::size_t first,
+                                 std::size_t count, std::span<const std::uint64_t> number,
+                                 const HemisphereParameters& parameters) {
+  PrimaryHitParameters specular;
+  specular.max_specular_depth = parameters.max_specular_depth;
+  const EyeSetup setup{.rays = &impl_of(rays),
+                       .film = nullptr,
+                       .eye = {},
+                       .parameters = &specular,
+                       .emitted_radiance = nullptr,
+                       .distant = nullptr,
+                       .direct = nullptr};
+  std::vector<TaskEnds> tasks((count + points_per_task - 1) / points_per_task);
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
+    const FlushDenormals flush_denormals;
+    TaskEnds& found = tasks[task];
+    const std::size_t last = std::min(count, (task + 1) * points_per_task);
+    for (std::size_t i = task * points_per_task; i < last; ++i) {
+      const std::size_t before = found.ends.hits.size();
+      trace_point(setup, parameters, point_of(rays.scene(), points, first + i), number[first + i],
+                  static_cast<std::uint32_t>(i), found.ends);
+      found.count.push_back(found.ends.hits.size() - before);
+    }
+  });
+  return join(std::move(tasks));
+}
+
+}  // namespace photile::trace

@@ -1,0 +1,41 @@
+// Rays from points of surfaces to all sides, by the cosine: what indirect irradiance is summed
+// from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
+#include "trace/eye_path.hpp"
+
+namespace photile::trace {
+
+struct HemisphereParameters {
+  int batches;  ///< of a point: independent of each other
+  int rays;     ///< of a batch: spread evenly (sobol.hpp)
+  std::uint64_t seed;
+  int max_specular_depth;  ///< mirrors and glass that a ray follows
+};
+
+/// Rays of a run of points that end on an opaque surface, in the order point, batch, ray.
+struct HemisphereRays {
+  /// Where they end. `pixel` is the ray: (point of the run x batches + batch) x rays + ray.
+  /// `throughput` is such that throughput x radiance, summed over a point's batch, is an unbiased
+  /// estimate of the irradiance that other surfaces send there straight or over mirrors and glass.
+  EyeRecord ends;
+  /// Ends of the run's point i are [first[i], first[i + 1]).
+  std::vector<std::size_t> first;
+};
+
+/// Traces rays with the density of the cosine to the geometric normal, through holes, mirrors and
+/// glass to the next opaque surface. Lamps are not seen: their light is direct light, or a caustic.
+/// Depends on the scene, each point, its number and the parameters only.
+///   number   of each point, below 2^48: the same number and point give the same rays
+HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points, std::size_t first,
+                                 std::size_t count, std::span<const std::uint64_t> number,
+                                 const HemisphereParameters& parameters);
+
+}  // namespace photile::trace
