@@ -129,7 +129,7 @@ std::vector<Sharing> find_sharings(const PhotonSample& sample,
   });
   std::vector<std::uint64_t> shared;
   for (const auto& pairs : of_task) shared.insert(shared.end(), pairs.begin(), pairs.end());
-  radix_sort(shared, 2 * patch_bits + 1, [](std::uint64_t pair) { return pair; });
+  geometry::radix_sort(shared, 2 * patch_bits + 1, [](std::uint64_t pair) { return pair; });
 
   std::vector<Sharing> sharings;
   const std::uint64_t patch_mask = (std::uint64_t{1} << patch_bits) - 1;

@@ -6,6 +6,7 @@
 #include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
 #include "photile/progress.hpp"
+#include "photile/statistics.hpp"
 #include "render/map_estimators.hpp"
 
 namespace photile {

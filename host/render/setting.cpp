@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -36,8 +37,10 @@ SettingValue value_of(const T& field) {
     // What is below zero is in no range of whole numbers, as a number that is none.
     if (field < T{0}) return static_cast<double>(field);
     return static_cast<std::uint64_t>(field);
+  } else if constexpr (std::is_same_v<T, float>) {
+    return std::strtod(fmt::format("{}", field).c_str(), nullptr);  // 0.1f is 0.1
   } else {
-    return std::stod(fmt::format("{}", field));  // 0.1 of a float, too
+    return field;
   }
 }
 

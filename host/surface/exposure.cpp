@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "geometry/box_tree.hpp"
+#include "geometry/triangle_bvh.hpp"
 #include "groups/group_lists.hpp"
 
 namespace photile::surface {

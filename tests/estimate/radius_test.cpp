@@ -64,7 +64,7 @@ double mean_illuminance(const Scene& scene, double radius) {
 }  // namespace
 
 TEST_CASE("any radius that reaches photons gives a closed box its illuminance") {
-  const double radius = GENERATE(0.02, 0.1, 1.0, 10.0, 1e3, 1e6, 1e12, 1e25, 1e300);
+  const double radius = GENERATE(0.02, 0.1, 1.0, 10.0, 1e3, 1e6, 1e12, 1e25, 1e38);
   CAPTURE(radius);
   // All light ends in the walls, 6 m2 that keep half of what falls on them. 216 sensors with a
   // noise of 14% each leave 1%.
@@ -72,13 +72,13 @@ TEST_CASE("any radius that reaches photons gives a closed box its illuminance") 
         Approx(1 / (6 * (1 - double{albedo}))).epsilon(0.04));
 }
 
-TEST_CASE("a radius too small to reach photons reads finite values, a smaller one is refused") {
+TEST_CASE("a radius too small to reach photons reads finite values, those that no float holds are refused") {
   const Scene scene = closed_box();
   for (const double radius : {1e-3, 1e-5, 1e-8}) {
     CAPTURE(radius);
     CHECK(mean_illuminance(scene, radius) >= 0);
   }
-  for (const double radius : {1e-10, 1e-15, 1e-23, 1e-25, 1e-40, 1e-320}) {
+  for (const double radius : {1e-10, 1e-15, 1e-23, 1e-25, 1e-40, 1e-320, 1e39, 1e300}) {
     CAPTURE(radius);
     CHECK_THROWS_WITH(mean_illuminance(scene, radius), Catch::Contains("radius"));
     CHECK_THROWS_AS(mean_illuminance(scene, radius), UsageError);

@@ -60,7 +60,7 @@ class Pilot {
 
   const Film& film() const { return parameters_.film; }
   double photons() const { return static_cast<double>(parameters_.photons.emitted_photons); }
-  double structure_seconds() const { return scene_.cost.seconds; }
+  double structure_seconds() const { return scene_.cost.time.seconds; }
 
   /// The photons are traced once: those of the largest k, whose groups are wide enough for all.
   SeedPictures render(std::uint64_t seed, Progress& progress) {
