@@ -15,21 +15,38 @@ namespace {
 using device::Buffer;
 using device::Context;
 
+/// A launch over photons of a page, given what tells which maps they enter.
+device::Launch photon_launch(const Build& build, const device::KernelSet& kernels,
+                             const char* kernel, const PhotonPage& photons) {
+  device::Launch launch = kernels.launch(kernel);
+  launch.set("photon_count", photons.count)
+      .set("position", photons.position)
+      .set("own_map", photons.own_map)
+      .set("list", photons.list)
+      .set("list_offsets", photons.list_offsets)
+      .set("list_members", photons.list_members)
+      .set("shapes", build.shapes)
+      .set("corners", build.corners)
+      .set("squared_reach", build.squared_reach);
+  return launch;
+}
+
+void set_tile(device::Launch& launch, const Rectangle& tile) {
+  launch.set("first_column", tile.first_column)
+      .set("first_row", tile.first_row)
+      .set("last_column", tile.last_column)
+      .set("last_row", tile.last_row);
+}
+
 /// With the pages of photons as they are. Errors: DeviceMemoryError where they do not fit.
 void try_to_count(Build& build) {
   build.context.fill(build.counts.photons, 0u);
   build.context.fill(build.counts.mixed, 0u);
   for (const PhotonPage& page : *build.photon_pages) {
-    const auto launch = [&](const auto&... patches) {
-      build.run("count_photons", page.count, page.count, page.position, page.own_map, page.list,
-                page.list_offsets, page.list_members, build.shapes, build.corners,
-                build.squared_reach, build.counts.photons, patches...);
-    };
-    if (build.patches) {
-      launch(page.normal, build.counts.mixed);
-    } else {
-      launch();
-    }
+    device::Launch launch = photon_launch(build, build.kernels, "count_photons", page);
+    launch.set("map_count", build.counts.photons);
+    if (build.patches) launch.set("normal", page.normal).set("map_mixed", build.counts.mixed);
+    launch.run(page.count, work_group_size);
   }
 }
 
@@ -54,15 +71,18 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
   page.grids = build.context.allocate<PhotileGrid>(maps, "photon map grids");
   auto cells = build.context.allocate<std::uint32_t>(maps + 1, "first cells of photon maps");
   build.context.fill(cells, 0u);
-  const auto launch = [&](const auto&... patches) {
-    build.run("size_grids", maps, maps, page.first_map, build.shapes, build.counts.photons,
-              build.crowding, patches..., build.radius, build.photons_per_cell, page.grids, cells);
-  };
-  if (build.patches) {
-    launch(build.counts.mixed);
-  } else {
-    launch();
-  }
+  device::Launch launch = build.kernels.launch("size_grids");
+  launch.set("map_total", maps)
+      .set("first_map", page.first_map)
+      .set("shapes", build.shapes)
+      .set("map_count", build.counts.photons)
+      .set("map_crowding", build.crowding)
+      .set("radius", build.radius)
+      .set("photons_per_cell", build.photons_per_cell)
+      .set("grids", page.grids)
+      .set("cell_total", cells);
+  if (build.patches) launch.set("map_mixed", build.counts.mixed);
+  launch.run(maps, work_group_size);
   return cells;
 }
 
@@ -100,11 +120,14 @@ MapTiling tiling_of(const Build& build, std::uint32_t map) {
                                                     "bins of a photon map");
   build.context.fill(bins, 0u);
   for (const PhotonPage& photons : build.photon_pages->entering(map, map + 1)) {
-    build.tile_kernels.run("count_bins", photons.count, work_group_size, photons.count,
-                           photons.position, photons.own_map, photons.list, photons.list_offsets,
-                           photons.list_members, build.shapes, build.corners, build.squared_reach,
-                           map, page.grids, tiling.bin_width(), tiling.bin_height(),
-                           tiling.columns(), bins);
+    photon_launch(build, build.tile_kernels, "count_bins", photons)
+        .set("map", map)
+        .set("grid", page.grids)
+        .set("bin_width", tiling.bin_width())
+        .set("bin_height", tiling.bin_height())
+        .set("columns", tiling.columns())
+        .set("bin_count", bins)
+        .run(photons.count, work_group_size);
   }
   tiling.set_photons(read_all(build.context, bins));
   return tiling;
@@ -115,7 +138,11 @@ void place_grids(const Build& build, MapPage& page) {
   page.cell_count = total_cells(build.context, first_cell);
   exclusive_prefix_sum(build.kernels, first_cell);
   const std::uint32_t maps = page.last_map - page.first_map;
-  build.run("place_grids", maps, maps, first_cell, page.grids);
+  build.kernels.launch("place_grids")
+      .set("map_total", maps)
+      .set("first_cell", first_cell)
+      .set("grids", page.grids)
+      .run(maps, work_group_size);
 }
 
 void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile) {
@@ -123,25 +150,25 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
   page.cell_start = build.context.allocate<std::uint32_t>(page.cell_count + 1, "cell offsets",
                                                           device::MemoryPages::large);
   build.context.fill(cell_count, 0u);
-  const auto launch = [&](const char* kernel, const PhotonPage& photons, const auto&... outputs) {
-    const auto run = [&](const device::KernelSet& kernels, const auto&... bounds) {
-      kernels.run(kernel, photons.count, work_group_size, photons.count, photons.position,
-                  photons.own_map, photons.list, photons.list_offsets, photons.list_members,
-                  build.shapes, build.corners, build.squared_reach, page.first_map, page.last_map,
-                  page.grids, outputs..., bounds...);
-    };
-    if (tile) {
-      run(build.tile_kernels, tile->first_column, tile->first_row, tile->last_column,
-          tile->last_row);
-    } else {
-      run(build.kernels);
-    }
+  const auto launch_of = [&](const char* kernel, const PhotonPage& photons) {
+    device::Launch launch =
+        photon_launch(build, tile ? build.tile_kernels : build.kernels, kernel, photons);
+    launch.set("first_map", page.first_map)
+        .set("last_map", page.last_map)
+        .set("grids", page.grids)
+        .set("cell_count", cell_count);
+    if (tile) set_tile(launch, *tile);
+    return launch;
   };
   const auto photon_pages = build.photon_pages->entering(page.first_map, page.last_map);
-  for (const PhotonPage& photons : photon_pages) launch("count_cells", photons, cell_count);
+  for (const PhotonPage& photons : photon_pages) {
+    launch_of("count_cells", photons).run(photons.count, work_group_size);
+  }
   if (tile) {
-    build.tile_kernels.run("narrow_gaps", tile->height(), work_group_size, page.grids, cell_count,
-                           tile->first_column, tile->first_row, tile->last_column, tile->last_row);
+    device::Launch launch = build.tile_kernels.launch("narrow_gaps");
+    launch.set("grid", page.grids).set("cell_count", cell_count);
+    set_tile(launch, *tile);
+    launch.run(tile->height(), work_group_size);
   }
   exclusive_prefix_sum(build.kernels, cell_count, page.cell_start);
   build.context.read(page.cell_start, std::span(&page.entry_count, 1), page.cell_count);
@@ -149,10 +176,17 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
   page.entry_photon = build.context.allocate<std::uint32_t>(page.entry_count, "photon references");
   if (tile) build.context.fill(page.entry_photon, none);  // that gaps have
   for (const PhotonPage& photons : photon_pages) {
-    launch("scatter", photons, page.cell_start, cell_count, photons.first_photon,
-           page.entry_photon);
+    launch_of("scatter", photons)
+        .set("cell_start", page.cell_start)
+        .set("first_photon", photons.first_photon)
+        .set("entry_photon", page.entry_photon)
+        .run(photons.count, work_group_size);
   }
-  build.run("sort_cells", page.cell_count, page.cell_count, page.cell_start, page.entry_photon);
+  build.kernels.launch("sort_cells")
+      .set("cell_count", page.cell_count)
+      .set("cell_start", page.cell_start)
+      .set("entry_photon", page.entry_photon)
+      .run(page.cell_count, work_group_size);
   build.context.finish();  // cell_count is released here
 }
 

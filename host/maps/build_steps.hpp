@@ -36,11 +36,6 @@ struct Build {
   device::Buffer<float> corners = {};           ///< 9 floats per triangle that is alone in its maps
   std::unique_ptr<PhotonPages> photon_pages = {};
   MapCounts counts = {};
-
-  template <class... Args>
-  void run(const char* kernel, std::size_t size, const Args&... args) const {
-    kernels.run(kernel, size, work_group_size, args...);
-  }
 };
 
 // Errors: DeviceMemoryError, after which a step may be taken again on smaller pages.
