@@ -1,5 +1,6 @@
 #include "support/device_limits.hpp"
 
+#include "device/launch.hpp"
 #include "device/program_source.hpp"
 #include "support/kernel_seconds.hpp"
 
@@ -56,27 +57,36 @@ DeviceLimits measure_limits(Device& device, const Repeats& repeats, std::size_t 
   auto to = context.allocate<float>(from.size(), "copied memory");
   auto sums = context.allocate<float>(16 * items, "sums");
   context.fill(from, 1.0f);
-  const auto median = [&](const char* name, std::size_t size, const auto&... arguments) {
-    const device::Kernel kernel = context.kernel(file, name, {});
-    return measure_returned(repeats,
-                            [&] {
-                              return kernel_seconds_of(device, [&] {
-                                context.run(kernel, size, group_size, arguments...);
-                              });
-                            })
+  const auto median = [&](const char* name, std::size_t size, const auto& set_arguments) {
+    device::Launch launch(context, context.kernel(file, name, {}));
+    set_arguments(launch);
+    return measure_returned(
+               repeats,
+               [&] { return kernel_seconds_of(device, [&] { launch.run(size, group_size); }); })
         .median();
   };
   // Work-items in whole groups: these kernels do not check their index.
   const std::size_t copies = from.size() / (16 * group_size) * group_size;
   DeviceLimits limits;
-  limits.copied_bytes_per_second =
-      2.0 * 64.0 * static_cast<double>(copies) / median("copy_memory", copies, from, to);
-  limits.cached_bytes_per_second =
-      static_cast<double>(items * cached_floats * sizeof(float)) * cache_rounds /
-      median("read_cache", items, from, static_cast<std::uint32_t>(cached_floats), cache_rounds,
-             sums);
+  limits.copied_bytes_per_second = 2.0 * 64.0 * static_cast<double>(copies) /
+                                   median("copy_memory", copies, [&](device::Launch& launch) {
+                                     launch.set("from", from).set("to", to);
+                                   });
+  limits.cached_bytes_per_second = static_cast<double>(items * cached_floats * sizeof(float)) *
+                                   cache_rounds /
+                                   median("read_cache", items, [&](device::Launch& launch) {
+                                     launch.set("values", from)
+                                         .set("count", static_cast<std::uint32_t>(cached_floats))
+                                         .set("rounds", cache_rounds)
+                                         .set("sums", sums);
+                                   });
   limits.operations_per_second = static_cast<double>(items) * 16 * 16 * 2 * compute_rounds /
-                                 median("compute", items, compute_rounds, 0.5f, 1.0f, sums);
+                                 median("compute", items, [&](device::Launch& launch) {
+                                   launch.set("rounds", compute_rounds)
+                                       .set("factor", 0.5f)
+                                       .set("summand", 1.0f)
+                                       .set("sums", sums);
+                                 });
   return limits;
 }
 

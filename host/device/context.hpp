@@ -10,7 +10,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -120,7 +119,7 @@ class Defines {
   std::vector<std::pair<std::string, std::string>> entries_;
 };
 
-/// A kernel of a built program. Copyable; arguments are set by each launch.
+/// A kernel of a built program. Copyable; arguments are set by each Launch.
 class Kernel {
  public:
   Kernel() = default;
@@ -231,19 +230,10 @@ class Context {
 
   /// The kernel `name` of the embedded kernel file `file` (path below kernels/, e.g.
   /// "grid/build.cl"), built with `defines`. Programs are built once per (file, defines), from the
-  /// cache on disk where it holds them. Errors: KernelBuildError with the log.
+  /// cache on disk where it holds them. Errors: KernelBuildError with the log; DeviceError where
+  /// the runtime does not tell the names of arguments.
   Kernel kernel(const std::string& file, const std::string& name, const Defines& defines);
 
-  /// Enqueues `kernel` over `global_size` work-items (rounded up to a multiple of `local_size`;
-  /// kernels check their index). `local_size` 0 lets the device choose. Nothing is enqueued for
-  /// global_size 0. Arguments: Buffer<T>, LocalMemory, or trivially copyable values.
-  template <class... Args>
-  void run(const Kernel& kernel, std::size_t global_size, std::size_t local_size,
-           const Args&... args) {
-    unsigned index = 0;
-    (set_argument(kernel, index++, args), ...);
-    enqueue(kernel, index, global_size, local_size);
-  }
   /// Waits for everything enqueued.
   void finish();
 
@@ -257,6 +247,7 @@ class Context {
 
  private:
   friend class ReclaimerEntry;
+  friend class Launch;  // launch.hpp
   struct Impl;
   std::unique_ptr<Impl> impl_;
 
@@ -271,23 +262,6 @@ class Context {
                   std::size_t bytes, std::size_t offset);
   bool shares_host_memory() const;
   RawBuffer share_bytes(const void* data, std::size_t bytes, std::string_view what);
-  template <class T>
-  void set_argument(const Kernel& kernel, unsigned index, const Buffer<T>& buffer) {
-    set_buffer_argument(kernel, index, buffer.raw());
-  }
-  void set_argument(const Kernel& kernel, unsigned index, const LocalMemory& local) {
-    set_value_argument(kernel, index, nullptr, local.bytes);
-  }
-  template <class T>
-  void set_argument(const Kernel& kernel, unsigned index, const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    set_value_argument(kernel, index, &value, sizeof(T));
-  }
-  void set_buffer_argument(const Kernel& kernel, unsigned index, const RawBuffer& buffer);
-  void set_value_argument(const Kernel& kernel, unsigned index, const void* value,
-                          std::size_t bytes);
-  void enqueue(const Kernel& kernel, unsigned argument_count, std::size_t global_size,
-               std::size_t local_size);
 };
 
 }  // namespace photile::device

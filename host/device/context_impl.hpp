@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "device/context.hpp"
 #include "device/device_list.hpp"
@@ -19,7 +20,7 @@ namespace photile::device {
 struct Kernel::Impl {
   KernelHandle kernel;
   std::string name;
-  unsigned argument_count = 0;
+  std::vector<std::string> arguments;  ///< names, in the order of the kernel's source
   bool launched = false;
 };
 

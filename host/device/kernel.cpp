@@ -1,9 +1,12 @@
 // Kernels: creation, arguments, launches.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
+#include <optional>
 
 #include "device/context_impl.hpp"
+#include "device/launch.hpp"
 #include "photile/statistics.hpp"
 
 namespace photile::device {
@@ -21,6 +24,27 @@ std::unique_lock<std::mutex> lock_compilation(bool is_pocl) {
   return is_pocl && !alone ? std::unique_lock(mutex) : std::unique_lock<std::mutex>();
 }
 
+/// The names of a kernel's arguments, in their order; none where the runtime does not know them.
+std::optional<std::vector<std::string>> argument_names(cl_kernel kernel) {
+  cl_uint count = 0;
+  check(clGetKernelInfo(kernel, CL_KERNEL_NUM_ARGS, sizeof count, &count, nullptr),
+        "clGetKernelInfo");
+  std::vector<std::string> names;
+  for (cl_uint i = 0; i < count; ++i) {
+    std::size_t bytes = 0;
+    if (clGetKernelArgInfo(kernel, i, CL_KERNEL_ARG_NAME, 0, nullptr, &bytes) != CL_SUCCESS ||
+        bytes < 2) {
+      return std::nullopt;
+    }
+    std::string name(bytes, '\0');
+    check(clGetKernelArgInfo(kernel, i, CL_KERNEL_ARG_NAME, bytes, name.data(), nullptr),
+          "clGetKernelArgInfo");
+    name.resize(bytes - 1);  // the last is the end of a C string
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
 }  // namespace
 
 Kernel Context::kernel(const std::string& file, const std::string& name, const Defines& defines) {
@@ -31,46 +55,63 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
   }
   const auto compiling = lock_compilation(impl_->info.is_pocl);
   auto made = std::make_shared<Kernel::Impl>();
+  const auto create = [&](cl_program program) {
+    const cl_int status = impl_->persevere([&] {
+      cl_int created = CL_SUCCESS;
+      made->kernel = KernelHandle(clCreateKernel(program, name.c_str(), &created));
+      return created;
+    });
+    impl_->check(status, "clCreateKernel", fmt::format("kernel '{}' of '{}'", name, file));
+    return argument_names(made->kernel.get());
+  };
   const cl_program program = impl_->programs->get(file, options);
   const Stopwatch stopwatch;
-  const cl_int status = impl_->persevere([&] {
-    cl_int created = CL_SUCCESS;
-    made->kernel = KernelHandle(clCreateKernel(program, name.c_str(), &created));
-    return created;
-  });
-  impl_->check(status, "clCreateKernel", fmt::format("kernel '{}' of '{}'", name, file));
+  auto arguments = create(program);
+  // OpenCL promises the names for programs that are made from source, not from a binary.
+  if (!arguments) arguments = create(impl_->programs->get_compiled(file, options));
+  if (!arguments) {
+    throw DeviceError(fmt::format("the device does not tell the names of the arguments of kernel "
+                                  "'{}' of '{}'; update its driver",
+                                  name, file),
+                      CL_KERNEL_ARG_INFO_NOT_AVAILABLE);
+  }
   made->name = name;
-  cl_uint count = 0;
-  impl_->check(
-      clGetKernelInfo(made->kernel.get(), CL_KERNEL_NUM_ARGS, sizeof count, &count, nullptr),
-      "clGetKernelInfo", name);
-  made->argument_count = count;
+  made->arguments = std::move(*arguments);
   if (impl_->profile) impl_->times.add_preparation(name, stopwatch.seconds());
   return impl_->kernels.emplace(key, Kernel(std::move(made))).first->second;
 }
 
-void Context::set_buffer_argument(const Kernel& kernel, unsigned index, const RawBuffer& buffer) {
-  void* const memory = buffer.handle();
-  set_value_argument(kernel, index, &memory, sizeof memory);
-}
+Launch::Launch(Context& context, Kernel kernel)
+    : context_(context),
+      kernel_(std::move(kernel)),
+      is_set_(kernel_.impl().arguments.size(), false) {}
 
-void Context::set_value_argument(const Kernel& kernel, unsigned index, const void* value,
-                                 std::size_t bytes) {
-  const auto& impl = kernel.impl();
-  const cl_int status =
-      impl_->persevere([&] { return clSetKernelArg(impl.kernel.get(), index, bytes, value); });
-  if (status != CL_SUCCESS) {
-    impl_->check(status, "clSetKernelArg",
-                 fmt::format("argument {} of kernel '{}', {} bytes", index, impl.name, bytes));
+Launch& Launch::set_bytes(std::string_view name, const void* value, std::size_t bytes) {
+  const auto& kernel = kernel_.impl();
+  const auto found = std::find(kernel.arguments.begin(), kernel.arguments.end(), name);
+  if (found == kernel.arguments.end()) {
+    throw DeviceError(fmt::format("kernel '{}' has no argument '{}'", kernel.name, name),
+                      CL_INVALID_ARG_INDEX);
   }
+  const auto index = static_cast<cl_uint>(found - kernel.arguments.begin());
+  const cl_int status = context_.impl_->persevere(
+      [&] { return clSetKernelArg(kernel.kernel.get(), index, bytes, value); });
+  if (status != CL_SUCCESS) {
+    context_.impl_->check(
+        status, "clSetKernelArg",
+        fmt::format("argument '{}' of kernel '{}', {} bytes", name, kernel.name, bytes));
+  }
+  is_set_[index] = true;
+  return *this;
 }
 
-void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t global_size,
-                      std::size_t local_size) {
-  auto& impl = kernel.impl();
-  if (argument_count != impl.argument_count) {
-    throw DeviceError(fmt::format("kernel '{}' takes {} arguments, {} given", impl.name,
-                                  impl.argument_count, argument_count),
+void Launch::run(std::size_t global_size, std::size_t local_size) {
+  auto& impl = kernel_.impl();
+  auto& context = *context_.impl_;
+  const auto unset = std::find(is_set_.begin(), is_set_.end(), false);
+  if (unset != is_set_.end()) {
+    throw DeviceError(fmt::format("kernel '{}' is not given its argument '{}'", impl.name,
+                                  impl.arguments[unset - is_set_.begin()]),
                       CL_INVALID_KERNEL_ARGS);
   }
   if (global_size == 0) return;
@@ -82,30 +123,30 @@ void Context::enqueue(const Kernel& kernel, unsigned argument_count, std::size_t
   }
   // A runtime may compile within the first launch: it is timed alone, and in PoCL waited for.
   const bool prepares = !impl.launched;
-  const auto compiling = lock_compilation(prepares && impl_->info.is_pocl);
-  const bool time_preparation = impl_->profile && prepares;
-  if (time_preparation) finish();
+  const auto compiling = lock_compilation(prepares && context.info.is_pocl);
+  const bool time_preparation = context.profile && prepares;
+  if (time_preparation) context_.finish();
   const Stopwatch stopwatch;
   cl_event event = nullptr;
-  const cl_int status = impl_->persevere([&] {
-    return clEnqueueNDRangeKernel(impl_->queue.get(), impl.kernel.get(), 1, nullptr, &global_size,
+  const cl_int status = context.persevere([&] {
+    return clEnqueueNDRangeKernel(context.queue.get(), impl.kernel.get(), 1, nullptr, &global_size,
                                   local_size == 0 ? nullptr : &local_size, 0, nullptr,
-                                  impl_->profile ? &event : nullptr);
+                                  context.profile ? &event : nullptr);
   });
   if (status != CL_SUCCESS) {
-    impl_->check(status, "clEnqueueNDRangeKernel",
-                 fmt::format("kernel '{}', {} work-items in groups of {}", impl.name, global_size,
-                             local_size));
+    context.check(status, "clEnqueueNDRangeKernel",
+                  fmt::format("kernel '{}', {} work-items in groups of {}", impl.name, global_size,
+                              local_size));
   }
   impl.launched = true;
-  if (compiling.owns_lock()) finish();
-  if (!impl_->profile) return;
+  if (compiling.owns_lock()) context_.finish();
+  if (!context.profile) return;
   EventHandle owned(event);
   if (time_preparation) {
-    finish();
-    impl_->times.add_first(impl.name, std::move(owned), stopwatch.seconds());
+    context_.finish();
+    context.times.add_first(impl.name, std::move(owned), stopwatch.seconds());
   } else {
-    impl_->times.add(impl.name, std::move(owned));
+    context.times.add(impl.name, std::move(owned));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "device/context.hpp"
+#include "device/launch.hpp"
 
 namespace photile::device {
 
@@ -17,12 +18,8 @@ class KernelSet {
   Context& context() const { return *context_; }
   /// As Context::kernel.
   Kernel kernel(const std::string& name) const { return context_->kernel(file_, name, defines_); }
-  /// As Context::run.
-  template <class... Args>
-  void run(const char* name, std::size_t global_size, std::size_t local_size,
-           const Args&... args) const {
-    context_->run(kernel(name), global_size, local_size, args...);
-  }
+  /// Of a kernel of the set.
+  Launch launch(const std::string& name) const { return {*context_, kernel(name)}; }
 
  private:
   Context* context_;

@@ -44,10 +44,23 @@ cl_program ProgramLibrary::get(const std::string& file, const std::string& defin
   const auto key = std::make_pair(file, defines);
   if (const auto found = programs_.find(key); found != programs_.end()) return found->second.get();
   const Stopwatch stopwatch;
-  const auto options = defines.empty() ? base_options_ : base_options_ + " " + defines;
-  auto program = load_or_build(file, options);
+  auto program = load_or_build(file, options(defines));
   times_.push_back({file, stopwatch.seconds()});
   return programs_.emplace(key, std::move(program)).first->second.get();
+}
+
+cl_program ProgramLibrary::get_compiled(const std::string& file, const std::string& defines) {
+  const Stopwatch stopwatch;
+  auto program = build_from_source(target_, file, assemble_source(file), options(defines));
+  ++built_;
+  times_.push_back({file, stopwatch.seconds()});
+  auto& kept = programs_[{file, defines}];
+  kept = std::move(program);
+  return kept.get();
+}
+
+std::string ProgramLibrary::options(const std::string& defines) const {
+  return defines.empty() ? base_options_ : base_options_ + " " + defines;
 }
 
 double ProgramLibrary::compile_seconds() const {

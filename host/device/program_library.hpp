@@ -25,6 +25,9 @@ class ProgramLibrary {
   /// The program of kernel file `file` built with `defines` ("-D NAME=VALUE ..."). Lives as long as
   /// the library. Errors: KernelBuildError.
   cl_program get(const std::string& file, const std::string& defines);
+  /// The same, compiled from its source: binaries need not tell the names of arguments. Takes the
+  /// place of what get() gave.
+  cl_program get_compiled(const std::string& file, const std::string& defines);
 
   const std::vector<ProgramTime>& times() const { return times_; }
   double compile_seconds() const;
@@ -32,6 +35,7 @@ class ProgramLibrary {
   std::uint64_t from_cache() const { return from_cache_; }
 
  private:
+  std::string options(const std::string& defines) const;
   ProgramHandle load_or_build(const std::string& file, const std::string& options);
 
   BuildTarget target_;

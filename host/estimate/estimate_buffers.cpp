@@ -84,15 +84,15 @@ Estimates EstimateBuffers::read_slots() {
   auto packed_irradiance = context_.allocate<float>(3 * total, "irradiance estimates");
   auto packed_radiance =
       context_.allocate<float>(sums_.glossy ? 3 * total : 0, "radiance estimates");
-  const auto launch = [&](const auto&... glossy) {
-    kernels.run("pack_estimates", hits_, maps::work_group_size, hits_, first, slot_light,
-                irradiance, light, packed_irradiance, glossy...);
-  };
-  if (sums_.glossy) {
-    launch(radiance, packed_radiance);
-  } else {
-    launch();
-  }
+  device::Launch launch = kernels.launch("pack_estimates");
+  launch.set("hit_count", hits_)
+      .set("first", first)
+      .set("slot_light", slot_light)
+      .set("slot_irradiance", irradiance)
+      .set("light", light)
+      .set("irradiance", packed_irradiance);
+  if (sums_.glossy) launch.set("slot_radiance", radiance).set("radiance", packed_radiance);
+  launch.run(hits_, maps::work_group_size);
 
   Estimates estimates;
   estimates.first.assign(offsets.begin(), offsets.end());

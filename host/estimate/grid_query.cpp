@@ -23,32 +23,29 @@ class GridQuery : public Query {
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     device::Defines estimate_defines = defines(hits.page);
     set_density_defines(estimate_defines, parameters_.surface, parameters_.kernel);
-    const device::Kernel kernel =
-        context_.kernel(choice_.kernel_file(), "estimate", estimate_defines);
-    const maps::MapPage& page = hits.page;
-    with_scene_arguments(store_, hits, parameters_.surface, estimates, [&](const auto&... scene) {
-      context_.run(kernel, choice_.work_items(hits.count), choice_.work_group_size, hits.count,
-                   hits.first, hits.hits.position, hits.hits.map, page.first_map, page.grids,
-                   page.cell_start, page.entry_stride, page.entry_position, page.entry_flux,
-                   page.entry_photon, scene..., parameters_.neighbours, parameters_.radius,
-                   parameters_.least_radius, estimates.irradiance);
-    });
+    device::Launch launch(context_,
+                          context_.kernel(choice_.kernel_file(), "estimate", estimate_defines));
+    set_estimate_arguments(launch, store_, hits, parameters_, estimates);
+    set_grid(launch, hits.page);
+    launch.run(choice_.work_items(hits.count), choice_.work_group_size);
   }
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
-    const device::Kernel kernel =
-        context_.kernel("estimate/nearest.cl", "nearest", defines(hits.page));
-    const maps::MapPage& page = hits.page;
-    with_normal_arguments(store_, hits, nullptr, [&](const auto&... normals) {
-      context_.run(kernel, hits.count, maps::work_group_size, hits.count, hits.first,
-                   hits.hits.position, hits.hits.map, page.first_map, page.grids, page.cell_start,
-                   page.entry_stride, page.entry_position, page.entry_photon, normals...,
-                   parameters_.neighbours, parameters_.radius, photons, squared_radius);
-    });
+    device::Launch launch(context_,
+                          context_.kernel("estimate/nearest.cl", "nearest", defines(hits.page)));
+    set_page_arguments(launch, hits, parameters_);
+    set_normal_arguments(launch, store_, hits, nullptr);
+    set_grid(launch, hits.page);
+    launch.set("neighbours", photons).set("squared_radius", squared_radius);
+    launch.run(hits.count, maps::work_group_size);
   }
 
  private:
+  static void set_grid(device::Launch& launch, const maps::MapPage& page) {
+    launch.set("grids", page.grids).set("cell_start", page.cell_start);
+  }
+
   device::Defines defines(const maps::MapPage& page) const {
     device::Defines defines = choice_.defines();
     if (page.entry_normal.size() > 0) defines.set("NORMALS");

@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "device/context.hpp"
+#include "device/launch.hpp"
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_buffers.hpp"
 #include "estimate/surface_buffers.hpp"
@@ -81,65 +81,67 @@ void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
   }
 }
 
-/// Calls launch(...) with the kernel arguments that a page with mixed maps adds, whose kernels are
-/// compiled with NORMALS, and those that clipped areas add.
-template <class Launch>
-void with_normal_arguments(const maps::MapStore& store, const PageHits& page_hits,
-                           const SurfaceBuffers* surface, Launch launch) {
-  // The slack of normals_agree, which groups are made with.
-  const float least_cosine = static_cast<float>(store.cos_angle - 1e-6);
+/// Sets the arguments that every kernel takes.
+inline void set_page_arguments(device::Launch& launch, const PageHits& hits,
+                               const QueryParameters& parameters) {
+  const maps::MapPage& page = hits.page;
+  launch.set("hit_count", hits.count)
+      .set("first_hit", hits.first)
+      .set("hit_position", hits.hits.position)
+      .set("hit_map", hits.hits.map)
+      .set("first_map", page.first_map)
+      .set("entry_stride", page.entry_stride)
+      .set("entry_position", page.entry_position)
+      .set("entry_photon", page.entry_photon)
+      .set("k", parameters.neighbours)
+      .set("radius", parameters.radius);
+}
+
+/// Sets the arguments that a page with mixed maps adds, whose kernels are compiled with NORMALS,
+/// and those that clipped areas add.
+inline void set_normal_arguments(device::Launch& launch, const maps::MapStore& store,
+                                 const PageHits& page_hits, const SurfaceBuffers* surface) {
   const HitBuffers& hits = page_hits.hits;
-  const auto faces = [&](const auto&... normals) {
-    if (surface != nullptr) {
-      launch(normals..., hits.face_normal, least_cosine, hits.place, hits.inwards, surface->nodes,
-             surface->leaves);
-    } else if (sizeof...(normals) > 0) {
-      launch(normals..., hits.face_normal, least_cosine);
-    } else {
-      launch();
-    }
-  };
-  if (page_hits.page.entry_normal.size() > 0) {
-    faces(page_hits.page.entry_normal);
-  } else {
-    faces();
+  const bool mixed = page_hits.page.entry_normal.size() > 0;
+  if (mixed) launch.set("entry_normal", page_hits.page.entry_normal);
+  if (mixed || surface != nullptr) {
+    // The slack of normals_agree, which groups are made with.
+    launch.set("hit_face_normal", hits.face_normal)
+        .set("least_cosine", static_cast<float>(store.cos_angle - 1e-6));
+  }
+  if (surface != nullptr) {
+    launch.set("hit_place", hits.place)
+        .set("hit_inwards", hits.inwards)
+        .set("surface_nodes", surface->nodes)
+        .set("surface_leaves", surface->leaves);
   }
 }
 
-/// Calls launch(...) with SCENE_ARGUMENTS of kernels/estimate/arguments.clh, in their order.
-template <class Launch>
-void with_scene_arguments(const maps::MapStore& store, const PageHits& page_hits,
-                          const SurfaceBuffers* surface, const EstimateBuffers& estimates,
-                          Launch launch) {
+/// Sets those of kernels/estimate/arguments.clh and of the disc.
+inline void set_estimate_arguments(device::Launch& launch, const maps::MapStore& store,
+                                   const PageHits& page_hits, const QueryParameters& parameters,
+                                   const EstimateBuffers& estimates) {
   const SceneNeeds& needs = store.needs;
   const auto& [hits, page, first, count] = page_hits;
-  const auto slots = [&](const auto&... scene) {
-    if (needs.many_lights()) {
-      launch(scene..., estimates.slot_light, estimates.slots_taken);
-    } else {
-      launch(scene...);
-    }
-  };
-  const auto glossy = [&](const auto&... scene) {
-    const auto lobes = [&](const auto&... bump) {
-      slots(scene..., page.entry_incoming, hits.outgoing, hits.normal, hits.diffuse, hits.f0,
-            hits.shape, bump..., estimates.radiance);
-    };
-    if (needs.normal_maps) {
-      lobes(hits.bump);
-    } else if (needs.glossy) {
-      lobes();
-    } else {
-      slots(scene...);
-    }
-  };
-  with_normal_arguments(store, page_hits, surface, [&](const auto&... normals) {
-    if (needs.light_count > 1) {
-      glossy(normals..., page.entry_light);
-    } else {
-      glossy(normals...);
-    }
-  });
+  set_page_arguments(launch, page_hits, parameters);
+  set_normal_arguments(launch, store, page_hits, parameters.surface);
+  launch.set("entry_flux", page.entry_flux)
+      .set("least_radius", parameters.least_radius)
+      .set("irradiance", estimates.irradiance);
+  if (needs.light_count > 1) launch.set("entry_light", page.entry_light);
+  if (needs.glossy) {
+    launch.set("entry_incoming", page.entry_incoming)
+        .set("hit_outgoing", hits.outgoing)
+        .set("hit_normal", hits.normal)
+        .set("hit_diffuse", hits.diffuse)
+        .set("hit_f0", hits.f0)
+        .set("hit_shape", hits.shape)
+        .set("radiance", estimates.radiance);
+  }
+  if (needs.normal_maps) launch.set("hit_bump", hits.bump);
+  if (needs.many_lights()) {
+    launch.set("slot_light", estimates.slot_light).set("slots_taken", estimates.slots_taken);
+  }
 }
 
 }  // namespace photile::estimate

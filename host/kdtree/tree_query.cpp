@@ -44,34 +44,19 @@ class TreeQuery : public Query {
     sums_.set_defines(defines);
     if (store_.needs.normal_maps) defines.set("NORMAL_MAPS");
     set_density_defines(defines, parameters_.surface, parameters_.kernel);
-    const device::Kernel kernel = context_.kernel("kdtree/estimate.cl", "estimate", defines);
-    const maps::MapPage& page = hits.page;
-    with_lists([&](const auto&... lists) {
-      with_scene_arguments(store_, hits, parameters_.surface, estimates, [&](const auto&... scene) {
-        context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
-                     hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
-                     page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
-                     page.entry_position, page.entry_flux, page.entry_photon, lists..., scene...,
-                     parameters_.neighbours, parameters_.radius, parameters_.least_radius,
-                     estimates.irradiance);
-      });
-    });
+    device::Launch launch(context_, context_.kernel("kdtree/estimate.cl", "estimate", defines));
+    set_estimate_arguments(launch, store_, hits, parameters_, estimates);
+    run(launch, hits);
   }
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
-    const device::Kernel kernel =
-        context_.kernel("kdtree/nearest.cl", "nearest", page_defines(hits.page));
-    const maps::MapPage& page = hits.page;
-    with_normal_arguments(store_, hits, nullptr, [&](const auto&... normals) {
-      with_lists([&](const auto&... lists) {
-        context_.run(kernel, std::min<std::size_t>(hits.count, work_items_), maps::work_group_size,
-                     hits.count, hits.first, hits.hits.position, hits.hits.map, page.first_map,
-                     page.tree_root, page.grids, page.tree_nodes, page.entry_stride,
-                     page.entry_position, page.entry_photon, normals..., lists...,
-                     parameters_.neighbours, parameters_.radius, photons, squared_radius);
-      });
-    });
+    device::Launch launch(context_,
+                          context_.kernel("kdtree/nearest.cl", "nearest", page_defines(hits.page)));
+    set_page_arguments(launch, hits, parameters_);
+    set_normal_arguments(launch, store_, hits, nullptr);
+    launch.set("neighbours", photons).set("squared_radius", squared_radius);
+    run(launch, hits);
   }
 
  private:
@@ -81,14 +66,15 @@ class TreeQuery : public Query {
     return defines;
   }
 
-  /// Calls launch(...) with the arguments that lists in global memory add.
-  template <class Launch>
-  void with_lists(Launch launch) {
+  /// With the arguments of the trees.
+  void run(device::Launch& launch, const PageHits& hits) const {
+    launch.set("root", hits.page.tree_root)
+        .set("frames", hits.page.grids)
+        .set("nodes", hits.page.tree_nodes);
     if (list_entry_.size() > 0) {
-      launch(list_distance_, list_entry_);
-    } else {
-      launch();
+      launch.set("list_distance", list_distance_).set("list_entry", list_entry_);
     }
+    launch.run(std::min<std::size_t>(hits.count, work_items_), maps::work_group_size);
   }
 
   const maps::MapStore& store_;

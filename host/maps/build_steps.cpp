@@ -15,20 +15,48 @@ namespace {
 using device::Buffer;
 using device::Context;
 
+/// A launch over photons of a page, given what tells which maps they enter.
+device::Launch photon_launch(const Build& build, const device::KernelSet& kernels,
+                             const char* kernel, const PhotonPage& photons) {
+  device::Launch launch = kernels.launch(kernel);
+  launch.set("photon_count", photons.count)
+      .set("position", photons.position)
+      .set("sided_triangle", photons.sided_triangle)
+      .set("map_of", build.map_of)
+      .set("list", photons.list)
+      .set("first_list", photons.first_list)
+      .set("list_offsets", photons.list_offsets)
+      .set("list_members", photons.list_members)
+      .set("shapes", build.shapes)
+      .set("corners", build.corners)
+      .set("squared_reach", build.squared_reach);
+  return launch;
+}
+
+/// The same, where those that they enter are found.
+device::Launch entered_launch(const Build& build, const device::KernelSet& kernels,
+                              const char* kernel, const PhotonPage& photons) {
+  device::Launch launch = photon_launch(build, kernels, kernel, photons);
+  launch.set("entered", photons.entered);
+  return launch;
+}
+
+void set_tile(device::Launch& launch, const Rectangle& tile) {
+  launch.set("first_column", tile.first_column)
+      .set("first_row", tile.first_row)
+      .set("last_column", tile.last_column)
+      .set("last_row", tile.last_row);
+}
+
 /// With the pages of photons as they are. Errors: DeviceMemoryError where they do not fit.
 void try_to_count(Build& build) {
   build.context.fill(build.counts.photons, 0u);
   build.context.fill(build.counts.mixed, 0u);
   for (const PhotonPage& page : *build.photon_pages) {
-    const auto launch = [&](const auto&... patches) {
-      build.run_over(page, build.kernels, "count_photons", page.entered, build.counts.photons,
-                     patches...);
-    };
-    if (build.patches) {
-      launch(build.normals, build.counts.mixed);
-    } else {
-      launch();
-    }
+    device::Launch launch = entered_launch(build, build.kernels, "count_photons", page);
+    launch.set("map_count", build.counts.photons);
+    if (build.patches) launch.set("normal", build.normals).set("map_mixed", build.counts.mixed);
+    launch.run(page.count, work_group_size);
   }
 }
 
@@ -53,15 +81,18 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
   page.grids = build.context.allocate<PhotileGrid>(maps, "photon map grids");
   auto cells = build.context.allocate<std::uint32_t>(maps + 1, "first cells of photon maps");
   build.context.fill(cells, 0u);
-  const auto launch = [&](const auto&... patches) {
-    build.run("size_grids", maps, maps, page.first_map, build.shapes, build.counts.photons,
-              build.crowding, patches..., build.radius, build.photons_per_cell, page.grids, cells);
-  };
-  if (build.patches) {
-    launch(build.counts.mixed);
-  } else {
-    launch();
-  }
+  device::Launch launch = build.kernels.launch("size_grids");
+  launch.set("map_total", maps)
+      .set("first_map", page.first_map)
+      .set("shapes", build.shapes)
+      .set("map_count", build.counts.photons)
+      .set("map_crowding", build.crowding)
+      .set("radius", build.radius)
+      .set("photons_per_cell", build.photons_per_cell)
+      .set("grids", page.grids)
+      .set("cell_total", cells);
+  if (build.patches) launch.set("map_mixed", build.counts.mixed);
+  launch.run(maps, work_group_size);
   return cells;
 }
 
@@ -69,7 +100,9 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
 
 void find_entered(const Build& build, PhotonPage& page) {
   page.entered = build.context.allocate<std::uint32_t>(page.count, "maps that photons enter");
-  build.run_over(page, build.kernels, "find_entered", page.entered);
+  photon_launch(build, build.kernels, "find_entered", page)
+      .set("entered", page.entered)
+      .run(page.count, work_group_size);
 }
 
 void count_photons(Build& build, std::size_t map_count) {
@@ -104,8 +137,14 @@ MapTiling tiling_of(const Build& build, std::uint32_t map) {
                                                     "bins of a photon map");
   build.context.fill(bins, 0u);
   for (const PhotonPage& photons : build.photon_pages->entering(map, map + 1)) {
-    build.run_over(photons, build.tile_kernels, "count_bins", photons.entered, map, page.grids,
-                   tiling.bin_width(), tiling.bin_height(), tiling.columns(), bins);
+    entered_launch(build, build.tile_kernels, "count_bins", photons)
+        .set("map", map)
+        .set("grid", page.grids)
+        .set("bin_width", tiling.bin_width())
+        .set("bin_height", tiling.bin_height())
+        .set("columns", tiling.columns())
+        .set("bin_count", bins)
+        .run(photons.count, work_group_size);
   }
   tiling.set_photons(read_all(build.context, bins));
   return tiling;
@@ -116,35 +155,38 @@ void place_grids(const Build& build, MapPage& page) {
   page.cell_count = total_cells(build.context, first_cell);
   exclusive_prefix_sum(build.kernels, first_cell);
   const std::uint32_t maps = page.last_map - page.first_map;
-  build.run("place_grids", maps, maps, first_cell, page.grids);
+  build.kernels.launch("place_grids")
+      .set("map_total", maps)
+      .set("first_cell", first_cell)
+      .set("grids", page.grids)
+      .run(maps, work_group_size);
 }
 
 void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile) {
   page.cell_start = build.context.allocate<std::uint32_t>(
       std::size_t{page.cell_count} + 2, "cell offsets", device::MemoryPages::large);
   build.context.fill(page.cell_start, 0u);
-  const auto with_tile = [&](const auto& run) {
-    if (tile) {
-      run(build.tile_kernels, tile->first_column, tile->first_row, tile->last_column,
-          tile->last_row);
-    } else {
-      run(build.kernels);
-    }
-  };
-  const auto over_photons = [&](const PhotonPage& photons, const char* kernel,
-                                const auto&... outputs) {
-    with_tile([&](const device::KernelSet& kernels, const auto&... bounds) {
-      build.run_over(photons, kernels, kernel, photons.entered, page.first_map, page.last_map,
-                     page.grids, page.cell_start, outputs..., bounds...);
-    });
+  const auto over_photons = [&](const char* kernel, const PhotonPage& photons) {
+    device::Launch launch =
+        entered_launch(build, tile ? build.tile_kernels : build.kernels, kernel, photons);
+    launch.set("first_map", page.first_map)
+        .set("last_map", page.last_map)
+        .set("grids", page.grids)
+        .set("cell_start", page.cell_start);
+    if (tile) set_tile(launch, *tile);
+    return launch;
   };
   const auto over_gaps = [&](const char* kernel) {
     if (!tile) return;
-    build.tile_kernels.run(kernel, tile->height(), work_group_size, page.grids, page.cell_start,
-                           tile->first_column, tile->first_row, tile->last_column, tile->last_row);
+    device::Launch launch = build.tile_kernels.launch(kernel);
+    launch.set("grid", page.grids).set("cell_start", page.cell_start);
+    set_tile(launch, *tile);
+    launch.run(tile->height(), work_group_size);
   };
   const auto photon_pages = build.photon_pages->entering(page.first_map, page.last_map);
-  for (const PhotonPage& photons : photon_pages) over_photons(photons, "count_cells");
+  for (const PhotonPage& photons : photon_pages) {
+    over_photons("count_cells", photons).run(photons.count, work_group_size);
+  }
   over_gaps("narrow_gaps");
   exclusive_prefix_sum(build.kernels, page.cell_start);
   build.context.read(page.cell_start, std::span(&page.entry_count, 1),
@@ -154,9 +196,16 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
   page.entry_photon = build.context.allocate<std::uint32_t>(page.entry_count, "photon references");
   if (tile) build.context.fill(page.entry_photon, none);  // that gaps have
   for (const PhotonPage& photons : photon_pages) {
-    over_photons(photons, "scatter", photons.first_photon, page.entry_photon);
+    over_photons("scatter", photons)
+        .set("first_photon", photons.first_photon)
+        .set("entry_photon", page.entry_photon)
+        .run(photons.count, work_group_size);
   }
-  build.run("sort_cells", page.cell_count, page.cell_count, page.cell_start, page.entry_photon);
+  build.kernels.launch("sort_cells")
+      .set("cell_count", page.cell_count)
+      .set("cell_start", page.cell_start)
+      .set("entry_photon", page.entry_photon)
+      .run(page.cell_count, work_group_size);
 }
 
 }  // namespace photile::maps

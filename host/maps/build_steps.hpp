@@ -38,19 +38,6 @@ struct Build {
   device::Buffer<float> corners = {};           ///< 9 floats per triangle that is alone in its maps
   std::unique_ptr<PhotonPages> photon_pages = {};
   MapCounts counts = {};
-
-  template <class... Args>
-  void run(const char* kernel, std::size_t size, const Args&... args) const {
-    kernels.run(kernel, size, work_group_size, args...);
-  }
-  /// A kernel of `set` over the photons of a page: CANDIDATES of kernels/grid/entry.clh, `args`.
-  template <class... Args>
-  void run_over(const PhotonPage& page, const device::KernelSet& set, const char* kernel,
-                const Args&... args) const {
-    set.run(kernel, page.count, work_group_size, page.count, page.position, page.sided_triangle,
-            map_of, page.list, page.first_list, page.list_offsets, page.list_members, shapes,
-            corners, squared_reach, args...);
-  }
 };
 
 // Errors: DeviceMemoryError, after which a step may be taken again on smaller pages.

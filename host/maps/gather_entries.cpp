@@ -30,28 +30,33 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
   if (needs.glossy) page.entry_incoming = planes("photon map directions");
   if (normals != nullptr) page.entry_normal = planes("photon map normals");
   for (const PhotonPage& photons : photon_pages.entering(page.first_map, page.last_map)) {
-    const auto run = [&](const char* kernel, const auto&... arrays) {
-      build.run(kernel, page.entry_count, work_group_size, page.entry_count, page.entry_stride,
-                page.entry_photon, photons.first_photon, photons.count, arrays...);
+    const auto launch_of = [&](const char* kernel) {
+      device::Launch launch = build.launch(kernel);
+      launch.set("entry_count", page.entry_count)
+          .set("entry_stride", page.entry_stride)
+          .set("entry_photon", page.entry_photon)
+          .set("first_photon", photons.first_photon)
+          .set("photon_count", photons.count);
+      return launch;
     };
-    const auto gather = [&](const auto&... optional) {
-      run("gather_entries", photons.position, photons.flux, page.entry_position, page.entry_flux,
-          optional...);
-    };
-    const auto with_directions = [&](const auto&... optional) {
-      if (needs.glossy) {
-        gather(optional..., photons.incoming, page.entry_incoming);
-      } else {
-        gather(optional...);
-      }
-    };
+    device::Launch gather = launch_of("gather_entries");
+    gather.set("position", photons.position)
+        .set("flux", photons.flux)
+        .set("entry_position", page.entry_position)
+        .set("entry_flux", page.entry_flux);
     if (needs.several_lights()) {
-      with_directions(photons.light, page.entry_light);
-    } else {
-      with_directions();
+      gather.set("light", photons.light).set("entry_light", page.entry_light);
     }
+    if (needs.glossy) {
+      gather.set("incoming", photons.incoming).set("entry_incoming", page.entry_incoming);
+    }
+    gather.run(page.entry_count, work_group_size);
     if (normals != nullptr) {
-      run("gather_normals", photons.sided_triangle, *normals, page.entry_normal);
+      launch_of("gather_normals")
+          .set("sided_triangle", photons.sided_triangle)
+          .set("normal", *normals)
+          .set("entry_normal", page.entry_normal)
+          .run(page.entry_count, work_group_size);
     }
   }
 }

@@ -20,10 +20,23 @@ void exclusive_prefix_sum(const device::KernelSet& kernels,
   if (blocks == 1) {
     context.fill(block_sum, 0u);
   } else {
-    kernels.run("sum_blocks", blocks, 0, count, values, block_size, blocks, block_sum);
+    kernels.launch("sum_blocks")
+        .set("count", count)
+        .set("values", values)
+        .set("block_size", block_size)
+        .set("block_count", blocks)
+        .set("block_sum", block_sum)
+        .run(blocks, 0);
     exclusive_prefix_sum(kernels, block_sum, block_sum);
   }
-  kernels.run("scan_blocks", blocks, 0, count, values, block_size, blocks, block_sum, scanned);
+  kernels.launch("scan_blocks")
+      .set("count", count)
+      .set("values", values)
+      .set("block_size", block_size)
+      .set("block_count", blocks)
+      .set("block_start", block_sum)
+      .set("scanned", scanned)
+      .run(blocks, 0);
 }
 
 void exclusive_prefix_sum(const device::KernelSet& kernels, device::Buffer<std::uint32_t>& values) {

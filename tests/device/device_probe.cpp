@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "device/context.hpp"
+#include "device/launch.hpp"
 #include "device/program_source.hpp"
 #include "tools/command/exit_code.hpp"
 
@@ -35,7 +35,7 @@ int probe(std::string_view mode, bool use_cache) {
   auto buffer = context.allocate<int>(n, "squares");
   const auto kernel = context.kernel("test/squares.cl", "squares", {});
   const unsigned written = mode == "overrun" ? n + 1 : mode == "unwritten" ? n - 1 : n;
-  context.run(kernel, written, 0, buffer, written);
+  photile::device::Launch(context, kernel).set("out", buffer).set("n", written).run(written, 0);
   context.finish();
   std::vector<int> values(n);
   context.read<int>(buffer, values);

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "device/context.hpp"
+#include "device/launch.hpp"
 #include "device/program_source.hpp"
 #include "tools/command/exit_code.hpp"
 
@@ -9,6 +9,7 @@ namespace {
 
 using photile::device::Context;
 using photile::device::Defines;
+using photile::device::Launch;
 using photile::device::LocalMemory;
 
 const char* const affine = R"(
@@ -17,6 +18,16 @@ kernel void affine(global const int* in, global int* out, const uint n, const in
   if (i < n) out[i] = factor * in[i] + OFFSET;
 }
 )";
+
+/// A launch of `affine` with all its arguments.
+Launch affine_launch(Context& context, const photile::device::Kernel& kernel,
+                     const photile::device::Buffer<int>& in,
+                     const photile::device::Buffer<int>& out, unsigned n, int factor) {
+  Launch launch(context, kernel);
+  // Not in the order of the source.
+  launch.set("factor", factor).set("n", n).set("out", out).set("in", in);
+  return launch;
+}
 
 photile::DeviceOptions options(bool use_program_cache, bool profile) {
   return {"", use_program_cache, profile};
@@ -33,7 +44,7 @@ TEST_CASE("a kernel gets buffers, values and definitions") {
   auto out = context.allocate<int>(values.size(), "out");
   const auto kernel = context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 7ll));
   // 1000 is no multiple of 64: the launch is rounded up, and the kernel checks its index.
-  context.run(kernel, values.size(), 64, in, out, 1000u, 3);
+  affine_launch(context, kernel, in, out, 1000, 3).run(values.size(), 64);
   std::vector<int> back(values.size());
   context.read<int>(out, back);
   for (std::size_t i = 0; i < values.size(); ++i) REQUIRE(back[i] == 3 * values[i] + 7);
@@ -67,8 +78,10 @@ kernel void reverse(global int* values, local int* shared) {
   std::vector<int> values(64);
   std::iota(values.begin(), values.end(), 0);
   auto buffer = context.upload<int>(values, "values");
-  context.run(context.kernel("test/local.cl", "reverse", {}), 64, 32, buffer,
-              LocalMemory{32 * sizeof(int)});
+  Launch(context, context.kernel("test/local.cl", "reverse", {}))
+      .set("values", buffer)
+      .set("shared", LocalMemory{32 * sizeof(int)})
+      .run(64, 32);
   std::vector<int> back(64);
   context.read<int>(buffer, back);
   for (int i = 0; i < 64; ++i) REQUIRE(back[i] == (i / 32) * 32 + 31 - i % 32);
@@ -79,9 +92,9 @@ TEST_CASE("launches over nothing enqueue nothing, and an empty buffer is a valid
   Context context(options(true, true));
   const auto kernel = context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 0ll));
   const auto empty = context.allocate<int>(0, "empty");
-  context.run(kernel, 0, 64, empty, empty, 0u, 1);
+  affine_launch(context, kernel, empty, empty, 0, 1).run(0, 64);
   CHECK(context.kernel_times().empty());
-  context.run(kernel, 64, 0, empty, empty, 0u, 1);
+  affine_launch(context, kernel, empty, empty, 0, 1).run(64, 0);
   context.finish();
   const auto times = context.kernel_times();
   REQUIRE(times.size() == 1);
@@ -95,22 +108,54 @@ TEST_CASE("what a kernel needs before its first launch is counted once") {
   Context context(options(true, true));
   const auto kernel = context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 5ll));
   const auto empty = context.allocate<int>(0, "empty");
-  context.run(kernel, 64, 0, empty, empty, 0u, 1);
+  affine_launch(context, kernel, empty, empty, 0, 1).run(64, 0);
   const double preparation = context.kernel_times()[0].preparation_seconds;
   CHECK(preparation > 0);
-  context.run(context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 5ll)), 64, 0,
-              empty, empty, 0u, 1);
+  affine_launch(context, context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 5ll)),
+                empty, empty, 0, 1)
+      .run(64, 0);
   CHECK(context.kernel_times()[0].launches == 2);
   CHECK(context.kernel_times()[0].preparation_seconds == preparation);
 }
 
-TEST_CASE("a wrong number of arguments is refused with both numbers") {
+TEST_CASE("an unknown argument and one that is not given are refused by kernel and name") {
   photile::device::register_kernel_source("test/affine.cl", affine);
   Context context({});
   const auto kernel = context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 0ll));
   const auto buffer = context.allocate<int>(1, "values");
-  CHECK_THROWS_WITH(context.run(kernel, 1, 0, buffer, buffer),
-                    Catch::Contains("'affine' takes 4 arguments, 2 given"));
+  CHECK_THROWS_WITH(Launch(context, kernel).set("input", buffer),
+                    Catch::Contains("kernel 'affine' has no argument 'input'"));
+  // Complete launches leave nothing behind that a later one could be run with.
+  affine_launch(context, kernel, buffer, buffer, 1, 1).run(1, 0);
+  Launch launch(context, kernel);
+  launch.set("in", buffer).set("out", buffer).set("factor", 1);
+  CHECK_THROWS_WITH(launch.run(1, 0),
+                    Catch::Contains("kernel 'affine' is not given its argument 'n'"));
+  launch.set("n", 1u).run(1, 0);
+}
+
+TEST_CASE("arguments have names where macros give them, and in programs from the cache") {
+  photile::device::register_kernel_source("test/macro.cl", R"(
+#define MORE_ARGUMENTS const uint n, \
+  global const float* restrict from
+kernel void copy(global float* to, MORE_ARGUMENTS) {
+  if (get_global_id(0) < n) to[get_global_id(0)] = from[get_global_id(0)];
+}
+)");
+  for (int run = 0; run < 2; ++run) {
+    Context context(options(true, false));
+    const std::vector<float> values{1, 2, 3};
+    const auto from = context.upload<float>(values, "from");
+    auto to = context.allocate<float>(3, "to");
+    Launch(context, context.kernel("test/macro.cl", "copy", {}))
+        .set("from", from)
+        .set("n", 3u)
+        .set("to", to)
+        .run(3, 0);
+    std::vector<float> back(3);
+    context.read<float>(to, back);
+    CHECK(back == values);
+  }
 }
 
 TEST_CASE("an argument of the wrong size and an unknown kernel are device errors") {
@@ -119,8 +164,8 @@ TEST_CASE("an argument of the wrong size and an unknown kernel are device errors
   const auto defines = Defines().set("OFFSET", 0ll);
   const auto kernel = context.kernel("test/affine.cl", "affine", defines);
   const auto buffer = context.allocate<int>(1, "values");
-  CHECK_THROWS_WITH(context.run(kernel, 1, 0, buffer, buffer, 1.0, 1),
-                    Catch::Contains("CL_INVALID_ARG_SIZE") && Catch::Contains("argument 2"));
+  CHECK_THROWS_WITH(Launch(context, kernel).set("n", 1.0),
+                    Catch::Contains("CL_INVALID_ARG_SIZE") && Catch::Contains("argument 'n'"));
   CHECK_THROWS_WITH(context.kernel("test/affine.cl", "missing", defines),
                     Catch::Contains("CL_INVALID_KERNEL_NAME") && Catch::Contains("missing"));
 }

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cstddef>
 
-#include "device/context.hpp"
+#include "device/launch.hpp"
 #include "device/program_source.hpp"
 #include "shared_headers.inc"
 
@@ -56,7 +56,9 @@ TEST_CASE(
   photile::device::register_kernel_source("test/layout.cl", source_of(numbers));
   photile::device::Context context({});
   auto out = context.allocate<unsigned>(numbers.size(), "layout");
-  context.run(context.kernel("test/layout.cl", "layout", {}), 1, 1, out);
+  photile::device::Launch(context, context.kernel("test/layout.cl", "layout", {}))
+      .set("out", out)
+      .run(1, 1);
   std::vector<unsigned> on_device(numbers.size());
   context.read<unsigned>(out, on_device);
   for (std::size_t i = 0; i < numbers.size(); ++i) {

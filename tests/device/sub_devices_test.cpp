@@ -3,7 +3,7 @@
 #include <numeric>
 #include <thread>
 
-#include "device/context.hpp"
+#include "device/launch.hpp"
 #include "device/program_source.hpp"
 #include "photile/errors.hpp"
 
@@ -20,7 +20,10 @@ kernel void thirds(global float* out, const uint n) {
 
 std::vector<float> thirds(device::Context& context, unsigned n) {
   auto buffer = context.allocate<float>(n, "thirds");
-  context.run(context.kernel("test/thirds.cl", "thirds", {}), n, 64, buffer, n);
+  device::Launch(context, context.kernel("test/thirds.cl", "thirds", {}))
+      .set("out", buffer)
+      .set("n", n)
+      .run(n, 64);
   std::vector<float> values(n);
   context.read<float>(buffer, values);
   return values;

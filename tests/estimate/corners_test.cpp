@@ -1,8 +1,11 @@
 // The area that an estimate divides by, at corners, on edges and at T-junctions of real meshes:
 // there stored irradiance is looked up, and there rounding decides which side of an edge a point is
 // on.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <numeric>
+#include <span>
 
 #include "oracle/clipped_area.hpp"
 #include "photile/estimator.hpp"
@@ -45,14 +48,24 @@ bool lies_on_edge(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b)
   return glm::length(p - a - (b - a) * (along / length)) < 1e-6 * (length + glm::length(p));
 }
 
+/// So many triangles, or all where there are no more.
+std::vector<std::uint32_t> some_triangles(const Scene& scene, std::size_t count) {
+  std::vector<std::uint32_t> triangles(std::min<std::size_t>(count, scene.triangle_count()));
+  std::iota(triangles.begin(), triangles.end(), 0u);
+  if (count >= scene.triangle_count()) return triangles;
+  std::mt19937_64 random(163);
+  for (std::uint32_t& t : triangles) {
+    t = static_cast<std::uint32_t>(random() % scene.triangle_count());
+  }
+  return triangles;
+}
+
 /// Corners, middles of edges and, where another triangle's corner lies on an edge, T-junctions.
-std::vector<Place> places_of(const Scene& scene, std::size_t triangles, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+std::vector<Place> places_of(const Scene& scene, std::span<const std::uint32_t> triangles) {
+  std::mt19937_64 random(162);
   std::vector<Place> places;
-  for (std::size_t i = 0; i < triangles; ++i) {
-    const auto t = static_cast<std::uint32_t>(
-        triangles < scene.triangle_count() ? random() % scene.triangle_count() : i);
-    if (t >= scene.triangle_count() || !(triangle_area(scene, t) > 0)) continue;
+  for (const std::uint32_t t : triangles) {
+    if (!(triangle_area(scene, t) > 0)) continue;
     const auto corners = scene.corners(t);
     const std::uint32_t own = sided(t, static_cast<std::uint32_t>(random() & 1));
     for (int c = 0; c < 3; ++c) {
@@ -153,10 +166,17 @@ class Shares {
   std::optional<reference::ClippedArea> oracle_;
 };
 
-void check_shares(Scene scene, std::size_t photons, std::size_t triangles,
-                  std::size_t oracle_every) {
+/// Points whose share could be told, of all.
+struct Coverage {
+  std::size_t told = 0, points = 0;
+};
+
+/// Asks the oracle at every `oracle_every`-th point, and wherever the share is unusual or changes
+/// within the last millimetre: it may, where another surface leaves the slab.
+Coverage check_shares(Scene scene, std::size_t photons, std::span<const std::uint32_t> triangles,
+                      std::size_t oracle_every) {
   const Shares shares(std::move(scene), photons);
-  const std::vector<Place> places = places_of(shares.scene(), triangles, 162);
+  const std::vector<Place> places = places_of(shares.scene(), triangles);
   PrimaryHits hits;
   for (const Place& place : places) {
     const auto corners = shares.scene().corners(triangle_of(place.sided_triangle));
@@ -185,22 +205,34 @@ void check_shares(Scene scene, std::size_t photons, std::size_t triangles,
     const bool usual = share > 1 / 40.0 && share < 1.001;
     const double size = std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
     const double rounding = 2e-3 + 4e-6 * size / radius;
-    if (!usual || i % oracle_every == 0) {
-      const double expected = shares.expected(place, p, radius);
-      ++compared;
-      const bool right = std::abs(share - expected) <= rounding;
-      wrong += !right;
-      if (wrong <= 20) CHECK(share == Approx(expected).margin(rounding));
-    }
-    const auto& [at_place, radius_there] = all[i / steps.size() * steps.size()];
-    if (std::isnan(at_place)) continue;
-    const bool steady = std::abs(share - at_place) <= rounding + 4 * step / radius;
-    wrong += !steady;
-    if (wrong <= 20) CHECK(share == Approx(at_place).margin(rounding + 4 * step / radius));
+    const double at_place = all[i / steps.size() * steps.size()].share;
+    const bool steady =
+        std::isnan(at_place) || std::abs(share - at_place) <= rounding + 4 * step / radius;
+    if (usual && steady && i % oracle_every != 0) continue;
+    const double expected = shares.expected(place, p, radius);
+    ++compared;
+    const bool right = std::abs(share - expected) <= rounding;
+    wrong += !right;
+    if (wrong <= 20) CHECK(share == Approx(expected).margin(rounding));
   }
   CAPTURE(places.size(), compared);
   CHECK(wrong == 0);
-  CHECK(counted > all.size() / 4);
+  return {counted, all.size()};
+}
+
+Coverage check_some_shares(Scene scene, std::size_t photons, std::size_t triangles,
+                           std::size_t oracle_every) {
+  const auto picked = some_triangles(scene, triangles);
+  return check_shares(std::move(scene), photons, picked, oracle_every);
+}
+
+void check_told(const Coverage& coverage) { CHECK(coverage.told > coverage.points / 4); }
+
+/// Whether the shared scenes are there; else a warning.
+bool has_shared_scenes() {
+  if (std::filesystem::exists(test::shared_scenes_folder() / "odd")) return true;
+  WARN("skipped: no shared scenes");
+  return false;
 }
 
 }  // namespace
@@ -208,7 +240,8 @@ void check_shares(Scene scene, std::size_t photons, std::size_t triangles,
 TEST_CASE("areas at corners, edges and T-junctions of the bundled rooms are the oracle's") {
   const char* file = GENERATE("cornell-box/cornell-box.obj", "living-room/living-room.gltf");
   CAPTURE(file);
-  check_shares(load_scene(test::source_folder() / "scenes" / file), 20'000, 40, 40);
+  check_told(
+      check_some_shares(load_scene(test::source_folder() / "scenes" / file), 20'000, 40, 40));
 }
 
 TEST_CASE("areas at corners, edges and T-junctions of every bundled scene are the oracle's",
@@ -218,21 +251,41 @@ TEST_CASE("areas at corners, edges and T-junctions of every bundled scene are th
       "gallery/downlights.gltf", "gallery/glass-sphere.gltf", "gallery/glossy-floor.gltf",
       "gallery/metal-ring.gltf", "gallery/sun-and-sky.gltf", "living-room/living-room.gltf");
   CAPTURE(file);
-  check_shares(load_scene(test::source_folder() / "scenes" / file), 60'000, 400, 50);
+  check_told(
+      check_some_shares(load_scene(test::source_folder() / "scenes" / file), 60'000, 400, 50));
 }
 
-TEST_CASE("areas at corners, edges and T-junctions of every shared scene are the oracle's",
+// Clipping here once left a ten-thousandth of the disc, and a density of 4.3 million for 478.
+TEST_CASE("areas at the corners of a level triangle in the kitchen are the oracle's", "[slow]") {
+  if (!has_shared_scenes()) return;
+  constexpr std::uint32_t level = 682;
+  const Scene kitchen = test::load_shared_scene({"kitchen/kitchen-diffuse.gltf", ""});
+  const auto corners = kitchen.corners(level);
+  CAPTURE(corners[0].x, corners[0].y, corners[0].z);
+  REQUIRE(std::any_of(corners.begin(), corners.end(), [](const glm::vec3& corner) {
+    return glm::distance(corner, glm::vec3(8.9f, 0.8f, 2.52f)) < 0.01f;
+  }));
+  check_told(check_shares(kitchen, 400'000, std::array{level}, 1));
+}
+
+TEST_CASE("areas at corners, edges and T-junctions of shared interiors are the oracle's",
           "[slow]") {
-  if (!std::filesystem::exists(test::shared_scenes_folder() / "odd")) {
-    WARN("skipped: no shared scenes");
-    return;
-  }
+  if (!has_shared_scenes()) return;
+  const char* file = GENERATE("classroom/classroom-diffuse.gltf", "kitchen/kitchen-diffuse.gltf");
+  CAPTURE(file);
+  check_told(check_some_shares(test::load_shared_scene({file, ""}), 400'000, 200, 100));
+}
+
+TEST_CASE("areas at corners, edges and T-junctions of odd shared scenes are the oracle's",
+          "[slow]") {
+  if (!has_shared_scenes()) return;
+  Coverage together;  // of some, which are a triangle or two, hardly any can be told
   for (const test::SharedScene& scene : test::shared_scenes) {
-    if (!scene.refusal.empty()) continue;
+    if (!scene.refusal.empty() || !scene.file.starts_with("odd/")) continue;
     CAPTURE(scene.file);
-    Scene loaded = test::load_shared_scene(scene);
-    const bool interior = loaded.triangle_count() > 50'000;
-    check_shares(std::move(loaded), interior ? 400'000 : 10'000, interior ? 1500 : 60,
-                 interior ? 400 : 20);
+    const Coverage coverage = check_some_shares(test::load_shared_scene(scene), 10'000, 30, 5);
+    together.told += coverage.told;
+    together.points += coverage.points;
   }
+  check_told(together);
 }

@@ -109,6 +109,10 @@ double ClippedArea::area_of_triangle(const glm::dvec3& hit, const glm::dvec3& n,
   std::array<glm::dvec3, 3> p;
   const auto corners = scene_.corners(triangle_of(s));
   for (int i = 0; i < 3; ++i) p[i] = (glm::dvec3(corners[i]) - hit) / radius;
+  const glm::dvec3 low = glm::min(p[0], glm::min(p[1], p[2]));
+  const glm::dvec3 high = glm::max(p[0], glm::max(p[1], p[2]));
+  if (glm::any(glm::greaterThan(low, glm::dvec3(1)))) return 0;
+  if (glm::any(glm::lessThan(high, glm::dvec3(-1)))) return 0;
   const glm::dvec3 normal = glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
   const double height = glm::dot(normal, p[0]);
   const double squared = 1 - height * height;

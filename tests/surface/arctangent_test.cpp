@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "device/context.hpp"
+#include "device/launch.hpp"
 #include "device/program_source.hpp"
 #include "test_device.hpp"
 
@@ -38,8 +38,11 @@ TEST_CASE("the kernels' arctangent is right to 3e-7 in every direction, and 0 at
   const auto y_buffer = context.upload(std::span<const float>(y), "y");
   const auto x_buffer = context.upload(std::span<const float>(x), "x");
   const auto angle_buffer = context.allocate<float>(y.size(), "angles");
-  context.run(context.kernel("test/angles.cl", "angles", {}), y.size() / 8, 1, y_buffer, x_buffer,
-              angle_buffer);
+  device::Launch(context, context.kernel("test/angles.cl", "angles", {}))
+      .set("y", y_buffer)
+      .set("x", x_buffer)
+      .set("angle", angle_buffer)
+      .run(y.size() / 8, 1);
   std::vector<float> angle(y.size());
   context.read(angle_buffer, std::span(angle));
   CHECK(angle[0] == 0.0f);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "device/context.hpp"
+#include "device/launch.hpp"
 #include "device/program_source.hpp"
 #include "test_device.hpp"
 
@@ -33,8 +33,10 @@ TEST_CASE("the kernels' logarithm is right to 2e-7 of itself or of 1 for all nor
   device::Context& context = device::context_of(test::device());
   const auto x_buffer = context.upload(std::span<const float>(x), "x");
   const auto buffer = context.allocate<float>(x.size(), "logarithms");
-  context.run(context.kernel("test/logarithms.cl", "logarithms", {}), x.size() / 8, 1, x_buffer,
-              buffer);
+  device::Launch(context, context.kernel("test/logarithms.cl", "logarithms", {}))
+      .set("x", x_buffer)
+      .set("logarithm", buffer)
+      .run(x.size() / 8, 1);
   std::vector<float> logarithm(x.size());
   context.read(buffer, std::span(logarithm));
   CHECK(logarithm[0] == 0.0f);
