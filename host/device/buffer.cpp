@@ -110,11 +110,17 @@ void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
 bool Context::shares_host_memory() const { return impl_->info.type == DeviceType::cpu; }
 
 RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_view what) {
-  cl_int created = CL_SUCCESS;
-  // The kernels that get it only read: the constness comes back in their arguments.
-  const cl_mem memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR,
-                                       bytes, const_cast<void*>(data), &created);
-  impl_->check(created, "clCreateBuffer", fmt::format("sharing {} ({} bytes)", what, bytes));
+  cl_mem memory = nullptr;
+  const cl_int status = impl_->persevere([&] {
+    cl_int created = CL_SUCCESS;
+    // The kernels that get it only read: the constness comes back in their arguments.
+    memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes,
+                            const_cast<void*>(data), &created);
+    return created;
+  });
+  if (status != CL_SUCCESS) {
+    impl_->check(status, "clCreateBuffer", fmt::format("sharing {} ({} bytes)", what, bytes));
+  }
   clRetainCommandQueue(impl_->queue.get());
   return RawBuffer(memory, bytes, nullptr,
                    std::shared_ptr<void>(impl_->queue.get(), [](void* queue) {
