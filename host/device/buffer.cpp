@@ -112,6 +112,11 @@ bool Context::shares_host_memory() const { return impl_->info.type == DeviceType
 RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_view what) {
   cl_mem memory = nullptr;
   const cl_int status = impl_->persevere([&] {
+    // It counts: a bound on the device's memory bounds what kernels work on, wherever it lies.
+    const std::uint64_t live = impl_->memory->live;
+    if (bytes > impl_->memory_limit - std::min(impl_->memory_limit, live)) {
+      return CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    }
     cl_int created = CL_SUCCESS;
     // The kernels that get it only read: the constness comes back in their arguments.
     memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes,
@@ -122,7 +127,7 @@ RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_
     impl_->check(status, "clCreateBuffer", fmt::format("sharing {} ({} bytes)", what, bytes));
   }
   clRetainCommandQueue(impl_->queue.get());
-  return RawBuffer(memory, bytes, nullptr,
+  return RawBuffer(memory, bytes, impl_->memory,
                    std::shared_ptr<void>(impl_->queue.get(), [](void* queue) {
                      clFinish(static_cast<cl_command_queue>(queue));
                      clReleaseCommandQueue(static_cast<cl_command_queue>(queue));
