@@ -15,6 +15,7 @@
 #include "photile/layered_picture.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/light_maps.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/light_options.hpp"
 #include "photile/limits.hpp"
