@@ -30,7 +30,7 @@ std::optional<MapRange> PageQueue::next() {
       throw DeviceError(fmt::format(
           "the photon map of {} has {} photons within the radius of one place, more than the {} "
           "that the device's largest buffer holds; use fewer photons, a smaller radius or more "
-          "passes",
+          "passes, or a larger memory limit if one is set",
           name_map_(page.first), page.entries, most));
     }
     return page;
