@@ -109,12 +109,13 @@ void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
 
 bool Context::shares_host_memory() const { return impl_->info.type == DeviceType::cpu; }
 
-RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_view what) {
+RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_view what,
+                               SharedMemory counts) {
+  const bool counted = counts == SharedMemory::counted;
   cl_mem memory = nullptr;
   const cl_int status = impl_->persevere([&] {
-    // It counts: a bound on the device's memory bounds what kernels work on, wherever it lies.
     const std::uint64_t live = impl_->memory->live;
-    if (bytes > impl_->memory_limit - std::min(impl_->memory_limit, live)) {
+    if (counted && bytes > impl_->memory_limit - std::min(impl_->memory_limit, live)) {
       return CL_MEM_OBJECT_ALLOCATION_FAILURE;
     }
     cl_int created = CL_SUCCESS;
@@ -127,7 +128,7 @@ RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_
     impl_->check(status, "clCreateBuffer", fmt::format("sharing {} ({} bytes)", what, bytes));
   }
   clRetainCommandQueue(impl_->queue.get());
-  return RawBuffer(memory, bytes, impl_->memory,
+  return RawBuffer(memory, bytes, counted ? impl_->memory : nullptr,
                    std::shared_ptr<void>(impl_->queue.get(), [](void* queue) {
                      clFinish(static_cast<cl_command_queue>(queue));
                      clReleaseCommandQueue(static_cast<cl_command_queue>(queue));

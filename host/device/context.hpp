@@ -92,6 +92,11 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
+/// Whether memory that a device shares with the host counts towards the bound on the device's
+/// memory. What comes in parts does, so that a bound makes the parts small; what is there in any
+/// case does not.
+enum class SharedMemory { uncounted, counted };
+
 /// What memory a buffer of a CPU device is to be made of.
 enum class MemoryPages {
   ordinary,
@@ -184,9 +189,10 @@ class Context {
   /// A buffer that kernels read and that holds `values`, which must stay as they are for its life:
   /// over the host's memory itself where the device is the host's processor, else a copy.
   template <class T>
-  Buffer<T> share(std::span<const T> values, std::string_view what) {
+  Buffer<T> share(std::span<const T> values, std::string_view what,
+                  SharedMemory counts = SharedMemory::uncounted) {
     if (!shares_host_memory() || values.empty()) return upload(values, what);
-    return Buffer<T>(share_bytes(values.data(), values.size_bytes(), what), values.size());
+    return Buffer<T>(share_bytes(values.data(), values.size_bytes(), what, counts), values.size());
   }
   template <class T>
   void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
@@ -261,7 +267,8 @@ class Context {
   void fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
                   std::size_t bytes, std::size_t offset);
   bool shares_host_memory() const;
-  RawBuffer share_bytes(const void* data, std::size_t bytes, std::string_view what);
+  RawBuffer share_bytes(const void* data, std::size_t bytes, std::string_view what,
+                        SharedMemory counts);
 };
 
 }  // namespace photile::device

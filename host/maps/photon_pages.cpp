@@ -81,11 +81,16 @@ PhotonPage upload_photon_records(device::Context& context, const Photons& photon
   PhotonPage page;
   page.first_photon = range.first;
   page.count = range.last - range.first;
-  page.position = context.share(floats(photons.position, range), "photon positions");
-  page.sided_triangle = context.share(part(photons.sided_triangle, range), "photons' triangles");
-  page.flux = context.share(floats(photons.flux, range), "photon flux");
-  page.light = context.share(part(photons.light, range), "photon lights");
-  page.incoming = context.share(floats(photons.incoming, range), "photon directions");
+  page.position = context.share(floats(photons.position, range), "photon positions",
+                                device::SharedMemory::counted);
+  page.sided_triangle = context.share(part(photons.sided_triangle, range), "photons' triangles",
+                                      device::SharedMemory::counted);
+  page.flux =
+      context.share(floats(photons.flux, range), "photon flux", device::SharedMemory::counted);
+  page.light =
+      context.share(part(photons.light, range), "photon lights", device::SharedMemory::counted);
+  page.incoming = context.share(floats(photons.incoming, range), "photon directions",
+                                device::SharedMemory::counted);
   return page;
 }
 
@@ -101,12 +106,13 @@ PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     offsets[i] = static_cast<std::uint32_t>(candidates.offsets[first_list + i] - first_member);
   }
-  page.list = context.share(part(candidates.list_of_photon, range), "candidate lists of photons");
+  page.list = context.share(part(candidates.list_of_photon, range), "candidate lists of photons",
+                            device::SharedMemory::counted);
   page.list_offsets =
       context.upload(std::span<const std::uint32_t>(offsets), "candidate list offsets");
   page.list_members = context.share(
       std::span<const std::uint32_t>(candidates.members.data() + first_member, offsets.back()),
-      "candidate maps");
+      "candidate maps", device::SharedMemory::counted);
   return page;
 }
 
