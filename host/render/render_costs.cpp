@@ -72,8 +72,10 @@ RunStatistics RenderCosts::statistics() const {
   std::vector<std::pair<std::string, double>> estimate_figures{
       {"hits", number(hit_count)},
       {"kernel compilation seconds", estimate_compile_seconds},
-      {"microseconds per hit", 1e6 * (estimate.time.seconds - estimate_compile_seconds) /
-                                   std::max(1.0, number(hit_count))}};
+      {"microseconds per hit",
+       hit_count == 0
+           ? 0.0
+           : 1e6 * (estimate.time.seconds - estimate_compile_seconds) / number(hit_count)}};
   estimate_figures.insert(estimate_figures.end(), shares.begin(), shares.end());
   stages.push_back(stage("radiance estimate", estimate, std::move(estimate_figures)));
   stages.push_back(stage("film", film));

@@ -35,10 +35,15 @@ double seconds_of(clockid_t clock) {
 
 }  // namespace
 
-TimeTaken since_process_start() {
+TimeTaken time_of_loading() {
+  const double processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   const double start = process_start();
-  return {.seconds = start < 0 ? 0 : std::max(0.0, seconds_of(CLOCK_BOOTTIME) - start),
-          .processor_seconds = seconds_of(CLOCK_PROCESS_CPUTIME_ID)};
+  const double age = start < 0 ? processor : std::max(0.0, seconds_of(CLOCK_BOOTTIME) - start);
+  // A shell turns into the last program that it runs: the process is then older than the program,
+  // whose loading hardly waits for anything.
+  constexpr double longest_wait = 5;
+  return {.seconds = age > processor + longest_wait ? processor : age,
+          .processor_seconds = processor};
 }
 
 }  // namespace photile::app

@@ -174,7 +174,9 @@ void write_glare(const RenderOptions& options, const LightLayers& layers,
 void run_render(const CLI::App& command, RenderOptions& options) {
   handle_signals();
   RunRecord record;
-  record.stages.push_back(stage("load libraries", {since_process_start()}));
+  const TimeTaken loading = time_of_loading();
+  const Stopwatch since_loaded;
+  record.stages.push_back(stage("load libraries", {loading}));
   check_settings(options);
   if (options.integrator == Integrator::path) refuse_photon_map_options(command);
   const PictureOutputs outputs = check_outputs_of(options);
@@ -215,7 +217,8 @@ void run_render(const CLI::App& command, RenderOptions& options) {
     outputs.write(*picture, progress);
     if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
   }));
-  record.total = since_process_start();
+  record.total = since_loaded.taken();
+  record.total += loading;
   if (!options.statistics.empty()) {
     write_file(
         options.statistics,
