@@ -148,8 +148,8 @@ Photons traced_photons(const RayScene& rays, std::uint64_t count) {
 std::optional<Scene> shared_interior(const std::string& name) {
   const char* folder = std::getenv("PHOTILE_SHARED_SCENES");
   const std::filesystem::path file =
-      std::filesystem::path(folder ? folder : PHOTILE_SOURCE_DIR "/../shared/scenes") /
-      name / (name + "-diffuse.gltf");
+      std::filesystem::path(folder ? folder : PHOTILE_SOURCE_DIR "/../shared/scenes") / name /
+      (name + "-diffuse.gltf");
   if (!std::filesystem::exists(file)) return std::nullopt;
   return load_scene(file);
 }

@@ -204,7 +204,9 @@ PhotonCloud::PhotonCloud(PhotonCloud&&) noexcept = default;
 PhotonCloud& PhotonCloud::operator=(PhotonCloud&&) noexcept = default;
 
 std::size_t PhotonCloud::size() const { return impl_->positions.size(); }
-const PhotonMapStatistics& PhotonCloud::statistics() const { return impl_->photon_maps.statistics(); }
+const PhotonMapStatistics& PhotonCloud::statistics() const {
+  return impl_->photon_maps.statistics();
+}
 
 CloudNeighbours PhotonCloud::nearest(std::span<const glm::vec3> points,
                                      std::span<const glm::vec3> normals, int k, double radius) {

@@ -89,7 +89,7 @@ void refuse_taken(const std::filesystem::path& file) {
 }
 
 EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLoadOptions& options,
-                       const LightMix& mix, const std::string& name) {
+                               const LightMix& mix, const std::string& name) {
   EditedScene copy;
   const std::string clean = clean_light_name(name, limits::max_light_name_bytes);
   copy.file = scene;

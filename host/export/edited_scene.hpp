@@ -28,6 +28,6 @@ struct EditedScene {
 ///   name      cleaned as names of lights are
 /// Errors: those of load_scene; OutputError where the copy cannot be written or its name is taken.
 EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLoadOptions& options,
-                       const LightMix& mix, const std::string& name);
+                               const LightMix& mix, const std::string& name);
 
 }  // namespace photile::scene_io

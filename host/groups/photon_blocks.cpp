@@ -28,9 +28,11 @@ std::vector<CodedPhoton> along_curve(const std::vector<glm::vec3>& positions) {
   tbb::parallel_for(std::size_t{0}, positions.size(), [&](std::size_t i) {
     const glm::vec3 place = glm::clamp((positions[i] - bounds.lower) / extent, 0.0f, 1.0f);
     const glm::uvec3 cell(place * static_cast<float>((1 << bits_of_axis) - 1));
-    coded[i] = {static_cast<std::uint32_t>(geometry::morton_code(cell)), static_cast<std::uint32_t>(i)};
+    coded[i] = {static_cast<std::uint32_t>(geometry::morton_code(cell)),
+                static_cast<std::uint32_t>(i)};
   });
-  geometry::radix_sort(coded, 3 * bits_of_axis, [](const CodedPhoton& photon) { return photon.code; });
+  geometry::radix_sort(coded, 3 * bits_of_axis,
+                       [](const CodedPhoton& photon) { return photon.code; });
   return coded;
 }
 

@@ -13,9 +13,9 @@ namespace photile::measuring {
 
 struct MeasuringParameters {
   GatherParameters gathering;
-  int repeats = defaults::measuring_repeats;          ///< >= 2, each with its own seed
-  bool by_paths = false;                              ///< and not by photon maps
-  RenderParameters photons;                           ///< of each repeat, whose seeds follow from this one
+  int repeats = defaults::measuring_repeats;  ///< >= 2, each with its own seed
+  bool by_paths = false;                      ///< and not by photon maps
+  RenderParameters photons;                   ///< of each repeat, whose seeds follow from this one
   double maintenance = defaults::maintenance_factor;  ///< factor of all values
 };
 

@@ -21,8 +21,8 @@ inline constexpr int max_final_gather_rays = 4096;  ///< from a hit; each has it
 // Radii of search
 /// Metres. The square of a hundred-thousandth of it is a normal float, and so is its inverse.
 inline constexpr double min_radius = 1e-13;
-/// Over the diagonal of the scene: squares of distances over a hundred-thousandth of the radius stay
-/// within the range of a float.
+/// Over the diagonal of the scene: squares of distances over a hundred-thousandth of the radius
+/// stay within the range of a float.
 inline constexpr double min_radius_over_scene = 1e-9;
 /// Metres: beyond the largest scene. Its square is within the range of a float.
 inline constexpr double max_radius = 1e13;

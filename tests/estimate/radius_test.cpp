@@ -72,7 +72,9 @@ TEST_CASE("any radius that reaches photons gives a closed box its illuminance") 
         Approx(1 / (6 * (1 - double{albedo}))).epsilon(0.04));
 }
 
-TEST_CASE("a radius too small to reach photons reads finite values, those that no float holds are refused") {
+TEST_CASE(
+    "a radius too small to reach photons reads finite values, those that no float holds are "
+    "refused") {
   const Scene scene = closed_box();
   for (const double radius : {1e-3, 1e-5, 1e-8}) {
     CAPTURE(radius);

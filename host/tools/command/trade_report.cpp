@@ -30,7 +30,8 @@ std::string trade_row(const std::string& error, const std::string& first, const 
 std::string point_row(const std::string& error, const TradePoint& point) {
   return trade_row(error, format_seconds(point.first_picture_seconds),
                    fmt::format("{:.0f} ms", 1e3 * point.frame_seconds),
-                   format_bytes(point.host_bytes + point.device_bytes), options_text(point.parameters));
+                   format_bytes(point.host_bytes + point.device_bytes),
+                   options_text(point.parameters));
 }
 
 }  // namespace
