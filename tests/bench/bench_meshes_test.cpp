@@ -7,8 +7,7 @@
 #include "support/workload.hpp"
 #include "temporary_folder.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 double area(const Scene& scene) {
@@ -74,3 +73,5 @@ TEST_CASE("a mesh that was written is read again as it was") {
   }
   CHECK(different == 0);
 }
+
+}  // namespace photile::test

@@ -3,6 +3,8 @@
 
 #include "support/bench_record.hpp"
 
+namespace photile::test {
+
 using namespace photile::bench;
 
 TEST_CASE("a quick bench repeats once, or as often as it is told") {
@@ -15,3 +17,5 @@ TEST_CASE("a quick bench repeats once, or as often as it is told") {
   command.parse(arguments);
   CHECK(options.repeats.most == repeats);
 }
+
+}  // namespace photile::test

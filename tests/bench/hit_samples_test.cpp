@@ -5,7 +5,7 @@
 #include "support/hit_sample.hpp"
 #include "support/workload.hpp"
 
-using namespace photile;
+namespace photile::test {
 
 TEST_CASE("block samples hold every n-th block, and those of every multiple of n") {
   const PrimaryHits hits = bench::plane_workload(5000).hits;
@@ -37,3 +37,5 @@ TEST_CASE("a thinned sample keeps its places in the whole") {
   }
   CHECK(different == 0);
 }
+
+}  // namespace photile::test

@@ -3,6 +3,7 @@
 
 #include "device/context.hpp"
 
+namespace photile::test {
 namespace {
 
 using photile::device::Context;
@@ -130,3 +131,5 @@ TEST_CASE("a buffer may outlive its context") {
   }
   CHECK(buffer.size() == 10);
 }
+
+}  // namespace photile::test

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <set>
 
+namespace photile::test {
 namespace {
 
 using photile::DeviceInfo;
@@ -63,3 +64,5 @@ TEST_CASE("PoCL's code generation variables are in its keys, and in no other's")
 TEST_CASE("a hash is XXH3-128 as its specification gives it for the empty text") {
   CHECK(photile::device::hash("").hex() == "99aa06d3014798d86001c324468d497f");
 }
+
+}  // namespace photile::test

@@ -10,6 +10,7 @@
 #include "file_bytes.hpp"
 #include "temporary_folder.hpp"
 
+namespace photile::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,3 +104,5 @@ TEST_CASE("a checked file that cannot be written says why and leaves nothing") {
   CHECK_FALSE(write_checked_file(folder.path / "taken", key, payload).empty());
   CHECK(files_in(folder.path) == 1);
 }
+
+}  // namespace photile::test

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <thread>
 
+namespace photile::test {
 namespace {
 
 /// A file, so that a program that prints much cannot block on a pipe.
@@ -82,3 +83,5 @@ ChildResult ChildProcess::wait() {
   result.errors = take(errors_);
   return result;
 }
+
+}  // namespace photile::test

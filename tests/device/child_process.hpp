@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+namespace photile::test {
+
 struct ChildResult {
   int exit_code = -1;  ///< -1 where a signal ended it
   int signal = 0;
@@ -34,3 +36,5 @@ inline ChildResult run_child(const std::vector<std::string>& command,
                              const ChildEnvironment& environment = {}) {
   return ChildProcess(command, environment).wait();
 }
+
+}  // namespace photile::test

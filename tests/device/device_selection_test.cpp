@@ -5,6 +5,7 @@
 
 #include "photile/errors.hpp"
 
+namespace photile::test {
 namespace {
 
 using photile::DeviceInfo;
@@ -153,3 +154,5 @@ TEST_CASE("every listed device can be opened by its id") {
     CHECK(device.info().global_memory_bytes >= device.info().max_allocation_bytes);
   }
 }
+
+}  // namespace photile::test

@@ -6,6 +6,7 @@
 #include "child_process.hpp"
 #include "temporary_folder.hpp"
 
+namespace photile::test {
 namespace {
 
 struct Failure {
@@ -97,3 +98,5 @@ TEST_CASE("a launch that runs out of memory says what the device has and what to
                                 Catch::Contains("4000 bytes are in use") &&
                                 Catch::Contains("use fewer photons"));
 }
+
+}  // namespace photile::test

@@ -3,6 +3,7 @@
 
 #include "child_process.hpp"
 
+namespace photile::test {
 namespace {
 
 ChildResult probe(const char* mode, bool fence) {
@@ -33,3 +34,5 @@ TEST_CASE("a kernel that writes one element past the end dies at the fence") {
 TEST_CASE("what no kernel wrote shows behind the fence") {
   CHECK_THAT(probe("unwritten", true).output, Catch::Contains("last=-1 "));
 }
+
+}  // namespace photile::test

@@ -5,6 +5,7 @@
 #include "device/program_source.hpp"
 #include "tools/command/exit_code.hpp"
 
+namespace photile::test {
 namespace {
 
 using photile::device::Context;
@@ -200,3 +201,5 @@ TEST_CASE("definitions become options that round-trip") {
   CHECK(Defines().options().empty());
   CHECK_THROWS_AS(Defines().set("X", 1e300), photile::DeviceError);
 }
+
+}  // namespace photile::test

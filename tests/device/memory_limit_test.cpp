@@ -4,6 +4,7 @@
 
 #include "device/context.hpp"
 
+namespace photile::test {
 namespace {
 
 using photile::device::Buffer;
@@ -97,3 +98,5 @@ TEST_CASE("what was saved from a buffer is restored") {
   context.read(buffer, std::span(read));
   CHECK(read == values);
 }
+
+}  // namespace photile::test

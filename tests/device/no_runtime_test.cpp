@@ -6,6 +6,7 @@
 #include "child_process.hpp"
 #include "temporary_folder.hpp"
 
+namespace photile::test {
 namespace {
 
 ChildResult probe_vendors(const std::filesystem::path& vendors, ChildEnvironment environment = {}) {
@@ -39,3 +40,5 @@ TEST_CASE("a platform without devices is named, not opened") {
   check_one_device_error(probe_vendors(vendors.path, {{"POCL_DEVICES", "none-such"}}),
                          "no devices");
 }
+
+}  // namespace photile::test

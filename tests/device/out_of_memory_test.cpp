@@ -3,6 +3,8 @@
 #include "device/context.hpp"
 #include "device/status_names.hpp"
 
+namespace photile::test {
+
 using photile::device::Context;
 
 TEST_CASE("an absurd allocation says what, how much, the limits and a remedy") {
@@ -33,3 +35,5 @@ TEST_CASE("status codes have names") {
   CHECK(status_name(-1001) == "CL_PLATFORM_NOT_FOUND_KHR (-1001)");
   CHECK(status_name(-4321) == "unknown status (-4321)");
 }
+
+}  // namespace photile::test

@@ -12,6 +12,7 @@
 #include "probe_output.hpp"
 #include "temporary_folder.hpp"
 
+namespace photile::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,3 +183,5 @@ TEST_CASE("a pack that would leave its folder, or ends early, is refused") {
     }
   }
 }
+
+}  // namespace photile::test

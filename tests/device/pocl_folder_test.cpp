@@ -8,6 +8,7 @@
 #include "probe_output.hpp"
 #include "temporary_folder.hpp"
 
+namespace photile::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,3 +88,5 @@ TEST_CASE("a folder is refused with the reason") {
   CHECK_FALSE(photile::device::folder_problem("/dev/null/x").empty());
   CHECK_FALSE(photile::device::folder_problem("/proc/x").empty());
 }
+
+}  // namespace photile::test

@@ -12,6 +12,7 @@
 #include "probe_output.hpp"
 #include "temporary_folder.hpp"
 
+namespace photile::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,3 +71,5 @@ TEST_CASE("a program file of another program under this one's name is a miss") {
   fs::copy_file(cache.file(key), cache.file(other));
   CHECK_FALSE(cache.load(other));
 }
+
+}  // namespace photile::test

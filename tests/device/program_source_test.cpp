@@ -10,6 +10,8 @@
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 
+namespace photile::test {
+
 using photile::device::assemble_source;
 using photile::device::register_kernel_source;
 
@@ -65,3 +67,5 @@ TEST_CASE("every kernel and shared header is embedded byte for byte") {
   compare(root / "include/photile/device", root / "include");
   CHECK(count == photile::device::embedded_files().size());
 }
+
+}  // namespace photile::test

@@ -9,6 +9,7 @@
 #include "device/program_source.hpp"
 #include "shared_headers.inc"
 
+namespace photile::test {
 namespace {
 
 /// A number of a struct's layout, on the host, and what computes it on the device.
@@ -66,3 +67,5 @@ TEST_CASE(
     CHECK(on_device[i] == numbers[i].on_host);
   }
 }
+
+}  // namespace photile::test

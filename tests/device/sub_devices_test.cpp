@@ -7,8 +7,7 @@
 #include "device/program_source.hpp"
 #include "photile/errors.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr const char* source = R"(
@@ -82,3 +81,5 @@ TEST_CASE("two sub-devices compute at once, compiling the same program") {
     CHECK(wrong == 0);
   }
 }
+
+}  // namespace photile::test

@@ -6,8 +6,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 Scene plate() {
@@ -68,3 +67,5 @@ TEST_CASE("neighbours equal the oracle's among 2^20 + 1 photons") {
     }
   }
 }
+
+}  // namespace photile::test

@@ -9,8 +9,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 using Chosen = std::function<bool(const Scene&, std::uint32_t sided_triangle)>;
@@ -273,3 +272,5 @@ TEST_CASE("a bright table top does not bleed into a dark floor below, nor the fl
   };
   CHECK_VERDICT(test::mean_is(readings(reading), 1.0, 0.04));
 }
+
+}  // namespace photile::test

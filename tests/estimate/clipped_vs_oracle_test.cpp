@@ -10,8 +10,7 @@
 #include "source_folder.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Areas are compared with polygons of 4096 corners, and computed from floats: a ten-thousandth of
@@ -195,3 +194,5 @@ TEST_CASE("clipped irradiance in the living room equals the oracle's", "[slow]")
   check_clipped(scene, photons, test::uniform_hits(scene, 300, 52), 0.4, 50, kernel,
                 MapMode::automatic);
 }
+
+}  // namespace photile::test

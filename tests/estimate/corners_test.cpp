@@ -15,8 +15,7 @@
 #include "source_folder.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr int k = 50;
@@ -289,3 +288,5 @@ TEST_CASE("areas at corners, edges and T-junctions of odd shared scenes are the 
   }
   check_told(together);
 }
+
+}  // namespace photile::test

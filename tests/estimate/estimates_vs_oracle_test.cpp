@@ -6,8 +6,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 void check_irradiance(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
@@ -127,3 +126,5 @@ TEST_CASE("radiance under normal maps equals the BSDF summed over the oracle's n
     CHECK(test::worst_difference(estimates.radiance, expected) <= test::glossy_tolerance(k));
   }
 }
+
+}  // namespace photile::test

@@ -10,8 +10,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr int k = 50;
@@ -178,3 +177,5 @@ TEST_CASE("the exact law of the estimate in a corner of 90 degrees", "[long]") {
 TEST_CASE("the exact law of the estimate in a corner of 45 degrees", "[long]") {
   check_law(1, 0, true);
 }
+
+}  // namespace photile::test

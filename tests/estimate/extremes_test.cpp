@@ -5,8 +5,7 @@
 #include "oracle_checks.hpp"
 #include "photon_sets.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// A floor, a wall and a finely curved body, about 1 m wide: everything a scale is applied to.
@@ -324,3 +323,5 @@ TEST_CASE("extremes: photons of 1e-12 to 1e12 units of flux in one map") {
   const PrimaryHits hits = test::uniform_hits(scene, 100, 123);
   test::check_against_oracle(scene, photons, hits, 0.2, {1, 50}, true);
 }
+
+}  // namespace photile::test

@@ -6,7 +6,8 @@
 
 #include "test_device.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using estimate::HitBatches;
 using estimate::HitBatchNeeds;
 using estimate::plan_hit_batch;
@@ -71,3 +72,5 @@ TEST_CASE("a single hit that does not fit is an error") {
                               [](std::size_t, std::size_t) { throw DeviceMemoryError("none"); }),
                   DeviceMemoryError);
 }
+
+}  // namespace photile::test

@@ -7,8 +7,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double radius = 0.2;
@@ -102,3 +101,5 @@ TEST_CASE("kept estimates make room where memory runs out") {
   }
   CHECK(estimator.estimate(hits).irradiance == expected.irradiance);
 }
+
+}  // namespace photile::test

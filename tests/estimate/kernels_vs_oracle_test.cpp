@@ -6,8 +6,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double radius = 0.3;
@@ -119,3 +118,5 @@ TEST_CASE("weighted glossy radiance equals the BSDF summed over the oracle's nei
   CAPTURE(name_of(kernel));
   CHECK(test::worst_difference(estimates.radiance, expected) <= 3 * test::glossy_tolerance(k));
 }
+
+}  // namespace photile::test

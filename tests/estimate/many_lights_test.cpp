@@ -7,8 +7,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double radius = 0.2;
@@ -199,3 +198,5 @@ TEST_CASE("any number of lights up to 70 and any level of k keep to their buffer
     CHECK(difference(all, sums.irradiance) <= tolerance_of(neighbours));
   }
 }
+
+}  // namespace photile::test

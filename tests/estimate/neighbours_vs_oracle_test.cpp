@@ -7,8 +7,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 void check_neighbours(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
@@ -223,3 +222,5 @@ TEST_CASE("k and radius out of range are refused") {
   CHECK_THROWS_AS(Estimator(maps, scene, {50, 0.2}), UsageError);
   CHECK_THROWS_AS(Estimator(maps, scene, {50, -0.1}), UsageError);
 }
+
+}  // namespace photile::test

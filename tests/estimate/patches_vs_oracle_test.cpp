@@ -8,8 +8,7 @@
 #include "source_folder.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 void check_modes(const Scene& scene, std::size_t photon_count, std::size_t hit_count, double radius,
@@ -132,3 +131,5 @@ TEST_CASE("estimates of maps of patches equal those of triangles up to the order
   }
   CHECK(different == 0);
 }
+
+}  // namespace photile::test

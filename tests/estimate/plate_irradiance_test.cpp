@@ -7,7 +7,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
+namespace photile::test {
 
 TEST_CASE("a uniformly lit plate reads its irradiance away from borders for any triangulation",
           "[long]") {
@@ -42,3 +42,5 @@ TEST_CASE("a uniformly lit plate reads its irradiance away from borders for any 
     CHECK(sum / static_cast<double>(inner) / count == Approx(1.0).margin(0.01));
   }
 }
+
+}  // namespace photile::test

@@ -5,7 +5,7 @@
 #include "photon_sets.hpp"
 #include "render/kernel_preparation.hpp"
 
-using namespace photile;
+namespace photile::test {
 
 TEST_CASE("building maps and estimating from them take one program each") {
   Scene scene = test::empty_scene(GENERATE(1u, 3u));
@@ -36,3 +36,5 @@ TEST_CASE("no kernel is left to compile once those of a scene are prepared") {
   Estimator(maps, scene, {.neighbours = 20}).estimate(test::uniform_hits(scene, 93, 92));
   CHECK(device.programs_built() + device.programs_from_cache() == prepared);
 }
+
+}  // namespace photile::test

@@ -12,8 +12,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// A room of 1 m, all of its walls alike, with a lamp of 1 lm in the middle.
@@ -139,3 +138,5 @@ TEST_CASE("maps, groups and surfaces refuse radii that arithmetic cannot hold") 
   }
   CHECK_THROWS_AS(find_neighbour_groups(scene, {1e25, 60}), UsageError);
 }
+
+}  // namespace photile::test

@@ -21,8 +21,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// A closed box with point lights, whose kind follows from the needs.
@@ -174,3 +173,5 @@ TEST_CASE("only what triangles have is needed: unused materials ask for nothing"
   CHECK((needs_with(2).see_through && needs_with(2).specular_paths));
   CHECK((!needs_with(3).see_through && needs_with(3).specular_paths));
 }
+
+}  // namespace photile::test

@@ -7,8 +7,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double radius = 0.25;  // metres
@@ -41,3 +40,5 @@ TEST_CASE("tiles find the oracle's neighbours up to the radius, on either side o
   Estimator estimator(maps, scene, {200, 0});
   CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons, radius) == 0);
 }
+
+}  // namespace photile::test

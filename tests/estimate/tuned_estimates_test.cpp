@@ -8,8 +8,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Every strategy and vector width, with each of the numbers of hits where they matter.
@@ -142,3 +141,5 @@ TEST_CASE("a tuning that no kernel exists for is refused") {
     CHECK_THROWS_AS(Estimator(maps, data.scene, {50, 0, tuning}), UsageError);
   }
 }
+
+}  // namespace photile::test

@@ -17,7 +17,8 @@
 #include "temporary_folder.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::estimate;
 
 namespace {
@@ -243,3 +244,5 @@ TEST_CASE("the tuner's sample holds what it says and is the same every time") {
 TEST_CASE("tuning for an impossible k is refused") {
   CHECK_THROWS_AS(tune_estimate(test::device(), one_light, 0), UsageError);
 }
+
+}  // namespace photile::test

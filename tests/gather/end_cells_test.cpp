@@ -11,7 +11,8 @@
 
 #include "trace/random_stream.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::gathering;
 
 namespace {
@@ -80,3 +81,5 @@ TEST_CASE("cells are numbered in the order in which they are met, on any number 
     }
   }
 }
+
+}  // namespace photile::test

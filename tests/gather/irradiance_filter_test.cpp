@@ -10,8 +10,7 @@
 
 #include "trace/random_stream.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr int side = 48, batches = 8, border = 8;
@@ -171,3 +170,5 @@ TEST_CASE("filter: sparse layers are filtered as dense ones, on any number of th
     CHECK(after.mean.first == sparse.mean.first);
   }
 }
+
+}  // namespace photile::test

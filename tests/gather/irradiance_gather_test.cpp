@@ -17,9 +17,7 @@
 #include "test_scenes.hpp"
 #include "tools/validation/form_factors.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 using std::numbers::pi;
@@ -320,3 +318,5 @@ TEST_CASE("gathering: parameters out of range are refused") {
   refused({.batches = 1});
   refused({.cell_side = -0.1});
 }
+
+}  // namespace photile::test

@@ -10,9 +10,7 @@
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 Photons photons_on_sphere(std::size_t count, double radius = 1) {
@@ -81,3 +79,5 @@ TEST_CASE("automatic radius needs two photons apart and a k within its limits") 
   CHECK_THROWS_AS(automatic_radius(photons, 0), UsageError);
   CHECK_THROWS_AS(automatic_radius(photons, limits::max_neighbours + 1), UsageError);
 }
+
+}  // namespace photile::test

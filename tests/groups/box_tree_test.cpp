@@ -7,8 +7,7 @@
 
 #include "meshes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 std::vector<geometry::Box> random_boxes(std::size_t count, test::Uniform& uniform) {
@@ -57,3 +56,5 @@ TEST_CASE("a tree without boxes visits none, and a visit that returns true is th
   geometry::BoxTree(random_boxes(30, uniform)).visit_within(everywhere, 1, stop);
   CHECK(visits == 1);
 }
+
+}  // namespace photile::test

@@ -12,9 +12,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 glm::dvec3 normal_of(const Scene& scene, std::uint32_t sided_triangle) {
@@ -218,3 +216,5 @@ TEST_CASE("a radius that joins everything is refused before memory runs out", "[
   const auto count = static_cast<int>(1.02 * std::sqrt(limits::max_group_members / 4.0));
   CHECK_THROWS_AS(find_neighbour_groups(random_soup(4, count, 1, 0.01), {10, 180}), UsageError);
 }
+
+}  // namespace photile::test

@@ -11,8 +11,7 @@
 #include "photile/neighbour_groups.hpp"
 #include "photon_sets.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 Scene torus() {
@@ -252,3 +251,5 @@ TEST_CASE("naive and triangle maps have no patches") {
   CHECK(find_patches(torus(), 0.1, MapMode::naive).empty());
   CHECK(find_patches(torus(), 0.1, MapMode::triangle).empty());
 }
+
+}  // namespace photile::test

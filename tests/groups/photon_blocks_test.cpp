@@ -7,8 +7,7 @@
 
 #include "meshes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Sheets, a dense lump, points that coincide, and one far away.
@@ -57,3 +56,5 @@ TEST_CASE("of more positions than wanted those in equal steps are taken") {
   CHECK(blocks.squared_distance(0, 1, scratch) == 100);
   CHECK(blocks.squared_distance(9, 9, scratch) == 8100);
 }
+
+}  // namespace photile::test

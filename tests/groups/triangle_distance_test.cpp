@@ -13,9 +13,7 @@
 #include "meshes.hpp"
 #include "photile/neighbour_groups.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 double fcl_distance(const Corners& a, const Corners& b) {
@@ -252,3 +250,5 @@ TEST_CASE("triangle distance equals known answers") {
   CHECK(triangle_triangle_distance(a, {{{0.1, 0.1, 0}, {0.2, 0.1, 0}, {0.1, 0.2, 0}}}) == 0);
   CHECK(triangle_triangle_distance(a, a) == 0);
 }
+
+}  // namespace photile::test

@@ -4,9 +4,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 /// Row vector times matrix, in double precision.
@@ -66,3 +64,5 @@ TEST_CASE("worldToNDC puts the picture's corners on the unit square, (0,0) upper
     CHECK(ndc.z / ndc.w == Approx(1.0 / 7.0).epsilon(1e-4));
   }
 }
+
+}  // namespace photile::test

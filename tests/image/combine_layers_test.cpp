@@ -3,9 +3,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 /// combine_layers beside the sum of what mix_layers gives as layers.
@@ -81,3 +79,5 @@ TEST_CASE("combining refuses a picture of another size and a mix without the lig
   mix.lights = {mixed("b", 1.0)};
   CHECK_THROWS_AS(combine_layers(layers, mix, picture), UsageError);
 }
+
+}  // namespace photile::test

@@ -4,9 +4,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 /// The bytes of an EXR to relight, of a size that takes several blocks.
@@ -64,3 +62,5 @@ TEST_CASE("an EXR with one bit flipped gives an error or a picture, 300 times") 
   CHECK(outcomes[0] + outcomes[1] == 300);
   CHECK(outcomes[1] > 0);
 }
+
+}  // namespace photile::test

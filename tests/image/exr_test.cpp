@@ -7,9 +7,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 /// 5 x 3 pixels: smaller than any block, with values that a float format may lose.
@@ -144,3 +142,5 @@ TEST_CASE("oiiotool lists the root and every layer of a mixed picture") {
     CHECK(info.find(name) != std::string::npos);
   }
 }
+
+}  // namespace photile::test

@@ -3,9 +3,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 const std::vector<std::string> light_names{"star", "lamp", "glow", "speck"};
@@ -95,3 +93,5 @@ TEST_CASE("extremes: the exposure of a picture does not depend on the unit of it
     CHECK(worst <= 1e-6);
   }
 }
+
+}  // namespace photile::test

@@ -3,9 +3,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 constexpr int width = 4, height = 3, pixels = width * height;
@@ -159,3 +157,5 @@ TEST_CASE("parts that share channel names are told apart by their part's name") 
   CHECK((*picture.find("R"))[1] == value_at(0, 1));
   CHECK((*picture.find("right.R"))[1] == value_at(3, 1));
 }
+
+}  // namespace photile::test

@@ -6,7 +6,8 @@
 #include "photile/errors.hpp"
 #include "two_lights.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::image;
 
 namespace {
@@ -58,3 +59,5 @@ TEST_CASE("glare of pictures of different sizes is refused") {
   CHECK_THROWS_AS(find_glare(even(1, 1), LightLayers(2, 2, {"a", "b"}), mix_of(1, 1), 5),
                   UsageError);
 }
+
+}  // namespace photile::test

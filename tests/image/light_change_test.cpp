@@ -2,9 +2,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 LightMix two_lights() {
@@ -128,3 +126,5 @@ TEST_CASE("a change is split at its last equals sign, and both sides must be the
     CHECK_THROWS_AS(LightChange::parse(text), UsageError);
   }
 }
+
+}  // namespace photile::test

@@ -2,8 +2,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
 
 TEST_CASE("the root is the float sum of the layers in order, alpha one") {
   LightMix mix;
@@ -140,3 +139,5 @@ TEST_CASE("a layer whose light the mix lacks is refused by name") {
       message_of<UsageError>([&] { mix_layers(random_layers(2, 2, {"lamp"}), mix); });
   CHECK(message.find("'lamp'") != std::string::npos);
 }
+
+}  // namespace photile::test

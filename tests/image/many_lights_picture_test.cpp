@@ -10,9 +10,7 @@
 #include "photile/scene_needs.hpp"
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 constexpr std::size_t many = limits::max_single_part_lights + 1;
@@ -242,3 +240,5 @@ TEST_CASE("the picture of 256 lights is never whole in memory, neither written n
   CAPTURE(meter.peak(), dense);
   CHECK(meter.peak() < bound);
 }
+
+}  // namespace photile::test

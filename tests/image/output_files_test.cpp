@@ -6,8 +6,8 @@
 #include "file_limits.hpp"
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -121,3 +121,5 @@ TEST_CASE("a picture without pixels or without R, G, B cannot be written") {
   CHECK_THROWS_AS(write_png(folder / "a.png", grey), OutputError);
   CHECK(files_in(folder.path) == 0);
 }
+
+}  // namespace photile::test

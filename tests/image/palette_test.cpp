@@ -6,6 +6,8 @@
 
 #include "tools/report/radiance_palettes.hpp"
 
+namespace photile::test {
+
 using namespace photile::image;
 
 namespace {
@@ -43,3 +45,5 @@ TEST_CASE("every palette that is named can be used") {
   CHECK(Palette("hot").hex(1) == "#ffffff");
   CHECK(Palette("eco").hex(0) == "#0000ff");
 }
+
+}  // namespace photile::test

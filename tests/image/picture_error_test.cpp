@@ -5,8 +5,7 @@
 
 #include "photile/errors.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr int side = 32;
@@ -98,3 +97,5 @@ TEST_CASE("pictures that cannot be compared are refused") {
   CHECK_THROWS_AS(picture_error(bare, reference), UsageError);
   CHECK_THROWS_AS(picture_error(reference, grey(0.0f)), InputError);
 }
+
+}  // namespace photile::test

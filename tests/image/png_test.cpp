@@ -5,9 +5,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 /// The 8-bit values that a PNG of one row holds.
@@ -77,3 +75,5 @@ TEST_CASE("a PNG has the same bytes each time and names no time") {
   CHECK(bytes_of(folder / "a.png") == bytes_of(folder / "b.png"));
   CHECK(bytes_of(folder / "a.png").find("tIME") == std::string::npos);
 }
+
+}  // namespace photile::test

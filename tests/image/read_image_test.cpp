@@ -7,9 +7,7 @@
 #include "photile/limits.hpp"
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 std::string refusal(const std::filesystem::path& file) {
@@ -95,3 +93,5 @@ TEST_CASE("a PNG is read as the values that it stores, divided by 255") {
   CHECK((*image.find("G"))[0] == Approx(0.2).epsilon(1e-6));
   CHECK((*image.find("B"))[1] == Approx(0.8).epsilon(1e-6));
 }
+
+}  // namespace photile::test

@@ -1,8 +1,6 @@
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 const std::vector<std::string> names{"window", "lamp", "sconce"};
@@ -141,3 +139,5 @@ TEST_CASE("records nested 100,000 deep are refused without a crash") {
   picture.attributes["photile.lights"] = std::string(100'000, '[') + std::string(100'000, ']');
   CHECK_THROWS_AS(relight(picture, {}), InputError);
 }
+
+}  // namespace photile::test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+namespace photile::test {
+
 using namespace photile::image;
 
 namespace {
@@ -44,3 +46,5 @@ TEST_CASE("8-bit codes of values outside the range are its ends") {
   CHECK(srgb8_from_linear(1.0f) == 255);
   CHECK(srgb8_from_linear(std::numeric_limits<float>::infinity()) == 255);
 }
+
+}  // namespace photile::test

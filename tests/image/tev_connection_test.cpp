@@ -12,7 +12,8 @@
 #include "photile/errors.hpp"
 #include "tools/preview/live_preview.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::image;
 using Catch::Contains;
 
@@ -169,3 +170,5 @@ TEST_CASE("a malformed address of a tev is refused") {
   const std::string address = GENERATE("", "host", ":1", "host:", "host:port", "room.gltf");
   CHECK_THROWS_AS(TevConnection(address), UsageError);
 }
+
+}  // namespace photile::test

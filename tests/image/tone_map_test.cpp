@@ -3,9 +3,7 @@
 
 #include "picture_support.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 Image filled(std::size_t pixels, const glm::vec3& rgb) {
@@ -107,3 +105,5 @@ TEST_CASE("a black picture stays black, and one without R, G, B is an input erro
   CHECK_THROWS_AS(tone_map(Image{}, {}), InputError);
   CHECK_THROWS_AS(tone_map(filled(3, glm::vec3(0.0f)), {true, NAN}), UsageError);
 }
+
+}  // namespace photile::test

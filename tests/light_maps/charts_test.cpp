@@ -6,8 +6,8 @@
 
 #include "test_scenes.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using light_maps::Charts;
 
 namespace {
@@ -157,3 +157,5 @@ TEST_CASE("Owners in charts of many triangles are those that looking at all find
     }
   }
 }
+
+}  // namespace photile::test

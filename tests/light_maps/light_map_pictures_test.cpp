@@ -13,7 +13,8 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using test::room_camera;
 using test::same_bits;
 
@@ -156,3 +157,5 @@ TEST_CASE("Glossy surfaces keep the estimate at the hit", "[light_map_pictures]"
     REQUIRE(a[i].x == Approx(b[i].x).epsilon(1e-5));  // sums of photons in another order
   }
 }
+
+}  // namespace photile::test

@@ -11,9 +11,7 @@
 #include "photile/errors.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 /// A shadow border along x = 0.4137 that is 2 mm wide: within a cell of every level.
@@ -158,3 +156,5 @@ TEST_CASE("Light maps refuse what makes no lattice", "[light_maps]") {
     CHECK_THROWS_AS(LightMaps(floor, quiet_parameters(0.04, levels)), UsageError);
   }
 }
+
+}  // namespace photile::test

@@ -11,8 +11,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 template <class T>
@@ -241,3 +240,5 @@ TEST_CASE("a radius beyond the groups' or no number is refused") {
     CHECK_THROWS_AS(PhotonMaps(test::device(), scene, photons, groups, {radius, 4}), UsageError);
   }
 }
+
+}  // namespace photile::test

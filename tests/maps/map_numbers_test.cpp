@@ -8,8 +8,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Plates of 4 x 4 squares, 1 m wide, side by side 3 m apart.
@@ -76,3 +75,5 @@ TEST_CASE("device memory is that of the places with light, not of the 1,000 plac
           Approx(2.0 * static_cast<double>(among.map_bytes)).epsilon(0.05));
   }
 }
+
+}  // namespace photile::test

@@ -7,7 +7,7 @@
 #include "maps/photon_pages.hpp"
 #include "photon_sets.hpp"
 
-using namespace photile;
+namespace photile::test {
 
 TEST_CASE("map pages cover every map with photons once, in order, within the limit") {
   std::mt19937 random(7);
@@ -109,3 +109,5 @@ TEST_CASE("photon pages cover every photon once, in order, within the limit") {
   }
   CHECK(next == photons.size());
 }
+
+}  // namespace photile::test

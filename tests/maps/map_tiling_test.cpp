@@ -7,7 +7,8 @@
 
 #include "photile/scene.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using maps::MapTiling;
 using maps::Rectangle;
 
@@ -119,3 +120,5 @@ TEST_CASE("photons in one point cannot be cut apart") {
 TEST_CASE("places that no tile was assigned to have no map") {
   CHECK(even_tiling().map_at({1, 1, 0}) == none);
 }
+
+}  // namespace photile::test

@@ -6,7 +6,8 @@
 #include "maps/map_page.hpp"
 #include "photile/errors.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using maps::MapRange;
 using maps::MapTiling;
 
@@ -86,3 +87,5 @@ TEST_CASE("a page beyond what pages aim at that cannot be cut is built as it is"
   CHECK_FALSE(queue.queue.cut(*page));
   CHECK_FALSE(queue.queue.next().has_value());
 }
+
+}  // namespace photile::test

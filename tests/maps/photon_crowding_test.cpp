@@ -5,8 +5,7 @@
 
 #include "photon_sets.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Photons on the front of a unit plate of two triangles (or of more), only where x < lit.
@@ -54,3 +53,5 @@ TEST_CASE("photons one by one crowd nothing") {
     for (const float value : maps::photon_crowding(scene, photons, {})) CHECK(value == 1.0f);
   }
 }
+
+}  // namespace photile::test

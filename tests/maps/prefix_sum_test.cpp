@@ -6,8 +6,7 @@
 
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 device::KernelSet kernels() { return {device::context_of(test::device()), "shared/scan.clh", {}}; }
@@ -39,3 +38,5 @@ TEST_CASE("the prefix sum of nothing is nothing") {
   auto buffer = scan.context().allocate<std::uint32_t>(0, "test values");
   CHECK_NOTHROW(maps::exclusive_prefix_sum(scan, buffer));
 }
+
+}  // namespace photile::test

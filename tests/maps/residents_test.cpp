@@ -5,8 +5,7 @@
 
 #include "maps/resident_maps.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 device::Context& limited_context() {
@@ -97,3 +96,5 @@ TEST_CASE("pages come back from the host as they were") {
   }
   CHECK(context.allocated_bytes() <= 4'000);
 }
+
+}  // namespace photile::test

@@ -13,7 +13,8 @@
 #include "photile/limits.hpp"
 #include "temporary_folder.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using nlohmann::json;
 
 namespace {
@@ -146,3 +147,5 @@ TEST_CASE("planes with values replaced are read or refused", "[fuzz]") {
   CHECK(files.good > 20);
   CHECK(files.refused > 100);
 }
+
+}  // namespace photile::test

@@ -10,7 +10,8 @@
 #include "tools/report/palette.hpp"
 #include "tools/report/sheet.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::measuring;
 
 namespace {
@@ -192,3 +193,5 @@ TEST_CASE("numbers of legends and plans have no powers of ten up to a thousand m
   CHECK(number_text(0, 3) == "0");
   CHECK(number_text(3e12, 3) == "3e+12");
 }
+
+}  // namespace photile::test

@@ -7,7 +7,8 @@
 #include "measuring/working_plane.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::measuring;
 
 namespace {
@@ -69,3 +70,5 @@ TEST_CASE("a table that is farther away than the clearance leaves its points in"
   CHECK(left_out > 50);
   CHECK(left_out + grid.sensors.size() == all);
 }
+
+}  // namespace photile::test

@@ -10,8 +10,7 @@
 #include "test_scenes.hpp"
 #include "tools/validation/form_factors.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double pi = glm::pi<double>();
@@ -222,3 +221,5 @@ TEST_CASE("numbers of rays and sensors out of range are refused") {
                     Catch::Contains("rays: 0"));
   CHECK_THROWS_WITH(gather_by_paths(scene, {}, {.rays = 1}, 1), Catch::Contains("sensors: 0"));
 }
+
+}  // namespace photile::test

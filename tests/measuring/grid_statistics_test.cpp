@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+namespace photile::test {
+
 using namespace photile::measuring;
 
 namespace {
@@ -134,3 +136,5 @@ TEST_CASE("the true minimum and maximum lie between what noise pulls down and up
   CHECK(high == Approx(100).epsilon(0.002));
   CHECK(top_low == Approx(100).epsilon(0.002));
 }
+
+}  // namespace photile::test

@@ -6,7 +6,8 @@
 
 #include "photile/errors.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::measuring;
 
 namespace {
@@ -44,3 +45,5 @@ TEST_CASE("no grid's name leads out of the folder, and none hides another") {
   for (const auto& [name, text] : files) CHECK(name.find('/') == std::string::npos);
   CHECK_THROWS_AS(honeybee_files({grid("a b", {1}), grid("a_b", {1})}), UsageError);
 }
+
+}  // namespace photile::test

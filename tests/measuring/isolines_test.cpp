@@ -9,7 +9,8 @@
 #include "photile/errors.hpp"
 #include "tools/report/false_colour.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::measuring;
 
 namespace {
@@ -136,3 +137,5 @@ TEST_CASE("values beyond the scale have the colours of its ends, unknown palette
   CHECK(scale.hex(1000) == "#fde725");
   CHECK_THROWS_AS(ColourScale({.palette = "rainbow"}, 0), UsageError);
 }
+
+}  // namespace photile::test

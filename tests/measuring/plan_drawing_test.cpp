@@ -6,7 +6,8 @@
 
 #include "tools/report/palette.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::measuring;
 
 namespace {
@@ -95,3 +96,5 @@ TEST_CASE("a narrow plan is as wide as its title") {
   // The narrowest letters of sans-serif fonts are about half as wide as high.
   CHECK(std::stod(width[0]) > 20 + 0.5 * 14 * 55);
 }
+
+}  // namespace photile::test

@@ -7,7 +7,8 @@
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using Catch::Contains;
 
 namespace {
@@ -71,3 +72,5 @@ TEST_CASE("what is no plane is refused by file, plane and key") {
   CHECK_THROWS_AS(planes_in(text), InputError);
   CHECK_THROWS_WITH(planes_in(text), Contains("plane.json") && Contains(expected));
 }
+
+}  // namespace photile::test

@@ -7,7 +7,8 @@
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using Catch::Contains;
 
 namespace {
@@ -47,3 +48,5 @@ TEST_CASE("a file without points, and one that is not there, are refused") {
   CHECK_THROWS_WITH(points_in("# nothing\n"), Contains("no points"));
   CHECK_THROWS_WITH(measuring::read_points("/nowhere/a.pts"), Contains("no such file"));
 }
+
+}  // namespace photile::test

@@ -8,7 +8,8 @@
 #include "photile/light_mix.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::measuring;
 
 namespace {
@@ -59,3 +60,5 @@ TEST_CASE("readings of neighbouring seeds differ as their standard errors say") 
   // deviation of 0.13. Pairs that share seven of eight repeats would have an eighth of it.
   CHECK(squares == Approx(14.0 / 12).margin(5 * 0.13));
 }
+
+}  // namespace photile::test

@@ -6,7 +6,8 @@
 #include "photile/errors.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::measuring;
 using Catch::Contains;
 
@@ -200,3 +201,5 @@ TEST_CASE("no floor, and a band that leaves nothing, are refused with a remedy")
   CHECK_THROWS_WITH(working_plane_grid(room_on_a_slab(), plane_of("floor+0.75", 2, 1)),
                     Contains("band"));
 }
+
+}  // namespace photile::test

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
 
+namespace photile::test {
+
 using namespace photile::validation;
 
 namespace {
@@ -76,3 +78,5 @@ TEST_CASE("factors to all walls of a box sum to one") {
       2 * perpendicular_rectangles_factor(2, 1, 3) + 2 * perpendicular_rectangles_factor(3, 1, 2);
   CHECK(sides + opposed_rectangles_factor(2, 3, 1) == Approx(1).epsilon(1e-12));
 }
+
+}  // namespace photile::test

@@ -13,8 +13,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Mean over a square of pixels of a layer's illuminance.
@@ -128,3 +127,5 @@ TEST_CASE("paths agree with the references of another renderer", "[slow]") {
   }
   CHECK_VERDICT(test::mean_is(sums, 1.0, 0.02));
 }
+
+}  // namespace photile::test

@@ -7,8 +7,7 @@
 #include "test_scenes.hpp"
 #include "tools/validation/form_factors.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 const glm::dvec3 up(0, 0, 1);
@@ -183,3 +182,5 @@ TEST_CASE("each light of many is measured at its own power 1") {
     CHECK_VERDICT(test::mean_is(values[light], truth, 0.06 * truth));
   }
 }
+
+}  // namespace photile::test

@@ -9,8 +9,7 @@
 #include "test_scenes.hpp"
 #include "tools/validation/glossy_reflectance.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 using std::numbers::pi;
@@ -122,3 +121,5 @@ TEST_CASE("a glossy plate in a furnace reflects the integral of its BSDF, and re
   CHECK_VERDICT(test::mean_is(irradiance, pi, 0.02 * pi));
   CHECK_VERDICT(test::mean_is(radiance, truth, 0.02 * truth));
 }
+
+}  // namespace photile::test

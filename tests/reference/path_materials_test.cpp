@@ -8,8 +8,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Mean radiance of a layer over the picture, green.
@@ -88,3 +87,5 @@ TEST_CASE("paths and photon maps agree through holes", "[materials][slow]") {
   CAPTURE(plate.opacity);
   check_agreement(room_with_plate(plate));
 }
+
+}  // namespace photile::test

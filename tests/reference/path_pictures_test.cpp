@@ -11,8 +11,7 @@
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 PrimaryHitParameters film(int width, int height, int samples, std::uint64_t seed = 1) {
@@ -116,3 +115,5 @@ TEST_CASE("reflections by paths are what the lobe reflects of a lamp, whatever l
   CHECK(mean_luminance(lobe.layers[0].radiance) > 0);
   CHECK(mean_luminance(lobe.layers[0].radiance) < 0.5 * mean_luminance(white.layers[0].radiance));
 }
+
+}  // namespace photile::test

@@ -7,8 +7,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 double mean_luminance(const std::vector<glm::vec3>& plane) {
@@ -100,3 +99,5 @@ TEST_CASE("a furnace: inside a sphere that emits L and reflects rho the radiance
     CHECK(verdict.passed);
   }
 }
+
+}  // namespace photile::test

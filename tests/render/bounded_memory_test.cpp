@@ -9,8 +9,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 RenderParameters small_parameters(MapStructure structure) {
@@ -116,3 +115,5 @@ TEST_CASE("a global tree that does not fit is refused: it cannot be split") {
   Device small = limited_device(device.peak_allocated_bytes() / 10);
   CHECK_THROWS_AS(render(room(), test::room_camera(), small, parameters), DeviceError);
 }
+
+}  // namespace photile::test

@@ -6,8 +6,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Mean illuminance of the pixels on the diagonal of a square plate lit by a far lamp, over that of
@@ -61,3 +60,5 @@ TEST_CASE("maps of neighbour groups and patches show no edge between two triangl
   // a deviation of 3%.
   CHECK(diagonal_over_middle(mode) == Approx(1.0).margin(0.1));
 }
+
+}  // namespace photile::test

@@ -13,8 +13,7 @@
 #include "test_scenes.hpp"
 #include "tools/validation/form_factors.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 using std::numbers::pi;
@@ -186,3 +185,5 @@ TEST_CASE("direct rays: more looks than the limit are refused") {
       render(scene, test::above(0.5, 0.5, 0.5, 0.1), test::device(), by_rays(1'000'000)),
       UsageError);
 }
+
+}  // namespace photile::test

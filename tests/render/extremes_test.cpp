@@ -13,7 +13,8 @@
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using nlohmann::json;
 
 namespace {
@@ -268,3 +269,5 @@ TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a 
   }
   CHECK(rendered >= 50);
 }
+
+}  // namespace photile::test

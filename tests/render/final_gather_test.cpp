@@ -19,8 +19,7 @@
 #include "test_scenes.hpp"
 #include "tools/validation/form_factors.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 using std::numbers::pi;
@@ -306,3 +305,5 @@ TEST_CASE("final gathering: what it cannot do is refused") {
   PreparedPhotons prepared;
   CHECK_THROWS_AS(SceneRenderer(scene, devices, gathering(4, 1000), &prepared), UsageError);
 }
+
+}  // namespace photile::test

@@ -13,8 +13,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 using std::numbers::pi;
@@ -259,3 +258,5 @@ TEST_CASE("a box cast in glass looks the same by photon maps and by paths", "[im
     CHECK_VERDICT(test::mean_is(illuminance[pixel], 1, 0.15));
   }
 }
+
+}  // namespace photile::test

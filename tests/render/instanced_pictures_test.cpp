@@ -8,8 +8,7 @@
 #include "pictures.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Sum over the pixels of each layer.
@@ -68,3 +67,5 @@ TEST_CASE("neighbours in a scene with instances equal the oracle's") {
   CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons,
                                 static_cast<float>(radius)) == 0);
 }
+
+}  // namespace photile::test

@@ -9,8 +9,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr int neighbours = 30, samples = 2;
@@ -93,3 +92,5 @@ TEST_CASE("the layer of a group is the sum of its lights at their powers") {
   CHECK(brightest > 0);
   CHECK(worst <= tolerance);
 }
+
+}  // namespace photile::test

@@ -3,8 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr std::size_t many = 1'000'000;
@@ -73,3 +72,5 @@ TEST_CASE("shares count every hit") {
   balance.end_round();
   CHECK(balance.shares() == std::vector<double>{0.75, 0.25});
 }
+
+}  // namespace photile::test

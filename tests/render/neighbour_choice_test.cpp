@@ -11,8 +11,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 const std::vector<int> levels{50, 200, 800};
@@ -118,3 +117,5 @@ TEST_CASE("with as few neighbours as most a picture is that of a fixed number, b
   parameters.least_neighbours = 5;
   CHECK_FALSE(test::same_bits(picture(), fixed));
 }
+
+}  // namespace photile::test

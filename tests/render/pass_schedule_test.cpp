@@ -9,8 +9,7 @@
 #include "render/host_memory.hpp"
 #include "render/pass_count.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr std::uint64_t gib = 1ull << 30;
@@ -70,3 +69,5 @@ TEST_CASE("the host's memory is known, and the same however much of it is in use
   CHECK(installed_host_bytes() == before);
   CHECK(taken.back() == 1);
 }
+
+}  // namespace photile::test

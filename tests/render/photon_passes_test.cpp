@@ -11,8 +11,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 RenderParameters small_parameters(int passes) {
@@ -156,3 +155,5 @@ TEST_CASE("a number of passes beyond the limit is refused") {
   CHECK_THROWS_AS(render_room(small_parameters(-1)), UsageError);
   CHECK_THROWS_AS(render_room(small_parameters(65'537)), UsageError);
 }
+
+}  // namespace photile::test

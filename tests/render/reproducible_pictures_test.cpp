@@ -12,7 +12,8 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using test::room_camera;
 using test::same_bits;
 
@@ -105,3 +106,5 @@ TEST_CASE("a cancelled rendering stops with Interrupted") {
   CHECK_THROWS_AS(render(scene, room_camera(), test::device(), small_parameters(), progress),
                   Interrupted);
 }
+
+}  // namespace photile::test

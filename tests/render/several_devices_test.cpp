@@ -11,8 +11,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// The room's walls reflect a little in the second scene: its kernels estimate radiance as well.
@@ -164,3 +163,5 @@ TEST_CASE("rendering on no device is refused") {
   CHECK_THROWS_AS(render(room(false), test::room_camera(), std::span<Device>(), parameters()),
                   UsageError);
 }
+
+}  // namespace photile::test

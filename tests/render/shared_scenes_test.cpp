@@ -7,8 +7,7 @@
 
 #include "photile/renderer.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Values that no picture may have, and those that are not black.
@@ -56,3 +55,5 @@ TEST_CASE("every shared scene that loads renders to finite light under a sky", "
   }
   CHECK(2 * lit > pictures);
 }
+
+}  // namespace photile::test

@@ -5,8 +5,7 @@
 #include "pictures.hpp"
 #include "render/film.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr int width = 13, height = 11;
@@ -129,3 +128,5 @@ TEST_CASE("a batch that saw nothing leaves sparse layers black") {
   add_to_film(layers, PrimaryHitBatch{}, Estimates{}, 1.0f);
   CHECK(test::same_bits(layers, dense_layers()));
 }
+
+}  // namespace photile::test

@@ -21,8 +21,7 @@
 #include "render/device_estimators.hpp"
 #include "tools/command/exit_code.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double radius = 0.25;  // metres
@@ -185,8 +184,11 @@ std::vector<Case> cases(bool every_kernel) {
 }
 
 }  // namespace
+}  // namespace photile::test
 
 int main(int count, char** arguments) {
+  using namespace photile;
+  using namespace photile::test;
   if (count < 3) {
     fmt::print(stderr, "usage: photile_fingerprint PHOTONS HITS [--every-kernel]\n");
     return static_cast<int>(app::ExitCode::usage);

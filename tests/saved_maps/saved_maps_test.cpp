@@ -12,7 +12,8 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using Catch::Contains;
 
 namespace {
@@ -162,3 +163,5 @@ TEST_CASE("a whole file whose indices lead nowhere is refused") {
   SECTION("lights") { bad.photons.emitted_per_light.push_back(1); }
   refused(bad);
 }
+
+}  // namespace photile::test

@@ -12,8 +12,7 @@
 #include "photile/scene.hpp"
 #include "source_folder.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 const std::filesystem::path folder = test::source_folder() / "scenes";
@@ -238,3 +237,5 @@ TEST_CASE("the bundled scenes stay small") {
   }
   CHECK(bytes < 1'500'000);
 }
+
+}  // namespace photile::test

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <string>
 
+namespace photile::test {
+
 inline std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -14,3 +16,5 @@ inline std::string bytes_of(const std::filesystem::path& path) {
 inline void put(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
+
+}  // namespace photile::test

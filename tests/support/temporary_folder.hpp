@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+namespace photile::test {
+
 struct TemporaryFolder {
   TemporaryFolder() {
     auto name = (std::filesystem::temp_directory_path() / "photile-test-XXXXXX").string();
@@ -22,3 +24,5 @@ struct TemporaryFolder {
 
   std::filesystem::path path;
 };
+
+}  // namespace photile::test

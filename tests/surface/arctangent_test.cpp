@@ -7,8 +7,7 @@
 #include "device/program_source.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr const char* arctangent_source = R"(
@@ -52,3 +51,5 @@ TEST_CASE("the kernels' arctangent is right to 3e-7 in every direction, and 0 at
   }
   CHECK(worst < 3e-7);
 }
+
+}  // namespace photile::test

@@ -6,8 +6,7 @@
 #include "photile/surface_index.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double radius = 0.1;
@@ -69,3 +68,5 @@ TEST_CASE("what is higher than a fifth of the radius, or lit from below, covers 
   CHECK(exposure(0.025f, false) == 1.0f);
   CHECK(exposure(0.015f, true) == 1.0f);
 }
+
+}  // namespace photile::test

@@ -8,8 +8,7 @@
 #include "photon_sets.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 double border_length(const surface::Facets& facets) {
@@ -85,3 +84,5 @@ TEST_CASE("an edge of three triangles in a plane bounds all of them") {
   const surface::Facets facets = surface::find_facets(surface::SurfaceMesh(scene), 0.1);
   CHECK(std::set<std::uint32_t>(facets.plane.begin(), facets.plane.end()).size() == 3);
 }
+
+}  // namespace photile::test

@@ -7,8 +7,7 @@
 #include "device/program_source.hpp"
 #include "test_device.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr const char* logarithm_source = R"(
@@ -47,3 +46,5 @@ TEST_CASE("the kernels' logarithm is right to 2e-7 of itself or of 1 for all nor
   }
   CHECK(worst < 2e-7);
 }
+
+}  // namespace photile::test

@@ -7,8 +7,7 @@
 #include "photon_sets.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Triangles of other facets within the radius, by looking at all.
@@ -74,3 +73,5 @@ TEST_CASE("a search for triangles of other planes ends where it is told to") {
                       [&](std::uint32_t) { return ++visits == 3; });
   CHECK(visits == 3);
 }
+
+}  // namespace photile::test

@@ -7,8 +7,7 @@
 #include "photon_sets.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double sheet_radius = 0.1;
@@ -93,3 +92,5 @@ TEST_CASE("of coincident triangles the first stands for all, on the side that lo
   const surface::SurfaceMesh mesh(scene);
   CHECK(mesh.original == std::vector<std::uint32_t>{0, 1, 1, 0, 0, 1});
 }
+
+}  // namespace photile::test

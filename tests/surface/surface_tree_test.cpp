@@ -5,8 +5,7 @@
 #include <functional>
 #include <random>
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 surface::SurfacePiece piece_at(const glm::vec3& centre, const glm::vec3& size) {
@@ -71,3 +70,5 @@ TEST_CASE("pieces in one point, or ever farther apart, do not make the tree deep
   }
   CHECK(check_tree(surface::build_surface_tree(apart), apart) <= PHOTILE_SURFACE_STACK);
 }
+
+}  // namespace photile::test

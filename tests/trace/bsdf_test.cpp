@@ -11,8 +11,8 @@
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -316,3 +316,5 @@ TEST_CASE("Visible normals are drawn with the density that their formula claims"
       CHECK_VERDICT(counts_agree(kept_counts, kept_expected));
     }
 }
+
+}  // namespace photile::test

@@ -12,8 +12,8 @@
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -281,3 +281,5 @@ TEST_CASE("eyes see an environment and a sun directly and in a mirror", "[enviro
   CHECK(glm::distance(mirrored[0], 0.5 * glm::dvec3(blue)) < 1e-4);
   CHECK(mirrored[1].g == Approx(0.5 * disc).epsilon(1e-5));
 }
+
+}  // namespace photile::test

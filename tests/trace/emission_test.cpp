@@ -7,8 +7,8 @@
 #include "test_scenes.hpp"
 #include "trace/light_emitter.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -185,3 +185,5 @@ TEST_CASE("An area light without area is an input error that names it and the fi
                     Catch::Contains("plate") && Catch::Contains("Bulb"));
   CHECK_THROWS_AS(trace_photons(RayScene(scene), {}), InputError);
 }
+
+}  // namespace photile::test

@@ -10,8 +10,8 @@
 #include "test_scenes.hpp"
 #include "trace/ray_query.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -118,3 +118,5 @@ TEST_CASE("A surface without holes asks for no random numbers", "[holes]") {
   CHECK(holes == 0);
   CHECK(origin == glm::vec3(0.1f, 0.2f, 1.0f));
 }
+
+}  // namespace photile::test

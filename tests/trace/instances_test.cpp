@@ -12,8 +12,8 @@
 #include "trace/surface.hpp"
 #include "uniform.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -182,3 +182,5 @@ TEST_CASE("the memory of 1,000 instances of 10,000 triangles is that of one and 
   // Ten flattened ones show what a mesh costs that is not shared.
   CHECK(bytes_of(10, true) > 8 * of_one);
 }
+
+}  // namespace photile::test

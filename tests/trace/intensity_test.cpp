@@ -9,8 +9,8 @@
 #include "test_scenes.hpp"
 #include "trace/intensity_sampler.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -127,3 +127,5 @@ TEST_CASE("paths see I cos / d^2 of a measured lamp, turned as it is", "[intensi
     CHECK(irradiance * flux == Approx(100 * bright * cosine * cosine / squared).epsilon(1e-4));
   }
 }
+
+}  // namespace photile::test

@@ -9,8 +9,8 @@
 #include "trace/opaque_bsdf.hpp"
 #include "trace/scatter.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -136,3 +136,5 @@ TEST_CASE("Photons and rays from the eye see the same surface under a normal map
   const OpaqueBsdf from_eye(scene, at(scene, -eye), -eye, PathStart::eye);
   CHECK((from_light.reflected(eye) / eye.z).g == Approx((from_eye.reflected(light) / light.z).g));
 }
+
+}  // namespace photile::test

@@ -5,8 +5,7 @@
 
 #include "photile/photons.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// Photons on random sided triangles; the x of each position is its index.
@@ -69,3 +68,5 @@ TEST_CASE("A photon takes 28 bytes, 12 more where surfaces are glossy and 2 with
   CHECK(random_photons(1000, 10, true).bytes() == 42'000);
   CHECK(sort_by_sided_triangle(random_photons(1000, 10, false), 10).bytes() == 28'000 + 11 * 4);
 }
+
+}  // namespace photile::test

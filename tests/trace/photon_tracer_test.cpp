@@ -10,9 +10,7 @@
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 double stored_luminance(const Photons& photons) {
@@ -233,3 +231,5 @@ TEST_CASE("Tracing stops when it is cancelled, and reports all of its paths when
   CHECK_THROWS_AS(trace_photons(rays, {.emitted_photons = 5'000'000}, stopped), Interrupted);
   CHECK(stopped.done < 1'000'000);
 }
+
+}  // namespace photile::test

@@ -11,9 +11,7 @@
 #include "trace/ray_scene_impl.hpp"
 #include "trace/reflected_hits.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 /// 2 m above the origin, looking down; up in the picture is +y, right is +x. The film spans 2 x 2 m
@@ -292,3 +290,5 @@ TEST_CASE("what lies behind a pane of thin glass is seen, and not reflected") {
   CHECK(trace_primary_hits(rays, camera_above(), film, 0, 8).hits.size() == 64);
   CHECK(trace::trace_reflected_hits(rays, camera_above(), film, 0, 8).hits.size() == 0);
 }
+
+}  // namespace photile::test

@@ -10,8 +10,8 @@
 #include "trace/surface.hpp"
 #include "uniform.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 TEST_CASE("A ray hits the point of the plate below it, on the side that it comes from") {
@@ -108,3 +108,5 @@ TEST_CASE("Embree's memory is counted and grows with the scene") {
   CHECK(large_rays.bytes() > large.vertices.size() * sizeof(glm::vec3));
   CHECK(large_rays.bytes() > small_rays.bytes());
 }
+
+}  // namespace photile::test

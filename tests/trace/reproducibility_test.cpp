@@ -11,9 +11,7 @@
 #include "photile/primary_hits.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-using namespace photile::test;
-
+namespace photile::test {
 namespace {
 
 template <class T>
@@ -214,3 +212,5 @@ TEST_CASE("passes trace the samples of one pass, each sample once") {
   CHECK(together == expected);
   CHECK(ray_count == all.rays);
 }
+
+}  // namespace photile::test

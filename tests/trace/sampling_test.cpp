@@ -7,8 +7,8 @@
 #include "statistical_tests.hpp"
 #include "trace/random_stream.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -104,3 +104,5 @@ TEST_CASE("Points on a triangle fill its n^2 congruent parts equally") {
   }
   CHECK_VERDICT(counts_agree(counts, std::vector<double>(n * n, samples / double{n * n})));
 }
+
+}  // namespace photile::test

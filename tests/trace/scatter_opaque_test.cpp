@@ -7,8 +7,8 @@
 #include "trace/diffuse_part.hpp"
 #include "trace/scatter.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -151,3 +151,5 @@ TEST_CASE("The diffuse albedo is the material's colour times the texture at the 
   CHECK(glm::distance(reflectance(scene, surface_hit(scene, {0, 1.0f, 0.0f}, down)).albedo,
                       glm::vec3(0.5f, 1.0f, 1.0f)) < 1e-6f);
 }
+
+}  // namespace photile::test

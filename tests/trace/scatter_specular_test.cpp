@@ -5,8 +5,8 @@
 #include "test_scenes.hpp"
 #include "trace/scatter.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -141,3 +141,5 @@ TEST_CASE("Radiance loses the squared index on the way into the eye, and gets it
   CHECK(scatter(plate(glass(1.5f, true), 2), downwards(0.8), never_reflect).radiance_factor == 1);
   CHECK(scatter(plate(mirror(glm::vec3(1.0f)), 2), downwards(0.8), 0.5f).radiance_factor == 1);
 }
+
+}  // namespace photile::test

@@ -11,8 +11,8 @@
 #include "statistical_tests.hpp"
 #include "trace/direct_light.hpp"
 
-using namespace photile;
-using namespace photile::test;
+namespace photile::test {
+
 using namespace photile::trace;
 
 namespace {
@@ -169,3 +169,5 @@ TEST_CASE("The looks of a pixel's samples share their sequences and take every l
     for (const int looked_at : count) CHECK(looked_at == 32 / lamps);
   }
 }
+
+}  // namespace photile::test

@@ -3,8 +3,7 @@
 
 #include "tools/trade/quality_target.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 const ErrorModel error_model{.noise = 1.5, .sampling = 0.004, .bias = 2, .exponent = 1};
@@ -80,3 +79,5 @@ TEST_CASE("a target out of reach is said to be, and approached") {
       choose_settings({.relative_error = 0.05}, error_model, time_model, 1'000'000);
   CHECK(exact.expected_error < reachable.expected_error);
 }
+
+}  // namespace photile::test

@@ -3,8 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 /// What pilots would measure where the model holds exactly.
@@ -52,3 +51,5 @@ TEST_CASE("no term of the error model is negative, whatever noise the pilots had
   CHECK(found.sampling >= 0);
   CHECK(found.bias == 0);
 }
+
+}  // namespace photile::test

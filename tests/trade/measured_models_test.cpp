@@ -11,8 +11,7 @@
 #include "test_scenes.hpp"
 #include "tools/trade/quality_target.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 struct View {
@@ -20,14 +19,14 @@ struct View {
   Camera camera;
 };
 
-View cornell_box() {
+View box_view() {
   View view{load_scene(test::source_folder() / "scenes/cornell-box/cornell-box.obj"), {}};
   view.camera = view.scene.cameras.front();
   return view;
 }
 
 /// A room of boxes, other from the Cornell box in light, colours and shape.
-View furnished_room() {
+View room_view() {
   return {test::furnished_room(), Camera::look_at({3.6, 0.4, 1.6}, {1, 2, 0.9}, {0, 0, 1}, 1.1)};
 }
 
@@ -59,7 +58,7 @@ double error_of_choice(const View& view, const LightMix& mix, const QualityChoic
 }  // namespace
 
 TEST_CASE("a picture by the settings chosen for an error has no larger one", "[slow]") {
-  const View view = GENERATE(0, 1) == 0 ? cornell_box() : furnished_room();
+  const View view = GENERATE(0, 1) == 0 ? box_view() : room_view();
   const LightMix mix = LightMix::of(view.scene, defaults::lumen_per_watt);
   const Image reference = path_traced(view, mix, 1024);
   const QualityModels models =
@@ -78,7 +77,7 @@ TEST_CASE("a picture by the settings chosen for an error has no larger one", "[s
 
 TEST_CASE("fewer photons than the choice break the promise that it keeps", "[slow]") {
   // The test above can fail: the same k from a sixteenth of the photons blurs what it must not.
-  const View view = cornell_box();
+  const View view = box_view();
   const LightMix mix = LightMix::of(view.scene, defaults::lumen_per_watt);
   const Image reference = path_traced(view, mix, 512);
   const QualityModels models =
@@ -88,3 +87,5 @@ TEST_CASE("fewer photons than the choice break the promise that it keeps", "[slo
   choice.photons /= 64;
   CHECK(error_of_choice(view, mix, choice, reference) > 0.1);
 }
+
+}  // namespace photile::test

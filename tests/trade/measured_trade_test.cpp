@@ -7,8 +7,7 @@
 #include "test_device.hpp"
 #include "tools/trade/trade.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 struct Subject {
@@ -89,3 +88,5 @@ TEST_CASE("a reference of another size is refused") {
   subject.parameters.film.width = 32;
   CHECK_THROWS_AS(subject.measure({}), UsageError);
 }
+
+}  // namespace photile::test

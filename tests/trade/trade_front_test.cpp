@@ -2,8 +2,7 @@
 
 #include "tools/trade/trade.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 TradePoint point(double seconds, double relative_error) {
@@ -34,3 +33,5 @@ TEST_CASE("the fastest settings within an error are found, or none") {
   CHECK(fastest_within(points, 0.05) == &points[1]);
   CHECK(fastest_within(points, 0.04) == nullptr);
 }
+
+}  // namespace photile::test

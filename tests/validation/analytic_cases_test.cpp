@@ -4,7 +4,8 @@
 #include "test_device.hpp"
 #include "tools/validation/validate.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::validation;
 
 namespace {
@@ -83,3 +84,5 @@ TEST_CASE("photon maps read what closed forms say") {
     check(row, *row.photons, delta);
   }
 }
+
+}  // namespace photile::test

@@ -9,8 +9,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 constexpr double pi = glm::pi<double>();
@@ -178,3 +177,5 @@ TEST_CASE("the dark side of a lit plate, and a dark wall beside it, read nothing
   CHECK(dark == std::vector<double>(sensors.size(), 0.0));
   CHECK(readings(scene, {{{0, 0, 0}, {0, 0, 1}}}, with(100'000, 50, 1))[0][0] > 0);
 }
+
+}  // namespace photile::test

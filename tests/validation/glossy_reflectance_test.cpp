@@ -7,6 +7,7 @@
 
 #include "estimates_comparison.hpp"
 
+namespace photile::test {
 namespace {
 
 /// Integral of f cos over directions at `cosine` to the normal, seen along it: the model as
@@ -47,3 +48,5 @@ TEST_CASE("white surfaces reflect all light at any roughness, but for the error 
     CHECK(glossy_reflectance(0.0, 1.0, alpha) == Approx(1.0).epsilon(0.035));  // a white metal
   }
 }
+
+}  // namespace photile::test

@@ -3,6 +3,8 @@
 
 #include "tools/validation/validate.hpp"
 
+namespace photile::test {
+
 using namespace photile::validation;
 
 namespace {
@@ -26,15 +28,17 @@ TEST_CASE("the noise of a reading is the 99% interval of its mean") {
 }
 
 TEST_CASE("a reading is within 1% only if its noise leaves no doubt") {
-  CHECK(measured(values(1.004, 0.002), 1).verdict == Verdict::within);
-  CHECK(measured(values(0.996, 0.002), 1).verdict == Verdict::within);
-  CHECK(measured(values(1.004, 0.02), 1).verdict == Verdict::too_noisy);
-  CHECK(measured(values(1.0, 0.02), 1).verdict == Verdict::too_noisy);
-  CHECK(measured(values(1.011, 0.01), 1).verdict == Verdict::too_noisy);
+  CHECK(measured(values(1.004, 0.002), 1).verdict == validation::Verdict::within);
+  CHECK(measured(values(0.996, 0.002), 1).verdict == validation::Verdict::within);
+  CHECK(measured(values(1.004, 0.02), 1).verdict == validation::Verdict::too_noisy);
+  CHECK(measured(values(1.0, 0.02), 1).verdict == validation::Verdict::too_noisy);
+  CHECK(measured(values(1.011, 0.01), 1).verdict == validation::Verdict::too_noisy);
 }
 
 TEST_CASE("a reading misses if no noise explains its error") {
-  CHECK(measured(values(1.02, 0.005), 1).verdict == Verdict::misses);
-  CHECK(measured(values(0.98, 0.005), 1).verdict == Verdict::misses);
-  CHECK(measured(values(1.0101, 0), 1).verdict == Verdict::misses);
+  CHECK(measured(values(1.02, 0.005), 1).verdict == validation::Verdict::misses);
+  CHECK(measured(values(0.98, 0.005), 1).verdict == validation::Verdict::misses);
+  CHECK(measured(values(1.0101, 0), 1).verdict == validation::Verdict::misses);
 }
+
+}  // namespace photile::test

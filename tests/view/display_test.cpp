@@ -12,7 +12,8 @@
 #include "tools/report/palette.hpp"
 #include "two_lights.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::view;
 
 namespace {
@@ -148,3 +149,5 @@ TEST_CASE("glare marks reflections over the dimmed picture") {
   CHECK(marked[0] == picture[0] / 2);
   CHECK(std::equal(colour.begin(), colour.end(), marked.begin() + 3));
 }
+
+}  // namespace photile::test

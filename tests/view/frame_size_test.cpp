@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace photile::test {
+
 using photile::view::FrameSize;
 
 TEST_CASE("the first frame is whole, since nothing is known of its cost") {
@@ -33,3 +35,5 @@ TEST_CASE("a cost that changes is followed within ten frames") {
                                                                   0.025 * (1 - std::pow(0.7, 10)))))
                                         .margin(1));
 }
+
+}  // namespace photile::test

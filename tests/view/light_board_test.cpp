@@ -5,7 +5,8 @@
 
 #include "two_lights.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using view::LightBoard;
 
 namespace {
@@ -68,3 +69,5 @@ TEST_CASE("a colour temperature tints as --light NAME=KELVINK does, in place of 
   board.reset();
   CHECK_FALSE(board.controls()[0].tinted());
 }
+
+}  // namespace photile::test

@@ -8,7 +8,8 @@
 #include "temporary_folder.hpp"
 #include "two_lights.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using Catch::Contains;
 using view::LightBoard;
 using view::Moods;
@@ -94,3 +95,5 @@ TEST_CASE("a mood that cannot be written leaves the moods as they were") {
   CHECK_THROWS_AS(moods.keep("day", LightBoard(lamps())), OutputError);
   CHECK(moods.names().empty());
 }
+
+}  // namespace photile::test

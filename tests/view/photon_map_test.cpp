@@ -9,7 +9,8 @@
 #include "tools/view/photon_map_overlay.hpp"
 #include "tools/view/photon_map_view.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::view;
 
 namespace {
@@ -153,3 +154,5 @@ TEST_CASE("a picked triangle is tinted where it is seen, and its photons are dot
   CHECK(yellow > 10);
   CHECK(yellow <= inspector.map()->own_photons.size());
 }
+
+}  // namespace photile::test

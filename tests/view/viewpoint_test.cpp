@@ -4,7 +4,8 @@
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
 
-using namespace photile;
+namespace photile::test {
+
 using view::Viewpoint;
 
 namespace {
@@ -70,3 +71,5 @@ TEST_CASE("a camera that looks straight down walks towards the top of its pictur
   viewpoint.walk(1, 0, 0);
   check_near(viewpoint.camera().position, {1, 5, 0});
 }
+
+}  // namespace photile::test

@@ -10,7 +10,8 @@
 #include "tools/view/frame_worker.hpp"
 #include "tools/view/photon_worker.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using namespace photile::view;
 
 namespace {
@@ -136,3 +137,5 @@ TEST_CASE("closing the window in the middle of the work waits for no photons") {
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
   wait_for([&] { return !photons.progress().stage.empty(); });
 }
+
+}  // namespace photile::test

@@ -10,7 +10,8 @@
 #include "scene/interpolation.hpp"
 #include "temporary_folder.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using Catch::Contains;
 
 namespace {
@@ -110,3 +111,5 @@ TEST_CASE("what is no path is refused by file, keyframe and key") {
                              {"time": 1, "position": [0,0,0], "look_at": [0,0,1]}])"),
                     Contains("keyframe 2") && Contains("'time'"));
 }
+
+}  // namespace photile::test

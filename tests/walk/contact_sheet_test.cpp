@@ -5,7 +5,8 @@
 
 #include "photile/defaults.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using walk::ContactSheet;
 
 namespace {
@@ -64,3 +65,5 @@ TEST_CASE("large frames are drawn small, as the means of their pixels") {
     CHECK(at(sheet.image(), "B", gap + x, gap + 50) == Approx(0.5));
   }
 }
+
+}  // namespace photile::test

@@ -5,7 +5,8 @@
 
 #include "photile/errors.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using walk::FrameNames;
 
 TEST_CASE("hashes and printf's numbers become frame numbers, as wide as they say at least") {
@@ -27,3 +28,5 @@ TEST_CASE("a name without a place for the number, or with two, is refused") {
   INFO(pattern);
   CHECK_THROWS_AS(FrameNames(pattern), UsageError);
 }
+
+}  // namespace photile::test

@@ -10,7 +10,8 @@
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 
-using namespace photile;
+namespace photile::test {
+
 using Catch::Contains;
 using nlohmann::json;
 
@@ -147,3 +148,5 @@ TEST_CASE("files without such an animation, or with a broken one, are refused") 
     CHECK_THROWS_AS(file.read(), InputError);
   }
 }
+
+}  // namespace photile::test

@@ -8,8 +8,7 @@
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
-using namespace photile;
-
+namespace photile::test {
 namespace {
 
 RenderParameters small() {
@@ -48,3 +47,5 @@ TEST_CASE("maps that need several passes cannot be kept") {
   parameters.passes = 2;
   CHECK_THROWS_AS(SceneRenderer(scene, std::span(&test::device(), 1), parameters), UsageError);
 }
+
+}  // namespace photile::test
