@@ -29,22 +29,47 @@ RootPlanes root_of(const Image& image) {
   return {*r, *g, *b};
 }
 
-/// Into [0,1]: NaN and negative values to 0, and colours brighter than white scaled as a whole, so
-/// that they keep their hue.
-glm::dvec3 into_display_range(glm::dvec3 rgb) {
-  for (int channel = 0; channel < 3; ++channel) {
-    double& value = rgb[channel];
-    if (!(value > 0.0)) value = 0.0;  // NaN too
-  }
+/// DisplayView::standard of values from 0 to `brightest`.
+glm::dvec3 standard(const glm::dvec3& rgb) {
   const double largest = std::max({rgb.r, rgb.g, rgb.b});
-  if (std::isinf(largest)) {
-    for (int channel = 0; channel < 3; ++channel) rgb[channel] = std::isinf(rgb[channel]) ? 1 : 0;
-    return rgb;
-  }
   return largest > 1.0 ? rgb / largest : rgb;
 }
 
+/// DisplayView::neutral of values from 0 to `brightest`. Names are those of the specification.
+glm::dvec3 neutral(const glm::dvec3& rgb) {
+  constexpr double f90 = 0.04, ks = 0.8 - f90, kd = 0.15;
+  const double x = std::min({rgb.r, rgb.g, rgb.b});
+  const double f = x <= 2 * f90 ? x - x * x / (4 * f90) : f90;
+  const glm::dvec3 base = rgb - f;
+  const double p = std::max({base.r, base.g, base.b});
+  if (p <= ks) return base;
+  const double pn = 1 - (1 - ks) * (1 - ks) / (p + 1 - 2 * ks);
+  const double g = 1 / (kd * (p - pn) + 1);
+  return glm::mix(glm::dvec3(pn), base * (pn / p), g);
+}
+
+/// Into [0,1].
+glm::dvec3 displayed(glm::dvec3 rgb, DisplayView view) {
+  constexpr double brightest = 1e30;  // for infinities: as bright as any, and fit to compute with
+  for (int channel = 0; channel < 3; ++channel) {
+    double& value = rgb[channel];
+    value = value > 0.0 ? std::min(value, brightest) : 0.0;  // NaN too
+  }
+  // Rounding may leave a little more than 1, or less than 0.
+  return glm::clamp(view == DisplayView::neutral ? neutral(rgb) : standard(rgb), 0.0, 1.0);
+}
+
 }  // namespace
+
+std::string_view name_of(DisplayView view) {
+  switch (view) {
+    case DisplayView::neutral:
+      return "neutral";
+    case DisplayView::standard:
+      return "standard";
+  }
+  return "unknown";
+}
 
 double automatic_exposure(const Image& scene_referred) {
   const RootPlanes root = root_of(scene_referred);
@@ -81,7 +106,7 @@ Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
   display.height = scene_referred.height;
   for (const char* channel : {"R", "G", "B"}) display.add(channel);
   image::for_each_pixel(root.r.size(), [&](std::size_t pixel) {
-    const glm::dvec3 rgb = into_display_range(scale * root[pixel]);
+    const glm::dvec3 rgb = displayed(scale * root[pixel], parameters.view);
     for (int channel = 0; channel < 3; ++channel) {
       display.channels[static_cast<std::size_t>(channel)][pixel] = static_cast<float>(rgb[channel]);
     }

@@ -6,7 +6,10 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "photile/defaults.hpp"
 
 namespace photile {
 
@@ -50,9 +53,24 @@ void write_exr(const std::filesystem::path& file, const Image& image);
 /// Writes an 8-bit sRGB PNG of the channels R, G, B, through a temporary name and a rename.
 void write_png(const std::filesystem::path& file, const Image& display_referred);
 
+/// How scene-referred colours, white at 1, become those of a display.
+enum class DisplayView {
+  /// Khronos PBR Neutral, by its specification (Khronos Group, "PBR Neutral Tone Mapper", 2024):
+  /// colours up to 0.8 less 0.04, the reflection of a dielectric under white light; brighter ones
+  /// roll off towards white and keep their hue.
+  neutral,
+  /// The sRGB curve alone: colours as they are up to 1, brighter ones scaled to 1 as a whole.
+  standard
+};
+
+/// "neutral", "standard".
+std::string_view name_of(DisplayView view);
+inline constexpr std::array all_display_views = {DisplayView::neutral, DisplayView::standard};
+
 struct ToneMapping {
   bool automatic_exposure = true;  ///< scale so that the log-average luminance becomes mid grey
-  double exposure = 0;             ///< stops on top
+  double exposure = defaults::exposure;  ///< stops on top
+  DisplayView view = DisplayView::neutral;
 };
 
 /// Factor that brings the log-average luminance of R, G, B to mid grey, over pixels of finite
@@ -62,7 +80,7 @@ struct ToneMapping {
 double automatic_exposure(const Image& scene_referred);
 
 /// Root R, G, B to display-referred values in [0,1], still linear; `write_png` applies the sRGB
-/// curve. A pixel brighter than white keeps its hue.
+/// curve. Every pixel keeps its hue. NaN and negative values count as 0.
 Image tone_map(const Image& scene_referred, const ToneMapping& parameters);
 
 }  // namespace photile

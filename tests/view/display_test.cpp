@@ -96,6 +96,7 @@ TEST_CASE("illuminance is in lux where lamps are in watts, too") {
 TEST_CASE("the picture is scaled by stops and encoded as sRGB") {
   DisplaySettings settings;
   settings.exposure = -1;  // halves
+  settings.view = DisplayView::standard;
   const DisplayedFrame shown = display(two_pixels(), mix_of(0, 1), settings);
   // 0.25 and 0.125 in sRGB: 255 (1.055 x^(1/2.4) - 0.055) = 136.9 and 99.1
   CHECK(shown.rgb == std::vector<std::uint8_t>{137, 137, 137, 99, 99, 99});

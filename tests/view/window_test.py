@@ -73,7 +73,7 @@ class Window:
     def __init__(self, photile, scene, folder):
         self.folder = folder
         self.process = subprocess.Popen(
-            [photile, "view", scene, "--outputs", folder, *SETTINGS],
+            [photile, "view", scene, "--outputs", folder, "--view", "standard", *SETTINGS],
             stderr=subprocess.PIPE, text=True)
         self.id = until(lambda: self.running() and self.find("photile"), "the window")
         until(lambda: self.running() and self.find("4 of 4 samples, 0.1M paths"),

@@ -12,10 +12,10 @@
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/output_files.hpp"
 #include "tools/command/signals.hpp"
+#include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"
 #include "tools/report/picture_comparison.hpp"
 
@@ -27,7 +27,7 @@ struct CompareOptions {
   std::string picture;  ///< file, "" = none
   std::string json;     ///< file, "" = none
   double scale = 0;     ///< 0 = automatic
-  double exposure = 0;
+  ToneMapping tone_mapping;
 };
 
 std::string words_of(const PictureError& error) {
@@ -101,7 +101,7 @@ void run_compare(const CompareOptions& options) {
                                      {std::filesystem::path(options.first).filename().string(),
                                       std::filesystem::path(options.second).filename().string(),
                                       unit == first.attributes.end() ? "luminance" : unit->second,
-                                      options.scale, options.exposure}));
+                                      options.scale, options.tone_mapping}));
   }
   if (!options.json.empty()) {
     write_file(options.json,
@@ -131,10 +131,7 @@ void add_compare_command(CLI::App& photile) {
                    "largest difference of the legend; default: from the pictures")
       ->type_name("X")
       ->transform(positive_number());
-  command->add_option("--exposure", options->exposure, "stops, of both pictures")
-      ->type_name("STOPS")
-      ->transform(number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
-      ->capture_default_str();
+  add_tone_mapping_options(*command, options->tone_mapping, "Options");
   command->callback([options] { run_compare(*options); });
 }
 

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
+#include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"
 #include "tools/report/false_colour_picture.hpp"
 #include "tools/report/sheet.hpp"
@@ -22,14 +22,11 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->check(file_ending_in(".png"))
       ->allow_extra_args(false)
       ->group("Output");
-  command.add_option("--exposure", options.exposure, "stops, for PNG only")
-      ->type_name("STOPS")
-      ->transform(number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
-      ->capture_default_str()
-      ->group("Output");
+  add_tone_mapping_options(command, options.tone_mapping, "Output");
   command
-      .add_flag("--no-auto-exposure", options.no_automatic_exposure,
-                "1 cd/m2 or 1 W/(m2 sr) becomes white, before --exposure")
+      .add_flag_callback(
+          "--no-auto-exposure", [&options] { options.tone_mapping.automatic_exposure = false; },
+          "1 cd/m2 or 1 W/(m2 sr) becomes white, before --exposure")
       ->group("Output");
   const auto add_drawing = [&](const char* name, std::string& file, const char* what) {
     command.add_option(name, file, what)
@@ -46,7 +43,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
 PictureOutputs::PictureOutputs(const PictureOptions& options)
     : illuminance_(options.illuminance),
       luminance_(options.luminance),
-      tone_mapping_{!options.no_automatic_exposure, options.exposure},
+      tone_mapping_(options.tone_mapping),
       false_colour_(options.false_colour) {
   for (const std::string& file : options.outputs) {
     const bool exr = OIIO::Strutil::iends_with(file, ".exr");

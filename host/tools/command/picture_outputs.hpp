@@ -21,12 +21,11 @@ struct PictureOptions {
   std::string illuminance;           ///< .png in false colour, "" = none
   std::string luminance;             ///< the same
   FalseColourOptions false_colour;   ///< of both
-  double exposure = ToneMapping{}.exposure;
-  bool no_automatic_exposure = false;
+  ToneMapping tone_mapping;
 };
 
-/// Adds -o, --png, --exposure, --no-auto-exposure, --illuminance, --luminance and the options of
-/// false colour to a subcommand.
+/// Adds -o, --png, --exposure, --view, --no-auto-exposure, --illuminance, --luminance and the
+/// options of false colour to a subcommand.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
 /// Files to be written, each with its format.

@@ -15,6 +15,7 @@
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
+#include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"
 #include "tools/view/viewer.hpp"
 
@@ -25,6 +26,7 @@ struct ViewOptions {
   RenderOptions render;
   double frames_per_second = defaults::view_frames_per_second;
   std::string outputs = ".";
+  DisplayView view = ToneMapping{}.view;
 };
 
 void run_view(ViewOptions& options) {
@@ -53,6 +55,7 @@ void run_view(ViewOptions& options) {
   parameters.render = render.parameters;
   parameters.frames_per_second = options.frames_per_second;
   parameters.outputs = options.outputs;
+  parameters.view = options.view;
   parameters.prepared = load_maps(scene, render, progress);
   // Progress is shown in the window from here on.
   parameters.keep = keep_maps(scene, render, Progress::none());
@@ -82,6 +85,7 @@ void add_view_command(CLI::App& photile) {
       ->type_name("FOLDER")
       ->capture_default_str()
       ->group("Window");
+  add_view_option(*command, options->view, "Window");
   add_preview_option(*command, options->render, "Window");
   add_picture_settings(*command, options->render, {"final_gather_rays"});
   add_saved_maps_options(*command, options->render);

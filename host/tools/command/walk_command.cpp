@@ -26,6 +26,7 @@
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
+#include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"
 #include "tools/walk/contact_sheet.hpp"
 #include "tools/walk/frame_names.hpp"
@@ -172,8 +173,8 @@ class Walk {
     if (!root) root = read_image(names_.of(number(frame)));
     if (!exposure_) exposure_ = std::log2(automatic_exposure(*root));
     if (!on_sheet && !to_png) return;
-    const Image displayed =
-        tone_map(*root, {false, *exposure_ + options_.render.pictures.exposure});
+    const ToneMapping& asked = options_.render.pictures.tone_mapping;
+    const Image displayed = tone_map(*root, {false, *exposure_ + asked.exposure, asked.view});
     if (to_png) write_png(png_names_->of(number(frame)), displayed);
     if (on_sheet) sheet_->add(place_on_sheet(frame), displayed);
   }
@@ -246,11 +247,7 @@ void add_walk_command(CLI::App& photile) {
       ->type_name("PATTERN.png")
       ->check(file_ending_in(".png"))
       ->group("Output");
-  command->add_option("--exposure", options->render.pictures.exposure, "stops, for PNG only")
-      ->type_name("STOPS")
-      ->transform(number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
-      ->capture_default_str()
-      ->group("Output");
+  add_tone_mapping_options(*command, options->render.pictures.tone_mapping, "Output");
   command->add_option("--contact-sheet", options->sheet, "all frames on one PNG")
       ->type_name("FILE.png")
       ->check(file_ending_in(".png"))

@@ -57,7 +57,7 @@ double automatic_scale(const std::vector<double>& all, const Image& b) {
 }
 
 /// Both pictures under one exposure: a above b.
-Image tone_mapped(const Image& a, const Image& b, double exposure) {
+Image tone_mapped(const Image& a, const Image& b, const ToneMapping& parameters) {
   Image both;
   both.width = a.width;
   both.height = a.height + b.height;
@@ -67,7 +67,7 @@ Image tone_mapped(const Image& a, const Image& b, double exposure) {
     plane.insert(plane.end(), other.begin(), other.end());
     both.add(channel) = std::move(plane);
   }
-  return tone_map(both, {true, exposure});
+  return tone_map(both, parameters);
 }
 
 void draw_legend(Sheet& sheet, int x, int height, double scale, const Palette& palette) {
@@ -97,7 +97,7 @@ Image draw_comparison(const Image& a, const Image& b, const ComparisonDrawing& o
   }
   const double scale = options.scale > 0 ? options.scale : automatic_scale(differences, b);
   const Palette palette("blue-red");
-  const Image both = tone_mapped(a, b, options.exposure);
+  const Image both = tone_mapped(a, b, options.tone_mapping);
 
   const int step = a.width + gap;
   Sheet sheet(3 * step + legend_width, title_height + a.height + gap);

@@ -34,7 +34,7 @@ struct ComparisonDrawing {
   std::string unit;  ///< of the difference
   double scale = 0;  ///< largest difference of the legend; 0 = the 99th percentile where no lamp is
                      ///< seen, rounded up to 1, 2 or 5 times a power of ten
-  double exposure = 0;  ///< stops on top of the automatic exposure of both together
+  ToneMapping tone_mapping = {};  ///< of both together
 };
 
 /// Both pictures with one exposure, and the difference of their luminances in false colour with its

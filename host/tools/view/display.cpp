@@ -33,8 +33,9 @@ Image root_of(const Frame& frame, const LightMix& mix) {
   return image;
 }
 
-DisplayedFrame tone_mapped(const Image& root, double exposure) {
-  return {root.width, root.height, image::srgb8_texels(tone_map(root, {false, exposure}))};
+DisplayedFrame tone_mapped(const Image& root, const DisplaySettings& settings) {
+  return {root.width, root.height,
+          image::srgb8_texels(tone_map(root, {false, settings.exposure, settings.view}))};
 }
 
 /// Illuminances in their colours; of isolines and bands the rest is the picture.
@@ -46,7 +47,7 @@ DisplayedFrame false_coloured(const Frame& frame, const LightMix& mix,
   DisplayedFrame result{frame.layers.width, frame.layers.height,
                         std::vector<std::uint8_t>(3 * values.size())};
   if (contours == Contours::lines || contours == Contours::bands) {
-    result = tone_mapped(root_of(frame, mix), settings.exposure);
+    result = tone_mapped(root_of(frame, mix), settings);
   }
   measuring::draw_false_colour(values, result.width, settings.false_colour, result.rgb);
   return result;
@@ -85,7 +86,7 @@ DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySet
   if (settings.mode == DisplayMode::illuminance && frame.mixed.empty()) {
     return false_coloured(frame, mix, settings);
   }
-  DisplayedFrame result = tone_mapped(root_of(frame, mix), settings.exposure);
+  DisplayedFrame result = tone_mapped(root_of(frame, mix), settings);
   // The first frames of the mode may still be without.
   if (settings.mode == DisplayMode::glare && frame.reflections) {
     image::draw_marks(

@@ -7,6 +7,7 @@
 
 #include "measuring/grid_statistics.hpp"
 #include "photile/defaults.hpp"
+#include "photile/image.hpp"
 #include "photile/light_mix.hpp"
 #include "tools/report/false_colour.hpp"
 #include "tools/view/frame.hpp"
@@ -21,7 +22,8 @@ enum class DisplayMode {
 
 struct DisplaySettings {
   DisplayMode mode = DisplayMode::picture;
-  double exposure = 0;  ///< stops that the picture is scaled by
+  double exposure = 0;                    ///< stops that the picture is scaled by
+  DisplayView view = ToneMapping{}.view;  ///< of the picture
   measuring::FalseColour false_colour;
   double glare_limit = defaults::glare_limit;  ///< as image::find_glare takes it
   bool photon_map = false;                     ///< of the clicked triangle, over any of the modes
@@ -33,7 +35,8 @@ struct DisplayedFrame {
   std::vector<std::uint8_t> rgb;  ///< row 0 at the top
 };
 
-/// Mixes and colours a frame: the picture is what `photile render --png` gives at that exposure.
+/// Mixes and colours a frame: the picture is what `photile render --png` gives at that exposure
+/// and view.
 /// Errors: UsageError for an unknown palette.
 DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings);
 

@@ -55,6 +55,7 @@ class Viewer {
       preview_.emplace(parameters_.preview, scene.source.filename().string(), mix,
                        *parameters_.notes);
     }
+    display_.view = parameters_.view;
     build_maps(std::exchange(parameters_.prepared, std::nullopt), parameters_.keep);
   }
 

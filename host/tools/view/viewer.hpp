@@ -18,7 +18,8 @@ struct ViewerParameters {
   std::filesystem::path outputs = ".";  ///< folder of screenshots and pictures
   /// Photons of an earlier run in place of all tracing, or none.
   std::optional<PreparedPhotons> prepared;
-  SceneLoadOptions load;                ///< with which the scene was loaded, for copies of its file
+  SceneLoadOptions load;  ///< with which the scene was loaded, for copies of its file
+  DisplayView view = ToneMapping{}.view;
   std::string preview;                  ///< HOST:PORT of a tev that gets the pictures; "" = none
   Progress* notes = &Progress::none();  ///< is told what has no place in the window
   KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
