@@ -1,6 +1,7 @@
 // Frames from light maps: filling the nodes of a first view, a frame of filled nodes, a step, a
 // look back, and mixing lights.
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "light_maps/charts.hpp"
@@ -35,6 +36,8 @@ Camera moved(const Scene& scene, double metres, double degrees) {
   return viewpoint.camera();
 }
 
+constexpr double all = std::numeric_limits<double>::infinity();
+
 void measure_scene(const std::string& name, const Scene& scene, Device& device,
                    const Settings& settings, const BenchOptions& options, BenchRecord& record) {
   const RayScene rays(scene);
@@ -61,21 +64,21 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   for (const double power : powers) scales.emplace_back(power);
 
   const auto draw = [&](LightMapFrames& frames, const Camera& camera, int width, int height,
-                        int rounds) {
+                        double fill_seconds) {
     std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));
     const Stopwatch stopwatch;
-    frames.draw(camera, width, height, scales, rounds, picture, Progress::none());
+    frames.draw(camera, width, height, scales, fill_seconds, picture, Progress::none());
     return stopwatch.seconds();
   };
   {
     LightMapEstimates warm(scene, light_maps, estimators);  // compiles the kernels
     LightMapFrames frames(rays, warm.maps(), warm.source());
-    draw(frames, scene.cameras.front(), 32, 32, LightMaps::all_rounds);
+    draw(frames, scene.cameras.front(), 32, 32, all);
   }
   LightMapEstimates estimates(scene, light_maps, estimators);
   LightMapFrames frames(rays, estimates.maps(), estimates.source());
   const auto [width, height] = settings.sizes.front();
-  const double fill = draw(frames, scene.cameras.front(), width, height, LightMaps::all_rounds);
+  const double fill = draw(frames, scene.cameras.front(), width, height, all);
   const LightMapStatistics first = estimates.maps().statistics();
   nlohmann::json row{{"scene", name},
                      {"paths", settings.paths},
@@ -92,15 +95,14 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
                      {"value bytes a light", first.value_bytes / powers.size()},
                      {"index bytes", first.index_bytes}};
   for (const auto& [w, h] : settings.sizes) {
-    draw(frames, scene.cameras.front(), w, h, LightMaps::all_rounds);
+    draw(frames, scene.cameras.front(), w, h, all);
     const Timing timing = measure_returned(
         options.repeats, [&] { return draw(frames, scene.cameras.front(), w, h, 0); });
     row[std::to_string(w) + "x" + std::to_string(h)] = to_json(timing);
   }
   const auto look = [&](const char* what, double metres, double degrees) {
     const std::uint64_t before = estimates.maps().statistics().nodes;
-    const double seconds =
-        draw(frames, moved(scene, metres, degrees), width, height, LightMaps::all_rounds);
+    const double seconds = draw(frames, moved(scene, metres, degrees), width, height, all);
     row[what] = {{"seconds", seconds}, {"nodes", estimates.maps().statistics().nodes - before}};
   };
   look("step of 5 cm and 2 degrees", 0.05, 2);
@@ -113,6 +115,12 @@ void measure_mixing(std::size_t nodes, std::size_t lights, const BenchOptions& o
                     BenchRecord& record) {
   Estimates values;
   values.irradiance.resize(nodes * lights);
+  if (lights > max_dense_lights) {  // rows that hold every light: the worst case
+    for (std::size_t node = 0; node <= nodes; ++node) values.first.push_back(node * lights);
+    for (std::size_t i = 0; i < nodes * lights; ++i) {
+      values.light.push_back(static_cast<std::uint16_t>(i % lights));
+    }
+  }
   std::mt19937 random(1);
   for (glm::vec3& value : values.irradiance) {
     value = glm::vec3(static_cast<float>(random() & 0xffff) / 65536.0f);
@@ -127,10 +135,14 @@ void measure_mixing(std::size_t nodes, std::size_t lights, const BenchOptions& o
   };
   mix(true);
   const Timing all = measure_returned(options.repeats, [&] { return mix(true); });
-  record.add({{"mixed nodes", nodes}, {"lights", lights}, {"all", to_json(all)}});
+  const Timing one = measure_returned(options.repeats, [&] { return mix(false); });
+  record.add({{"mixed nodes", nodes},
+              {"lights", lights},
+              {"all lights", to_json(all)},
+              {"one light", to_json(one)}});
 }
 
-bool run(BenchOptions& options) {
+bool run(BenchOptions& options, const std::string& only) {
   Settings settings;
   if (options.quick) {
     settings.paths = 20'000;
@@ -142,15 +154,19 @@ bool run(BenchOptions& options) {
   BenchRecord record("light_maps", options);
   Device device({.selector = options.device});
   record.set_device(device.info());
-  for (const std::size_t lights : {std::size_t{7}, std::size_t{64}, std::size_t{256}}) {
-    measure_mixing(settings.mixed_nodes, lights, options, record);
+  const auto wanted = [&](const char* name) { return only.empty() || only == name; };
+  if (wanted("mixing")) {
+    for (const std::size_t lights : {1, 7, 64, 256}) {
+      measure_mixing(settings.mixed_nodes, lights, options, record);
+    }
   }
-  measure_scene("living room", living_room(), device, settings, options, record);
-  if (!options.quick) {
-    for (const char* name : {"classroom", "kitchen"}) {
-      if (const auto scene = shared_interior(name)) {
-        measure_scene(name, *scene, device, settings, options, record);
-      }
+  if (wanted("living room")) {
+    measure_scene("living room", living_room(), device, settings, options, record);
+  }
+  for (const char* name : {"classroom", "kitchen"}) {
+    if (options.quick || !wanted(name)) continue;
+    if (const auto scene = shared_interior(name)) {
+      measure_scene(name, *scene, device, settings, options, record);
     }
   }
   record.write();
@@ -163,5 +179,7 @@ int main(int argument_count, char** arguments) {
   BenchOptions options;
   CLI::App command("Frames from light maps", "light_maps");
   add_options(command, options);
-  return run_bench(command, argument_count, arguments, [&] { return run(options); });
+  std::string only;
+  command.add_option("--only", only, "mixing, or one scene");
+  return run_bench(command, argument_count, arguments, [&] { return run(options, only); });
 }

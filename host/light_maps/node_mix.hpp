@@ -13,8 +13,10 @@ namespace photile::light_maps {
 /// Irradiance of the lights together, linear RGB, at their powers and tints.
 class NodeMix {
  public:
-  /// Brings the mix to these powers: all nodes anew where a power changed, else those that are new.
-  /// Work is shared by TBB.
+  /// Brings the mix to these powers: nodes that hold light whose power changed are summed anew, and
+  /// those that are new. Every sum is made whole, in one order: a difference added would leave a
+  /// rounding of its own, and the mix would depend on how sliders came to where they are. Work is
+  /// shared by TBB.
   ///   values   what the nodes hold, see LightMaps::values
   ///   powers   per layer: power x tint
   void mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers);

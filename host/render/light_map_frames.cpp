@@ -3,10 +3,15 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <numeric>
+#include <optional>
+#include <tuple>
 
 #include "light_maps/charts.hpp"
-#include "light_maps/tiles.hpp"
+#include "photile/statistics.hpp"
 #include "trace/coherent_rays.hpp"
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
@@ -17,6 +22,15 @@ namespace {
 /// Pixels of a packet of rays and of a block, whose packets one task traces, on each side.
 constexpr int packet_side = 4, block_side = 32;
 static_assert(packet_side * packet_side == trace::coherent_rays);
+
+/// A mean of about a thousand nodes is grey enough.
+glm::vec3 mean_of_some(std::span<const glm::vec4> light) {
+  const std::size_t step = std::max<std::size_t>(1, light.size() / 1024);
+  glm::vec4 sum(0.0f);
+  float count = 0;
+  for (std::size_t i = 0; i < light.size(); i += step, ++count) sum += light[i];
+  return count > 0 ? glm::vec3(sum / count) : glm::vec3(0.0f);
+}
 
 }  // namespace
 
@@ -89,38 +103,84 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
   }
 }
 
-std::size_t LightMapFrames::draw(const Camera& camera, int width, int height,
-                                 std::span<const glm::vec3> powers, int rounds,
-                                 std::span<glm::vec3> picture, const Progress& progress) {
+DrawnFrame LightMapFrames::draw(const Camera& camera, int width, int height,
+                                std::span<const glm::vec3> powers, double fill_seconds,
+                                std::span<glm::vec3> picture, const Progress& progress) {
   const View view(camera, width, height, picture);
+  DrawnFrame drawn;
   std::vector<std::size_t> blocks(view.blocks());
-  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] = i;
-  for (;; --rounds) {
+  std::iota(blocks.begin(), blocks.end(), std::size_t{0});
+  std::optional<Stopwatch> filling;
+  for (;;) {
     progress.throw_if_cancelled();
     mixed_.mix(maps_.values(), maps_.statistics().nodes, powers);
-    tbb::enumerable_thread_specific<Missing> missing_of_threads;
-    std::vector<std::uint8_t> lacks(blocks.size());
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
-      const trace::FlushDenormals flush_denormals;
-      Missing& missing = missing_of_threads.local();
-      missing.any = false;
-      draw_block(view, blocks[i], missing);
-      lacks[i] = missing.any ? 1 : 0;
-    });
-    PrimaryHits hits;
-    for (const Missing& missing : missing_of_threads) {
-      hits.position.insert(hits.position.end(), missing.position.begin(), missing.position.end());
-      hits.sided_triangle.insert(hits.sided_triangle.end(), missing.sided_triangle.begin(),
-                                 missing.sided_triangle.end());
-    }
-    if (hits.size() == 0 || rounds == 0) return hits.size();
-    maps_.fill(hits, source_, progress, 1);
-    std::vector<std::size_t> again;
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      if (lacks[i] != 0) again.push_back(blocks[i]);
-    }
-    blocks = std::move(again);
+    ambient_ = mean_of_some(mixed_.light());
+    std::vector<MissingPlace> missing = draw_blocks(view, blocks);
+    drawn.lacking = missing.size();
+    drawn.empty = static_cast<std::size_t>(std::count_if(
+        missing.begin(), missing.end(), [](const auto& place) { return place.empty; }));
+    drawn.fill_seconds = filling ? filling->seconds() : 0;
+    if (missing.empty() || !(drawn.fill_seconds < fill_seconds)) return drawn;
+    if (!filling) filling.emplace();
+    fill(missing, fill_seconds - drawn.fill_seconds, progress);
   }
+}
+
+/// Draws blocks; leaves those that lack nodes. Returns a place of each cell that is missing, those
+/// without any level first, then the nearest to the eye.
+std::vector<LightMapFrames::MissingPlace> LightMapFrames::draw_blocks(
+    const View& view, std::vector<std::size_t>& blocks) const {
+  tbb::enumerable_thread_specific<Missing> missing_of_threads;
+  std::vector<std::uint8_t> lacks(blocks.size());
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    const trace::FlushDenormals flush_denormals;
+    Missing& missing = missing_of_threads.local();
+    missing.any = false;
+    draw_block(view, blocks[i], missing);
+    lacks[i] = missing.any ? 1 : 0;
+  });
+  std::vector<MissingPlace> places;
+  for (const Missing& missing : missing_of_threads) {
+    places.insert(places.end(), missing.places.begin(), missing.places.end());
+  }
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.cell, a.distance) < std::tie(b.cell, b.distance);
+  });
+  const auto same_cell = [](const auto& a, const auto& b) { return a.cell == b.cell; };
+  places.erase(std::unique(places.begin(), places.end(), same_cell), places.end());
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
+    return std::tuple(!a.empty, a.distance, a.cell) < std::tuple(!b.empty, b.distance, b.cell);
+  });
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (lacks[i] != 0) blocks[left++] = blocks[i];
+  }
+  blocks.resize(left);
+  return places;
+}
+
+/// Values the next level of places, in their order, for about so long: of one at least.
+void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
+                          const Progress& progress) {
+  const Stopwatch stopwatch;
+  std::size_t first = 0;
+  do {
+    // So many as the time is enough for: a batch too many is a frame too late.
+    const double affordable = std::max(1.0, (seconds - stopwatch.seconds()) / seconds_per_place_);
+    const std::size_t left = places.size() - first;
+    const std::size_t count =
+        affordable < static_cast<double>(left) ? static_cast<std::size_t>(affordable) : left;
+    PrimaryHits hits;
+    for (const MissingPlace& place : places.subspan(first, count)) {
+      hits.position.push_back(place.position);
+      hits.sided_triangle.push_back(place.sided_triangle);
+    }
+    const Stopwatch of_batch;
+    maps_.fill(hits, source_, progress, 1);
+    const double latest = of_batch.seconds() / static_cast<double>(count);
+    seconds_per_place_ += 0.5 * (latest - seconds_per_place_);
+    first += count;
+  } while (first < places.size() && stopwatch.seconds() < seconds);
 }
 
 void LightMapFrames::draw_block(const View& view, std::size_t block, Missing& missing) const {
@@ -152,7 +212,7 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   const Surface& surface = surfaces_[triangle];
   if (surface.kind == Surface::followed) return followed(view, pixel, direction, missing);
   const glm::vec3 light =
-      irradiance(sided(triangle, side), view.eye + distance * direction, missing);
+      irradiance(view, sided(triangle, side), view.eye + distance * direction, missing);
   if (surface.kind == Surface::plain) return surface.reflects * light;
   const trace::SurfacePoint point = trace::surface_point(scene_, {triangle, u, v}, side);
   const scene_io::Reflectance reflectance = trace::reflectance(scene_, point);
@@ -165,15 +225,18 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   return radiance;
 }
 
-glm::vec3 LightMapFrames::irradiance(std::uint32_t sided_triangle, const glm::vec3& position,
-                                     Missing& missing) const {
-  NodeBlend blend;
-  if (maps_.tiles().find(surfaces_[triangle_of(sided_triangle)].chart[side_of(sided_triangle)],
-                         position, blend)) {
+glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_triangle,
+                                     const glm::vec3& position, Missing& missing) const {
+  NodeBlend blend{};
+  if (const auto cell = maps_.tiles().find(
+          surfaces_[triangle_of(sided_triangle)].chart[side_of(sided_triangle)], position, blend)) {
+    const bool empty = blend.node[0] == none;
     missing.any = true;
-    missing.position.push_back(position);
-    missing.sided_triangle.push_back(sided_triangle);
-    if (blend.node[0] == none) return glm::vec3(0.0f);
+    if (missing.places.empty() || missing.places.back().cell != *cell) {
+      missing.places.push_back(
+          {*cell, empty, glm::distance(view.eye, position), position, sided_triangle});
+    }
+    if (empty) return ambient_;
   }
   const std::span<const glm::vec4> light = mixed_.light();
   const glm::vec4 sum =
@@ -200,7 +263,7 @@ glm::vec3 LightMapFrames::followed(const View& view, std::uint32_t pixel,
     const trace::EyeHit& hit = record.hits[i];
     const glm::vec3 lobe = record.glossy.empty() ? glm::vec3(0.0f) : record.glossy[i].lobe.specular;
     radiance += hit.throughput * (hit.diffuse_albedo + lobe) * glm::one_over_pi<float>() *
-                irradiance(hit.sided_triangle, hit.position, missing);
+                irradiance(view, hit.sided_triangle, hit.position, missing);
   }
   for (const SeenEmission& lamp : record.emission) {
     radiance += mixed_.powers()[layer_of_[lamp.light]] * lamp.radiance;

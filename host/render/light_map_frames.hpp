@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "light_maps/node_mix.hpp"
+#include "light_maps/tiles.hpp"
 #include "photile/camera.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
+#include "photile/scene_renderer.hpp"
 #include "trace/distant_light.hpp"
 
 namespace photile {
@@ -25,12 +27,14 @@ class LightMapFrames {
   LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource& source);
 
   /// Draws width x height pixels, linear RGB radiance, row 0 at the top. Pixels whose nodes are not
-  /// valued show the next coarser level. Returns the number of places that lack some.
-  ///   powers   per layer: power x tint
-  ///   rounds   levels that are valued at once where they are missing; 0: none
+  /// valued show the next coarser level; those without any, the light of nodes on the average.
+  ///   powers         per layer: power x tint
+  ///   fill_seconds   that may go into valuing nodes which pixels lack and into drawing these
+  ///   pixels
+  ///                  again, level by level, the nearest to the eye first; infinite: all of them
   /// Errors: those of LightMaps::fill.
-  std::size_t draw(const Camera& camera, int width, int height, std::span<const glm::vec3> powers,
-                   int rounds, std::span<glm::vec3> picture, const Progress& progress);
+  DrawnFrame draw(const Camera& camera, int width, int height, std::span<const glm::vec3> powers,
+                  double fill_seconds, std::span<glm::vec3> picture, const Progress& progress);
 
  private:
   /// What a frame needs of a triangle, close together.
@@ -39,18 +43,27 @@ class LightMapFrames {
     glm::vec3 reflects;      ///< radiance per irradiance, where it is plain
     enum Kind : std::uint32_t { plain, textured, lamp, followed } kind;
   };
+  /// Where a cell is seen whose nodes are not valued.
+  struct MissingPlace {
+    light_maps::MissingCell cell;
+    bool empty;      ///< without a coarser level
+    float distance;  ///< from the eye, metres
+    glm::vec3 position;
+    std::uint32_t sided_triangle;
+  };
   struct Missing {
-    std::vector<glm::vec3> position;
-    std::vector<std::uint32_t> sided_triangle;
+    std::vector<MissingPlace> places;
     bool any = false;  ///< of the block at hand
   };
   struct View;
 
+  std::vector<MissingPlace> draw_blocks(const View& view, std::vector<std::size_t>& blocks) const;
+  void fill(std::span<const MissingPlace> places, double seconds, const Progress& progress);
   void draw_block(const View& view, std::size_t block, Missing& missing) const;
   glm::vec3 seen(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                  std::uint32_t triangle, std::uint32_t side, float u, float v, float distance,
                  Missing& missing) const;
-  glm::vec3 irradiance(std::uint32_t sided_triangle, const glm::vec3& position,
+  glm::vec3 irradiance(const View& view, std::uint32_t sided_triangle, const glm::vec3& position,
                        Missing& missing) const;
   glm::vec3 followed(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                      Missing& missing) const;
@@ -65,6 +78,8 @@ class LightMapFrames {
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1
   std::vector<trace::DistantLight> distant_;
   light_maps::NodeMix mixed_;
+  glm::vec3 ambient_{0.0f};           ///< irradiance where no level is valued
+  double seconds_per_place_ = 20e-6;  ///< of valuing, learned from what it took
 };
 
 }  // namespace photile

@@ -19,6 +19,13 @@ struct PreparedPhotons {
 };
 using KeepPhotons = std::function<void(const PreparedPhotons&)>;
 
+/// What a quick frame shows.
+struct DrawnFrame {
+  std::size_t lacking = 0;  ///< cells of light maps that it shows coarser than they should be
+  std::size_t empty = 0;    ///< of them, those without light of their own: they are grey
+  double fill_seconds = 0;  ///< that went into nodes which were lacking
+};
+
 /// The photon maps of a scene, kept on the devices while pictures are rendered from them.
 class SceneRenderer {
  public:
@@ -39,12 +46,15 @@ class SceneRenderer {
   /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a pixel,
   /// glossy surfaces as if they were matt (host/render/light_map_frames.hpp). For parameters that
   /// ask for light maps.
-  ///   powers    per layer: power x tint
-  ///   rounds    levels of missing nodes that are valued first, where pixels need them
-  ///   picture   width x height, linear RGB radiance
-  /// Returns how many pixels show a coarser level than they should.
-  std::size_t draw(const Camera& camera, int width, int height, std::span<const glm::vec3> powers,
-                   int rounds, std::span<glm::vec3> picture, Progress& progress = Progress::none());
+  ///   powers         per layer: power x tint
+  ///   fill_seconds   that may go into valuing nodes which pixels lack: the nearest to the eye come
+  ///                  first, other pixels show a coarser level; infinite: all of them
+  ///   picture        width x height, linear RGB radiance
+  /// Once nothing is lacking, a frame does not depend on what was drawn before. Errors: those of
+  /// `render`.
+  DrawnFrame draw(const Camera& camera, int width, int height, std::span<const glm::vec3> powers,
+                  double fill_seconds, std::span<glm::vec3> picture,
+                  Progress& progress = Progress::none());
 
   /// Whether `draw` has light maps to draw from.
   bool draws() const;

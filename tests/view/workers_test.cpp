@@ -85,6 +85,57 @@ TEST_CASE("a viewer that stands still sees what render gives, bit for bit") {
   CHECK_FALSE(photons.take_error());
 }
 
+TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what render gives") {
+  const Scene scene = lit_floor();
+  RenderParameters parameters = few_photons();
+  parameters.light_maps = LightMapMode::on;
+  FrameWorker frames(4, 30);
+  const std::vector<glm::vec3> powers{glm::vec3(100.0f)};
+  Camera camera = from_above();
+  camera.position.x += 0.1;
+  frames.show({camera, 40, 30, true, false, powers});
+  PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
+                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
+  wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 16'000; });
+  const auto quick = frames.latest();
+  REQUIRE(quick->mixed.size() == 40 * 30);
+  CHECK(quick->mixed[15 * 40 + 20].x > 0);
+  CHECK_FALSE(frames.finished());
+
+  frames.show({from_above(), 40, 30, false, false, powers});
+  wait_for([&] { return frames.finished(); });
+  const auto frame = frames.latest();
+  CHECK(frame->mixed.empty());
+  parameters.film = {40, 30, 4};
+  const RenderResult expected = render(scene, from_above(), test::device(), parameters);
+  CHECK(frame->layers.layers[0].radiance == expected.layers.layers[0].radiance);
+  CHECK_FALSE(frames.take_error());
+}
+
+TEST_CASE("a lamp that is turned down is seen in the next quick frame") {
+  const Scene scene = lit_floor();
+  RenderParameters parameters = few_photons();
+  parameters.light_maps = LightMapMode::on;
+  FrameWorker frames(4, 30);
+  frames.show({from_above(), 40, 30, true, false, {glm::vec3(100.0f)}});
+  PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
+                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
+  wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 16'000; });
+  std::shared_ptr<const Frame> bright, dark;
+  for (int i = 0; i < 20; ++i) {  // until all nodes are there
+    bright = frames.latest();
+    frames.show({from_above(), 40, 30, true, false, {glm::vec3(100.0f)}});
+    wait_for([&] { return frames.latest() != bright; });
+  }
+  bright = frames.latest();
+  frames.show({from_above(), 40, 30, true, false, {glm::vec3(50.0f)}});
+  wait_for([&] { return frames.latest() != bright; });
+  dark = frames.latest();
+  for (std::size_t i = 0; i < bright->mixed.size(); ++i) {
+    CHECK(dark->mixed[i].x == Approx(0.5 * bright->mixed[i].x).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("reflections come with a frame where they are asked for: none of a matt floor") {
   const Scene scene = lit_floor();
   FrameWorker frames(1, 30);

@@ -21,6 +21,7 @@ class FrameWorker::Interruption : public Progress {
 
 FrameWorker::FrameWorker(int most_samples, double frames_per_second)
     : most_samples_(most_samples),
+      frame_seconds_(1 / frames_per_second),
       size_(frames_per_second),
       thread_([this](std::stop_token stop) { work(std::move(stop)); }) {}
 
@@ -63,37 +64,62 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   std::unique_lock lock(mutex_);
   const auto has_work = [&] {
     const bool still = !request_.moving && done_samples_ < most_samples_;
-    return maps_ && request_.width > 0 && (done_version_ != version_ || still);
+    return maps_ && request_.width > 0 && (done_version_ != version_ || lacking_ || still);
   };
   if (!wake_.wait(lock, stop, has_work) || stop.stop_requested()) return false;
-  const bool refines = !request_.moving && done_version_ == version_ && done_samples_ > 0;
-  task = {request_, maps_, refines ? std::min(2 * done_samples_, most_samples_) : 1, version_};
+  const bool shown = done_version_ == version_;
+  const bool refines = !request_.moving && shown && done_samples_ > 0;
+  const bool whole = shown && !lacking_ && !request_.moving;
+  task = {request_, maps_, refines ? std::min(2 * done_samples_, most_samples_) : 1, version_,
+          !request_.powers.empty() && !whole && maps_->renderer->draws()};
   return true;
 }
 
-/// The whole window, however many nodes are missing: a level of them is valued for each frame, so
-/// that new surface is seen coarsely at once, and the rate does not drop for long.
-std::shared_ptr<const Frame> FrameWorker::draw(const Task& task) {
+/// What a frame leaves of its time, and a little in any case: nodes must come at last.
+double FrameWorker::time_to_fill() const {
+  return std::max(frame_seconds_ - draw_seconds_, 0.25 * frame_seconds_);
+}
+
+/// The whole window, however many nodes are missing: new surface is seen coarsely at once, and
+/// finer from frame to frame, by what there is time for. New maps are seen once they show all
+/// surface.
+std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, const Task& task) {
   const Stopwatch stopwatch;
+  const FrameRequest& wanted = task.request;
   Frame frame;
-  frame.layers.width = task.request.width;
-  frame.layers.height = task.request.height;
-  frame.mixed.resize(static_cast<std::size_t>(frame.layers.width) *
-                     static_cast<std::size_t>(frame.layers.height));
-  task.maps->renderer->draw(task.request.camera, frame.layers.width, frame.layers.height,
-                            task.request.powers, 1, frame.mixed);
-  frame.photons = task.maps->photons;
-  frame.camera = task.request.camera;
-  frame.emitted_photons = task.maps->emitted_photons;
-  frame.noise = task.maps->noise;
+  frame.layers.width = wanted.width;
+  frame.layers.height = wanted.height;
+  frame.mixed.resize(static_cast<std::size_t>(wanted.width) *
+                     static_cast<std::size_t>(wanted.height));
+  const auto draw_from = [&](MapGeneration& maps, double fill_seconds) {
+    const Stopwatch of_drawing;
+    const DrawnFrame drawn = maps.renderer->draw(wanted.camera, wanted.width, wanted.height,
+                                                 wanted.powers, fill_seconds, frame.mixed);
+    draw_seconds_ = of_drawing.seconds() - drawn.fill_seconds;
+    return drawn;
+  };
+  DrawnFrame drawn = draw_from(*task.maps, time_to_fill());
+  std::shared_ptr<MapGeneration> maps = task.maps;
+  if (drawn.empty > 0 && drawn_maps_ && drawn_maps_ != task.maps) {
+    maps = drawn_maps_;
+    draw_from(*maps, 0);
+  }
+  while (drawn.empty > 0 && !drawn_maps_ && !stop.stop_requested()) {  // the first picture
+    drawn = draw_from(*maps, time_to_fill());
+  }
+  drawn_maps_ = maps;
+  lacks_nodes_ = drawn.lacking > 0;
+  frame.photons = maps->photons;
+  frame.camera = wanted.camera;
+  frame.emitted_photons = maps->emitted_photons;
+  frame.noise = maps->noise;
   frame.seconds = stopwatch.seconds();
   return std::make_shared<Frame>(std::move(frame));
 }
 
 std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, const Task& task) {
-  if (task.request.moving && !task.request.powers.empty() && task.maps->renderer->draws()) {
-    return draw(task);
-  }
+  lacks_nodes_ = false;
+  if (task.quick) return draw(stop, task);
   Film film;
   film.width = task.request.width;
   film.height = task.request.height;
@@ -116,6 +142,7 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   if (std::exchange(timed_maps_, task.maps.get()) == task.maps.get()) {
     size_.record(static_cast<double>(film.width) * film.height * task.samples, seconds);
   }
+  drawn_maps_ = task.maps;
   return std::make_shared<Frame>(Frame{std::move(result.layers),
                                        {},
                                        std::move(reflections),
@@ -136,7 +163,8 @@ void FrameWorker::work(std::stop_token stop) {
       const std::lock_guard lock(mutex_);
       latest_ = std::move(frame);
       done_version_ = task.version;
-      done_samples_ = task.request.moving ? 0 : task.samples;
+      done_samples_ = task.request.moving || task.quick ? 0 : task.samples;
+      lacking_ = lacks_nodes_;
     } catch (const Interrupted&) {
       // Something else is wanted by now.
     } catch (...) {

@@ -23,8 +23,8 @@ struct FrameRequest {
   /// whole and get more and more samples.
   bool moving = false;
   bool reflections = false;  ///< asks for Frame::reflections
-  /// Per layer, power x tint: asks for quick frames while the viewer moves, where there are light
-  /// maps. Empty: frames with layers are wanted.
+  /// Per layer, power x tint: asks for quick frames where there are light maps, while the viewer
+  /// moves and until no node is lacking. Empty: frames with layers are wanted.
   std::vector<glm::vec3> powers = {};
 };
 
@@ -56,12 +56,14 @@ class FrameWorker {
     std::shared_ptr<MapGeneration> maps;
     int samples = 1;
     std::uint64_t version = 0;
+    bool quick = false;
   };
 
   void work(std::stop_token stop);
   bool next_task(std::stop_token stop, Task& task);
   std::shared_ptr<const Frame> render(const std::stop_token& stop, const Task& task);
-  std::shared_ptr<const Frame> draw(const Task& task);
+  std::shared_ptr<const Frame> draw(const std::stop_token& stop, const Task& task);
+  double time_to_fill() const;
 
   const int most_samples_;
   mutable std::mutex mutex_;
@@ -70,11 +72,16 @@ class FrameWorker {
   std::shared_ptr<MapGeneration> maps_;
   std::uint64_t version_ = 0;       ///< counts requests and maps
   std::uint64_t done_version_ = 0;  ///< of the newest frame
-  int done_samples_ = 0;            ///< of the newest frame, 0 where it was of a moving viewer
+  int done_samples_ = 0;            ///< of the newest frame, 0 where it was a quick one
+  bool lacking_ = false;            ///< the newest frame shows surface more coarsely than it should
   std::shared_ptr<const Frame> latest_;
   std::exception_ptr error_;
   // The worker's alone:
+  const double frame_seconds_;  ///< aimed at while moving
   FrameSize size_;
+  std::shared_ptr<MapGeneration> drawn_maps_;  ///< those of the frame before
+  bool lacks_nodes_ = false;                   ///< the frame in the making
+  double draw_seconds_ = 0;                    ///< of the newest quick frame, its nodes left out
   const MapGeneration* timed_maps_ = nullptr;  ///< those of the frame before
   std::jthread thread_;                        // last: it uses all of the above
 };

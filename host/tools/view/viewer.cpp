@@ -75,6 +75,9 @@ class Viewer {
         if (display_.photon_map) inspector_.draw(*frame_, shown);
         window_.set_picture(shown.width, shown.height, shown.rgb);
       }
+      // A quick frame holds no lamps: it is drawn anew by the nodes.
+      relit_ = events.lights_changed && frame_ && !frame_->mixed.empty();
+      exposed_ = exposed_ || events.display_changed || (frame_ && events.lights_changed);
       if (preview_ && frame_ && (new_frame || events.lights_changed)) show_preview();
       if (events.maps_changed) build_maps(std::nullopt, {});
       if (!events.mood_to_scene.empty()) write_scene(events.mood_to_scene);
@@ -109,7 +112,7 @@ class Viewer {
     const bool moving = last_motion_ && now - *last_motion_ < settling_seconds;
     const int width = window_.width(), height = window_.height();
     const bool reflections = display_.mode == DisplayMode::glare;
-    if (moved || moving != was_moving_ || reflections != had_reflections_ ||
+    if (moved || relit_ || moving != was_moving_ || reflections != had_reflections_ ||
         width != asked_width_ || height != asked_height_) {
       // A window that is made small to nothing keeps its last picture.
       if (width > 0 && height > 0) {
@@ -164,12 +167,12 @@ class Viewer {
   bool take_frame() {
     std::shared_ptr<const Frame> latest = frames_.latest();
     if (latest == frame_) return false;
-    const bool first = !frame_;
     frame_ = std::move(latest);
     milliseconds_.push_back(static_cast<float>(1e3 * frame_->seconds));
     if (milliseconds_.size() > frames_in_graph) milliseconds_.pop_front();
-    // Once, so that a lamp that is turned down is seen to be.
-    if (first) set_exposure();
+    // Once, so that a lamp that is turned down is seen to be; of coarse pictures, each anew.
+    if (!exposed_) set_exposure();
+    exposed_ = exposed_ || frame_->mixed.empty();
     window_.set_title(fmt::format("{} - photile: {} of {} samples, {:.4g}M paths",
                                   scene_.source.filename().string(), frame_->samples_per_pixel,
                                   parameters_.render.film.samples_per_pixel,
@@ -242,6 +245,7 @@ class Viewer {
   std::optional<double> last_motion_;  ///< GLFW's clock, seconds
   bool was_moving_ = false, had_reflections_ = false, clicked_ = false, picked_ = false;
   int asked_width_ = 0, asked_height_ = 0;
+  bool relit_ = false, exposed_ = false;
   bool panels_shown_ = true, screenshot_wanted_ = false;
   FrameWorker frames_;
   std::optional<PhotonWorker> photons_;  // last: it delivers to frames_
