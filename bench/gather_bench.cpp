@@ -155,9 +155,10 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
     IrradianceGatherParameters parameters;
     parameters.rays = gathering;
     parameters.looks = looks;
-    IrradianceGather gather(rays, maps->photons(), maps->caustics(), parameters);
+    IrradianceGather gather(rays, maps->photons(), maps->ends(), maps->caustics(), parameters);
     GatheredIrradiance light = gather.gather(points, numbers(points.size()));  // compiles kernels
-    IrradianceGather timed_gather(rays, maps->photons(), maps->caustics(), parameters);
+    IrradianceGather timed_gather(rays, maps->photons(), maps->ends(), maps->caustics(),
+                                  parameters);
     const double seconds = timed([&] { timed_gather.gather(many, numbers(many.size())); }) /
                            static_cast<double>(many.size());
     const IrradianceGather::Costs& costs = timed_gather.costs();
@@ -170,7 +171,6 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
                        {"processor_seconds_a_point", seconds},
                        {"wall_seconds",
                         {{"rays", costs.ray_seconds},
-                         {"cells", costs.cell_seconds},
                          {"estimates", costs.estimate_seconds},
                          {"looks and sums", costs.sum_seconds}}},
                        {"ends", costs.ends},

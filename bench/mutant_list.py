@@ -36,7 +36,7 @@ MUTANTS = (
     Mutant("weights of neighbouring nodes swapped", "host/light_maps/tiles.hpp",
            "within.x * (1 - within.y),", "(1 - within.x) * within.y,",
            (("light_maps", "Light maps give back light that varies linearly*"),)),
-    Mutant("estimates at nodes depend on those before", "host/render/rendering.cpp",
+    Mutant("estimates at nodes depend on those before", "host/render/map_estimators.cpp",
            "tuning.hits_per_item = 1;", "",
            (("light_maps", "What was looked at before changes no bit of a picture"),)),
 
@@ -82,9 +82,6 @@ MUTANTS = (
     Mutant("one scramble for all batches of rays", "host/trace/hemisphere_rays.cpp",
            "block(Purpose::hemisphere_direction, batch)", "block(Purpose::hemisphere_direction, 0)",
            (("gather", "gathering: the stated error*"),)),
-    Mutant("cells on both sides of a plate are one", "host/gather/end_cells.cpp",
-           "std::lround(2 * normal[axis])", "std::lround(2 * std::abs(normal[axis]))",
-           (("gather", "cells are apart*"),)),
     Mutant("a filter that tolerates all differences", "host/gather/irradiance_filter.cpp",
            "(tolerated_errors * tolerated_errors * variance)", "(1e6 * variance)",
            (("gather", "filter: steps*"),)),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "photile/scene.hpp"
@@ -71,6 +72,49 @@ void GatheredIrradiance::append(const GatheredIrradiance& other, std::size_t poi
   if (mean.first.empty()) mean.first.push_back(0);
   append_rows(mean.light, other.mean.light, first, count);
   mean.first.push_back(mean.irradiance.size());
+}
+
+void GatheredIrradiance::append(GatheredIrradiance other) {
+  batches = other.batches;
+  mean.append(std::move(other.mean));
+  batch.insert(batch.end(), other.batch.begin(), other.batch.end());
+  shared_variance.insert(shared_variance.end(), other.shared_variance.begin(),
+                         other.shared_variance.end());
+}
+
+GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance& b,
+                          std::size_t lights) {
+  GatheredIrradiance sum;
+  sum.batches = a.batches;
+  const bool sparse = !a.mean.first.empty();
+  const bool shared = !a.shared_variance.empty() || !b.shared_variance.empty();
+  const auto count = static_cast<std::size_t>(a.batches);
+  if (sparse) sum.mean.first.push_back(0);
+  std::vector<std::size_t> place(lights);
+  const std::size_t points = a.points(lights);
+  for (std::size_t point = 0; point < points; ++point) {
+    const std::size_t first = sum.mean.irradiance.size();
+    place.assign(lights, first + lights);  // of none
+    for (const GatheredIrradiance* part : {&a, &b}) {
+      for_each_estimate(part->mean, point, lights, [&](std::size_t layer, std::size_t i) {
+        if (place[layer] == first + lights) {
+          place[layer] = sum.mean.irradiance.size();
+          sum.mean.irradiance.emplace_back(0.0f);
+          sum.batch.resize(sum.batch.size() + count, 0.0f);
+          if (sparse) sum.mean.light.push_back(static_cast<std::uint16_t>(layer));
+          if (shared) sum.shared_variance.push_back(0);
+        }
+        const std::size_t to = place[layer];
+        sum.mean.irradiance[to] += part->mean.irradiance[i];
+        for (std::size_t b = 0; b < count; ++b) {
+          sum.batch[to * count + b] += part->batch[i * count + b];
+        }
+        if (!part->shared_variance.empty()) sum.shared_variance[to] += part->shared_variance[i];
+      });
+    }
+    if (sparse) sum.mean.first.push_back(sum.mean.irradiance.size());
+  }
+  return sum;
 }
 
 }  // namespace photile

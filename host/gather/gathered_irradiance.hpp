@@ -36,6 +36,12 @@ struct GatheredIrradiance {
 
   /// Appends what `other` has of one of its points.
   void append(const GatheredIrradiance& other, std::size_t point, std::size_t lights);
+  /// Appends all points of `other`, which has as many batches.
+  void append(GatheredIrradiance other);
 };
+
+/// Light of two kinds at the same points, whose batches are as many.
+GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance& b,
+                          std::size_t lights);
 
 }  // namespace photile

@@ -26,6 +26,10 @@ struct IrradianceFilterParameters {
   double tolerated_errors = 3;
 };
 
+/// In [0, 1]: whether what two places differ by may be noise.
+double likeness(const GatheredIrradiance::Total& a, const GatheredIrradiance::Total& b,
+                double tolerated_errors);
+
 /// Replaces each point's light by the mean of it and its neighbours', weighted by exp(-d^2 / (9
 /// (se_a^2 + se_b^2))), d the difference of the luminance of all lights at `layer_powers` and se
 /// its standard errors, a few times over. All lights and batches have the same weights, so that

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <string>
 #include <utility>
 
-#include "estimate/map_order.hpp"
 #include "gather/batch_sums.hpp"
-#include "gather/cell_light.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
@@ -24,10 +22,10 @@ namespace photile {
 namespace {
 
 using gathering::BatchSums;
-using gathering::CellLight;
+using gathering::EndLight;
 using gathering::IndirectLight;
 
-/// Enough to fill a device with new cells, little enough to stay in the processor's caches.
+/// Enough to fill a device with new nodes, little enough to stay in the processor's caches.
 constexpr std::size_t rays_at_a_time = std::size_t{1} << 16;
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t points_per_task = 16;
@@ -40,68 +38,101 @@ struct RunLight {
   const RayScene& rays;
   const trace::LightSampler& lamps;
   const IrradianceGatherParameters& parameters;
+  int rays_per_batch, looks_per_batch;
   const PrimaryHits& points;
   std::span<const std::uint64_t> number;
-  const IndirectLight* indirect;  ///< null where no ray looks for it
-  const CellLight& cells;
+  const IndirectLight* traced;  ///< null where no rays are
+  const EndLight& ends;
   const Estimates& caustics;  ///< of all points; empty where there are none
   double caustic_relative_variance;
 
   /// Of the run's point i, which is `point` of all.
-  void add_point(std::size_t i, std::size_t point, BatchSums& sums) const {
-    const auto batches = static_cast<std::uint32_t>(parameters.batches);
-    const std::size_t lights = rays.needs().light_count;
-    if (indirect) {
-      const int rays_per_batch = per_batch(parameters.rays, parameters.batches);
-      cells.add_point(*indirect, i, batches, static_cast<std::uint32_t>(rays_per_batch), sums);
+  void add_indirect(std::size_t i, BatchSums& sums) const {
+    if (!traced) return;
+    ends.add_point(*traced, i, static_cast<std::uint32_t>(parameters.batches),
+                   static_cast<std::uint32_t>(rays_per_batch), sums);
+  }
+  void add_direct(std::size_t i, std::size_t point, BatchSums& sums) const {
+    if (looks_per_batch > 0) {
+      look(point, sums);
+      add_seen_lamps(i, sums);
     }
-    if (parameters.looks > 0) add_direct_light(point, batches, sums);
     if (caustics.irradiance.empty()) return;
-    for_each_estimate(caustics, point, lights, [&](std::size_t layer, std::size_t estimate) {
-      sums.add_to_all(static_cast<std::uint32_t>(layer), caustics.irradiance[estimate],
-                      caustic_relative_variance);
-    });
+    for_each_estimate(caustics, point, rays.needs().light_count,
+                      [&](std::size_t layer, std::size_t estimate) {
+                        sums.add_to_all(static_cast<std::uint32_t>(layer),
+                                        caustics.irradiance[estimate], caustic_relative_variance);
+                      });
+  }
+  /// Harmonic mean, metres.
+  float distance(std::size_t i, std::size_t point) const {
+    if (!traced) return std::numeric_limits<float>::infinity();
+    double sum = 0;
+    const trace::HemisphereRays& met = traced->rays;
+    for (std::size_t end = met.first[i]; end < met.first[i + 1]; ++end) {
+      sum +=
+          1 / std::max(1e-6,
+                       double{glm::distance(points.position[point], met.ends.hits[end].position)});
+    }
+    return static_cast<float>(rays_per_batch * parameters.batches / sum);
   }
 
  private:
-  void add_direct_light(std::size_t point, std::uint32_t batches, BatchSums& sums) const {
+  void look(std::size_t point, BatchSums& sums) const {
     thread_local std::vector<trace::ReceivedLight> found;
     const trace::SurfacePoint where = trace::point_of(rays.scene(), points, point);
-    for (std::uint32_t batch = 0; batch < batches; ++batch) {
+    for (std::uint32_t batch = 0; batch < static_cast<std::uint32_t>(parameters.batches); ++batch) {
       found.clear();
       const trace::LookSamples samples(trace::RandomStream(parameters.seed, number[point], batch),
                                        0);
-      trace::find_direct_light(rays, lamps, where, -where.normal, false,
-                               per_batch(parameters.looks, parameters.batches), samples, found);
+      if (traced) {
+        trace::look_at_lamps(
+            rays, lamps, where, looks_per_batch,
+            static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch), samples,
+            found);
+      } else {
+        trace::find_direct_light(rays, lamps, where, -where.normal, false, looks_per_batch, samples,
+                                 found);
+      }
       for (const trace::ReceivedLight& light : found)
         sums.add(light.layer, batch, light.irradiance);
     }
   }
+  void add_seen_lamps(std::size_t i, BatchSums& sums) const {
+    if (!traced) return;
+    const trace::HemisphereRays& met = traced->rays;
+    for (std::size_t e = met.first_emission[i]; e < met.first_emission[i + 1]; ++e) {
+      const SeenEmission& lamp = met.ends.emission[e];
+      sums.add(lamps.layer(lamp.light), lamp.pixel / rays_per_batch % parameters.batches,
+               lamp.radiance);
+    }
+  }
 };
 
-/// The points of a run summed up, a part for each task, in their order.
-std::vector<GatheredIrradiance> sum_run(const RunLight& light, std::size_t first,
-                                        std::size_t count) {
-  std::vector<GatheredIrradiance> parts((count + points_per_task - 1) / points_per_task);
+/// Adds the points of a run, in their order.
+void add_run(const RunLight& light, std::size_t first, std::size_t count, GatheredParts& all) {
+  std::vector<GatheredParts> parts((count + points_per_task - 1) / points_per_task);
+  const SceneNeeds& needs = light.rays.needs();
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const trace::FlushDenormals flush_denormals;
-    BatchSums sums(light.rays.needs(), light.parameters.batches, !light.caustics.irradiance.empty(),
-                   parts[part]);
+    GatheredParts& own = parts[part];
+    const int batches = light.parameters.batches;
+    BatchSums indirect(needs, batches, false, own.indirect);
+    BatchSums direct(needs, batches, !light.caustics.irradiance.empty(), own.direct);
     const std::size_t last = std::min(count, (part + 1) * points_per_task);
     for (std::size_t i = part * points_per_task; i < last; ++i) {
-      light.add_point(i, first + i, sums);
-      sums.end_point();
+      light.add_indirect(i, indirect);
+      indirect.end_point();
+      light.add_direct(i, first + i, direct);
+      direct.end_point();
+      own.distance.push_back(light.distance(i, first + i));
     }
   });
-  return parts;
-}
-
-void add(const CellLight::Costs& cells, IrradianceGather::Costs& costs) {
-  costs.cell_seconds += cells.cell_seconds;
-  costs.estimate_seconds += cells.estimate_seconds;
-  costs.rays += cells.rays;
-  costs.ends += cells.ends;
-  costs.estimated += cells.estimated;
+  for (GatheredParts& part : parts) {
+    all.indirect.append(std::move(part.indirect));
+    all.direct.append(std::move(part.direct));
+    all.distance.insert(all.distance.end(), part.distance.begin(), part.distance.end());
+  }
 }
 
 void check_range(const char* what, int value, int low, int high) {
@@ -113,78 +144,89 @@ void check_range(const char* what, int value, int low, int high) {
 }  // namespace
 
 IrradianceGather::IrradianceGather(const RayScene& rays, MapEstimators& photons,
-                                   MapEstimators* caustics,
+                                   const LightMapParameters& ends, MapEstimators* caustics,
                                    const IrradianceGatherParameters& parameters)
     : rays_(rays),
-      photons_(photons),
       caustics_(caustics),
       parameters_(parameters),
-      lamps_(rays.scene()) {
+      lamps_(rays.scene()),
+      emitted_(emitted_radiance_at_unit_power(rays.scene())),
+      ends_(rays, photons, ends) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_final_gather_rays);
   check_range("looks at lamps from a point", parameters.looks, 0, limits::max_direct_rays);
   check_range("batches of rays", parameters.batches, 2, 64);
-  if (parameters.cell_side < 0 || !std::isfinite(parameters.cell_side)) {
-    throw UsageError("side of cells: give a length in metres, or 0");
+}
+
+GatheredParts IrradianceGather::gather(const PrimaryHits& points,
+                                       std::span<const std::uint64_t> number, int rays, int looks,
+                                       const Progress& progress) {
+  const EndLight::Costs before = ends_.costs();
+  const Stopwatch caustics_watch;
+  const Estimates caustics = caustics_ ? caustics_->estimate(points) : Estimates{};
+  costs_.estimate_seconds += caustics_watch.seconds();
+  costs_.estimated += caustics_ ? points.size() : 0;
+
+  const int rays_per_batch = per_batch(rays, parameters_.batches);
+  const int looks_per_batch = per_batch(looks, parameters_.batches);
+  const bool looks_too = looks_per_batch > 0;
+  const trace::HemisphereParameters hemisphere{
+      .batches = parameters_.batches,
+      .rays = rays_per_batch,
+      .seed = parameters_.seed,
+      .max_specular_depth = parameters_.max_specular_depth,
+      .lamps = looks_too ? &lamps_ : nullptr,
+      .emitted_radiance = looks_too ? &emitted_ : nullptr,
+      .rays_per_look =
+          looks_too ? static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch)
+                    : 0.0f};
+  const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
+  const std::size_t at_a_time =
+      std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));
+  GatheredParts all;
+  all.indirect.batches = all.direct.batches = parameters_.batches;
+  if (rays_.needs().many_lights()) {
+    all.indirect.mean.first.push_back(0);
+    all.direct.mean.first.push_back(0);
   }
-  if (parameters_.cell_side == 0) parameters_.cell_side = 0.5 * photons.radius();
+  for (std::size_t first = 0; first < points.size(); first += at_a_time) {
+    progress.throw_if_cancelled();
+    const std::size_t count = std::min(at_a_time, points.size() - first);
+    IndirectLight traced;
+    if (rays_per_batch > 0) {
+      const Stopwatch stopwatch;
+      trace::HemisphereRays hemispheres =
+          trace::trace_hemispheres(rays_, points, first, count, number, hemisphere);
+      costs_.ray_seconds += stopwatch.seconds();
+      const Stopwatch estimate_watch;
+      traced = ends_.look_up(std::move(hemispheres), progress);
+      costs_.estimate_seconds += estimate_watch.seconds();
+    }
+    const Stopwatch sum_watch;
+    add_run({.rays = rays_,
+             .lamps = lamps_,
+             .parameters = parameters_,
+             .rays_per_batch = rays_per_batch,
+             .looks_per_batch = looks_per_batch,
+             .points = points,
+             .number = number,
+             .traced = rays_per_batch > 0 ? &traced : nullptr,
+             .ends = ends_,
+             .caustics = caustics,
+             .caustic_relative_variance = caustics_ ? 1.0 / caustics_->neighbours() : 0.0},
+            first, count, all);
+    costs_.sum_seconds += sum_watch.seconds();
+  }
+  costs_.rays += ends_.costs().rays - before.rays;
+  costs_.ends += ends_.costs().ends - before.ends;
+  costs_.estimated += ends_.costs().estimated - before.estimated;
+  return all;
 }
 
 GatheredIrradiance IrradianceGather::gather(const PrimaryHits& points,
                                             std::span<const std::uint64_t> number,
                                             const Progress& progress) {
-  // In the order of their numbers, so that the first end in a cell is that of lowest number.
-  std::vector<std::uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return number[a] < number[b]; });
-  const PrimaryHits ordered = estimate::reordered(points, 0, order);
-  std::vector<std::uint64_t> ordered_number;
-  for (const std::uint32_t point : order) ordered_number.push_back(number[point]);
-
-  const Stopwatch caustics_watch;
-  const Estimates caustics = caustics_ ? caustics_->estimate(ordered) : Estimates{};
-  costs_.estimate_seconds += caustics_watch.seconds();
-  costs_.estimated += caustics_ ? ordered.size() : 0;
-
-  const int rays_per_batch = per_batch(parameters_.rays, parameters_.batches);
-  const trace::HemisphereParameters hemisphere{parameters_.batches, rays_per_batch,
-                                               parameters_.seed, parameters_.max_specular_depth};
-  CellLight cells(rays_, photons_, parameters_.cell_side);
-  const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
-  const std::size_t at_a_time =
-      std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));
-  std::vector<GatheredIrradiance> parts;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> place_of(points.size());  // part, in it
-  for (std::size_t first = 0; first < ordered.size(); first += at_a_time) {
-    progress.throw_if_cancelled();
-    const std::size_t count = std::min(at_a_time, ordered.size() - first);
-    IndirectLight indirect;
-    if (rays_per_batch > 0) {
-      const Stopwatch stopwatch;
-      trace::HemisphereRays traced =
-          trace::trace_hemispheres(rays_, ordered, first, count, ordered_number, hemisphere);
-      costs_.ray_seconds += stopwatch.seconds();
-      indirect = cells.look_up(std::move(traced), ordered, first);
-    }
-    const Stopwatch sum_watch;
-    const RunLight light{rays_,   lamps_,         parameters_,
-                         ordered, ordered_number, rays_per_batch > 0 ? &indirect : nullptr,
-                         cells,   caustics,       caustics_ ? 1.0 / caustics_->neighbours() : 0.0};
-    for (std::size_t i = 0; i < count; ++i) {
-      place_of[order[first + i]] = {static_cast<std::uint32_t>(parts.size() + i / points_per_task),
-                                    static_cast<std::uint32_t>(i % points_per_task)};
-    }
-    for (GatheredIrradiance& part : sum_run(light, first, count)) parts.push_back(std::move(part));
-    costs_.sum_seconds += sum_watch.seconds();
-  }
-  add(cells.costs(), costs_);
-  GatheredIrradiance result;
-  result.batches = parameters_.batches;
-  if (rays_.needs().many_lights()) result.mean.first.push_back(0);
-  for (const auto& [part, point] : place_of) {
-    result.append(parts[part], point, rays_.needs().light_count);
-  }
-  return result;
+  const GatheredParts parts = gather(points, number, parameters_.rays, parameters_.looks, progress);
+  return sum_of(parts.indirect, parts.direct, rays_.needs().light_count);
 }
 
 }  // namespace photile

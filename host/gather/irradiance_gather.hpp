@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "gather/end_light.hpp"
 #include "gather/gathered_irradiance.hpp"
 #include "photile/defaults.hpp"
 #include "photile/progress.hpp"
@@ -23,43 +24,55 @@ struct IrradianceGatherParameters {
   /// Rays and looks are shared by so many independent batches, rounded up to a whole number in
   /// each: their scatter is the error.
   int batches = 8;
-  /// Of cells whose ends share an estimate, metres; 0 = half of the photon maps' radius.
-  double cell_side = 0;
   std::uint64_t seed = defaults::seed;
   int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
 };
 
+/// Light at points in two parts, whose noise differs.
+struct GatheredParts {
+  GatheredIrradiance indirect;  ///< from other surfaces
+  GatheredIrradiance direct;    ///< straight from lamps, and caustics
+  /// Per point: harmonic mean of the distances to what its rays met, metres; infinite where they
+  /// met nothing.
+  std::vector<float> distance;
+};
+
 /// Gathers the light of each layer at points, in three parts that together are all light
-/// (docs/irradiance-gathering.md): straight from lamps, by looks at them; over mirrors or through
-/// glass that bends it and nothing else, by the photons that brought it; all other, by rays with
-/// the density of the cosine that look the photons of all light up where they end.
+/// (docs/irradiance-gathering.md): straight from lamps, by looks at them and by the rays that meet
+/// them; over mirrors or through glass that bends it and nothing else, by the photons that brought
+/// it; all other, by rays with the density of the cosine that read the photons of all light where
+/// they end.
 ///
-/// Ends that lie close together share one estimate: that of the end of lowest number of point, then
-/// lowest number of ray, among those of all points gathered at once. Ends on surfaces whose lobe
-/// reflects much have estimates of their own; those of weaker lobes count as if they reflected the
-/// same light diffusely.
+/// Ends read light maps whose nodes photon estimates value: what a point gets depends on itself and
+/// its number, and not on the points beside it. Ends on surfaces whose lobe reflects much have
+/// estimates of their own; those of weaker lobes count as if they reflected the same light
+/// diffusely.
 class IrradianceGather {
  public:
   /// References are kept.
-  ///   photons    of all light; k of about 100 serves
+  ///   photons    of all light; k of about 100 serves. Estimates of hits must not depend on the
+  ///              hits beside them.
+  ///   ends       light maps for these photons
   ///   caustics   of those that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
-  IrradianceGather(const RayScene& rays, MapEstimators& photons, MapEstimators* caustics,
-                   const IrradianceGatherParameters& parameters);
+  IrradianceGather(const RayScene& rays, MapEstimators& photons, const LightMapParameters& ends,
+                   MapEstimators* caustics, const IrradianceGatherParameters& parameters);
 
-  /// Irradiance at points, in their order. Depends on the set of points and their numbers, not on
-  /// their order or on threads.
+  /// Irradiance at points, in their order. What a point gets depends on itself and its number.
   ///   points   position, sided_triangle, diffuse_albedo and, in glossy scenes, outgoing and lobe
-  ///   number   of each point, below 2^48, all different: the same number and point have the same
-  ///            rays
+  ///   number   of each point, below 2^48: the same number and point have the same rays
+  ///   rays, looks   in place of the parameters'
   /// Errors: as DeviceEstimators; Interrupted, when `progress` says so.
+  GatheredParts gather(const PrimaryHits& points, std::span<const std::uint64_t> number, int rays,
+                       int looks, const Progress& progress = Progress::none());
+
+  /// All light together.
   GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
                             const Progress& progress = Progress::none());
 
   /// What all calls took so far.
   struct Costs {
     double ray_seconds = 0;       ///< tracing rays to surfaces
-    double cell_seconds = 0;      ///< finding the cells of their ends
     double estimate_seconds = 0;  ///< photons, at ends and at points
     double sum_seconds = 0;       ///< looks at lamps, and sums
     std::uint64_t rays = 0;       ///< to surfaces; those along mirrors and glass included
@@ -70,10 +83,11 @@ class IrradianceGather {
 
  private:
   const RayScene& rays_;
-  MapEstimators& photons_;
   MapEstimators* caustics_;
   IrradianceGatherParameters parameters_;
   trace::LightSampler lamps_;
+  std::vector<glm::vec3> emitted_;  ///< per light
+  gathering::EndLight ends_;
   Costs costs_;
 };
 

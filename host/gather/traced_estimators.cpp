@@ -37,11 +37,14 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
                 scene, landed_on(scene, traced.photons), radius, plan.used().angle_degrees))
           : nullptr;
   const auto estimators_of = [&](const Photons& photons) {
+    std::vector<EstimateParameters> levels = plan.estimates(0, surface);
+    estimate_each_alone(levels, devices.front());
     return MapEstimators(
         devices, scene,
-        build_maps_on_each(devices, scene, photons, groups, plan.maps(0, radius), progress),
-        plan.estimates(0, surface), layer_powers_);
+        build_maps_on_each(devices, scene, photons, groups, plan.maps(0, radius), progress), levels,
+        layer_powers_);
   };
+  ends_ = plan.ends(0, radius, traced.photons, layer_powers_);
   photons_.emplace(estimators_of(traced.photons));
   if (traced.caustics.size() > 0) caustics_.emplace(estimators_of(traced.caustics));
 }

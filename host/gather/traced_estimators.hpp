@@ -24,10 +24,13 @@ class TracedEstimators {
 
   MapEstimators& photons() { return *photons_; }
   MapEstimators* caustics() { return caustics_ ? &*caustics_ : nullptr; }  ///< null without any
+  /// Of light maps where rays end.
+  const LightMapParameters& ends() const { return ends_; }
   std::span<const double> layer_powers() const { return layer_powers_; }
 
  private:
   std::vector<double> layer_powers_;
+  LightMapParameters ends_;
   std::optional<MapEstimators> photons_, caustics_;
 };
 

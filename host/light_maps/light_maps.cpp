@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "light_maps/charts.hpp"
-#include "light_maps/node_points.hpp"
+#include "light_maps/node_batch.hpp"
 #include "light_maps/tiles.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -19,18 +19,13 @@
 namespace photile {
 namespace light_maps {
 
-struct NodePlaceHash {
-  std::size_t operator()(const NodePlace& node) const {
-    std::uint64_t hash = (std::uint64_t{node.x} << 32 | node.y) * 0x9E3779B97F4A7C15ull;
-    hash = (hash ^ hash >> 32 ^ node.chart) * 0xD6E8FEB86659FD93ull;
-    return static_cast<std::size_t>(hash ^ hash >> 32);
-  }
-};
-
 namespace {
 
 /// Hits that one task looks up: large enough to make its cost vanish, small enough to share work.
 constexpr std::size_t hits_per_lookup_task = 1024;
+
+/// Differences of fewer standard errors may be noise.
+constexpr double doubted_errors = 3;
 
 /// Places of the finest lattice are counted in 32 bits.
 int levels_that_fit(const Charts& charts, int wanted) {
@@ -74,8 +69,8 @@ std::string_view name_of(LightMapMode mode) {
 
 using light_maps::Charts;
 using light_maps::MissingCell;
+using light_maps::NodeIndex;
 using light_maps::NodePlace;
-using light_maps::NodePlaceHash;
 using light_maps::Tile;
 using light_maps::Tiles;
 
@@ -99,8 +94,9 @@ struct LightMaps::Impl {
   /// Takes numbers back.
   void forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
               std::span<const NodePlace> added);
-  void value(std::span<const NodePlace> nodes, NodeSource& source);
-  bool differ(const std::array<std::uint32_t, 4>& nodes) const;
+  void value(std::span<const NodePlace> nodes, NodeSource& source, const Progress& progress);
+  bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
+  bool differ_by_photons(double high, double low) const;
 
   const Scene& scene;
   const SceneNeeds needs;
@@ -108,9 +104,10 @@ struct LightMaps::Impl {
   Charts charts;
   const int levels;
   Tiles tiles;
-  tsl::robin_map<NodePlace, std::uint32_t, NodePlaceHash> node_at;
-  Estimates values;             ///< of nodes
-  std::vector<float> together;  ///< per node: luminance of all lights at their powers
+  NodeIndex node_at;
+  Estimates values;                    ///< of nodes
+  std::vector<float> together;         ///< per node: luminance of all lights at their powers
+  std::vector<float> error, distance;  ///< per node, where the source tells: see NodeValues
   std::uint64_t cells = 0;
   double chart_seconds = 0;
 };
@@ -179,10 +176,14 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
   }
 }
 
-void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source) {
+void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source,
+                            const Progress& progress) {
   if (nodes.empty()) return;
-  Estimates estimates =
-      source.irradiance(light_maps::node_points(scene, charts, nodes, levels, needs.glossy));
+  NodeBatch batch = light_maps::node_batch(scene, charts, nodes, levels, needs.glossy, node_at,
+                                           source.surroundings());
+  batch.first = static_cast<std::uint32_t>(together.size());
+  NodeValues valued = source.value(batch, progress);
+  Estimates& estimates = valued.irradiance;
   estimates.radiance.clear();
   const std::size_t lights = parameters.powers.size();
   for (std::size_t node = 0; node < nodes.size(); ++node) {
@@ -199,16 +200,27 @@ void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source
     }
     together.push_back(static_cast<float>(sum));
   }
+  error.insert(error.end(), valued.error.begin(), valued.error.end());
+  distance.insert(distance.end(), valued.distance.begin(), valued.distance.end());
   values.append(std::move(estimates));
 }
 
 /// By more than contrast and noise allow.
-bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes) const {
-  double low = together[nodes[0]], high = low;
-  for (const std::uint32_t node : nodes) {
-    low = std::min(low, double{together[node]});
-    high = std::max(high, double{together[node]});
-  }
+bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const {
+  const auto [low, high] = std::minmax_element(
+      nodes.begin(), nodes.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return together[a] < together[b]; });
+  const double least = together[*low], most = together[*high];
+  if (error.empty()) return differ_by_photons(most, least);
+  const double noise = std::hypot(error[*low], error[*high]);
+  if (most - least > most * parameters.contrast + light_maps::doubted_errors * noise) return true;
+  double nearest = distance[nodes[0]];
+  for (const std::uint32_t node : nodes) nearest = std::min(nearest, double{distance[node]});
+  return spacing > parameters.near * nearest &&
+         most - least > 0.25 * most * parameters.contrast + noise;
+}
+
+bool LightMaps::Impl::differ_by_photons(double high, double low) const {
   const double full =
       parameters.sparse_irradiance > 0 ? std::min(1.0, high / parameters.sparse_irradiance) : 1.0;
   const double noise = 1 / std::sqrt(parameters.neighbours * full);
@@ -239,7 +251,7 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     std::vector<NodePlace> added;
     impl_->number_corners(cells, added);
     try {
-      impl_->value(added, source);
+      impl_->value(added, source, progress);
     } catch (...) {
       impl_->forget(cells, added);
       throw;
@@ -249,7 +261,9 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
       const std::uint32_t first = (cell >> 3) * 9 + (cell & 7);
       const auto& node = tiles[tile].node;
       if (static_cast<int>(tiles[tile].level) + 1 < impl_->levels &&
-          impl_->differ({node[first], node[first + 1], node[first + 9], node[first + 10]})) {
+          impl_->differ(
+              {node[first], node[first + 1], node[first + 9], node[first + 10]},
+              std::ldexp(impl_->charts.spacing(), -static_cast<int>(tiles[tile].level)))) {
         tiles.split(tile, cell);
       }
     }

@@ -11,10 +11,11 @@ KeptMaps::KeptMaps(const Scene& scene, std::span<Device> devices,
                    const RenderParameters& parameters, PreparedPhotons* prepared,
                    const KeepPhotons& keep, Progress& progress)
     : scene_(scene), rendering_(scene_, devices, parameters, progress) {
-  if (rendering_.plan().gathers() && (prepared || keep)) {
+  const RenderPlan& plan = rendering_.plan();
+  if ((plan.gathers() || plan.gathers_at_nodes()) && (prepared || keep)) {
     throw UsageError(
-        "final gathering takes caustics from photons of their own, which saved maps do not hold: "
-        "trace the photons anew, or leave it out");
+        "gathering takes caustics from photons of their own, which saved maps do not hold: trace "
+        "the photons anew, or leave it out");
   }
   if (const int passes = rendering_.plan().passes(); passes > 1) {
     throw SettingError(

@@ -108,8 +108,12 @@ LightMapParameters light_map_parameters(const Photons& photons, int neighbours, 
 }
 
 LightMapEstimates::LightMapEstimates(const Scene& scene, const LightMapParameters& parameters,
-                                     MapEstimators& photons)
-    : scene_(scene), needs_(needs_of(scene)), photons_(photons), maps_(scene, parameters) {}
+                                     MapEstimators& photons, NodeSource* nodes)
+    : scene_(scene),
+      needs_(needs_of(scene)),
+      photons_(photons),
+      source_(nodes ? nodes : this),
+      maps_(scene, parameters) {}
 
 Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress) {
   std::vector<std::uint32_t> served, alone, place(hits.size(), none);
@@ -123,9 +127,9 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   }
   const Stopwatch stopwatch;
   if (alone.empty()) {
-    maps_.fill(hits, *this, progress);
+    maps_.fill(hits, *source_, progress);
   } else {
-    maps_.fill(estimate::reordered(hits, 0, served), *this, progress);
+    maps_.fill(estimate::reordered(hits, 0, served), *source_, progress);
   }
   fill_time_ += stopwatch.taken();
   hits_alone_ += alone.size();

@@ -21,12 +21,13 @@ LightMapParameters light_map_parameters(const Photons& photons, int neighbours, 
                                         double angle_degrees, double detail,
                                         std::span<const double> powers);
 
-class LightMapEstimates : private NodeSource {
+class LightMapEstimates : private PointSource {
  public:
   /// References are kept.
   ///   photons   whose estimates of hits do not depend on the hits beside them
+  ///   nodes     what values nodes; null: photons do
   LightMapEstimates(const Scene& scene, const LightMapParameters& parameters,
-                    MapEstimators& photons);
+                    MapEstimators& photons, NodeSource* nodes = nullptr);
 
   /// Of hits in any order. Hits whose surface has a specular lobe or a normal map are estimated
   /// where they are. Errors: as DeviceEstimators; Interrupted.
@@ -34,7 +35,7 @@ class LightMapEstimates : private NodeSource {
 
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
-  NodeSource& source() { return *this; }
+  NodeSource& source() { return *source_; }
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
@@ -50,6 +51,7 @@ class LightMapEstimates : private NodeSource {
   const Scene& scene_;
   const SceneNeeds needs_;
   MapEstimators& photons_;
+  NodeSource* source_;
   LightMaps maps_;
   std::uint64_t hits_alone_ = 0;
   TimeTaken fill_time_;

@@ -7,6 +7,15 @@
 
 namespace photile {
 
+void estimate_each_alone(std::span<EstimateParameters> levels, const Device& device) {
+  for (EstimateParameters& level : levels) {
+    EstimateTuning tuning = level.tuning.value_or(shipped_tuning(device.info()));
+    tuning.strategy = EstimateStrategy::select;
+    tuning.hits_per_item = 1;
+    level.tuning = tuning;
+  }
+}
+
 MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene,
                              std::vector<PhotonMaps> maps,
                              std::span<const EstimateParameters> levels,

@@ -8,6 +8,7 @@
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
 #include "render/setting.hpp"
+#include "trace/random_stream.hpp"
 
 namespace photile {
 namespace {
@@ -21,7 +22,7 @@ PhotonTracerParameters all_photons(const RenderParameters& used) {
           .max_path_length = used.photons.max_path_length,
           .roulette_start = used.photons.roulette_start,
           .store_direct = used.direct_rays == 0 || gathers,
-          .keep_caustics = gathers};
+          .keep_caustics = gathers || used.light_map_rays > 0};
 }
 
 }  // namespace
@@ -43,6 +44,7 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
     const bool at_hits = gathers() || asked.maps == MapMode::naive;
     used_.light_maps = at_hits ? LightMapMode::off : LightMapMode::on;
   }
+  if (!reads_light_maps()) used_.light_map_rays = 0;
   // Beyond the scene there is nothing to find.
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
   if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
@@ -102,6 +104,20 @@ LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const P
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
   return light_map_parameters(photons, estimate.neighbours, estimate.radius, used_.angle_degrees,
                               used_.light_map_detail, powers);
+}
+
+LightMapParameters RenderPlan::ends(int pass, double first_radius, const Photons& photons,
+                                    std::span<const double> powers) const {
+  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
+  return light_map_parameters(photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0,
+                              powers);
+}
+
+IrradianceGatherParameters RenderPlan::node_gathering(int pass) const {
+  return {.rays = used_.light_map_rays,
+          .looks = used_.light_map_rays,
+          .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(pass)),
+          .max_specular_depth = used_.max_specular_depth};
 }
 
 PrimaryHitParameters RenderPlan::hits(const Film& film, int pass) const {

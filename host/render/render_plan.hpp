@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "gather/irradiance_gather.hpp"
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
@@ -30,6 +31,7 @@ class RenderPlan {
   int passes() const { return used_.passes; }
   bool gathers() const { return used_.final_gather_rays > 0; }
   bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
+  bool gathers_at_nodes() const { return used_.light_map_rays > 0; }
   bool clips_areas() const { return used_.area == AreaMode::clipped; }
 
   /// Of this pass, whose paths follow those of the passes before.
@@ -52,6 +54,12 @@ class RenderPlan {
   ///   powers   per layer
   LightMapParameters light_maps(int pass, double first_radius, const Photons& photons,
                                 std::span<const double> powers) const;
+
+  /// Of light maps where gathering rays end.
+  LightMapParameters ends(int pass, double first_radius, const Photons& photons,
+                          std::span<const double> powers) const;
+  /// At nodes of light maps.
+  IrradianceGatherParameters node_gathering(int pass) const;
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.

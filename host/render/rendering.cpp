@@ -19,15 +19,6 @@ std::int64_t hits_per_batch(int neighbours) {
          std::max(defaults::neighbours, neighbours);
 }
 
-/// Where nodes of light maps are estimated, which must not depend on each other: work-items that
-/// estimate several hits make use of one for the next, whose sums then have another order.
-EstimateTuning each_alone(const std::optional<EstimateTuning>& given, const Device& device) {
-  EstimateTuning tuning = given.value_or(shipped_tuning(device.info()));
-  tuning.strategy = EstimateStrategy::select;
-  tuning.hits_per_item = 1;
-  return tuning;
-}
-
 /// Least number of batches of a picture that somebody watches.
 constexpr int watched_batches = 16;
 
@@ -61,16 +52,14 @@ void Rendering::start(const Film& film) {
 void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {
   frames_.reset();
   light_maps_.reset();
+  gathered_nodes_.reset();
+  node_gather_.reset();
   photons_.reset();
   caustics_.reset();
   Maps maps = trace_and_build(pass, prepared, keep);
   const Stopwatch stopwatch;
   std::vector<EstimateParameters> levels = plan_.estimates(pass, surface_);
-  if (plan_.reads_light_maps()) {
-    for (EstimateParameters& level : levels) {
-      level.tuning = each_alone(level.tuning, devices_.front());
-    }
-  }
+  if (plan_.reads_light_maps()) estimate_each_alone(levels, devices_.front());
   const auto estimators_of = [&](std::vector<PhotonMaps>& built) {
     return MapEstimators(devices_, scene_, std::move(built), levels, layer_powers_);
   };
@@ -107,6 +96,8 @@ void Rendering::release() {
   const Stopwatch stopwatch;
   frames_.reset();
   light_maps_.reset();
+  gathered_nodes_.reset();
+  node_gather_.reset();
   photons_.reset();
   caustics_.reset();
   surface_.reset();
@@ -153,6 +144,7 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
   }
   if (plan_.reads_light_maps()) {
     light_map_parameters_ = plan_.light_maps(pass, radius_, traced.photons, layer_powers_);
+    end_parameters_ = plan_.ends(pass, radius_, traced.photons, layer_powers_);
   }
   if (keep) {
     PreparedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
@@ -268,7 +260,17 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
 }
 
 LightMapEstimates& Rendering::light_maps() {
-  if (!light_maps_) light_maps_.emplace(scene_, light_map_parameters_, *photons_);
+  if (light_maps_) return *light_maps_;
+  if (plan_.gathers_at_nodes()) {
+    node_gather_.emplace(rays_, *photons_, end_parameters_, caustics_ ? &*caustics_ : nullptr,
+                         plan_.node_gathering(pass_));
+    constexpr double inset_of_spacing = 1.0 / 512;
+    gathered_nodes_.emplace(scene_, *node_gather_, layer_powers_,
+                            rays_of_nodes(plan_.used().light_map_rays,
+                                          inset_of_spacing * light_map_parameters_.spacing));
+  }
+  light_maps_.emplace(scene_, light_map_parameters_, *photons_,
+                      gathered_nodes_ ? &*gathered_nodes_ : nullptr);
   return *light_maps_;
 }
 

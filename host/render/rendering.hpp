@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "gather/gathered_nodes.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
@@ -97,7 +98,9 @@ class Rendering {
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
   const std::vector<double> layer_powers_;
   std::optional<MapEstimators> photons_, caustics_;  ///< of the pass
-  LightMapParameters light_map_parameters_;
+  LightMapParameters light_map_parameters_, end_parameters_;
+  std::optional<IrradianceGather> node_gather_;  ///< of the pass, where nodes gather
+  std::optional<GatheredNodes> gathered_nodes_;
   std::optional<LightMapEstimates> light_maps_;  ///< of the pass, made when they are first read
   std::optional<LightMapFrames> frames_;         ///< of these light maps
   int pass_ = 0;

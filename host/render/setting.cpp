@@ -199,6 +199,10 @@ std::vector<Setting> estimate_rows() {
                           "matt surfaces are read between nodes; auto: but where rays gather, and "
                           "not with naive maps; off: an estimate at each hit",
                           not_kept),
+      row<&P::light_map_rays>("light_map_rays", "light-map-rays", "light maps",
+                              WholeNumbers{1, limits::max_final_gather_rays},
+                              "rays, and looks at lamps, by which nodes of light maps gather light",
+                              not_kept, "the photon estimate values nodes"),
       row<&P::light_map_detail>("light_map_detail", "light-map-detail", "light maps",
                                 PositiveNumbers{},
                                 "between the finest nodes of light maps, at most", not_kept,
@@ -262,6 +266,9 @@ void check(const RenderParameters& parameters) {
         parameters.final_gather_rays > 0) {
       throw SettingError(setting,
                          "light maps hold the photon estimate, which rays that gather replace");
+    }
+    if (setting.name == "light_map_rays" && parameters.direct_rays > 0) {
+      throw SettingError(setting, "light maps hold direct light, which rays at hits replace");
     }
     if (setting.name == "structure" && parameters.structure == MapStructure::kdtree_global &&
         parameters.maps == MapMode::naive) {

@@ -1,5 +1,7 @@
 #include "trace/direct_light.hpp"
 
+#include <glm/gtc/constants.hpp>
+
 #include "trace/opaque_bsdf.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/receiver.hpp"
@@ -118,6 +120,25 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
     const LookSamples::Look look = samples.look(number);
     light.look_at_lamp(look);
     light.look_around(look);
+  }
+}
+
+void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
+                   int count, float directions, const LookSamples& samples,
+                   std::vector<ReceivedLight>& found) {
+  const float share = 1.0f / static_cast<float>(count);
+  for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {
+    const LookSamples::Look look = samples.look(number);
+    const auto lamp = lamps.sample(point.position, look.lamp, look.place);
+    if (!lamp) continue;
+    const float cosine = glm::dot(lamp->direction, point.normal);
+    if (!(cosine > 0.0f)) continue;
+    glm::vec3 arrives = share * cosine * lamp->received;
+    if (lamp->density > 0.0f) {
+      arrives *= power_heuristic(lamp->density, directions * cosine * glm::one_over_pi<float>());
+    }
+    arrives *= transmittance(rays, point.origin_towards(lamp->direction), lamp->target);
+    if (arrives != glm::vec3(0.0f)) found.push_back({lamp->layer, arrives, glm::vec3(0.0f)});
   }
 }
 

@@ -52,4 +52,11 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
                        const glm::vec3& direction, bool lobe_only, int count,
                        const LookSamples& samples, std::vector<ReceivedLight>& found);
 
+/// The part of the irradiance that looks at lamps find where directions with the density of the
+/// cosine are followed as well: both together are what find_direct_light finds.
+///   directions   followed for each look; what both would find is weighed
+void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
+                   int count, float directions, const LookSamples& samples,
+                   std::vector<ReceivedLight>& found);
+
 }  // namespace photile::trace

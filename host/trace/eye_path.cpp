@@ -51,7 +51,8 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
   };
   for (int depth = 0;; ++depth) {
     const bool seen_directly = setup.reflections_only && straight;
-    const bool sees_lamps = setup.emitted_radiance != nullptr && !seen_directly;
+    const bool sees_lamps = setup.emitted_radiance != nullptr && !seen_directly &&
+                            (straight || other == nullptr || !other->only);
     ++record.rays;
     const auto met =
         next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, holes);

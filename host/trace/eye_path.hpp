@@ -82,7 +82,8 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
 /// panes.
 struct LampTechnique {
   const LightSampler& lamps;
-  float density;  ///< of the ray's direction, per steradian
+  float density;      ///< of the ray's direction, per steradian
+  bool only = false;  ///< lamps that it does not find count nothing
 };
 
 /// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
+#include <optional>
 
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_point.hpp"
@@ -18,7 +19,7 @@ constexpr std::size_t points_per_task = 16;
 
 struct TaskEnds {
   EyeRecord ends;
-  std::vector<std::size_t> count;  ///< of each point
+  std::vector<std::size_t> count, emission_count;  ///< of each point
 };
 
 /// All rays of a point.
@@ -39,10 +40,16 @@ void trace_point(const EyeSetup& setup, const HemisphereParameters& parameters,
           frame.to_world(sample_cosine_hemisphere(std::min(place.x, 0x1.fffffep-1f), place.y));
       // A stream for each, apart from the point's own.
       const RandomStream random(parameters.seed, number, batch * rays + i + 1);
+      std::optional<LampTechnique> looks;
+      if (parameters.lamps) {
+        const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
+        looks.emplace(*parameters.lamps,
+                      parameters.rays_per_look * cosine * glm::one_over_pi<float>(), true);
+      }
       follow_eye_ray(setup,
                      {point.origin_towards(direction), direction, throughput,
                       (run_point * batches + batch) * rays + i},
-                     random, ends);
+                     random, ends, looks ? &*looks : nullptr);
     }
   }
 }
@@ -50,10 +57,17 @@ void trace_point(const EyeSetup& setup, const HemisphereParameters& parameters,
 HemisphereRays join(std::vector<TaskEnds> tasks) {
   HemisphereRays all;
   all.first.push_back(0);
+  all.first_emission.push_back(0);
   std::vector<std::size_t> first_of;
+  const auto extend = [](std::vector<std::size_t>& first, const std::vector<std::size_t>& counts) {
+    for (const std::size_t count : counts) first.push_back(first.back() + count);
+  };
   for (const TaskEnds& task : tasks) {
     first_of.push_back(all.first.back());
-    for (const std::size_t count : task.count) all.first.push_back(all.first.back() + count);
+    extend(all.first, task.count);
+    extend(all.first_emission, task.emission_count);
+    const std::vector<SeenEmission>& seen = task.ends.emission;
+    all.ends.emission.insert(all.ends.emission.end(), seen.begin(), seen.end());
     all.ends.rays += task.ends.rays;
   }
   all.ends.hits.resize(all.first.back());
@@ -80,8 +94,8 @@ HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points
                        .film = nullptr,
                        .eye = {},
                        .parameters = &specular,
-                       .emitted_radiance = nullptr,
-                       .distant = nullptr,
+                       .emitted_radiance = parameters.emitted_radiance,
+                       .distant = parameters.lamps ? &parameters.lamps->distant() : nullptr,
                        .direct = nullptr};
   std::vector<TaskEnds> tasks((count + points_per_task - 1) / points_per_task);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
@@ -90,9 +104,11 @@ HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points
     const std::size_t last = std::min(count, (task + 1) * points_per_task);
     for (std::size_t i = task * points_per_task; i < last; ++i) {
       const std::size_t before = found.ends.hits.size();
+      const std::size_t emission_before = found.ends.emission.size();
       trace_point(setup, parameters, point_of(rays.scene(), points, first + i), number[first + i],
                   static_cast<std::uint32_t>(i), found.ends);
       found.count.push_back(found.ends.hits.size() - before);
+      found.emission_count.push_back(found.ends.emission.size() - emission_before);
     }
   });
   return join(std::move(tasks));

@@ -18,6 +18,10 @@ struct HemisphereParameters {
   int rays;     ///< of a batch: spread evenly (sobol.hpp)
   std::uint64_t seed;
   int max_specular_depth;  ///< mirrors and glass that a ray follows
+  /// Rays also see the lamps that they meet at once or through panes; null: they see none.
+  const LightSampler* lamps = nullptr;
+  const std::vector<glm::vec3>* emitted_radiance = nullptr;  ///< per light, where lamps are seen
+  float rays_per_look = 0;  ///< looks at lamps find the same: by the power heuristic
 };
 
 /// Rays of a run of points that end on an opaque surface, in the order point, batch, ray.
@@ -25,13 +29,16 @@ struct HemisphereRays {
   /// Where they end. `pixel` is the ray: (point of the run x batches + batch) x rays + ray.
   /// `throughput` is such that throughput x radiance, summed over a point's batch, is an unbiased
   /// estimate of the irradiance that other surfaces send there straight or over mirrors and glass.
+  /// `emission` is the same of lamps, weighed.
   EyeRecord ends;
-  /// Ends of the run's point i are [first[i], first[i + 1]).
-  std::vector<std::size_t> first;
+  /// Ends of the run's point i are [first[i], first[i + 1]), and lamps that its rays saw
+  /// [first_emission[i], first_emission[i + 1]).
+  std::vector<std::size_t> first, first_emission;
 };
 
 /// Traces rays with the density of the cosine to the geometric normal, through holes, mirrors and
-/// glass to the next opaque surface. Lamps are not seen: their light is direct light, or a caustic.
+/// glass to the next opaque surface. Lamps in mirrors or behind glass that bends are not seen:
+/// their light is a caustic.
 /// Depends on the scene, each point, its number and the parameters only.
 ///   number   of each point, below 2^48: the same number and point give the same rays
 HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points, std::size_t first,

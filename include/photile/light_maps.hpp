@@ -21,6 +21,7 @@ namespace defaults {
 inline constexpr double light_map_spacing = 0.04;   ///< metres, of the coarsest nodes
 inline constexpr int light_map_levels = 4;          ///< the finest is an eighth
 inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
+inline constexpr double light_map_near = 0.5;       ///< cells larger than this part of the distance
 }  // namespace defaults
 
 namespace limits {
@@ -44,13 +45,58 @@ class Charts;  // host/light_maps/charts.hpp
 class Tiles;   // host/light_maps/tiles.hpp
 }  // namespace light_maps
 
-/// What the nodes of light maps get their light from.
+/// Nodes of light maps that are valued together.
+struct NodeBatch {
+  /// Where they are. Beyond the first `nodes` points follow places of the coarsest lattice that lie
+  /// around its nodes: see NodeSource::surroundings.
+  PrimaryHits points;
+  std::size_t nodes = 0;
+  std::vector<std::uint64_t> number;  ///< of each point: by its place alone, below 2^48
+  /// Of each node: those of coarser levels between which it lies, two or four, one of two twice.
+  /// All `none` at the coarsest level.
+  std::vector<std::array<std::uint32_t, 4>> parents;
+  std::uint32_t first = 0;  ///< number of the first node among all that are valued
+  /// Point i of the coarsest lattice is linked to neighbour[first_neighbour[i] ..
+  /// first_neighbour[i + 1]), others to none. Empty without surroundings.
+  std::vector<std::uint32_t> first_neighbour, neighbour;
+};
+
+/// The light of a batch's nodes.
+struct NodeValues {
+  Estimates irradiance;  ///< each light at power 1; radiance is not looked at
+  /// Per node: standard error of the luminance of all lights at their powers; empty where it is
+  /// that of k photons.
+  std::vector<float> error;
+  /// Per node: mean distance of what sends light there, metres; empty with `error`.
+  std::vector<float> distance;
+};
+
+/// What the nodes of light maps get their light from. What a node gets must depend on its place
+/// alone.
 class NodeSource {
  public:
   virtual ~NodeSource() = default;
+
+  /// Values of the coarsest level may depend on places around the node in its chart.
+  struct Surroundings {
+    int window = 0;  ///< places on each side that a place is linked to
+    int rounds = 0;  ///< links from one place to the next
+  };
+  virtual Surroundings surroundings() const { return {}; }
+
+  virtual NodeValues value(const NodeBatch& batch, const Progress& progress) = 0;
+};
+
+/// Values each node by what is known at its point.
+class PointSource : public NodeSource {
+ public:
   /// Irradiance at points of the surface, each light at power 1; radiance is not looked at. What a
   /// point gets must not depend on the others, or on their order.
   virtual Estimates irradiance(const PrimaryHits& nodes) = 0;
+
+  NodeValues value(const NodeBatch& batch, const Progress&) final {
+    return {irradiance(batch.points), {}, {}};
+  }
 };
 
 struct LightMapParameters {
@@ -59,6 +105,9 @@ struct LightMapParameters {
   double angle_degrees = defaults::group_angle_degrees;  ///< of neighbours on a sheet
   /// Cells are split where their corners differ by this part of the brightest, and by its noise.
   double contrast = defaults::light_map_contrast;
+  /// Where the source knows how far away the surroundings are: cells larger than this part of it
+  /// are split at a quarter of the contrast.
+  double near = defaults::light_map_near;
   double neighbours = defaults::neighbours;  ///< noise is 1 / sqrt of so many photons ...
   /// ... and of fewer below this irradiance at the lights' powers, where not so many are found.
   double sparse_irradiance = 0;

@@ -35,7 +35,8 @@ class GatheringScene {
       : scene(std::move(taken)), rays(scene), estimators(rays, {&device(), 1}, parameters) {}
 
   IrradianceGather gather(const IrradianceGatherParameters& parameters) {
-    return IrradianceGather(rays, estimators.photons(), estimators.caustics(), parameters);
+    return IrradianceGather(rays, estimators.photons(), estimators.ends(), estimators.caustics(),
+                            parameters);
   }
   GatheredIrradiance at(const std::vector<Sensor>& sensors,
                         const IrradianceGatherParameters& parameters = {}) {

@@ -316,7 +316,6 @@ TEST_CASE("gathering: parameters out of range are refused") {
   refused({.rays = 1'000'000});
   refused({.looks = -1});
   refused({.batches = 1});
-  refused({.cell_side = -0.1});
 }
 
 }  // namespace photile::test

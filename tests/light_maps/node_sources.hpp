@@ -13,7 +13,7 @@
 namespace photile::test {
 
 /// One light, whose irradiance is a function of the place; counts what it was asked.
-class FormulaSource : public NodeSource {
+class FormulaSource : public PointSource {
  public:
   using Formula = std::function<float(const glm::vec3& position, std::uint32_t sided_triangle)>;
   explicit FormulaSource(Formula formula) : formula_(std::move(formula)) {}

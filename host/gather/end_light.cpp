@@ -1,0 +1,142 @@
+#include "gather/end_light.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+#include <utility>
+
+#include "estimate/map_order.hpp"
+#include "render/reflected_radiance.hpp"
+#include "trace/diffuse_part.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/hit_batch.hpp"
+#include "trace/largest.hpp"
+
+namespace photile::gathering {
+namespace {
+
+/// Lobes that reflect more of the light towards the ray need directions: photons at the end itself.
+constexpr float strong_lobe = 0.2f;
+
+/// What an end's surface reflects towards the ray of light that is the same from everywhere.
+struct EndReflection {
+  glm::vec3 reflectance;
+  bool strong_lobe;
+};
+
+EndReflection reflection_of(const trace::EyeRecord& ends, std::size_t end) {
+  const glm::vec3& albedo = ends.hits[end].diffuse_albedo;
+  if (ends.glossy.empty() || ends.glossy[end].lobe.f90 == 0.0f) return {albedo, false};
+  const trace::GlossyEyeHit& glossy = ends.glossy[end];
+  const scene_io::Reflectance surface{albedo, glossy.lobe.specular, glossy.lobe.f90,
+                                      glossy.lobe.roughness};
+  const float cosine = std::max(glm::dot(glossy.lobe.normal, glossy.outgoing), 1e-6f);
+  PhotileAlbedoFit fit;
+  photile_albedo_fit(surface.alpha, &fit);
+  float f0_weight = 0, f90_weight = 0;
+  photile_lobe_albedo(&fit, cosine, &f0_weight, &f90_weight);
+  const glm::vec3 lobe = f0_weight * surface.f0 + f90_weight * surface.f90;
+  return {lobe + diffuse_reflectance(diffuse_part(surface, cosine), surface.alpha),
+          trace::largest(lobe) > strong_lobe};
+}
+
+}  // namespace
+
+IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& progress) {
+  IndirectLight light{.rays = std::move(rays), .own_of = {}, .weight = {}, .own = {}};
+  std::vector<std::uint8_t> has_own;
+  classify(light, has_own);
+  const trace::EyeRecord& ends = light.rays.ends;
+  light.own_of.assign(ends.hits.size(), none);
+  std::vector<std::uint32_t> own;
+  PrimaryHits served;
+  for (std::uint32_t end = 0; end < has_own.size(); ++end) {
+    if (has_own[end]) {
+      light.own_of[end] = static_cast<std::uint32_t>(own.size());
+      own.push_back(end);
+    } else {
+      served.position.push_back(ends.hits[end].position);
+      served.sided_triangle.push_back(ends.hits[end].sided_triangle);
+      served.pixel.push_back(0);
+    }
+  }
+  maps_.fill(served, *this, progress);
+  if (!own.empty()) light.own = estimates_at(ends, own);
+  costs_.estimated += own.size();
+  costs_.ends += ends.hits.size();
+  costs_.rays += ends.rays;
+  return light;
+}
+
+Estimates EndLight::irradiance(const PrimaryHits& nodes) {
+  costs_.estimated += nodes.size();
+  return photons_.estimate(nodes);
+}
+
+void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
+                         std::uint32_t rays_per_batch, BatchSums& sums) const {
+  const std::size_t lights = rays_.needs().light_count;
+  const Estimates& values = maps_.values();
+  for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
+    const trace::EyeHit& hit = light.rays.ends.hits[end];
+    const std::uint32_t batch = hit.pixel / rays_per_batch % batches;
+    if (light.own_of[end] != none) {
+      const EndEstimates& own = light.own;
+      for_each_estimate(
+          own.estimates, light.own_of[end], lights, [&](std::size_t layer, std::size_t i) {
+            sums.add(static_cast<std::uint32_t>(layer), batch,
+                     light.weight[end] *
+                         reflected_radiance(own.hits, light.own_of[end], own.estimates, i));
+          });
+      continue;
+    }
+    NodeBlend blend;
+    maps_.find(hit.sided_triangle, hit.position, blend);
+    for (std::size_t corner = 0; corner < blend.node.size(); ++corner) {
+      const glm::vec3 weight = blend.weight[corner] * light.weight[end];
+      for_each_estimate(values, blend.node[corner], lights, [&](std::size_t layer, std::size_t i) {
+        sums.add(static_cast<std::uint32_t>(layer), batch, weight * values.irradiance[i]);
+      });
+    }
+  }
+}
+
+/// Finds which ends have estimates of their own, and what estimates weigh at each.
+void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
+  const trace::EyeRecord& ends = light.rays.ends;
+  light.weight.resize(ends.hits.size());
+  has_own.resize(ends.hits.size());
+  tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
+    const trace::FlushDenormals flush_denormals;
+    for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
+      const EndReflection reflection = reflection_of(ends, end);
+      has_own[end] = reflection.strong_lobe;
+      light.weight[end] = ends.hits[end].throughput;
+      if (reflection.strong_lobe) continue;
+      light.weight[end] *= reflection.reflectance * glm::one_over_pi<float>();
+    }
+  });
+}
+
+/// In the order of the ends that are chosen.
+EndEstimates EndLight::estimates_at(const trace::EyeRecord& ends,
+                                    std::span<const std::uint32_t> chosen) {
+  trace::EyeRecord record;
+  for (const std::uint32_t end : chosen) {
+    record.hits.push_back(ends.hits[end]);
+    if (!ends.glossy.empty()) record.glossy.push_back(ends.glossy[end]);
+  }
+  const std::span<const trace::EyeRecord> records(&record, 1);
+  const std::vector<trace::HitPlace> places =
+      trace::sorted_places(records, impl_of(rays_).bounds, photons_.map_of());
+  std::vector<std::uint32_t> order;
+  for (const trace::HitPlace& place : places) order.push_back(place.index);
+  Estimates in_order = photons_.estimate(trace::hits_at(records, places));
+  std::vector<trace::HitPlace> as_chosen;
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) as_chosen.push_back({0, i});
+  return {trace::hits_at(records, as_chosen),
+          estimate::restored(std::move(in_order), order, rays_.needs().light_count)};
+}
+
+}  // namespace photile::gathering

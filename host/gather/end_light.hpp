@@ -1,0 +1,70 @@
+// The light that rays find where they end: photon estimates at nodes on the surface.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "gather/batch_sums.hpp"
+#include "photile/estimator.hpp"
+#include "photile/light_maps.hpp"
+#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
+#include "render/map_estimators.hpp"
+#include "trace/hemisphere_rays.hpp"
+
+namespace photile::gathering {
+
+/// Photon estimates at some of the ends of rays.
+struct EndEstimates {
+  PrimaryHits hits;
+  Estimates estimates;  ///< of each hit
+};
+
+/// Where the rays of a run of points end, and what counts there.
+struct IndirectLight {
+  trace::HemisphereRays rays;
+  std::vector<std::uint32_t> own_of;  ///< of each end: its own estimate, or none: light maps serve
+  std::vector<glm::vec3> weight;      ///< of each end: of irradiance, or of radiance
+  EndEstimates own;                   ///< of the run
+};
+
+/// Irradiance where rays end, read from light maps that photon estimates value when a ray first
+/// ends there.
+class EndLight : private PointSource {
+ public:
+  /// References are kept.
+  ///   photons   whose estimates of hits do not depend on the hits beside them
+  EndLight(const RayScene& rays, MapEstimators& photons, const LightMapParameters& maps)
+      : rays_(rays), photons_(photons), maps_(rays.scene(), maps) {}
+
+  /// Finds an estimate for each end.
+  /// Errors: as DeviceEstimators; Interrupted.
+  IndirectLight look_up(trace::HemisphereRays rays, const Progress& progress);
+
+  /// Adds what the rays of a point of the run see, its batches having so many rays each.
+  void add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
+                 std::uint32_t rays_per_batch, BatchSums& sums) const;
+
+  /// What all calls took so far.
+  struct Costs {
+    std::uint64_t rays = 0;  ///< traced; those along mirrors and glass included
+    std::uint64_t ends = 0;
+    std::uint64_t estimated = 0;  ///< places where photons were looked up
+  };
+  const Costs& costs() const { return costs_; }
+
+ private:
+  Estimates irradiance(const PrimaryHits& nodes) override;
+  void classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
+  EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen);
+
+  const RayScene& rays_;
+  MapEstimators& photons_;
+  LightMaps maps_;
+  Costs costs_;
+};
+
+}  // namespace photile::gathering

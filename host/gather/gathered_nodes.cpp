@@ -1,0 +1,214 @@
+#include "gather/gathered_nodes.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "estimate/map_order.hpp"
+#include "gather/irradiance_filter.hpp"
+#include "gather/weighted_points.hpp"
+
+namespace photile {
+namespace {
+
+constexpr int window = 2;  ///< places on each side that a place is averaged with,
+constexpr int rounds = 2;  ///< so many times
+/// Differences of so many standard errors count less by e.
+constexpr double tolerated_errors = 3;
+/// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
+/// mean over many.
+constexpr double weight_of_parents = 3;
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t nodes_per_task = 256;
+
+/// The point of a triangle next to this one that is so far from its edges; the middle of triangles
+/// that have none.
+glm::vec3 inset_point(const Scene& scene, std::uint32_t triangle, const glm::vec3& position,
+                      double inset) {
+  const auto corners = scene.corners(triangle);
+  const std::array<glm::dvec3, 3> corner{glm::dvec3(corners[0]), glm::dvec3(corners[1]),
+                                         glm::dvec3(corners[2])};
+  const glm::dvec3 normal =
+      glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+  glm::dvec3 point(position);
+  const auto depth = [&](std::size_t edge, glm::dvec3& inwards) {
+    inwards = glm::normalize(glm::cross(normal, corner[(edge + 1) % 3] - corner[edge]));
+    return glm::dot(point - corner[edge], inwards);
+  };
+  glm::dvec3 inwards;
+  for (int round = 0; round < 2; ++round) {
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      const double lacking = inset - depth(edge, inwards);
+      if (lacking > 0) point += lacking * inwards;
+    }
+  }
+  for (std::size_t edge = 0; edge < 3; ++edge) {
+    if (depth(edge, inwards) < 0.5 * inset) {
+      return glm::vec3((corner[0] + corner[1] + corner[2]) / 3.0);
+    }
+  }
+  return glm::vec3(point);
+}
+
+std::vector<std::uint64_t> numbers_at(const NodeBatch& batch,
+                                      std::span<const std::uint32_t> chosen) {
+  std::vector<std::uint64_t> numbers;
+  for (const std::uint32_t point : chosen) numbers.push_back(batch.number[point]);
+  return numbers;
+}
+
+/// Links between chosen points alone, by their places among those chosen.
+PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> chosen) {
+  std::vector<std::uint32_t> place(batch.points.size(), none);
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) place[chosen[i]] = i;
+  PointLinks links;
+  links.first.push_back(0);
+  for (const std::uint32_t point : chosen) {
+    for (std::uint32_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1];
+         ++i) {
+      links.to.push_back(place[batch.neighbour[i]]);
+    }
+    links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
+  }
+  return links;
+}
+
+void append(const GatheredParts& from, std::size_t point, std::size_t lights, GatheredParts& to) {
+  to.indirect.append(from.indirect, point, lights);
+  to.direct.append(from.direct, point, lights);
+  to.distance.push_back(from.distance[point]);
+}
+
+}  // namespace
+
+GatheredNodesParameters rays_of_nodes(int coarse, double inset) {
+  return {{coarse, coarse}, {(3 * coarse + 7) / 8, (coarse + 1) / 2}, inset};
+}
+
+NodeSource::Surroundings GatheredNodes::surroundings() const { return {window, rounds}; }
+
+NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress) {
+  const std::size_t lights = layer_powers_.size();
+  std::vector<std::uint32_t> coarse, fine;
+  for (std::uint32_t i = 0; i < batch.points.size(); ++i) {
+    (i < batch.nodes && batch.parents[i][0] != none ? fine : coarse).push_back(i);
+  }
+  gather_new(batch, coarse, progress);
+  const GatheredParts smooth = smoothed(batch, coarse);
+  GatheredParts found = gather_.gather(points_at(batch, fine), numbers_at(batch, fine),
+                                       parameters_.fine.rays, parameters_.fine.looks, progress);
+  found.indirect = corrected(nodes_.indirect, found.indirect, batch, fine);
+  found.direct = corrected(nodes_.direct, found.direct, batch, fine);
+
+  const std::size_t before = nodes_.distance.size();
+  row_of_.resize(batch.first);
+  std::size_t next_coarse = 0, next_fine = 0;
+  for (std::uint32_t node = 0; node < batch.nodes; ++node) {
+    row_of_.push_back(static_cast<std::uint32_t>(nodes_.distance.size()));
+    if (batch.parents[node][0] == none) {
+      append(smooth, next_coarse++, lights, nodes_);
+    } else {
+      append(found, next_fine++, lights, nodes_);
+    }
+  }
+  GatheredIrradiance indirect, direct;
+  for (std::size_t row = before; row < nodes_.distance.size(); ++row) {
+    indirect.append(nodes_.indirect, row, lights);
+    direct.append(nodes_.direct, row, lights);
+  }
+  GatheredIrradiance all = sum_of(indirect, direct, lights);
+  NodeValues values;
+  for (std::size_t node = 0; node < batch.nodes; ++node) {
+    values.error.push_back(static_cast<float>(all.total(node, layer_powers_).error));
+    values.distance.push_back(nodes_.distance[before + node]);
+  }
+  values.irradiance = std::move(all.mean);
+  return values;
+}
+
+PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
+                                     std::span<const std::uint32_t> chosen) const {
+  PrimaryHits points = estimate::reordered(batch.points, 0, chosen);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    points.position[i] = inset_point(scene_, triangle_of(points.sided_triangle[i]),
+                                     points.position[i], parameters_.inset);
+  }
+  return points;
+}
+
+/// Gathers at coarse places where nobody did.
+void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> coarse,
+                               const Progress& progress) {
+  std::vector<std::uint32_t> fresh;
+  for (const std::uint32_t point : coarse) {
+    if (!raw_of_.contains(batch.number[point])) fresh.push_back(point);
+  }
+  GatheredParts found = gather_.gather(points_at(batch, fresh), numbers_at(batch, fresh),
+                                       parameters_.coarse.rays, parameters_.coarse.looks, progress);
+  for (const std::uint32_t point : fresh) {
+    raw_of_.insert({batch.number[point], static_cast<std::uint32_t>(raw_of_.size())});
+  }
+  raw_.indirect.append(std::move(found.indirect));
+  raw_.direct.append(std::move(found.direct));
+  raw_.distance.insert(raw_.distance.end(), found.distance.begin(), found.distance.end());
+}
+
+/// Coarse places averaged with those around them.
+GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
+                                      std::span<const std::uint32_t> coarse) const {
+  const std::size_t lights = layer_powers_.size();
+  GatheredParts parts;
+  for (const std::uint32_t point : coarse) {
+    append(raw_, raw_of_.at(batch.number[point]), lights, parts);
+  }
+  if (coarse.empty()) return parts;
+  const PointLinks links = links_between(batch, coarse);
+  const IrradianceFilterParameters filter{.rounds = rounds, .tolerated_errors = tolerated_errors};
+  parts.indirect = filter_irradiance(std::move(parts.indirect), links, layer_powers_, filter);
+  parts.direct = filter_irradiance(std::move(parts.direct), links, layer_powers_, filter);
+  return parts;
+}
+
+/// Finer nodes averaged with what lies around them at coarser levels.
+///   known   of nodes valued before
+///   found   of the fine nodes
+GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
+                                            const GatheredIrradiance& found, const NodeBatch& batch,
+                                            std::span<const std::uint32_t> fine) const {
+  const std::size_t lights = layer_powers_.size();
+  std::vector<GatheredIrradiance> parts((fine.size() + nodes_per_task - 1) / nodes_per_task);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    gathering::WeightedPoints means(lights, found, parts[part]);
+    const std::size_t last = std::min(fine.size(), (part + 1) * nodes_per_task);
+    for (std::size_t i = part * nodes_per_task; i < last; ++i) {
+      GatheredIrradiance::Total expected;
+      std::array<std::uint32_t, 4> rows;
+      double variance = 0;
+      for (std::size_t parent = 0; parent < rows.size(); ++parent) {
+        rows[parent] = row_of_[batch.parents[fine[i]][parent]];
+        const GatheredIrradiance::Total total = known.total(rows[parent], layer_powers_);
+        expected.luminance += 0.25 * total.luminance;
+        variance += 0.25 * total.error * total.error;
+      }
+      expected.error = std::sqrt(variance);
+      const double weight =
+          weight_of_parents * likeness(found.total(i, layer_powers_), expected, tolerated_errors);
+      means.add(found, i, 1.0);
+      if (weight > 0) {
+        for (const std::uint32_t row : rows) means.add(known, row, 0.25 * weight);
+      }
+      means.end_point();
+    }
+  });
+  GatheredIrradiance all;
+  all.batches = found.batches;
+  if (!found.mean.first.empty()) all.mean.first.push_back(0);
+  for (GatheredIrradiance& part : parts) all.append(std::move(part));
+  return all;
+}
+
+}  // namespace photile

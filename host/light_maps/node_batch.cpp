@@ -1,0 +1,138 @@
+#include "light_maps/node_batch.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "light_maps/node_points.hpp"
+
+namespace photile::light_maps {
+namespace {
+
+std::uint64_t hash_of(const NodePlace& node) {
+  std::uint64_t hash = (std::uint64_t{node.x} << 32 | node.y) * 0x9E3779B97F4A7C15ull;
+  hash = (hash ^ hash >> 32 ^ node.chart) * 0xD6E8FEB86659FD93ull;
+  return hash ^ hash >> 32;
+}
+
+/// Bits of the numbers of points: as many as random streams tell apart.
+constexpr int number_bits = 48;
+
+/// The places next to a node in the lattice of the next coarser level, or none at the coarsest.
+std::array<std::uint32_t, 4> parents_of(const NodePlace& node, int levels,
+                                        const NodeIndex& node_at) {
+  std::array<std::uint32_t, 4> parents{none, none, none, none};
+  const std::uint32_t coarsest = 1u << (levels - 1);
+  std::uint32_t step = 1;
+  while (step < coarsest && (node.x | node.y) % (2 * step) == 0) step *= 2;
+  if (step == coarsest) return parents;
+  const std::uint32_t dx = node.x % (2 * step), dy = node.y % (2 * step);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const NodePlace parent{node.chart, i & 1 ? node.x + dx : node.x - dx,
+                           i & 2 ? node.y + dy : node.y - dy};
+    parents[i] = node_at.at(parent);
+  }
+  return parents;
+}
+
+/// Places of the coarsest lattice.
+class CoarsePlaces {
+ public:
+  CoarsePlaces(const Charts& charts, int levels) : charts_(charts), step_(1u << (levels - 1)) {}
+
+  bool has(const NodePlace& node) const { return (node.x | node.y) % step_ == 0; }
+
+  /// Calls visit(place) for those up to so many places away along one side of the lattice.
+  template <class Visit>
+  void along(const NodePlace& node, bool rows, int away, const Visit& visit) const {
+    const Chart& chart = charts_[node.chart];
+    const std::int64_t last = rows ? chart.rows : chart.columns;
+    const std::int64_t at = (rows ? node.y : node.x) / step_;
+    for (std::int64_t i = std::max<std::int64_t>(0, at - away); i <= std::min(last, at + away);
+         ++i) {
+      const auto moved = static_cast<std::uint32_t>(i) * step_;
+      visit(rows ? NodePlace{node.chart, node.x, moved} : NodePlace{node.chart, moved, node.y});
+    }
+  }
+
+ private:
+  const Charts& charts_;
+  std::uint32_t step_;
+};
+
+/// Appends the places up to so many away from each coarse node that are not among them.
+NodeIndex add_surroundings(const CoarsePlaces& lattice, int reach, std::vector<NodePlace>& places) {
+  NodeIndex index;
+  for (const NodePlace& place : places) {
+    if (lattice.has(place)) index.insert({place, static_cast<std::uint32_t>(index.size())});
+  }
+  std::vector<NodePlace> coarse(index.size());
+  for (const auto& [place, number] : index) coarse[number] = place;
+  for (const bool rows : {false, true}) {
+    for (std::size_t i = 0, count = coarse.size(); i < count; ++i) {
+      const NodePlace from = coarse[i];
+      lattice.along(from, rows, reach, [&](const NodePlace& place) {
+        if (index.insert({place, static_cast<std::uint32_t>(index.size())}).second) {
+          coarse.push_back(place);
+        }
+      });
+    }
+  }
+  NodeIndex all;
+  for (const NodePlace& place : places) {
+    all.insert({place, static_cast<std::uint32_t>(all.size())});
+  }
+  for (const NodePlace& place : coarse) {
+    if (all.insert({place, static_cast<std::uint32_t>(all.size())}).second) places.push_back(place);
+  }
+  return all;
+}
+
+/// Links of the coarse places that are there.
+void link(const CoarsePlaces& lattice, int window, std::span<const NodePlace> places,
+          const NodeIndex& index, NodeBatch& batch) {
+  std::vector<std::vector<std::uint32_t>> links(places.size());
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+    if (!lattice.has(places[i])) return;
+    lattice.along(places[i], true, window, [&](const NodePlace& row) {
+      lattice.along(row, false, window, [&](const NodePlace& place) {
+        const auto entry = index.find(place);
+        if (entry != index.end() && entry->second != i) links[i].push_back(entry->second);
+      });
+    });
+  });
+  batch.first_neighbour.push_back(0);
+  for (const std::vector<std::uint32_t>& to : links) {
+    batch.neighbour.insert(batch.neighbour.end(), to.begin(), to.end());
+    batch.first_neighbour.push_back(static_cast<std::uint32_t>(batch.neighbour.size()));
+  }
+}
+
+}  // namespace
+
+std::size_t NodePlaceHash::operator()(const NodePlace& node) const {
+  return static_cast<std::size_t>(hash_of(node));
+}
+
+NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
+                     int levels, bool glossy, const NodeIndex& node_at,
+                     const NodeSource::Surroundings& surroundings) {
+  NodeBatch batch;
+  batch.nodes = nodes.size();
+  for (const NodePlace& node : nodes) batch.parents.push_back(parents_of(node, levels, node_at));
+  std::vector<NodePlace> places(nodes.begin(), nodes.end());
+  if (surroundings.rounds > 0) {
+    const CoarsePlaces lattice(charts, levels);
+    const NodeIndex index =
+        add_surroundings(lattice, surroundings.window * surroundings.rounds, places);
+    link(lattice, surroundings.window, places, index, batch);
+  }
+  for (const NodePlace& place : places) {
+    batch.number.push_back(hash_of(place) >> (64 - number_bits));
+  }
+  batch.points = node_points(scene, charts, places, levels, glossy);
+  return batch;
+}
+
+}  // namespace photile::light_maps

@@ -1,0 +1,30 @@
+// Nodes that are valued together: their points, the nodes between which they lie and those around.
+#pragma once
+
+#include <tsl/robin_map.h>
+
+#include <cstdint>
+#include <span>
+
+#include "light_maps/charts.hpp"
+#include "photile/light_maps.hpp"
+
+namespace photile::light_maps {
+
+struct NodePlaceHash {
+  std::size_t operator()(const NodePlace& node) const;
+};
+
+/// Numbers of nodes.
+using NodeIndex = tsl::robin_map<NodePlace, std::uint32_t, NodePlaceHash>;
+
+/// All of a batch but the number of its first node.
+///   levels         of the light maps
+///   glossy         whether hits of the scene have lobes
+///   node_at        of coarser nodes, at least
+///   surroundings   of nodes of the coarsest level
+NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
+                     int levels, bool glossy, const NodeIndex& node_at,
+                     const NodeSource::Surroundings& surroundings);
+
+}  // namespace photile::light_maps

@@ -1,0 +1,163 @@
+// Light maps whose nodes gather light: closed forms, and on what they depend.
+#define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include "gather/gathered_nodes.hpp"
+
+#include <tbb/global_control.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "gathering.hpp"
+#include "light_maps/node_sources.hpp"
+#include "photile/light_maps.hpp"
+#include "render/reflected_radiance.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+/// Light maps of a scene, and what values them.
+struct GatheredMaps {
+  GatheredMaps(GatheringScene& scene, const GatheredNodesParameters& rays, double spacing = 0.16)
+      : gather(scene.gather({})),
+        parameters(parameters_of(scene, spacing)),
+        nodes(scene.scene, gather, scene.estimators.layer_powers(), rays),
+        maps(scene.scene, parameters) {}
+
+  static LightMapParameters parameters_of(GatheringScene& scene, double spacing) {
+    LightMapParameters parameters;
+    parameters.spacing = spacing;
+    parameters.levels = 3;
+    const std::span<const double> powers = scene.estimators.layer_powers();
+    parameters.powers.assign(powers.begin(), powers.end());
+    return parameters;
+  }
+
+  void fill(const PrimaryHits& hits) { maps.fill(hits, nodes, Progress::none()); }
+
+  /// Illuminance of all lights at a hit.
+  double lux(const PrimaryHits& hits, std::size_t hit) const {
+    NodeBlend blend;
+    REQUIRE(maps.find(hits.sided_triangle[hit], hits.position[hit], blend));
+    double sum = 0;
+    for (std::size_t i = 0; i < blend.node.size(); ++i) {
+      for_each_estimate(maps.values(), blend.node[i], parameters.powers.size(),
+                        [&](std::size_t layer, std::size_t value) {
+                          sum += double{blend.weight[i]} * parameters.powers[layer] *
+                                 luminance(glm::dvec3(maps.values().irradiance[value]));
+                        });
+    }
+    return sum;
+  }
+
+  std::vector<double> all_lux(const PrimaryHits& hits) const {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < hits.size(); ++i) result.push_back(lux(hits, i));
+    return result;
+  }
+
+  IrradianceGather gather;
+  LightMapParameters parameters;
+  GatheredNodes nodes;
+  LightMaps maps;
+};
+
+constexpr GatheredNodesParameters few_rays{{32, 32}, {16, 16}, 1e-4};
+
+/// The hits of one half of the room, and of the other.
+std::array<PrimaryHits, 2> halves(const PrimaryHits& hits) {
+  std::array<PrimaryHits, 2> parts;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    add_hit(parts[hits.position[i].x < 2.0f ? 0 : 1], hits.position[i], hits.sided_triangle[i]);
+  }
+  return parts;
+}
+
+/// Relative root mean square of the differences from a formula, and their mean.
+template <class Truth>
+std::array<double, 2> errors_of(const GatheredMaps& maps, const PrimaryHits& hits,
+                                const Truth& truth) {
+  double squares = 0, sum = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const double relative = maps.lux(hits, i) / truth(hits.position[i]) - 1;
+    squares += relative * relative;
+    sum += relative;
+  }
+  const auto count = static_cast<double>(hits.size());
+  return {std::sqrt(squares / count), sum / count};
+}
+
+}  // namespace
+
+TEST_CASE("gathered nodes: a furnace is the same all over, corners and edges among it") {
+  constexpr double albedo = 0.5;
+  Scene box = closed_box(diffuse(glm::vec3(albedo)));
+  box.lights = {area_light("walls")};
+  for (std::uint32_t t = 0; t < box.triangle_count(); ++t) {
+    box.triangle_light[t] = 0;
+    box.lights[0].triangles.push_back(t);
+  }
+  GatheringScene furnace(box, looked_up(200'000));
+  GatheredMaps maps(furnace, few_rays);
+  PrimaryHits inside;
+  const PrimaryHits all = points_on(box, 12);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (side_of(all.sided_triangle[i]) == box.front_side[triangle_of(all.sided_triangle[i])]) {
+      add_hit(inside, all.position[i], all.sided_triangle[i]);
+    }
+  }
+  maps.fill(inside);
+  const double truth = 1.0 / 6 / (1 - albedo);  // 1 lm over 6 m2, and each bounce returns half
+  const auto [rms, mean] = errors_of(maps, inside, [&](const glm::vec3&) { return truth; });
+  CAPTURE(rms, mean);
+  CHECK(rms < 0.05);
+  CHECK(std::abs(mean) < 0.02);
+}
+
+TEST_CASE("gathered nodes: the same bits whatever was looked at before, on any number of threads") {
+  GatheringScene room(furnished_room(2), looked_up(50'000));
+  const PrimaryHits hits = points_on(room.scene, 5);
+  const auto [here, there] = halves(hits);
+  GatheredMaps at_once(room, few_rays);
+  at_once.fill(hits);
+  const std::vector<double> expected = at_once.all_lux(hits);
+  for (const std::size_t threads : {1u, 2u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    GatheredMaps forwards(room, few_rays), backwards(room, few_rays);
+    forwards.fill(here);
+    forwards.fill(there);
+    backwards.fill(there);
+    backwards.fill(here);
+    CHECK(forwards.all_lux(hits) == expected);
+    CHECK(backwards.all_lux(hits) == expected);
+  }
+}
+
+TEST_CASE("gathered nodes: many lights, each in its layer, are what their group is") {
+  Scene scene = furnished_room();
+  while (scene.lights.size() < 12) {
+    Light light = scene.lights.back();
+    light.name = "lamp " + std::to_string(scene.lights.size());
+    light.position.x = 0.3f * static_cast<float>(scene.lights.size());
+    scene.lights.push_back(light);
+  }
+  RenderParameters parameters = looked_up(50'000);
+  parameters.radius = 0.3;
+  const PrimaryHits hits = points_on(scene, 3);
+  GatheringScene alone(scene, parameters);
+  GatheredMaps layers(alone, few_rays);
+  layers.fill(hits);
+  for (Light& light : scene.lights) light.group = "all";
+  GatheringScene grouped(scene, parameters);
+  GatheredMaps together(grouped, few_rays);
+  together.fill(hits);
+  const std::vector<double> a = layers.all_lux(hits), b = together.all_lux(hits);
+  // Where a sum of roundings decides whether a cell is split, light is read between other nodes.
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) same += a[i] == Approx(b[i]).epsilon(1e-3) ? 1 : 0;
+  CHECK(same > 0.99 * static_cast<double>(hits.size()));
+}
+
+}  // namespace photile::test
