@@ -67,7 +67,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
                         double fill_seconds) {
     std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));
     const Stopwatch stopwatch;
-    frames.draw(camera, width, height, scales, fill_seconds, picture, Progress::none());
+    frames.draw(camera, {width, height, 1}, scales, fill_seconds, picture, Progress::none());
     return stopwatch.seconds();
   };
   {

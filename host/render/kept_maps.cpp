@@ -49,10 +49,10 @@ RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progr
   return impl_->render(CameraHits(camera), film, progress);
 }
 
-DrawnFrame SceneRenderer::draw(const Camera& camera, int width, int height,
+DrawnFrame SceneRenderer::draw(const Camera& camera, const Film& film,
                                std::span<const glm::vec3> powers, double fill_seconds,
                                std::span<glm::vec3> picture, Progress& progress) {
-  return impl_->frames().draw(camera, width, height, powers, fill_seconds, picture, progress);
+  return impl_->frames().draw(camera, film, powers, fill_seconds, picture, progress);
 }
 
 bool SceneRenderer::draws() const { return impl_->reads_light_maps(); }

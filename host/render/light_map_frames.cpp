@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <numeric>
@@ -23,6 +24,14 @@ namespace {
 constexpr int packet_side = 4, block_side = 32;
 static_assert(packet_side * packet_side == trace::coherent_rays);
 
+/// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread
+/// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). The same in every
+/// pixel and frame: nothing flickers.
+glm::vec2 place_in_pixel(int i) {
+  constexpr double plastic = 1.32471795724474602596;  // the root of x^3 = x + 1
+  return glm::vec2(glm::fract(0.5 + glm::dvec2(i / plastic, i / (plastic * plastic))));
+}
+
 /// A mean of about a thousand nodes is grey enough.
 glm::vec3 mean_of_some(std::span<const glm::vec4> light) {
   const std::size_t step = std::max<std::size_t>(1, light.size() / 1024);
@@ -40,22 +49,24 @@ struct LightMapFrames::View {
   int width, height, blocks_across;
   FilmDirections film;
   PrimaryHitParameters parameters;
+  std::vector<glm::vec2> within_pixel;  ///< of each sample, in [0, 1)^2
   std::span<glm::vec3> picture;
 
-  View(const Camera& camera, int film_width, int film_height, std::span<glm::vec3> pixels)
+  View(const Camera& camera, const Film& frame, std::span<glm::vec3> pixels)
       : eye(camera.position),
         forward(camera.forward),
-        width(film_width),
-        height(film_height),
-        blocks_across((film_width + block_side - 1) / block_side),
-        film(camera.directions(film_width, film_height)),
+        width(frame.width),
+        height(frame.height),
+        blocks_across((frame.width + block_side - 1) / block_side),
+        film(camera.directions(frame.width, frame.height)),
         picture(pixels) {
     const double half_height = std::tan(0.5 * camera.vertical_field_of_view);
-    right = glm::vec3(half_height * film_width / film_height * camera.right);
+    right = glm::vec3(half_height * width / height * camera.right);
     up = glm::vec3(half_height * camera.up);
-    parameters.width = film_width;
-    parameters.height = film_height;
+    parameters.width = width;
+    parameters.height = height;
     parameters.samples_per_pixel = 1;
+    for (int i = 0; i < frame.samples_per_pixel; ++i) within_pixel.push_back(place_in_pixel(i));
   }
 
   std::size_t blocks() const {
@@ -63,13 +74,14 @@ struct LightMapFrames::View {
            static_cast<std::size_t>((height + block_side - 1) / block_side);
   }
 
-  /// Through the middles of the pixels from (x, y) on; those beyond the film lie in line with it.
-  void directions(int x, int y, trace::CoherentDirections& directions) const {
+  /// Through these places of the pixels from (x, y) on; those beyond the film lie in line with it.
+  void directions(int x, int y, const glm::vec2& within,
+                  trace::CoherentDirections& directions) const {
     const float per_column = 2.0f / static_cast<float>(width);
     const float per_row = 2.0f / static_cast<float>(height);
     for (int i = 0; i < trace::coherent_rays; ++i) {
-      const float sx = (static_cast<float>(x + i % packet_side) + 0.5f) * per_column - 1.0f;
-      const float sy = 1.0f - (static_cast<float>(y + i / packet_side) + 0.5f) * per_row;
+      const float sx = (static_cast<float>(x + i % packet_side) + within.x) * per_column - 1.0f;
+      const float sy = 1.0f - (static_cast<float>(y + i / packet_side) + within.y) * per_row;
       const glm::vec3 d = forward + sx * right + sy * up;
       const float scale = 1.0f / std::sqrt(glm::dot(d, d));
       directions.x[i] = scale * d.x;
@@ -103,10 +115,10 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
   }
 }
 
-DrawnFrame LightMapFrames::draw(const Camera& camera, int width, int height,
+DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
                                 std::span<const glm::vec3> powers, double fill_seconds,
                                 std::span<glm::vec3> picture, const Progress& progress) {
-  const View view(camera, width, height, picture);
+  const View view(camera, film, picture);
   DrawnFrame drawn;
   std::vector<std::size_t> blocks(view.blocks());
   std::iota(blocks.begin(), blocks.end(), std::size_t{0});
@@ -188,19 +200,28 @@ void LightMapFrames::draw_block(const View& view, std::size_t block, Missing& mi
   const int top = static_cast<int>(block) / view.blocks_across * block_side;
   trace::CoherentDirections directions;
   trace::CoherentHits hits;
+  const auto samples = static_cast<float>(view.within_pixel.size());
   for (int y = top; y < std::min(top + block_side, view.height); y += packet_side) {
     for (int x = left; x < std::min(left + block_side, view.width); x += packet_side) {
-      view.directions(x, y, directions);
-      trace::intersect(rays_, view.eye, directions, hits);
+      std::array<glm::vec3, trace::coherent_rays> sum{};
+      for (const glm::vec2& within : view.within_pixel) {
+        view.directions(x, y, within, directions);
+        trace::intersect(rays_, view.eye, directions, hits);
+        for (int i = 0; i < trace::coherent_rays; ++i) {
+          const int px = x + i % packet_side, py = y + i / packet_side;
+          if (px >= view.width || py >= view.height) continue;
+          const glm::vec3 direction(directions.x[i], directions.y[i], directions.z[i]);
+          sum[i] += hits.triangle[i] == none
+                        ? background(direction)
+                        : seen(view, static_cast<std::uint32_t>(py * view.width + px), direction,
+                               hits.triangle[i], hits.side[i], hits.u[i], hits.v[i],
+                               hits.distance[i], missing);
+        }
+      }
       for (int i = 0; i < trace::coherent_rays; ++i) {
         const int px = x + i % packet_side, py = y + i / packet_side;
         if (px >= view.width || py >= view.height) continue;
-        const auto pixel = static_cast<std::uint32_t>(py * view.width + px);
-        const glm::vec3 direction(directions.x[i], directions.y[i], directions.z[i]);
-        view.picture[pixel] = hits.triangle[i] == none
-                                  ? background(direction)
-                                  : seen(view, pixel, direction, hits.triangle[i], hits.side[i],
-                                         hits.u[i], hits.v[i], hits.distance[i], missing);
+        view.picture[static_cast<std::size_t>(py * view.width + px)] = sum[i] / samples;
       }
     }
   }

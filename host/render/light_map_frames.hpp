@@ -18,22 +18,23 @@
 
 namespace photile {
 
-/// Draws frames from light maps. One ray through the middle of each pixel; mirrors, glass and holes
-/// are followed; a specular lobe is taken for matt reflection of the same strength, and normal maps
-/// are left out.
+/// Draws frames from light maps. Rays through the same places of each pixel; mirrors, glass and
+/// holes are followed; a specular lobe is taken for matt reflection of the same strength, and
+/// normal maps are left out.
 class LightMapFrames {
  public:
   /// References are kept.
   LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource& source);
 
-  /// Draws width x height pixels, linear RGB radiance, row 0 at the top. Pixels whose nodes are not
-  /// valued show the next coarser level; those without any, the light of nodes on the average.
+  /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Pixels whose nodes
+  /// are not valued show the next coarser level; those without any, the light of nodes on the
+  /// average.
   ///   powers         per layer: power x tint
   ///   fill_seconds   that may go into valuing nodes which pixels lack and into drawing these
   ///   pixels
   ///                  again, level by level, the nearest to the eye first; infinite: all of them
   /// Errors: those of LightMaps::fill.
-  DrawnFrame draw(const Camera& camera, int width, int height, std::span<const glm::vec3> powers,
+  DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   double fill_seconds, std::span<glm::vec3> picture, const Progress& progress);
 
  private:

@@ -43,16 +43,16 @@ class SceneRenderer {
   RenderResult render(const Camera& camera, const Film& film,
                       Progress& progress = Progress::none());
 
-  /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a pixel,
+  /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a sample,
   /// glossy surfaces as if they were matt (host/render/light_map_frames.hpp). For parameters that
   /// ask for light maps.
   ///   powers         per layer: power x tint
   ///   fill_seconds   that may go into valuing nodes which pixels lack: the nearest to the eye come
   ///                  first, other pixels show a coarser level; infinite: all of them
-  ///   picture        width x height, linear RGB radiance
+  ///   picture        of the film's size, linear RGB radiance
   /// Once nothing is lacking, a frame does not depend on what was drawn before. Errors: those of
   /// `render`.
-  DrawnFrame draw(const Camera& camera, int width, int height, std::span<const glm::vec3> powers,
+  DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   double fill_seconds, std::span<glm::vec3> picture,
                   Progress& progress = Progress::none());
 

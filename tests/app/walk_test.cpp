@@ -1,6 +1,7 @@
 // `photile walk`: frames, their names, and what a second run leaves alone.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -131,6 +132,37 @@ TEST_CASE("a frame has the layers and the attributes of any picture, and its own
   CHECK(first.matrices.at("worldToCamera") != last.matrices.at("worldToCamera"));
 }
 
+TEST_CASE(
+    "quick frames are light maps alone, and the same bytes wherever the camera stands still") {
+  const FileFolder folder;
+  const std::string still = R"([
+      {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
+      {"time": 1, "position": [0, 0, 0.9], "look_at": [0, 0, -1]},
+      {"time": 2, "position": [0.3, 0, 0.9], "look_at": [0, 0, -1]}])";
+  std::vector<std::string> arguments = walk(folder, {"--quick"}, "2");
+  arguments.back() = "--quick";
+  for (std::string& argument : arguments) {
+    if (argument == folder / "path.json") argument = folder.write("still.json", still);
+    if (argument == folder / "f.##.exr") argument = folder / "q.##.png";
+  }
+  done(arguments);
+  CHECK(folder.read("q.01.png") == folder.read("q.02.png"));
+  CHECK(folder.read("q.01.png") != folder.read("q.05.png"));
+  CHECK_FALSE(std::filesystem::exists(folder / "q.01.exr"));
+}
+
+TEST_CASE("quick frames as EXR hold R, G, B, and are not made twice") {
+  const FileFolder folder;
+  done(walk(folder, {"--quick"}));
+  const Image frame = read_image(folder / "f.01.exr");
+  CHECK(frame.channel_names == std::vector<std::string>{"R", "G", "B"});
+  CHECK(frame.attributes.at("photile.scene") == "box.obj");
+  const std::vector<float>& green = *frame.find("G");
+  CHECK(*std::min_element(green.begin(), green.end()) > 0);
+  CHECK_THAT(done(walk(folder, {"--quick"})).errors, Contains("4 of 4 frames are finished"));
+  CHECK_THAT(done(walk(folder)).errors, !Contains("finished"));
+}
+
 TEST_CASE("walk refuses what it cannot do with one line and the right exit code") {
   const FileFolder folder;
   const auto error = [&](const std::vector<std::string>& arguments, int code) {
@@ -138,7 +170,10 @@ TEST_CASE("walk refuses what it cannot do with one line and the right exit code"
   };
   const std::string box = write_box(folder);
   CHECK_THAT(error({"walk", box, "-o", folder / "a.exr"}, 2), Contains("####"));
-  CHECK_THAT(error({"walk", box, "-o", folder / "a##.png"}, 2), Contains(".exr"));
+  CHECK_THAT(error({"walk", box, "-o", folder / "a##.png"}, 2), Contains("--quick"));
+  CHECK_THAT(error({"walk", box, "-o", folder / "a##.jpg"}, 2), Contains(".exr"));
+  CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quick", "--light-maps", "off"}, 2),
+             Contains("--light-maps"));
   CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quiet"}, 3),
              Contains("--camera-path"));
   CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quiet", "--camera-path",

@@ -28,10 +28,12 @@ struct DrawnRoom {
         maps(scene, quiet_parameters()),
         frames(rays, maps, source) {}
 
-  std::vector<glm::vec3> draw(const Camera& camera, double seconds, float power = 1.0f) {
+  std::vector<glm::vec3> draw(const Camera& camera, double seconds, float power = 1.0f,
+                              int samples = 1) {
     std::vector<glm::vec3> picture(std::size_t{width} * height);
     const std::vector<glm::vec3> powers{glm::vec3(power)};
-    drawn = frames.draw(camera, width, height, powers, seconds, picture, Progress::none());
+    drawn =
+        frames.draw(camera, {width, height, samples}, powers, seconds, picture, Progress::none());
     return picture;
   }
 
@@ -113,6 +115,22 @@ TEST_CASE("A camera that stands still, or comes back, sees the same bits", "[lig
   CHECK(same_pixels(room.draw(in_the_room(0.5), all), first));
   room.draw(in_the_room(1.5), all, 0.3f);
   CHECK(same_pixels(room.draw(in_the_room(0.5), all), first));
+}
+
+TEST_CASE("Several rays a pixel smooth edges, and leave smooth light as it is",
+          "[light_map_frames]") {
+  DrawnRoom room;
+  const auto one = room.draw(in_the_room(0.5), all);
+  const auto nine = room.draw(in_the_room(0.5), all, 1.0f, 9);
+  std::size_t near = 0;
+  double sum_of_one = 0, sum_of_nine = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    near += std::abs(nine[i].x - one[i].x) < 0.05f * one[i].x ? 1 : 0;
+    sum_of_one += double{one[i].x}, sum_of_nine += double{nine[i].x};
+  }
+  CHECK(near > one.size() * 8 / 10);
+  CHECK(near < one.size());
+  CHECK(sum_of_nine == Approx(sum_of_one).epsilon(0.01));
 }
 
 TEST_CASE("Walking changes no light of a wall between frames", "[light_map_frames]") {

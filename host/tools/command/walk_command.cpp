@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
+#include <future>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,6 +30,7 @@
 #include "tools/command/threads.hpp"
 #include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"
+#include "tools/view/display.hpp"
 #include "tools/walk/contact_sheet.hpp"
 #include "tools/walk/frame_names.hpp"
 
@@ -41,6 +44,7 @@ struct WalkOptions {
   std::string output;     ///< EXR pattern
   std::string png;        ///< PNG pattern, "" = none
   std::string sheet;      ///< file, "" = none
+  bool quick = false;     ///< frames of light maps alone
   double frames_per_second = 24;
   int first_number = 1;
 };
@@ -70,13 +74,15 @@ class Walk {
         mix_(mix),
         motion_(motion_of(options, camera)),
         count_(count_of(motion_, options.frames_per_second)),
+        to_exr_(options.output.ends_with(".exr")),
         names_(options.output),
         devices_(devices),
         progress_(progress),
         scene_digest_(digest_of(scene)) {
     if (!options.png.empty()) png_names_.emplace(options.png);
+    if (!to_exr_) png_names_.emplace(options.output);
     for (int frame = 1; frame < count_; ++frame) {  // check_names has noted the first
-      note_output(names_.of(number(frame)));
+      if (to_exr_) note_output(names_.of(number(frame)));
       if (png_names_) note_output(png_names_->of(number(frame)));
     }
     if (!options.sheet.empty()) {
@@ -96,13 +102,22 @@ class Walk {
     progress_.begin("render frames", static_cast<std::uint64_t>(count_ - kept), "frames");
     for (int frame = 0; frame < count_; ++frame) {
       progress_.throw_if_cancelled();
+      const bool finished = is_finished(frame);
       std::optional<Image> root;
-      if (!is_finished(frame)) {
-        root = render(frame);
-        progress_.advance(1);
+      if (!finished) root = options_.quick ? draw(frame) : render(frame);
+      wait_for_shown();
+      const auto keep = [this, frame, root = std::move(root)] {
+        if (options_.quick && root && to_exr_) write_exr(names_.of(number(frame)), *root);
+        show(frame, root);
+      };
+      if (options_.quick) {
+        shown_ = std::async(std::launch::async, keep);  // while the next one is drawn
+      } else {
+        keep();
       }
-      show(frame, root);
+      if (!finished) progress_.advance(1);
     }
+    wait_for_shown();
     progress_.end();
     if (sheet_) write_png(options_.sheet, sheet_->image());
   }
@@ -132,11 +147,12 @@ class Walk {
   }
 
   std::string settings_of(const Camera& camera) const {
-    return frame_settings(scene_digest_, record_of(camera), camera);
+    return frame_settings(scene_digest_, record_of(camera), camera) +
+           (options_.quick ? " quick" : "");
   }
 
   bool is_finished(int frame) const {
-    return has_settings(names_.of(number(frame)), settings_of(camera_at(frame)));
+    return to_exr_ && has_settings(names_.of(number(frame)), settings_of(camera_at(frame)));
   }
 
   void make_maps() {
@@ -151,7 +167,7 @@ class Walk {
     const Film& film = options_.render.parameters.film;
     RenderResult result = renderer_->render(camera, film, quiet);
     RunRecord record = record_of(camera);
-    const std::string settings = frame_settings(scene_digest_, record, camera);
+    const std::string settings = settings_of(camera);
     record.used = result.used;
     record.stored_photons = result.stored_photons;
     record.stages = result.statistics;
@@ -163,8 +179,37 @@ class Walk {
     return picture->root();
   }
 
+  /// Errors: those of what wrote it.
+  void wait_for_shown() {
+    if (shown_.valid()) shown_.get();
+  }
+
+  /// R, G, B of a frame of light maps alone.
+  Image draw(int frame) {
+    const Camera camera = camera_at(frame);
+    const Film& film = options_.render.parameters.film;
+    std::vector<glm::vec3> picture(static_cast<std::size_t>(film.width) *
+                                   static_cast<std::size_t>(film.height));
+    QuietProgress quiet(progress_);
+    renderer_->draw(camera, film, view::scales_of(mix_), std::numeric_limits<double>::infinity(),
+                    picture, quiet);
+    Image image;
+    image.width = film.width;
+    image.height = film.height;
+    for (int channel = 0; channel < 3; ++channel) {
+      std::vector<float>& plane = image.add(std::string(1, "RGB"[channel]));
+      for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {
+        plane[pixel] = picture[pixel][channel];
+      }
+    }
+    set_camera_attributes(image, in_world(scene_, camera), film.width, film.height);
+    set_run_attributes(image, record_of(camera));
+    set_settings(image, settings_of(camera));
+    return image;
+  }
+
   /// The frame as PNG and on the contact sheet, all with the exposure of the first.
-  void show(int frame, std::optional<Image>& root) {
+  void show(int frame, std::optional<Image> root) {
     const bool on_sheet = sheet_ && place_on_sheet(frame) >= 0;
     const bool to_png =
         png_names_ && (root || !std::filesystem::exists(png_names_->of(number(frame))));
@@ -192,6 +237,7 @@ class Walk {
   const LightMix& mix_;
   const walk::CameraMotion motion_;
   const int count_;
+  const bool to_exr_;
   const walk::FrameNames names_;
   std::optional<walk::FrameNames> png_names_;
   std::span<Device> devices_;
@@ -200,7 +246,23 @@ class Walk {
   std::optional<SceneRenderer> renderer_;
   std::optional<walk::ContactSheet> sheet_;
   std::optional<double> exposure_;  ///< stops
+  std::future<void> shown_;         ///< the frame before; last: it uses all of the above
 };
+
+///   off   light maps were refused by name
+void check_quick(WalkOptions& options, bool off) {
+  const bool to_exr = options.output.ends_with(".exr");
+  if (!options.quick && !to_exr) {
+    throw UsageError(fmt::format("{}: frames as PNG alone are those of --quick", options.output));
+  }
+  if (options.quick && off) {
+    throw UsageError("--quick draws light maps; leave out --light-maps off");
+  }
+  if (options.quick) options.render.parameters.light_maps = LightMapMode::on;
+  if (!to_exr && !options.png.empty()) {
+    throw UsageError("--png: the frames are PNG by --output already; leave out one");
+  }
+}
 
 void check_names(const WalkOptions& options) {
   std::vector<std::filesystem::path> files{
@@ -241,7 +303,12 @@ void add_walk_command(CLI::App& photile) {
   command->add_option("-o,--output", options->output, "frames to write, such as frame.####.exr")
       ->required()
       ->type_name("PATTERN.exr")
-      ->check(file_ending_in(".exr"))
+      ->check(file_ending_in(".exr") | file_ending_in(".png"))
+      ->group("Output");
+  command
+      ->add_flag("--quick", options->quick,
+                 "draw light maps alone, as the window does while it moves: matt, no layers; "
+                 "frames may be PATTERN.png")
       ->group("Output");
   command->add_option("--png", options->png, "frames as PNG, with the exposure of the first")
       ->type_name("PATTERN.png")
@@ -274,7 +341,11 @@ void add_walk_command(CLI::App& photile) {
       ->capture_default_str()
       ->group("Motion");
   add_picture_settings(*command, options->render);
-  command->callback([options] { run_walk(*options); });
+  command->callback([options, command] {
+    const bool given = command->count("--light-maps") > 0;
+    check_quick(*options, given && options->render.parameters.light_maps == LightMapMode::off);
+    run_walk(*options);
+  });
 }
 
 }  // namespace photile::app

@@ -93,8 +93,9 @@ std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, cons
                      static_cast<std::size_t>(wanted.height));
   const auto draw_from = [&](MapGeneration& maps, double fill_seconds) {
     const Stopwatch of_drawing;
-    const DrawnFrame drawn = maps.renderer->draw(wanted.camera, wanted.width, wanted.height,
-                                                 wanted.powers, fill_seconds, frame.mixed);
+    const Film film{wanted.width, wanted.height, 1};
+    const DrawnFrame drawn =
+        maps.renderer->draw(wanted.camera, film, wanted.powers, fill_seconds, frame.mixed);
     draw_seconds_ = of_drawing.seconds() - drawn.fill_seconds;
     return drawn;
   };
