@@ -6,12 +6,15 @@
 #include <tsl/robin_map.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "light_maps/charts.hpp"
 #include "light_maps/node_batch.hpp"
 #include "light_maps/tiles.hpp"
+#include "maps/check_photons.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
@@ -55,6 +58,25 @@ void check(const LightMapParameters& parameters, std::size_t layers) {
 }  // namespace
 }  // namespace light_maps
 
+namespace {
+
+/// Whether these are the light of so many nodes, as files may not have it.
+bool are_values_of(const Estimates& values, std::size_t nodes, const SceneNeeds& needs) {
+  if (!values.radiance.empty()) return false;
+  for (const glm::vec3& light : values.irradiance) {
+    if (!std::isfinite(light.x + light.y + light.z)) return false;
+  }
+  if (!needs.many_lights()) {
+    return values.first.empty() && values.light.empty() &&
+           values.irradiance.size() == nodes * needs.light_count;
+  }
+  return values.light.size() == values.irradiance.size() &&
+         maps::are_rows(values.first, nodes, values.light.size()) &&
+         maps::all_below(values.light, needs.light_count);
+}
+
+}  // namespace
+
 std::string_view name_of(LightMapMode mode) {
   switch (mode) {
     case LightMapMode::off:
@@ -95,6 +117,7 @@ struct LightMaps::Impl {
   void forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
               std::span<const NodePlace> added);
   void value(std::span<const NodePlace> nodes, NodeSource& source, const Progress& progress);
+  void append(Estimates estimates, std::size_t nodes);
   bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
   bool differ_by_photons(double high, double low) const;
 
@@ -183,10 +206,16 @@ void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source
                                            source.surroundings());
   batch.first = static_cast<std::uint32_t>(together.size());
   NodeValues valued = source.value(batch, progress);
-  Estimates& estimates = valued.irradiance;
+  append(std::move(valued.irradiance), nodes.size());
+  error.insert(error.end(), valued.error.begin(), valued.error.end());
+  distance.insert(distance.end(), valued.distance.begin(), valued.distance.end());
+}
+
+/// The light of the nodes that follow.
+void LightMaps::Impl::append(Estimates estimates, std::size_t nodes) {
   estimates.radiance.clear();
   const std::size_t lights = parameters.powers.size();
-  for (std::size_t node = 0; node < nodes.size(); ++node) {
+  for (std::size_t node = 0; node < nodes; ++node) {
     double sum = 0;
     const auto add = [&](std::size_t light, std::size_t i) {
       sum += parameters.powers[light] * luminance(glm::dvec3(estimates.irradiance[i]));
@@ -200,8 +229,6 @@ void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source
     }
     together.push_back(static_cast<float>(sum));
   }
-  error.insert(error.end(), valued.error.begin(), valued.error.end());
-  distance.insert(distance.end(), valued.distance.begin(), valued.distance.end());
   values.append(std::move(estimates));
 }
 
@@ -274,6 +301,71 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
 bool LightMaps::find(std::uint32_t sided_triangle, const glm::vec3& position,
                      NodeBlend& blend) const {
   return !impl_->tiles.find(impl_->charts.chart_of()[sided_triangle], position, blend);
+}
+
+LightMapContents LightMaps::contents() const {
+  LightMapContents contents;
+  contents.nodes.resize(impl_->together.size());
+  for (const auto& [place, node] : impl_->node_at) {
+    contents.nodes[node] = {place.chart, place.x, place.y};
+  }
+  contents.values = impl_->values;
+  for (std::uint32_t i = 0; i < impl_->tiles.size(); ++i) {
+    const Tile& tile = impl_->tiles[i];
+    contents.tiles.push_back({tile.known, tile.split, tile.chart, tile.level, tile.x, tile.y});
+  }
+  return contents;
+}
+
+void LightMaps::restore(LightMapContents contents) {
+  const auto fit = [](bool fits) {
+    if (!fits) throw InputError("saved light maps do not fit the scene; save them again");
+  };
+  Tiles& tiles = impl_->tiles;
+  const std::size_t count = contents.nodes.size();
+  fit(are_values_of(contents.values, count, impl_->needs));
+  for (std::uint32_t node = 0; node < count; ++node) {
+    const auto& [chart, x, y] = contents.nodes[node];
+    fit(impl_->node_at.insert({NodePlace{chart, x, y}, node}).second);
+  }
+  impl_->append(std::move(contents.values), count);
+  const auto place_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,
+                           std::uint32_t y) {
+    return std::array{chart, level, x, y};
+  };
+  std::map<std::array<std::uint32_t, 4>, std::uint32_t> tile_at;
+  for (const LightMapContents::Tile& saved : contents.tiles) {
+    const auto& [known, split, chart, level, x, y] = saved;
+    fit(chart < impl_->charts.size() && static_cast<int>(level) < impl_->levels && (x & 7) == 0 &&
+        (y & 7) == 0 && (split & ~known) == 0);
+    std::uint32_t index = none;
+    if (level == 0) {
+      const light_maps::Chart& lattice = impl_->charts[chart];
+      fit(x / 8 < lattice.root_columns() && y / 8 < lattice.root_rows());
+      index =
+          tiles.tile_of({lattice.first_root + y / 8 * lattice.root_columns() + x / 8, 0, false});
+    } else {
+      const auto parent = tile_at.find(place_of(chart, level - 1, x / 16 * 8, y / 16 * 8));
+      fit(parent != tile_at.end());
+      index = tiles[parent->second].child[(y / 8 & 1) * 2 + (x / 8 & 1)];
+      fit(index != none);
+    }
+    fit(tile_at.emplace(place_of(chart, level, x, y), index).second);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
+    for (std::uint32_t cell = 0; cell < 64; ++cell) {
+      if ((known >> cell & 1) != 0) cells.emplace_back(index, cell);
+    }
+    std::vector<NodePlace> added;
+    impl_->number_corners(cells, added);
+    fit(added.empty());
+    tiles[index].known = known;
+    impl_->cells += cells.size();
+    for (std::uint32_t cell = 0; cell < 64; ++cell) {
+      if ((split >> cell & 1) == 0) continue;
+      fit(static_cast<int>(level) + 1 < impl_->levels);
+      tiles.split(index, cell);
+    }
+  }
 }
 
 const Charts& LightMaps::charts() const { return impl_->charts; }

@@ -52,10 +52,14 @@ RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progr
 DrawnFrame SceneRenderer::draw(const Camera& camera, const Film& film,
                                std::span<const glm::vec3> powers, double fill_seconds,
                                std::span<glm::vec3> picture, Progress& progress) {
-  return impl_->frames().draw(camera, film, powers, fill_seconds, picture, progress);
+  return impl_->frames(progress).draw(camera, film, powers, fill_seconds, picture, progress);
 }
 
 bool SceneRenderer::draws() const { return impl_->reads_light_maps(); }
+
+std::optional<LightMapContents> SceneRenderer::light_maps() const {
+  return impl_->light_map_contents();
+}
 
 RenderResult SceneRenderer::render_reflections(const Camera& camera, const Film& film,
                                                Progress& progress) {

@@ -14,8 +14,14 @@ class KeptMaps {
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress);
 
   /// Quick pictures, where light maps are read.
-  LightMapFrames& frames() { return rendering_.frames(); }
+  LightMapFrames& frames(Progress& progress) {
+    rendering_.report_to(progress);
+    return rendering_.frames();
+  }
   bool reads_light_maps() const { return rendering_.plan().reads_light_maps(); }
+  std::optional<LightMapContents> light_map_contents() const {
+    return rendering_.light_map_contents();
+  }
 
  private:
   const PreparedScene scene_;

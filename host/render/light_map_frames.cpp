@@ -235,7 +235,9 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   const glm::vec3 light =
       irradiance(view, sided(triangle, side), view.eye + distance * direction, missing);
   if (surface.kind == Surface::plain) return surface.reflects * light;
-  const trace::SurfacePoint point = trace::surface_point(scene_, {triangle, u, v}, side);
+  trace::SurfacePoint point;  // its place in textures: all that is asked of it
+  point.where = {triangle, u, v};
+  point.side = side;
   const scene_io::Reflectance reflectance = trace::reflectance(scene_, point);
   glm::vec3 radiance = (reflectance.albedo + reflectance.f0) * glm::one_over_pi<float>() * light;
   if (surface.kind == Surface::lamp && trace::emits(scene_, point)) {

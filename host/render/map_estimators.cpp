@@ -20,11 +20,28 @@ MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene,
                              std::vector<PhotonMaps> maps,
                              std::span<const EstimateParameters> levels,
                              std::span<const double> layer_powers)
-    : maps_(std::move(maps)), layer_powers_(layer_powers) {
-  for (const EstimateParameters& level : levels) {
-    neighbours_.push_back(level.neighbours);
-    estimators_.emplace_back(devices, maps_, scene, level);
+    : MapEstimators(devices, scene, nullptr, layer_powers) {
+  Parts parts{std::move(maps), {levels.begin(), levels.end()}};
+  make_ = [&parts] { return std::move(parts); };
+  built();
+}
+
+MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene,
+                             std::function<Parts()> make, std::span<const double> layer_powers)
+    : devices_(devices), scene_(scene), layer_powers_(layer_powers), make_(std::move(make)) {}
+
+MapEstimators::Built& MapEstimators::built() const {
+  if (built_) return *built_;
+  Parts parts = make_();
+  auto built = std::make_unique<Built>();
+  built->maps = std::move(parts.maps);
+  for (const EstimateParameters& level : parts.levels) {
+    built->neighbours.push_back(level.neighbours);
+    built->estimators.emplace_back(devices_, built->maps, scene_, level);
   }
+  built_ = std::move(built);
+  make_ = nullptr;
+  return *built_;
 }
 
 Estimates MapEstimators::estimate(const PrimaryHits& hits) {
@@ -41,10 +58,10 @@ Estimates MapEstimators::estimate(const PrimaryHits& hits) {
 
 Estimates MapEstimators::estimate_in_order(const PrimaryHits& hits) {
   std::vector<Estimates> by_level;
-  for (DeviceEstimators& one : estimators_) by_level.push_back(one.estimate(hits));
+  for (DeviceEstimators& one : built().estimators) by_level.push_back(one.estimate(hits));
   return by_level.size() == 1
              ? std::move(by_level.front())
-             : estimates_of_least_error(std::move(by_level), neighbours_, layer_powers_);
+             : estimates_of_least_error(std::move(by_level), built().neighbours, layer_powers_);
 }
 
 }  // namespace photile

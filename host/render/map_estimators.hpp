@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,27 +26,44 @@ class MapEstimators {
   MapEstimators(std::span<Device> devices, const Scene& scene, std::vector<PhotonMaps> maps,
                 std::span<const EstimateParameters> levels, std::span<const double> layer_powers);
 
+  /// Maps and levels.
+  struct Parts {
+    std::vector<PhotonMaps> maps;
+    std::vector<EstimateParameters> levels;
+  };
+  /// The same of what `make` gives when it is first needed: errors are then those of `make`, too.
+  MapEstimators(std::span<Device> devices, const Scene& scene, std::function<Parts()> make,
+                std::span<const double> layer_powers);
+
   /// Of hits in any order. Errors: as DeviceEstimators.
   Estimates estimate(const PrimaryHits& hits);
 
   /// Per sided triangle, as PhotonMaps has it: the order of hits.
-  std::span<const std::uint32_t> map_of() const { return maps_.front().map_of(); }
+  std::span<const std::uint32_t> map_of() const { return built().maps.front().map_of(); }
 
   /// k, or the most that a hit has where it has its own.
-  int neighbours() const { return neighbours_.back(); }
+  int neighbours() const { return built().neighbours.back(); }
   /// Of the maps, metres.
-  double radius() const { return maps_.front().parameters().radius; }
+  double radius() const { return built().maps.front().parameters().radius; }
 
   /// Each device's part of all hits so far.
-  std::vector<double> shares() const { return estimators_.back().shares(); }
+  std::vector<double> shares() const { return built().estimators.back().shares(); }
 
  private:
-  Estimates estimate_in_order(const PrimaryHits& hits);
+  struct Built {
+    std::vector<PhotonMaps> maps;              ///< on each device
+    std::vector<int> neighbours;               ///< of each level
+    std::vector<DeviceEstimators> estimators;  ///< of each level; they keep references to the maps
+  };
 
-  std::vector<PhotonMaps> maps_;  ///< on each device
-  std::vector<int> neighbours_;   ///< of each level
+  Estimates estimate_in_order(const PrimaryHits& hits);
+  Built& built() const;
+
+  std::span<Device> devices_;
+  const Scene& scene_;
   std::span<const double> layer_powers_;
-  std::vector<DeviceEstimators> estimators_;  ///< of each level; they keep references to the maps
+  mutable std::function<Parts()> make_;
+  mutable std::unique_ptr<Built> built_;
 };
 
 }  // namespace photile

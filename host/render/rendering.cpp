@@ -1,6 +1,9 @@
 #include "render/rendering.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "photile/errors.hpp"
@@ -8,6 +11,7 @@
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/path_numbers.hpp"
+#include "render/setting.hpp"
 
 namespace photile {
 namespace {
@@ -17,6 +21,18 @@ namespace {
 std::int64_t hits_per_batch(int neighbours) {
   return (std::int64_t{1} << 20) * defaults::neighbours /
          std::max(defaults::neighbours, neighbours);
+}
+
+/// What nodes depend on beside the scene and the photons: the settings of estimates, and the kind
+/// of device, whose sums may have another order.
+std::string light_map_settings(const RenderParameters& used, std::span<Device> devices) {
+  std::string words = devices.front().info().name;
+  for (const Setting& setting : settings()) {
+    if (setting.group == "Estimate") {
+      words += fmt::format(", {} {}", setting.name, text_with_unit(setting, used));
+    }
+  }
+  return words;
 }
 
 /// Least number of batches of a picture that somebody watches.
@@ -56,17 +72,54 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   node_gather_.reset();
   photons_.reset();
   caustics_.reset();
+  pass_ = pass;
+  if (prepared && reads_light_maps_of(*prepared)) {
+    wait_with(*prepared, keep);
+    return;
+  }
   Maps maps = trace_and_build(pass, prepared, keep);
   const Stopwatch stopwatch;
-  std::vector<EstimateParameters> levels = plan_.estimates(pass, surface_);
-  if (plan_.reads_light_maps()) estimate_each_alone(levels, devices_.front());
   const auto estimators_of = [&](std::vector<PhotonMaps>& built) {
-    return MapEstimators(devices_, scene_, std::move(built), levels, layer_powers_);
+    MapEstimators::Parts parts = parts_of(std::move(built));
+    return MapEstimators(devices_, scene_, std::move(parts.maps), parts.levels, layer_powers_);
   };
   photons_.emplace(estimators_of(maps.photons));
   if (!maps.caustics.empty()) caustics_.emplace(estimators_of(maps.caustics));
   costs_.estimators.add(stopwatch.taken());
-  pass_ = pass;
+}
+
+MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps) const {
+  MapEstimators::Parts parts{std::move(maps), plan_.estimates(pass_, surface_)};
+  if (plan_.reads_light_maps()) estimate_each_alone(parts.levels, devices_.front());
+  return parts;
+}
+
+bool Rendering::reads_light_maps_of(const PreparedPhotons& prepared) {
+  if (!prepared.light_maps || !plan_.reads_light_maps() || plan_.gathers_at_nodes()) return false;
+  if (prepared.light_maps->settings == light_map_settings(plan_.used(), devices_)) return true;
+  progress_->note("light maps of the saved photons are of other settings: they are made anew");
+  return false;
+}
+
+void Rendering::wait_with(PreparedPhotons& prepared, const KeepPhotons* keep) {
+  radius_ = prepared.radius;
+  light_map_parameters_ = plan_.light_maps(0, radius_, prepared.photons, layer_powers_);
+  const auto make = [this] {
+    report_to(Progress::none());  // photons that are given up on the way would be lost
+    return parts_of(trace_and_build(0, &waiting_, nullptr).photons);
+  };
+  photons_.emplace(devices_, scene_, make, layer_powers_);
+  light_maps().maps().restore(std::move(*prepared.light_maps));
+  prepared.light_maps.reset();
+  if (keep) (*keep)(prepared);
+  waiting_ = std::move(prepared);
+}
+
+std::optional<LightMapContents> Rendering::light_map_contents() const {
+  if (!light_maps_ || plan_.gathers_at_nodes()) return std::nullopt;
+  LightMapContents contents = light_maps_->maps().contents();
+  contents.settings = light_map_settings(plan_.used(), devices_);
+  return contents;
 }
 
 void Rendering::add_pass(const HitSource& source) {

@@ -56,6 +56,9 @@ class Rendering {
   /// Quick pictures from the light maps of the prepared pass; the plan reads light maps.
   LightMapFrames& frames();
 
+  /// What these light maps hold; none before they are read.
+  std::optional<LightMapContents> light_map_contents() const;
+
   /// Lets go of the maps, once all that was wanted is in the picture.
   void release();
 
@@ -69,6 +72,11 @@ class Rendering {
     std::vector<PhotonMaps> caustics;  ///< for final gathering, where there are any
   };
 
+  /// Whether light maps that are kept with the photons are those of this rendering.
+  bool reads_light_maps_of(const PreparedPhotons& prepared);
+  /// Takes them in; maps of the photons are built when an estimate is first needed.
+  void wait_with(PreparedPhotons& prepared, const KeepPhotons* keep);
+  MapEstimators::Parts parts_of(std::vector<PhotonMaps> maps) const;
   Maps trace_and_build(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
   std::vector<PhotonMaps> build(const Photons& photons, const PhotonMapParameters& parameters);
   void count(const PhotonTracerResult& traced);
@@ -95,6 +103,7 @@ class Rendering {
   std::vector<std::uint64_t> paths_before_;  ///< per light
   double radius_ = 0;                        ///< of the first pass, metres
   NeighbourGroups groups_;
+  PreparedPhotons waiting_;  ///< with light maps of their own: what has no maps yet
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
   const std::vector<double> layer_powers_;
   std::optional<MapEstimators> photons_, caustics_;  ///< of the pass

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <type_traits>
+#include <vector>
 
 #include "common/content_hash.hpp"
 #include "common/output_file.hpp"
@@ -20,7 +22,7 @@ namespace photile::saved_maps {
 namespace {
 
 constexpr std::array<char, 8> magic{'P', 'H', 'O', 'T', 'M', 'A', 'P', 'S'};
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 constexpr std::uint32_t byte_order = 0x0102'0304;
 
 /// The head of a file. No padding.
@@ -32,6 +34,16 @@ struct Header {
   ContentHash::Digest payload;  ///< of all before and of the payload
 };
 static_assert(sizeof(Header) == 56 && std::is_trivially_copyable_v<Header>);
+
+/// What stands before light maps, which follow the photons. No padding.
+struct LightMapHeader {
+  std::array<char, 8> magic;
+  std::uint64_t payload_bytes;
+  ContentHash::Digest payload;  ///< of the photons' digest and the payload
+};
+static_assert(sizeof(LightMapHeader) == 32 && std::is_trivially_copyable_v<LightMapHeader>);
+constexpr std::array<char, 8> light_map_magic{'P', 'H', 'O', 'T', 'N', 'O', 'D', 'E'};
+static_assert(sizeof(LightMapContents::Place) == 12 && sizeof(LightMapContents::Tile) == 32);
 
 ContentHash::Digest digest_of(const Scene& scene) {
   ContentHash hash;
@@ -78,10 +90,24 @@ void write_payload(const PreparedPhotons& prepared, const std::string& settings,
   for_each_array(prepared, array);
 }
 
+/// Calls `visit` with every array of light maps, in the order of the file.
+template <class Contents, class Visit>
+void for_each_light_map_array(Contents& contents, const Visit& visit) {
+  visit(contents.settings);
+  visit(contents.nodes);
+  visit(contents.values.irradiance);
+  visit(contents.values.first);
+  visit(contents.values.light);
+  visit(contents.tiles);
+}
+
 /// The digest that a header holds.
 class Checksum {
  public:
   explicit Checksum(const Header& header) { hash_.add_bytes(&header, offsetof(Header, payload)); }
+  explicit Checksum(const ContentHash::Digest& photons) {
+    hash_.add_bytes(&photons, sizeof photons);
+  }
   void add(const void* bytes, std::uint64_t count) { hash_.add_bytes(bytes, count); }
   ContentHash::Digest digest() const { return hash_.digest(); }
 
@@ -145,11 +171,25 @@ Header read_header(Reader& reader) {
     reader.refuse(fmt::format("has version {} of the format, this photile reads {}; save it again",
                               header.version, version));
   }
-  if (header.payload_bytes != reader.left()) {
-    reader.refuse(header.payload_bytes > reader.left() ? "is truncated; save it again"
-                                                       : "has bytes after its end; save it again");
-  }
+  if (header.payload_bytes > reader.left()) reader.refuse("is truncated; save it again");
   return header;
+}
+
+LightMapContents read_light_maps(Reader& reader, const Header& photons) {
+  LightMapHeader header{};
+  if (reader.left() < sizeof header) reader.refuse("has bytes after its end; save it again");
+  reader.read(&header, sizeof header);
+  if (header.magic != light_map_magic) reader.refuse("has bytes after its end; save it again");
+  if (header.payload_bytes != reader.left()) {
+    reader.refuse("is truncated or damaged; save it again");
+  }
+  Checksum checksum(photons.payload);
+  LightMapContents contents;
+  for_each_light_map_array(contents, [&](auto& values) { reader.read_array(values, checksum); });
+  if (reader.left() > 0 || checksum.digest() != header.payload) {
+    reader.refuse("is damaged; save it again");
+  }
+  return contents;
 }
 
 }  // namespace
@@ -171,10 +211,43 @@ void save(const std::filesystem::path& file, const Scene& scene, const std::stri
   output.commit();  // reports short writes, too
 }
 
+void add_light_maps(const std::filesystem::path& file, const LightMapContents& contents) {
+  Reader reader(file);
+  const Header header = read_header(reader);
+  LightMapHeader own{light_map_magic, 0, {}};
+  Checksum checksum(header.payload);
+  const auto write_payload = [&](const auto& put) {
+    for_each_light_map_array(contents, [&](const auto& values) {
+      const std::uint64_t count = values.size();
+      put(&count, sizeof count);
+      put(values.data(), count * sizeof(values[0]));
+    });
+  };
+  write_payload([&](const void* bytes, std::uint64_t count) {
+    own.payload_bytes += count;
+    checksum.add(bytes, count);
+  });
+  own.payload = checksum.digest();
+
+  OutputFile output(file);
+  output.write(&header, sizeof header);
+  std::vector<char> copied(std::size_t{1} << 20);
+  for (std::uint64_t left = header.payload_bytes; left > 0;) {
+    const std::uint64_t count = std::min<std::uint64_t>(left, copied.size());
+    reader.read(copied.data(), count);
+    output.write(copied.data(), count);
+    left -= count;
+  }
+  output.write(&own, sizeof own);
+  write_payload([&](const void* bytes, std::uint64_t count) { output.write(bytes, count); });
+  output.commit();
+}
+
 PreparedPhotons load(const std::filesystem::path& file, const Scene& scene,
                      const std::string& settings) {
   Reader reader(file);
   const Header header = read_header(reader);
+  const std::uint64_t after_photons = reader.left() - header.payload_bytes;
   Checksum checksum(header);
   PreparedPhotons prepared;
   std::string saved_settings;
@@ -183,9 +256,10 @@ PreparedPhotons load(const std::filesystem::path& file, const Scene& scene,
   reader.read(numbers.data(), sizeof numbers);
   checksum.add(numbers.data(), sizeof numbers);
   for_each_array(prepared, [&](auto& values) { reader.read_array(values, checksum); });
-  if (reader.left() > 0 || checksum.digest() != header.payload) {
+  if (reader.left() != after_photons || checksum.digest() != header.payload) {
     reader.refuse("is damaged; save it again");
   }
+  if (reader.left() > 0) prepared.light_maps = read_light_maps(reader, header);
   if (header.scene != digest_of(scene)) {
     reader.refuse(
         fmt::format("was saved from another scene than {}; save it again", scene.source.string()));

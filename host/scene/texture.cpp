@@ -28,15 +28,21 @@ struct Neighbours {
   float weight;
 };
 
+/// Of a number that fits an int.
+float floor_of(float x) {
+  const auto whole = static_cast<float>(static_cast<int>(x));
+  return whole > x ? whole - 1.0f : whole;
+}
+
 Neighbours neighbours(float coordinate, int size) {
   // Beyond 2^24 a float has no fraction left, and infinity and NaN have no texel.
   if (!(std::abs(coordinate) < 16'777'216.0f)) coordinate = 0.0f;
-  const float repeated = coordinate - std::floor(coordinate);
+  const float repeated = coordinate - floor_of(coordinate);
   const float texel = repeated * static_cast<float>(size) - 0.5f;  // texel centres lie at 0.5
-  const float floor = std::floor(texel);
-  const int first = (static_cast<int>(floor) + size) % size;
-  return {static_cast<std::size_t>(first), static_cast<std::size_t>((first + 1) % size),
-          texel - floor};
+  const float floor = floor_of(texel);
+  const int first = floor < 0.0f ? size - 1 : static_cast<int>(floor);
+  const int second = first + 1 == size ? 0 : first + 1;
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(second), texel - floor};
 }
 
 using Texel = std::array<std::uint8_t, 4>;

@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -130,6 +131,21 @@ struct NodeBlend {
   std::array<float, 4> weight;
 };
 
+/// All that light maps hold beside what follows from the scene and the parameters.
+struct LightMapContents {
+  struct Place {
+    std::uint32_t chart, x, y;  ///< in cells of the finest level
+  };
+  struct Tile {
+    std::uint64_t known, split;  ///< cells, bit y * 8 + x: whose corners are valued; refined
+    std::uint32_t chart, level, x, y;
+  };
+  std::string settings;  ///< in words: what the light depends on beside the scene and the photons
+  std::vector<Place> nodes;
+  Estimates values;         ///< of the nodes
+  std::vector<Tile> tiles;  ///< each after the one that it refines
+};
+
 /// Irradiance of every light at the nodes of lattices in the planes of the surface, finer where it
 /// varies. Nodes are valued when hits first need them. Where nodes are, what they hold and which
 /// cells are split depends on the scene, the parameters and the source alone, and not on what was
@@ -156,6 +172,12 @@ class LightMaps {
 
   /// What nodes hold, in the form of estimates: node n is hit n.
   const Estimates& values() const;
+
+  /// What is held now; `settings` are left empty.
+  LightMapContents contents() const;
+  /// Takes in what light maps of the same scene and parameters held. Nothing was filled before.
+  /// Errors: InputError where it does not fit them; then nothing here is of use.
+  void restore(LightMapContents contents);
 
   LightMapStatistics statistics() const;
 

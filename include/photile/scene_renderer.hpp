@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "photile/light_maps.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
@@ -16,6 +18,9 @@ struct PreparedPhotons {
   Photons photons;
   NeighbourGroups groups;
   double radius = 0;  ///< metres: of the maps
+  /// What light maps of these photons held, if they are kept. Where its settings are those of the
+  /// rendering, maps are built from the photons when an estimate is first needed.
+  std::optional<LightMapContents> light_maps = std::nullopt;
 };
 using KeepPhotons = std::function<void(const PreparedPhotons&)>;
 
@@ -58,6 +63,9 @@ class SceneRenderer {
 
   /// Whether `draw` has light maps to draw from.
   bool draws() const;
+
+  /// What the light maps hold by now; none where they are not read, or cannot be kept.
+  std::optional<LightMapContents> light_maps() const;
 
   /// The part of that picture which comes by a mirror, by glass that bends or reflects it, or by a
   /// glossy lobe.

@@ -147,6 +147,59 @@ TEST_CASE("A failing source leaves light maps as they were", "[light_maps]") {
   CHECK(read_all(maps, hits) == read_all(untroubled, hits));
 }
 
+TEST_CASE("Light maps are taken in whole, and filled on as if they had never been away",
+          "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const PrimaryHits hits = points_on(floor, 60);
+  PrimaryHits some;
+  for (std::size_t i = 0; i < hits.size(); i += 7) {
+    if (hits.position[i].x < 0.5f) add_hit(some, hits.position[i], hits.sided_triangle[i]);
+  }
+  FormulaSource source(shadow);
+  LightMaps before(floor, quiet_parameters());
+  before.fill(some, source, Progress::none());
+  LightMaps after(floor, quiet_parameters());
+  after.restore(before.contents());
+  CHECK(after.statistics().nodes == before.statistics().nodes);
+  CHECK(after.statistics().cells == before.statistics().cells);
+  CHECK(read_all(after, hits) == read_all(before, hits));
+  const std::size_t asked = source.asked;
+  after.fill(some, source, Progress::none());
+  CHECK(source.asked == asked);
+  after.fill(hits, source, Progress::none());
+  LightMaps fresh(floor, quiet_parameters());
+  fresh.fill(hits, source, Progress::none());
+  CHECK(read_all(after, hits) == read_all(fresh, hits));
+  CHECK(after.statistics().nodes == fresh.statistics().nodes);
+}
+
+TEST_CASE("Contents that do not fit the scene are refused", "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  FormulaSource source(shadow);
+  LightMaps maps(floor, quiet_parameters());
+  maps.fill(points_on(floor, 30), source, Progress::none());
+  const LightMapContents whole = maps.contents();
+  const auto refused = [&](const std::function<void(LightMapContents&)>& spoil) {
+    LightMapContents contents = whole;
+    spoil(contents);
+    LightMaps other(floor, quiet_parameters());
+    CHECK_THROWS_AS(other.restore(std::move(contents)), InputError);
+  };
+  refused([](auto& c) { c.nodes.pop_back(); });
+  refused([](auto& c) { c.nodes[3] = c.nodes[4]; });
+  refused([](auto& c) { c.nodes[5].x += 1; });
+  refused([](auto& c) { c.values.irradiance.pop_back(); });
+  refused([](auto& c) { c.values.irradiance[9].y = std::nanf(""); });
+  refused([](auto& c) { c.values.first.push_back(0); });
+  refused([](auto& c) { c.tiles[0].chart = 99; });
+  refused([](auto& c) { c.tiles[0].level = 4; });
+  refused([](auto& c) { c.tiles[0].x = 4; });
+  refused([](auto& c) { c.tiles[0].x = 1 << 20; });
+  refused([](auto& c) { c.tiles[0].split = ~c.tiles[0].known | 1; });
+  refused([](auto& c) { c.tiles.push_back(c.tiles[0]); });
+  refused([](auto& c) { c.tiles.erase(c.tiles.begin()); });
+}
+
 TEST_CASE("Light maps refuse what makes no lattice", "[light_maps]") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
   for (const double spacing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
@@ -99,6 +100,72 @@ TEST_CASE("a file with any byte changed, or with more of them, is refused") {
   }
   saved.write(whole + "x");
   CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, "words"), Contains("after its end"));
+}
+
+TEST_CASE("light maps are kept with their photons, and read again without an estimate") {
+  const Scene scene = test::furnished_room();
+  RenderParameters parameters = small();
+  parameters.light_maps = LightMapMode::on;
+  const std::vector<glm::vec3> powers(2, glm::vec3(1.0f));
+  const Film film{24, 16, 1};
+  const auto draw = [&](SceneRenderer& renderer, double seconds, DrawnFrame& drawn) {
+    std::vector<glm::vec3> picture(24 * 16);
+    drawn = renderer.draw(Saved::scene_camera(), film, powers, seconds, picture);
+    return picture;
+  };
+  DrawnFrame drawn;
+  std::vector<glm::vec3> expected;
+  const TemporaryFolder folder;
+  const auto file = folder.path / "maps.photile";
+  LightLayers layers;
+  {
+    SceneRenderer renderer(
+        scene, std::span(&test::device(), 1), parameters, nullptr,
+        [&](const PreparedPhotons& photons) { saved_maps::save(file, scene, "words", photons); });
+    CHECK_FALSE(renderer.light_maps());
+    expected = draw(renderer, std::numeric_limits<double>::infinity(), drawn);
+    layers = renderer.render(Saved::scene_camera(), parameters.film).layers;
+    saved_maps::add_light_maps(file, *renderer.light_maps());
+    saved_maps::add_light_maps(file, *renderer.light_maps());  // in place of the first
+  }
+  SECTION("the same settings") {
+    PreparedPhotons prepared = saved_maps::load(file, scene, "words");
+    REQUIRE(prepared.light_maps);
+    SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters, &prepared);
+    CHECK(draw(renderer, 0, drawn) == expected);
+    CHECK(drawn.lacking == 0);
+    const LightLayers again = renderer.render(Saved::scene_camera(), parameters.film).layers;
+    CHECK(again.layers[1].radiance == layers.layers[1].radiance);
+  }
+  SECTION("another k: nodes are made anew") {
+    PreparedPhotons prepared = saved_maps::load(file, scene, "words");
+    RenderParameters other = parameters;
+    other.neighbours = parameters.neighbours / 2;
+    SceneRenderer renderer(scene, std::span(&test::device(), 1), other, &prepared);
+    draw(renderer, 0, drawn);
+    CHECK(drawn.lacking > 0);
+  }
+  SECTION("light maps off: photons alone") {
+    PreparedPhotons prepared = saved_maps::load(file, scene, "words");
+    SceneRenderer renderer(scene, std::span(&test::device(), 1), small(), &prepared);
+    CHECK(renderer.render(Saved::scene_camera(), parameters.film).layers.layers.size() == 2);
+  }
+  SECTION("damage") {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+    const std::size_t photons = whole.find("PHOTNODE");
+    REQUIRE(photons != std::string::npos);
+    for (std::size_t i = 0; i < 100; ++i) {
+      const std::size_t at = photons + (i < 40 ? i : 32 + (i - 40) * (whole.size() - photons) / 80);
+      std::string spoilt = whole;
+      spoilt[at] = static_cast<char>(spoilt[at] ^ 4);
+      std::ofstream(file, std::ios::binary) << spoilt;
+      INFO("byte " << at);
+      REQUIRE_THROWS_AS(saved_maps::load(file, scene, "words"), InputError);
+      std::ofstream(file, std::ios::binary) << whole.substr(0, at + 1);
+      REQUIRE_THROWS_AS(saved_maps::load(file, scene, "words"), InputError);
+    }
+  }
 }
 
 TEST_CASE("another scene, other settings and other files are told apart") {

@@ -39,6 +39,14 @@ KeepPhotons keep_maps(const Scene& scene, const RenderOptions& options, Progress
   };
 }
 
+void keep_light_maps(const std::optional<LightMapContents>& light_maps,
+                     const RenderOptions& options, Progress& progress) {
+  if (options.save_maps.empty() || !light_maps) return;
+  progress.begin("save light maps", 0, "");
+  saved_maps::add_light_maps(options.save_maps, *light_maps);
+  progress.end();
+}
+
 RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, const HitSource& hits,
                                    std::span<Device> devices, const RenderOptions& options,
                                    LightLayers* reflections, Progress& progress) {
@@ -46,6 +54,7 @@ RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, con
   KeptMaps maps(scene, devices, options.parameters, prepared ? &*prepared : nullptr,
                 keep_maps(scene, options, progress), progress);
   RenderResult result = maps.render(hits, options.parameters.film, progress);
+  keep_light_maps(maps.light_map_contents(), options, progress);
   if (!reflections) return result;
   RenderResult reflected = maps.render(ReflectedHits(camera), options.parameters.film, progress);
   *reflections = std::move(reflected.layers);

@@ -19,6 +19,10 @@ std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions
 /// progress must outlive it.
 KeepPhotons keep_maps(const Scene& scene, const RenderOptions& options, Progress& progress);
 
+/// Adds light maps to the photons in the file of --save-maps, where both are there.
+void keep_light_maps(const std::optional<LightMapContents>& light_maps,
+                     const RenderOptions& options, Progress& progress);
+
 /// As `render`, from photons that a file holds, or that are kept in one.
 ///   hits          what the camera sees
 ///   reflections   gets the part of the picture that came by reflection, or null

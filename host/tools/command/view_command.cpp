@@ -59,6 +59,9 @@ void run_view(ViewOptions& options) {
   parameters.prepared = load_maps(scene, render, progress);
   // Progress is shown in the window from here on.
   parameters.keep = keep_maps(scene, render, Progress::none());
+  parameters.keep_light_maps = [&](const LightMapContents& light_maps) {
+    keep_light_maps(light_maps, render, progress);
+  };
   parameters.load = render.load;
   parameters.preview = render.preview;
   parameters.notes = &progress;

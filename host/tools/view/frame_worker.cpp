@@ -25,9 +25,13 @@ FrameWorker::FrameWorker(int most_samples, double frames_per_second)
       size_(frames_per_second),
       thread_([this](std::stop_token stop) { work(std::move(stop)); }) {}
 
-FrameWorker::~FrameWorker() {
+FrameWorker::~FrameWorker() { stop(); }
+
+std::shared_ptr<MapGeneration> FrameWorker::stop() {
   thread_.request_stop();
   wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+  return maps_;
 }
 
 void FrameWorker::show(const FrameRequest& request) {

@@ -40,6 +40,9 @@ class FrameWorker {
   void show(const FrameRequest& request);
   void use(std::shared_ptr<MapGeneration> maps);
 
+  /// Ends the work. Returns the newest maps, which nobody uses any longer; null: there are none.
+  std::shared_ptr<MapGeneration> stop();
+
   /// The newest frame; null before the first.
   std::shared_ptr<const Frame> latest() const;
   /// Whether the newest frame has all samples of the newest maps.

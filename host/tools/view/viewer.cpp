@@ -85,6 +85,13 @@ class Viewer {
       keep_screenshot();
       window_.show_frame();
     }
+    photons_.reset();
+    const std::shared_ptr<MapGeneration> maps = frames_.stop();
+    if (!parameters_.keep_light_maps || !maps) return;
+    if (maps->emitted_photons != parameters_.render.photons.emitted_photons) return;
+    if (const auto light_maps = maps->renderer->light_maps()) {
+      parameters_.keep_light_maps(*light_maps);
+    }
   }
 
  private:

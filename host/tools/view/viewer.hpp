@@ -23,6 +23,8 @@ struct ViewerParameters {
   std::string preview;                  ///< HOST:PORT of a tev that gets the pictures; "" = none
   Progress* notes = &Progress::none();  ///< is told what has no place in the window
   KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
+  /// Is given the light maps of all photons at the end, where there are any; may be empty.
+  std::function<void(const LightMapContents&)> keep_light_maps;
   /// Asked before each redraw: true ends the walkthrough.
   std::function<bool()> interrupted = [] { return false; };
 };
