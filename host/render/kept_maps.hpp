@@ -18,6 +18,10 @@ class KeptMaps {
     rendering_.report_to(progress);
     return rendering_.frames();
   }
+  LightMapEstimates& light_maps(Progress& progress) {
+    rendering_.report_to(progress);
+    return rendering_.light_maps();
+  }
   bool reads_light_maps() const { return rendering_.plan().reads_light_maps(); }
   std::optional<LightMapContents> light_map_contents() const {
     return rendering_.light_map_contents();

@@ -53,6 +53,9 @@ class Rendering {
   /// Adds what is seen by the photons of the prepared pass.
   void add_pass(const HitSource& source);
 
+  /// Of the prepared pass; the plan reads light maps.
+  LightMapEstimates& light_maps();
+
   /// Quick pictures from the light maps of the prepared pass; the plan reads light maps.
   LightMapFrames& frames();
 
@@ -88,7 +91,6 @@ class Rendering {
   bool reads_light_maps(const HitSource& source) const {
     return plan_.reads_light_maps() && source.dense();
   }
-  LightMapEstimates& light_maps();
   Estimates read_light_maps(const PrimaryHits& hits);
   double compile_seconds() const;
 

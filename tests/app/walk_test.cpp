@@ -135,10 +135,10 @@ TEST_CASE("a frame has the layers and the attributes of any picture, and its own
 TEST_CASE(
     "quick frames are light maps alone, and the same bytes wherever the camera stands still") {
   const FileFolder folder;
-  const std::string still = R"([
+  const std::string still = R"({"interpolation": "linear", "keyframes": [
       {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
       {"time": 1, "position": [0, 0, 0.9], "look_at": [0, 0, -1]},
-      {"time": 2, "position": [0.3, 0, 0.9], "look_at": [0, 0, -1]}])";
+      {"time": 2, "position": [0.3, 0, 0.9], "look_at": [0, 0, -1]}]})";
   std::vector<std::string> arguments = walk(folder, {"--quick"}, "2");
   arguments.back() = "--quick";
   for (std::string& argument : arguments) {

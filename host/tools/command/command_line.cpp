@@ -37,6 +37,7 @@ void define(CLI::App& photile) {
   add_validate_command(photile);
   add_walk_command(photile);
   add_view_command(photile);
+  add_bake_command(photile);
 }
 
 /// The command whose --help knows more about a usage error.

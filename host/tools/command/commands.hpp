@@ -18,5 +18,6 @@ void add_info_command(CLI::App& photile);
 void add_validate_command(CLI::App& photile);
 void add_walk_command(CLI::App& photile);
 void add_view_command(CLI::App& photile);
+void add_bake_command(CLI::App& photile);
 
 }  // namespace photile::app

@@ -1,0 +1,114 @@
+// Light maps as textures: what a bilinear lookup gives at points of the surface, and how rectangles
+// lie on a picture.
+#include "tools/bake/baked_light.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "light_maps/node_sources.hpp"
+#include "photile/errors.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+float gentle(const glm::vec3& p, std::uint32_t s) {
+  const float brighter = side_of(s) == 0 ? 1.0f : 3.0f;
+  return brighter * (3.0f + std::sin(2 * p.x) * std::cos(p.y) + std::sin(1.5f * p.z));
+}
+
+/// As a graphics processor looks a texture up.
+float bilinear(const std::vector<glm::vec3>& texels, std::uint32_t width, std::uint32_t height,
+               const glm::vec2& uv) {
+  const float x = uv.x * static_cast<float>(width) - 0.5f;
+  const float y = uv.y * static_cast<float>(height) - 0.5f;
+  const float fx = std::floor(x), fy = std::floor(y);
+  const auto at = [&](float column, float row) {
+    const auto c =
+        static_cast<std::size_t>(std::clamp(column, 0.0f, static_cast<float>(width - 1)));
+    const auto r = static_cast<std::size_t>(std::clamp(row, 0.0f, static_cast<float>(height - 1)));
+    return texels[r * width + c].x;
+  };
+  return glm::mix(glm::mix(at(fx, fy), at(fx + 1, fy), x - fx),
+                  glm::mix(at(fx, fy + 1), at(fx + 1, fy + 1), x - fx), y - fy);
+}
+
+bake::BakeParameters baking(double texel = 0, int most_side = 4096) {
+  bake::BakeParameters parameters;
+  parameters.texel = texel;
+  parameters.most_side = most_side;
+  parameters.powers = {1.0};
+  return parameters;
+}
+
+}  // namespace
+
+TEST_CASE("Baked textures hold the irradiance of the brighter side at points of the surface",
+          "[baked_light]") {
+  const Scene scene = with_one_lamp(furnished_room(2));
+  FormulaSource source(gentle);
+  LightMaps maps(scene, quiet_parameters());
+  const bake::BakedLight baked(scene, maps, source, baking(0.03), Progress::none());
+  const std::vector<glm::vec3> texels = baked.layer(0);
+  REQUIRE(texels.size() == std::size_t{baked.width()} * baked.height());
+  // Second derivatives of the light are at most 3 x 4.25 a square metre; texels and nodes of 4 cm
+  // each are off by an eighth of it, both ways.
+  const double bound = 2 * 2 * 3 * 4.25 * 0.04 * 0.04 / 8;
+  const PrimaryHits points = points_on(scene, 5);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t triangle = triangle_of(points.sided_triangle[i]);
+    CHECK(baked.side(triangle) == 1);  // three times as bright
+    const auto [a, b, c] = scene.corners(triangle);
+    const auto uv = baked.corners(triangle);
+    // The weights of the corners.
+    const glm::vec3 normal = glm::cross(b - a, c - a);
+    const float v =
+        glm::dot(glm::cross(b - a, points.position[i] - a), normal) / glm::dot(normal, normal);
+    const float u =
+        glm::dot(glm::cross(points.position[i] - a, c - a), normal) / glm::dot(normal, normal);
+    const glm::vec2 place = uv[0] + u * (uv[1] - uv[0]) + v * (uv[2] - uv[0]);
+    REQUIRE(std::abs(bilinear(texels, baked.width(), baked.height(), place) -
+                     gentle(points.position[i], sided(triangle, 1))) < bound + 1e-3);
+  }
+}
+
+TEST_CASE("Texels become coarser until they fit, and those asked for are refused where they do not",
+          "[baked_light]") {
+  const Scene scene = with_one_lamp(furnished_room(2));
+  FormulaSource source(gentle);
+  LightMaps maps(scene, quiet_parameters());
+  const bake::BakedLight small(scene, maps, source, baking(0, 256), Progress::none());
+  CHECK(small.width() <= 256);
+  CHECK(small.height() <= 256);
+  CHECK(small.texel() > 0.02);
+  CHECK_THROWS_AS(bake::BakedLight(scene, maps, source, baking(0.001, 256), Progress::none()),
+                  UsageError);
+}
+
+TEST_CASE("Rectangles on an atlas do not overlap", "[baked_light]") {
+  std::mt19937 random(5);
+  std::vector<bake::TexelRectangle> rectangles(300);
+  for (auto& r : rectangles) {
+    r.width = 1 + random() % 40;
+    r.height = 1 + random() % 25;
+  }
+  const auto atlas = bake::pack(rectangles, 1024);
+  REQUIRE(atlas);
+  std::vector<int> covered(std::size_t{atlas->width} * atlas->height, 0);
+  for (const auto& r : rectangles) {
+    REQUIRE(r.x + r.width <= atlas->width);
+    REQUIRE(r.y + r.height <= atlas->height);
+    for (std::uint32_t y = r.y; y < r.y + r.height; ++y) {
+      for (std::uint32_t x = r.x; x < r.x + r.width; ++x) ++covered[y * atlas->width + x];
+    }
+  }
+  CHECK(*std::max_element(covered.begin(), covered.end()) == 1);
+  std::vector<bake::TexelRectangle> wide{{0, 0, 65, 1}};
+  CHECK_FALSE(bake::pack(wide, 64));
+  std::vector<bake::TexelRectangle> many(65, {0, 0, 64, 1});
+  CHECK_FALSE(bake::pack(many, 64));
+}
+
+}  // namespace photile::test
