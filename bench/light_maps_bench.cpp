@@ -21,6 +21,9 @@
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"
 #include "tools/view/viewpoint.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/surface.hpp"
 
 namespace {
 
@@ -32,6 +35,7 @@ struct Settings {
   int neighbours = 250;
   std::vector<std::pair<int, int>> sizes{{512, 512}, {1920, 1080}};
   std::size_t mixed_nodes = 130'000;
+  std::string nodes;  ///< PNG of a frame with its lattice, "" = none
   double detail = 0;  ///< metres between the finest nodes; 0 = as is
 };
 
@@ -164,8 +168,40 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
     return stopwatch.taken().processor_seconds;
   });
   std::filesystem::remove(file);
+  if (!settings.nodes.empty()) {
+    std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));
+    frames.draw(scene.cameras.front(), {width, height, 4}, scales, all, picture, Progress::none());
+    draw_nodes(rays, estimates.maps(), scene.cameras.front(), picture, width, height);
+    write_png(settings.nodes, tone_map(image_of(picture, width, height), {}));
+  }
   row["frame of film, processor seconds"] = to_json(film);
   record.add(row);
+}
+
+/// Draws the lattice over a frame whose nodes are all there: lines at the borders of cells.
+void draw_nodes(const RayScene& rays, const LightMaps& maps, const Camera& camera,
+                std::vector<glm::vec3>& picture, int width, int height) {
+  constexpr float line = 0.07f;  // a part of a cell on each side
+  const trace::FlushDenormals flush_denormals;
+  const FilmDirections directions = camera.directions(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const glm::vec3 direction(directions(x + 0.5, y + 0.5));
+      const auto hit = trace::intersect(rays, glm::vec3(camera.position), direction);
+      if (!hit) continue;
+      const trace::SurfacePoint point = trace::surface_hit(rays.scene(), *hit, direction);
+      NodeBlend blend{};
+      if (maps.charts().chart_of()[point.sided_triangle()] == none ||
+          !maps.find(point.sided_triangle(), point.position, blend)) {
+        continue;
+      }
+      const glm::vec2 within(blend.weight[1] + blend.weight[3], blend.weight[2] + blend.weight[3]);
+      const glm::vec2 from_line = glm::min(within, 1.0f - within);
+      if (std::min(from_line.x, from_line.y) < line) {
+        picture[static_cast<std::size_t>(y * width + x)] *= 0.35f;
+      }
+    }
+  }
 }
 
 void measure_mixing(std::size_t nodes, std::size_t lights, const BenchOptions& options,
@@ -239,6 +275,7 @@ int main(int argument_count, char** arguments) {
   command.add_option("--only", only, "mixing, or one scene");
   Settings settings;
   command.add_option("--paths", settings.paths, "from all lamps")->capture_default_str();
+  command.add_option("--nodes", settings.nodes, "PNG of the last scene's frame with its cells");
   command.add_option("--detail", settings.detail, "metres between the finest nodes");
   return run_bench(command, argument_count, arguments,
                    [&] { return run(options, settings, only); });
