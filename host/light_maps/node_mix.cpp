@@ -3,6 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
+
+#include "photile/scene_needs.hpp"
 
 namespace photile::light_maps {
 namespace {
@@ -30,25 +34,46 @@ class Sum {
   alignas(16) float sum_[4] = {};
 };
 
-/// The sum over the lights of a node, always in the order in which it holds them. Nodes are `dense`
-/// where each holds all lights.
-template <bool dense>
-glm::vec4 mixed(const Estimates& values, std::size_t node, std::span<const glm::vec4> powers) {
-  const std::size_t first = dense ? node * powers.size() : values.first[node];
-  const std::size_t last = dense ? first + powers.size() : values.first[node + 1];
+/// The sum of values [first, last), in this order.
+///   power   of value i
+template <class Power>
+glm::vec4 summed(const Estimates& values, std::size_t first, std::size_t last, const Power& power) {
   const std::size_t followed = std::min(last, values.irradiance.size() - 1);
-  const auto power = [&](std::size_t i) {
-    if constexpr (dense)
-      return powers[i - first];
-    else
-      return powers[values.light[i]];
-  };
   Sum sum;
   for (std::size_t i = first; i < followed; ++i) sum.add(values.irradiance[i], power(i));
   for (std::size_t i = std::max(first, followed); i < last; ++i) {
     sum.add_last(values.irradiance[i], power(i));
   }
   return sum.get();
+}
+
+/// Nodes [begin, end) where each holds all of so many lights: a number known beforehand lets
+/// processors work at several nodes at once.
+template <std::size_t lights>
+void mix_dense(const Estimates& values, std::size_t begin, std::size_t end,
+               std::span<const glm::vec4> powers, std::vector<glm::vec4>& mixed) {
+  std::array<glm::vec4, lights> own;
+  std::copy_n(powers.begin(), lights, own.begin());
+  const bool last = end * lights == values.irradiance.size();
+  for (std::size_t node = begin; node < end - (last ? 1 : 0); ++node) {
+    const glm::vec3* value = &values.irradiance[node * lights];
+    Sum sum;
+    for (std::size_t i = 0; i < lights; ++i) sum.add(value[i], own[i]);
+    mixed[node] = sum.get();
+  }
+  if (!last) return;
+  const std::size_t first = (end - 1) * lights;
+  mixed[end - 1] =
+      summed(values, first, first + lights, [&](std::size_t i) { return own[i - first]; });
+}
+
+using MixDense = void (*)(const Estimates&, std::size_t, std::size_t, std::span<const glm::vec4>,
+                          std::vector<glm::vec4>&);
+
+/// By number of lights, from one on.
+template <std::size_t... less_one>
+constexpr auto dense_mixes(std::index_sequence<less_one...>) {
+  return std::array<MixDense, sizeof...(less_one)>{mix_dense<less_one + 1>...};
 }
 
 /// Whether a node holds light of a lamp, where nodes hold those alone that reach them.
@@ -81,12 +106,18 @@ void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const gl
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
     const std::size_t begin = first + task * nodes_per_mix_task;
     const std::size_t end = std::min(nodes, begin + nodes_per_mix_task);
+    if (dense) {
+      constexpr auto mixes = dense_mixes(std::make_index_sequence<max_dense_lights>());
+      mixes[powers.size() - 1](values, begin, end, padded, light_);
+      return;
+    }
     for (std::size_t node = begin; node < end; ++node) {
       if (one_of_many && node < known &&
           !holds(values, node, static_cast<std::uint16_t>(changed.front()))) {
         continue;
       }
-      light_[node] = dense ? mixed<true>(values, node, padded) : mixed<false>(values, node, padded);
+      light_[node] = summed(values, values.first[node], values.first[node + 1],
+                            [&](std::size_t i) { return padded[values.light[i]]; });
     }
   });
 }
