@@ -52,7 +52,7 @@ glm::vec4 summed(const Estimates& values, std::size_t first, std::size_t last, c
 template <std::size_t lights>
 void mix_dense(const Estimates& values, std::size_t begin, std::size_t end,
                std::span<const glm::vec4> powers, std::vector<glm::vec4>& mixed) {
-  std::array<glm::vec4, lights> own;
+  std::array<glm::vec4, lights> own{};
   std::copy_n(powers.begin(), lights, own.begin());
   const bool last = end * lights == values.irradiance.size();
   for (std::size_t node = begin; node < end - (last ? 1 : 0); ++node) {

@@ -169,7 +169,7 @@ std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t triangle) const {
     const glm::dvec3 offset = glm::dvec3(positions[i]) - lattice.origin;
     const glm::dvec2 place(glm::dot(offset, lattice.across), glm::dot(offset, lattice.along));
     const glm::dvec2 size = lattice.spacing * glm::dvec2(lattice.columns, lattice.rows);
-    const glm::dvec2 texel = glm::dvec2(placed.rectangle.x, placed.rectangle.y) + border + 0.5 +
+    const glm::dvec2 texel = glm::dvec2(placed.rectangle.x, placed.rectangle.y) + (border + 0.5) +
                              glm::clamp(place / size, 0.0, 1.0) * glm::dvec2(placed.cells);
     corners[i] = glm::vec2(texel / glm::dvec2(atlas_.width, atlas_.height));
   }
