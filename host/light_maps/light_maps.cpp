@@ -317,6 +317,62 @@ LightMapContents LightMaps::contents() const {
   return contents;
 }
 
+std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep) {
+  const Tiles& tiles = impl_->tiles;
+  std::vector<std::uint64_t> kept(tiles.size(), 0);
+  std::vector<std::uint8_t> wanted(keep.size(), 0);
+  for (auto index = static_cast<std::uint32_t>(tiles.size()); index-- > 0;) {  // the finest first
+    const Tile& tile = tiles[index];
+    for (std::uint32_t cell = 0; cell < 64; ++cell) {
+      if ((tile.known >> cell & 1) == 0) continue;
+      const std::uint32_t x = cell & 7, y = cell >> 3, first = y * 9 + x;
+      bool stays = keep[tile.node[first]] != 0;
+      if ((tile.split >> cell & 1) != 0) {
+        const std::uint64_t quarter = std::uint64_t{0b11'0000'0011} << ((y & 3) * 16 + (x & 3) * 2);
+        stays = stays || (kept[tile.child[(y >> 2) * 2 + (x >> 2)]] & quarter) != 0;
+      }
+      if (!stays) continue;
+      kept[index] |= std::uint64_t{1} << cell;
+      for (const std::uint32_t corner : {first, first + 1, first + 9, first + 10}) {
+        wanted[tile.node[corner]] = 1;
+      }
+    }
+  }
+  const LightMapContents all = contents();
+  LightMapContents left;
+  std::vector<std::uint32_t> former;
+  const std::size_t lights = impl_->parameters.powers.size();
+  const Estimates& values = all.values;
+  if (impl_->needs.many_lights()) left.values.first.push_back(0);
+  for (std::uint32_t node = 0; node < wanted.size(); ++node) {
+    if (wanted[node] == 0) continue;
+    former.push_back(node);
+    left.nodes.push_back(all.nodes[node]);
+    const bool many = impl_->needs.many_lights();
+    const std::size_t first = many ? values.first[node] : node * lights;
+    const std::size_t last = many ? values.first[node + 1] : first + lights;
+    for (std::size_t i = first; i < last; ++i) {
+      left.values.irradiance.push_back(values.irradiance[i]);
+      if (many) left.values.light.push_back(values.light[i]);
+    }
+    if (many) left.values.first.push_back(left.values.light.size());
+  }
+  for (std::uint32_t index = 0; index < kept.size(); ++index) {
+    if (kept[index] == 0) continue;
+    left.tiles.push_back(all.tiles[index]);
+    left.tiles.back().known = kept[index];
+    left.tiles.back().split &= kept[index];
+  }
+  impl_->tiles.clear();
+  impl_->node_at.clear();
+  impl_->values = {};
+  if (impl_->needs.many_lights()) impl_->values.first.push_back(0);
+  impl_->together.clear();
+  impl_->cells = 0;
+  restore(std::move(left));
+  return former;
+}
+
 void LightMaps::restore(LightMapContents contents) {
   const auto fit = [](bool fits) {
     if (!fits) throw InputError("saved light maps do not fit the scene; save them again");

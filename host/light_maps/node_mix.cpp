@@ -87,6 +87,11 @@ bool holds(const Estimates& values, std::size_t node, std::uint16_t light) {
 
 }  // namespace
 
+void NodeMix::keep(std::span<const std::uint32_t> nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) light_[i] = light_[nodes[i]];
+  light_.resize(nodes.size());
+}
+
 void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers) {
   std::vector<std::size_t> changed;
   for (std::size_t light = 0; light < powers.size(); ++light) {

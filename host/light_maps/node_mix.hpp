@@ -21,6 +21,9 @@ class NodeMix {
   ///   powers   per layer: power x tint
   void mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers);
 
+  /// Keeps these nodes alone, in this order.
+  void keep(std::span<const std::uint32_t> nodes);
+
   /// Per node; the fourth is nothing.
   std::span<const glm::vec4> light() const { return light_; }
   std::span<const glm::vec3> powers() const { return powers_; }

@@ -81,6 +81,11 @@ class Tiles {
   /// Makes the tile of the next level that refines a cell, if there is none.
   void split(std::uint32_t tile, std::uint32_t cell);
 
+  void clear() {
+    std::fill(root_.begin(), root_.end(), none);
+    tiles_.clear();
+  }
+
   Tile& operator[](std::uint32_t tile) { return tiles_[tile]; }
   const Tile& operator[](std::uint32_t tile) const { return tiles_[tile]; }
   std::size_t size() const { return tiles_.size(); }

@@ -55,6 +55,10 @@ DrawnFrame SceneRenderer::draw(const Camera& camera, const Film& film,
   return impl_->frames(progress).draw(camera, film, powers, fill_seconds, picture, progress);
 }
 
+void SceneRenderer::bound_light_maps(std::uint64_t bytes) {
+  if (draws()) impl_->frames(Progress::none()).bound(bytes);
+}
+
 bool SceneRenderer::draws() const { return impl_->reads_light_maps(); }
 
 std::optional<LightMapContents> SceneRenderer::light_maps() const {

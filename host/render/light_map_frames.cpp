@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <glm/gtc/constants.hpp>
 #include <numeric>
 #include <optional>
@@ -119,6 +121,10 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
                                 std::span<const glm::vec3> powers, double fill_seconds,
                                 std::span<glm::vec3> picture, const Progress& progress) {
   const View view(camera, film, picture);
+  if (bound_ > 0) {
+    ++frame_;
+    forget_unseen();
+  }
   DrawnFrame drawn;
   std::vector<std::size_t> blocks(view.blocks());
   std::iota(blocks.begin(), blocks.end(), std::size_t{0});
@@ -126,6 +132,7 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
   for (;;) {
     progress.throw_if_cancelled();
     mixed_.mix(maps_.values(), maps_.statistics().nodes, powers);
+    if (bound_ > 0) seen_.resize(maps_.statistics().nodes, 0);
     ambient_ = mean_of_some(mixed_.light());
     std::vector<MissingPlace> missing = draw_blocks(view, blocks);
     drawn.lacking = missing.size();
@@ -136,6 +143,31 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
     if (!filling) filling.emplace();
     fill(missing, fill_seconds - drawn.fill_seconds, progress);
   }
+}
+
+/// Before a frame: the latest is the one before.
+void LightMapFrames::forget_unseen() {
+  const LightMapStatistics statistics = maps_.statistics();
+  if (statistics.value_bytes + statistics.index_bytes <= bound_ || statistics.nodes == 0) return;
+  seen_.resize(statistics.nodes, 0);
+  // The oldest frame whose cells stay: so many nodes take half of the memory.
+  const auto bytes = static_cast<double>(statistics.value_bytes + statistics.index_bytes);
+  const auto staying = static_cast<std::size_t>(static_cast<double>(bound_) / 2 / bytes *
+                                                static_cast<double>(statistics.nodes));
+  std::vector<std::uint32_t> newest_first = seen_;
+  const auto place = newest_first.begin() +
+                     static_cast<std::ptrdiff_t>(std::min(staying, newest_first.size() - 1));
+  std::nth_element(newest_first.begin(), place, newest_first.end(), std::greater<>());
+  const std::uint32_t oldest = std::min(*place + 1, frame_ - 1);
+  std::vector<std::uint8_t> keep(seen_.size());
+  for (std::size_t node = 0; node < keep.size(); ++node) keep[node] = seen_[node] >= oldest ? 1 : 0;
+  // A view that takes more than there is keeps what it has; a few nodes are not worth the work.
+  const auto stay = std::count(keep.begin(), keep.end(), std::uint8_t{1});
+  if (static_cast<std::size_t>(stay) > keep.size() - keep.size() / 4) return;
+  const std::vector<std::uint32_t> former = maps_.forget(keep);
+  mixed_.keep(former);
+  for (std::size_t i = 0; i < former.size(); ++i) seen_[i] = seen_[former[i]];
+  seen_.resize(former.size());
 }
 
 /// Draws blocks; leaves those that lack nodes. Returns a place of each cell that is missing, those
@@ -260,6 +292,12 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_trian
           {*cell, empty, glm::distance(view.eye, position), position, sided_triangle});
     }
     if (empty) return ambient_;
+  }
+  if (bound_ > 0) {
+    const std::atomic_ref<std::uint32_t> seen(seen_[blend.node[0]]);
+    if (seen.load(std::memory_order_relaxed) != frame_) {
+      seen.store(frame_, std::memory_order_relaxed);
+    }
   }
   const std::span<const glm::vec4> light = mixed_.light();
   const glm::vec4 sum =

@@ -26,6 +26,11 @@ class LightMapFrames {
   /// References are kept.
   LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource& source);
 
+  /// From now on, frames forget the cells that were seen least recently where light maps take more
+  /// than so many bytes: down to half of it, but none that the latest frame sees. 0 = no bound. For
+  /// sources that keep nothing of nodes.
+  void bound(std::uint64_t bytes) { bound_ = bytes; }
+
   /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Pixels whose nodes
   /// are not valued show the next coarser level; those without any, the light of nodes on the
   /// average.
@@ -58,6 +63,7 @@ class LightMapFrames {
   };
   struct View;
 
+  void forget_unseen();
   std::vector<MissingPlace> draw_blocks(const View& view, std::vector<std::size_t>& blocks) const;
   void fill(std::span<const MissingPlace> places, double seconds, const Progress& progress);
   void draw_block(const View& view, std::size_t block, Missing& missing) const;
@@ -79,8 +85,11 @@ class LightMapFrames {
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1
   std::vector<trace::DistantLight> distant_;
   light_maps::NodeMix mixed_;
-  glm::vec3 ambient_{0.0f};           ///< irradiance where no level is valued
-  double seconds_per_place_ = 20e-6;  ///< of valuing, learned from what it took
+  std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none
+  std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
+  mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell
+  glm::vec3 ambient_{0.0f};                  ///< irradiance where no level is valued
+  double seconds_per_place_ = 20e-6;         ///< of valuing, learned from what it took
 };
 
 }  // namespace photile

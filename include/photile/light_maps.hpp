@@ -179,6 +179,13 @@ class LightMaps {
   /// Errors: InputError where it does not fit them; then nothing here is of use.
   void restore(LightMapContents contents);
 
+  /// Forgets all but the cells whose corner of least column and row is to be kept, and what is
+  /// coarser there. Nodes get other numbers, in the same order; what is forgotten is valued again
+  /// when it is needed, to the same bits. For sources that keep nothing of nodes.
+  ///   keep   per node
+  /// Returns the former numbers of the nodes that are left.
+  std::vector<std::uint32_t> forget(std::span<const std::uint8_t> keep);
+
   LightMapStatistics statistics() const;
 
   const light_maps::Charts& charts() const;

@@ -1,6 +1,7 @@
 // One set of photon maps for many pictures.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -60,6 +61,10 @@ class SceneRenderer {
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   double fill_seconds, std::span<glm::vec3> picture,
                   Progress& progress = Progress::none());
+
+  /// From now on light maps take about so many bytes: `draw` forgets what was seen least recently,
+  /// but nothing of the latest picture. It comes back to the same bits when it is seen again.
+  void bound_light_maps(std::uint64_t bytes);
 
   /// Whether `draw` has light maps to draw from.
   bool draws() const;

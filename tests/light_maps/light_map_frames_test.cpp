@@ -133,6 +133,26 @@ TEST_CASE("Several rays a pixel smooth edges, and leave smooth light as it is",
   CHECK(sum_of_nine == Approx(sum_of_one).epsilon(0.01));
 }
 
+TEST_CASE("Cells that were seen least recently are forgotten, and come back to the same bits",
+          "[light_map_frames]") {
+  DrawnRoom free, bounded;
+  const Camera behind = Camera::look_at({0.5, 0.3, 1.5}, {0.4, 0.1, 2.5}, {0, 0, 1}, 1.0);
+  const auto first = free.draw(in_the_room(0.5), all);
+  const LightMapStatistics one_view = free.maps.statistics();
+  const auto second = free.draw(behind, all);
+  const std::uint64_t both = free.maps.statistics().nodes;
+  REQUIRE(both > one_view.nodes);
+
+  bounded.frames.bound(one_view.value_bytes + one_view.index_bytes - 1);
+  for (int turn = 0; turn < 3; ++turn) {
+    CHECK(same_pixels(bounded.draw(in_the_room(0.5), all), first));
+    CHECK(same_pixels(bounded.draw(behind, all), second));
+    CHECK(same_pixels(bounded.draw(behind, all, 2.0f), free.draw(behind, all, 2.0f)));
+    free.draw(behind, all);
+    CHECK(bounded.maps.statistics().nodes < both);
+  }
+}
+
 TEST_CASE("Walking changes no light of a wall between frames", "[light_map_frames]") {
   DrawnRoom room;
   const PrimaryHits points = points_on(room.scene, 6);

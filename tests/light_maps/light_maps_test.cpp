@@ -173,6 +173,35 @@ TEST_CASE("Light maps are taken in whole, and filled on as if they had never bee
   CHECK(after.statistics().nodes == fresh.statistics().nodes);
 }
 
+TEST_CASE("What is forgotten is valued again to the same bits, and the rest stays",
+          "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const PrimaryHits hits = points_on(floor, 60);
+  FormulaSource source(shadow);
+  LightMaps maps(floor, quiet_parameters());
+  maps.fill(hits, source, Progress::none());
+  const std::vector<float> before = read_all(maps, hits);
+  const std::uint64_t nodes = maps.statistics().nodes;
+  std::vector<std::uint8_t> keep(nodes, 0);
+  for (std::size_t node = 0; node < nodes; node += 5) keep[node] = 1;
+  const std::vector<std::uint32_t> former = maps.forget(keep);
+  CHECK(former.size() == maps.statistics().nodes);
+  CHECK(former.size() < nodes);
+  CHECK(std::is_sorted(former.begin(), former.end()));
+  std::size_t still_there = 0;
+  const std::vector<float> between = read_all(maps, hits);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (between[i] < 0) continue;
+    ++still_there;
+    REQUIRE(between[i] == before[i]);
+  }
+  CHECK(still_there > 0);
+  CHECK(still_there < hits.size());
+  maps.fill(hits, source, Progress::none());
+  CHECK(read_all(maps, hits) == before);
+  CHECK(maps.statistics().nodes == nodes);
+}
+
 TEST_CASE("Contents that do not fit the scene are refused", "[light_maps]") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
   FormulaSource source(shadow);

@@ -62,6 +62,7 @@ void run_view(ViewOptions& options) {
   parameters.keep_light_maps = [&](const LightMapContents& light_maps) {
     keep_light_maps(light_maps, render, progress);
   };
+  parameters.light_map_bytes = render.device.memory_bytes;
   parameters.load = render.load;
   parameters.preview = render.preview;
   parameters.notes = &progress;

@@ -98,8 +98,10 @@ class Viewer {
   void build_maps(std::optional<PreparedPhotons> prepared, KeepPhotons keep) {
     photons_.reset();  // ends what it is at
     photons_.emplace(scene_, open_devices_, parameters_.render, std::move(prepared),
-                     std::move(keep),
-                     [this](std::shared_ptr<MapGeneration> maps) { frames_.use(std::move(maps)); });
+                     std::move(keep), [this](std::shared_ptr<MapGeneration> maps) {
+                       maps->renderer->bound_light_maps(parameters_.light_map_bytes);
+                       frames_.use(std::move(maps));
+                     });
   }
 
   void take_keys() {

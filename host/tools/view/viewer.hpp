@@ -1,6 +1,7 @@
 // The walkthrough: a window in which a scene is walked through and its lamps are set.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -16,6 +17,7 @@ struct ViewerParameters {
   RenderParameters render;  ///< film: size of the window and most samples, standing still
   double frames_per_second = defaults::view_frames_per_second;  ///< aimed at while moving
   std::filesystem::path outputs = ".";  ///< folder of screenshots and pictures
+  std::uint64_t light_map_bytes = 0;    ///< that nodes may take; 0 = no bound
   /// Photons of an earlier run in place of all tracing, or none.
   std::optional<PreparedPhotons> prepared;
   SceneLoadOptions load;  ///< with which the scene was loaded, for copies of its file
