@@ -62,6 +62,32 @@ Image image_of(const std::vector<glm::vec3>& picture, int width, int height) {
   return image;
 }
 
+/// Draws the lattice over a frame whose nodes are all there: lines at the borders of cells.
+void draw_nodes(const RayScene& rays, const LightMaps& maps, const Camera& camera,
+                std::vector<glm::vec3>& picture, int width, int height) {
+  constexpr float line = 0.07f;  // a part of a cell on each side
+  const trace::FlushDenormals flush_denormals;
+  const FilmDirections directions = camera.directions(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const glm::vec3 direction(directions(x + 0.5, y + 0.5));
+      const auto hit = trace::intersect(rays, glm::vec3(camera.position), direction);
+      if (!hit) continue;
+      const trace::SurfacePoint point = trace::surface_hit(rays.scene(), *hit, direction);
+      NodeBlend blend{};
+      if (maps.charts().chart_of()[point.sided_triangle()] == none ||
+          !maps.find(point.sided_triangle(), point.position, blend)) {
+        continue;
+      }
+      const glm::vec2 within(blend.weight[1] + blend.weight[3], blend.weight[2] + blend.weight[3]);
+      const glm::vec2 from_line = glm::min(within, 1.0f - within);
+      if (std::min(from_line.x, from_line.y) < line) {
+        picture[static_cast<std::size_t>(y * width + x)] *= 0.35f;
+      }
+    }
+  }
+}
+
 constexpr double all = std::numeric_limits<double>::infinity();
 
 void measure_scene(const std::string& name, const Scene& scene, Device& device,
@@ -176,32 +202,6 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   }
   row["frame of film, processor seconds"] = to_json(film);
   record.add(row);
-}
-
-/// Draws the lattice over a frame whose nodes are all there: lines at the borders of cells.
-void draw_nodes(const RayScene& rays, const LightMaps& maps, const Camera& camera,
-                std::vector<glm::vec3>& picture, int width, int height) {
-  constexpr float line = 0.07f;  // a part of a cell on each side
-  const trace::FlushDenormals flush_denormals;
-  const FilmDirections directions = camera.directions(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const glm::vec3 direction(directions(x + 0.5, y + 0.5));
-      const auto hit = trace::intersect(rays, glm::vec3(camera.position), direction);
-      if (!hit) continue;
-      const trace::SurfacePoint point = trace::surface_hit(rays.scene(), *hit, direction);
-      NodeBlend blend{};
-      if (maps.charts().chart_of()[point.sided_triangle()] == none ||
-          !maps.find(point.sided_triangle(), point.position, blend)) {
-        continue;
-      }
-      const glm::vec2 within(blend.weight[1] + blend.weight[3], blend.weight[2] + blend.weight[3]);
-      const glm::vec2 from_line = glm::min(within, 1.0f - within);
-      if (std::min(from_line.x, from_line.y) < line) {
-        picture[static_cast<std::size_t>(y * width + x)] *= 0.35f;
-      }
-    }
-  }
 }
 
 void measure_mixing(std::size_t nodes, std::size_t lights, const BenchOptions& options,
