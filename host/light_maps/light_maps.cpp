@@ -368,6 +368,8 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
   impl_->values = {};
   if (impl_->needs.many_lights()) impl_->values.first.push_back(0);
   impl_->together.clear();
+  impl_->error.clear();
+  impl_->distance.clear();
   impl_->cells = 0;
   restore(std::move(left));
   return former;
