@@ -136,7 +136,7 @@ TEST_CASE("Several rays a pixel smooth edges, and leave smooth light as it is",
 TEST_CASE("Cells that were seen least recently are forgotten, and come back to the same bits",
           "[light_map_frames]") {
   DrawnRoom free, bounded;
-  const Camera behind = Camera::look_at({0.5, 0.3, 1.5}, {0.4, 0.1, 2.5}, {0, 0, 1}, 1.0);
+  const Camera behind = Camera::look_at({0.5, 0.3, 1.5}, {0.4, 0.1, 2.5}, {0, 0, 1}, 0.5);
   const auto first = free.draw(in_the_room(0.5), all);
   const LightMapStatistics one_view = free.maps.statistics();
   const auto second = free.draw(behind, all);
