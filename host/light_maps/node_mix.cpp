@@ -52,19 +52,17 @@ glm::vec4 summed(const Estimates& values, std::size_t first, std::size_t last, c
 template <std::size_t lights>
 void mix_dense(const Estimates& values, std::size_t begin, std::size_t end,
                std::span<const glm::vec4> powers, std::vector<glm::vec4>& mixed) {
-  std::array<glm::vec4, lights> own{};
-  std::copy_n(powers.begin(), lights, own.begin());
   const bool last = end * lights == values.irradiance.size();
   for (std::size_t node = begin; node < end - (last ? 1 : 0); ++node) {
     const glm::vec3* value = &values.irradiance[node * lights];
     Sum sum;
-    for (std::size_t i = 0; i < lights; ++i) sum.add(value[i], own[i]);
+    for (std::size_t i = 0; i < lights; ++i) sum.add(value[i], powers[i]);
     mixed[node] = sum.get();
   }
   if (!last) return;
   const std::size_t first = (end - 1) * lights;
   mixed[end - 1] =
-      summed(values, first, first + lights, [&](std::size_t i) { return own[i - first]; });
+      summed(values, first, first + lights, [&](std::size_t i) { return powers[i - first]; });
 }
 
 using MixDense = void (*)(const Estimates&, std::size_t, std::size_t, std::span<const glm::vec4>,

@@ -137,8 +137,8 @@ TEST_CASE(
   const FileFolder folder;
   const std::string still = R"({"interpolation": "linear", "keyframes": [
       {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
-      {"time": 1, "position": [0, 0, 0.9], "look_at": [0, 0, -1]},
-      {"time": 2, "position": [0.3, 0, 0.9], "look_at": [0, 0, -1]}]})";
+      {"time": 1, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
+      {"time": 2, "position": [0.3, 0, 0.9], "look_at": [0, 0, -1], "fov": 60}]})";
   std::vector<std::string> arguments = walk(folder, {"--quick"}, "2");
   arguments.back() = "--quick";
   for (std::string& argument : arguments) {

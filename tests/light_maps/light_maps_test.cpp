@@ -224,7 +224,7 @@ TEST_CASE("Contents that do not fit the scene are refused", "[light_maps]") {
   refused([](auto& c) { c.tiles[0].level = 4; });
   refused([](auto& c) { c.tiles[0].x = 4; });
   refused([](auto& c) { c.tiles[0].x = 1 << 20; });
-  refused([](auto& c) { c.tiles[0].split = ~c.tiles[0].known | 1; });
+  refused([](auto& c) { c.tiles[0].known = 0, c.tiles[0].split = 1; });
   refused([](auto& c) { c.tiles.push_back(c.tiles[0]); });
   refused([](auto& c) { c.tiles.erase(c.tiles.begin()); });
 }
