@@ -2,7 +2,6 @@
 // ones, for each kernel, in the middle of a plate, at its edges, in its corners, and in interiors.
 // Processor time of all threads, which other programs disturb least; on a GPU that of the kernels.
 #include <cmath>
-#include <ctime>
 #include <numeric>
 
 #include "photile/estimator.hpp"
@@ -81,15 +80,6 @@ class AreaBench {
   }
 
  private:
-  /// Of one call, device and host together where they are the same processor.
-  double seconds_of(Estimator& estimator, const PrimaryHits& hits) {
-    const auto estimate = [&] { estimator.estimate(hits); };
-    if (device_.info().type != DeviceType::cpu) return kernel_seconds_of(device_, estimate);
-    const std::clock_t begin = std::clock();
-    estimate();
-    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  }
-
   /// The estimators in turn, so that all see the same load.
   void run(const Place& place, const PrimaryHits& hits, const Scene& scene, const PhotonMaps& maps,
            const std::shared_ptr<const SurfaceIndex>& surface) {
@@ -112,7 +102,8 @@ class AreaBench {
     }
     for (int repeat = 0; repeat < repeats_; ++repeat) {
       for (Case& one : cases) {
-        one.timing.seconds.push_back(seconds_of(one.estimator, hits));
+        one.timing.seconds.push_back(
+            device_or_processor_seconds_of(device_, [&] { one.estimator.estimate(hits); }));
       }
     }
     for (const Case& one : cases) {

@@ -1,6 +1,7 @@
 // Device time, apart from what the host does around it.
 #pragma once
 
+#include <ctime>
 #include <map>
 #include <string>
 
@@ -34,6 +35,16 @@ double kernel_seconds_of(Device& device, Run run) {
   double sum = 0;
   for (const auto& [kernel, seconds] : seconds_by_kernel_of(device, run)) sum += seconds;
   return sum;
+}
+
+/// Seconds of one call: of its kernels on a GPU; where device and host are one processor, processor
+/// time of all threads, which other programs disturb least.
+template <class Run>
+double device_or_processor_seconds_of(Device& device, Run run) {
+  if (device.info().type != DeviceType::cpu) return kernel_seconds_of(device, run);
+  const std::clock_t begin = std::clock();
+  run();
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
 }  // namespace photile::bench

@@ -1,0 +1,110 @@
+// What an estimate costs by strategy, k and cells: nanoseconds a hit, over whole discs and clipped
+// ones, on a plane and in the living room. The tuner searches the same settings on a plane alone.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "photile/estimator.hpp"
+#include "support/bench_record.hpp"
+#include "support/kernel_seconds.hpp"
+#include "support/workload.hpp"
+
+namespace {
+
+using namespace photile;
+using namespace photile::bench;
+
+class StrategiesBench {
+ public:
+  explicit StrategiesBench(const BenchOptions& options)
+      : options_(options),
+        record_("strategies", options),
+        device_({.selector = options.device, .profile = true}) {
+    record_.set_device(device_.info());
+  }
+
+  void run(const Workload& workload) {
+    const Photons photons = workload.photons(options_.quick ? 2'000 : 1'000'000);
+    const Scene& scene = *workload.scene;
+    for (const int k : {50, 200}) {
+      const double radius = automatic_radius(photons, k);
+      const NeighbourGroups groups = default_groups(scene, photons, radius);
+      const PrimaryHits hits = in_map_order(workload.hits, groups);
+      const auto surface = std::make_shared<const SurfaceIndex>(
+          index_surface(scene, landed_on(scene, photons), radius, defaults::group_angle_degrees));
+      for (const float cells : {2.0f, 4.0f, 8.0f}) {
+        const PhotonMaps maps(device_, scene, photons, groups,
+                              {.radius = radius, .photons_per_cell = cells});
+        for (const AreaMode area : all_area_modes) {
+          nlohmann::json row{
+              {"workload", workload.name}, {"k", k}, {"cells", cells}, {"area", name_of(area)}};
+          measure(maps, scene, {.neighbours = k, .area = area, .surface = surface}, hits, row);
+          record_.add(std::move(row));
+        }
+      }
+    }
+  }
+
+  void write() const { record_.write(); }
+
+ private:
+  /// The strategies in turn, so that all see the same load; vectors of 16 as shipped, tiles of 8,
+  /// too.
+  void measure(const PhotonMaps& maps, const Scene& scene, EstimateParameters parameters,
+               const PrimaryHits& hits, nlohmann::json& row) {
+    struct Case {
+      std::string name;
+      Estimator estimator;
+      double least = std::numeric_limits<double>::infinity();
+    };
+    std::vector<Case> cases;
+    const auto add = [&](EstimateStrategy strategy, int width) {
+      parameters.tuning = shipped_tuning(device_.info());
+      parameters.tuning->strategy = strategy;
+      if (width != 0) parameters.tuning->vector_width = width;
+      cases.push_back({fmt::format("{} {}", name_of(strategy), parameters.tuning->vector_width),
+                       Estimator(maps, scene, parameters)});
+      cases.back().estimator.estimate(hits);  // compiles
+    };
+    add(EstimateStrategy::select, 0);
+    add(EstimateStrategy::tile, 8);
+    add(EstimateStrategy::tile, 16);
+    add(EstimateStrategy::heap, 1);
+    for (int repeat = 0; repeat < options_.repeats.most; ++repeat) {
+      for (Case& one : cases) {
+        one.least = std::min(one.least, device_or_processor_seconds_of(
+                                            device_, [&] { one.estimator.estimate(hits); }));
+      }
+    }
+    for (const Case& one : cases) {
+      row[one.name] = std::round(1e9 * one.least / static_cast<double>(hits.size()));
+    }
+  }
+
+  BenchOptions options_;
+  BenchRecord record_;
+  Device device_;
+};
+
+bool run(const BenchOptions& options) {
+  StrategiesBench bench(options);
+  bench.run(plane_workload(options.quick ? 1'000 : 262'144));
+  bench.run(interior_workload("living-room", living_room(), options.quick ? 32 : 512,
+                              options.quick ? 24 : 384));
+  bench.write();
+  return true;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  BenchOptions options;
+  CLI::App command("Time of the estimate by strategy", "strategies");
+  add_options(command, options);
+  return run_bench(command, argument_count, arguments, [&] { return run(options); });
+}
