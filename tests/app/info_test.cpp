@@ -131,6 +131,16 @@ TEST_CASE(
   CHECK_THAT(only_error(dusk, 2), Contains("0 'day', 1 'night'"));
 }
 
+TEST_CASE("info names solid glass on a single sheet") {
+  const FileFolder folder;
+  const std::string pane = "v 0.5 0.5 0.5\nv 1 0.5 0.5\nv 1 1 0.5\nusemtl pane\nf -3 -2 -1\n";
+  const auto scene = folder.write("box.obj", box_obj() + pane);
+  folder.write("box.mtl", box_mtl() + "newmtl pane\nillum 7\nNi 1.5\n");
+  const auto warnings = info(scene)["warnings"];
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0].get<std::string>(), Contains("material pane") && Contains("3 edges"));
+}
+
 TEST_CASE("only a scene of a doubtful size is doubted") {
   const auto doubt = [](double size) {
     return app::doubtful_unit({glm::dvec3(0.0), glm::dvec3(size, 1e-3, 1e-3)});

@@ -29,7 +29,7 @@ void print_text(const Scene& scene, const LightMix& mix) {
                              camera.name, position.x, position.y, position.z,
                              glm::degrees(camera.vertical_field_of_view));
   }
-  for (const auto& line : scene_warnings(scene)) std::cout << "warning: " << line << '\n';
+  for (const auto& line : info_warnings(scene)) std::cout << "warning: " << line << '\n';
 }
 
 void run_info(const InfoOptions& options) {

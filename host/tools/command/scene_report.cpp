@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "scene/open_glass.hpp"
 #include "tools/command/number_format.hpp"
 
 namespace photile::app {
@@ -213,6 +214,20 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
   return lines;
 }
 
+std::vector<std::string> info_warnings(const Scene& scene) {
+  std::vector<std::string> lines = scene_warnings(scene);
+  const std::vector<std::uint32_t> open = open_edges_of_glass(scene);
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    if (open[i] == 0) continue;
+    lines.push_back(fmt::format(
+        "material {}: solid glass that ends in the open at {}: all that lies behind it is inside "
+        "glass, unless it ends at other surfaces as water does in a basin; a pane of one sheet is "
+        "thin glass",
+        scene.materials[i].name, counted(open[i], "edge")));
+  }
+  return lines;
+}
+
 json scene_json(const Scene& scene, const LightMix& mix) {
   const Extents extents = extents_of(scene);
   json result{{"scene", scene.source.string()},
@@ -233,7 +248,7 @@ json scene_json(const Scene& scene, const LightMix& mix) {
               {"lights", json::array()},
               {"groups", json::array()},
               {"cameras", json::array()},
-              {"warnings", scene_warnings(scene)}};
+              {"warnings", info_warnings(scene)}};
   const std::vector<std::size_t> triangles = triangles_of_materials(scene);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     result["materials"].push_back(material_json(scene, scene.materials[i], triangles[i]));

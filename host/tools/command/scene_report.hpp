@@ -31,6 +31,9 @@ std::vector<std::string> material_summary(const Scene& scene);
 /// The import's warnings and a doubtful unit, a line each.
 std::vector<std::string> scene_warnings(const Scene& scene);
 
+/// These, and what takes a look at every triangle: solid glass on open sheets.
+std::vector<std::string> info_warnings(const Scene& scene);
+
 /// Everything that `photile info` tells.
 nlohmann::json scene_json(const Scene& scene, const LightMix& mix);
 
