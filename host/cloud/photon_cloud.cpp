@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cloud/voxels.hpp"
+#include "common/value_range.hpp"
 #include "maps/build_maps.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
@@ -57,14 +58,8 @@ void check(const CloudPhotons& photons, const CloudParameters& parameters) {
     throw UsageError(
         fmt::format("photon cloud: radius {} m: must be a positive number", parameters.radius));
   }
-  if (!(parameters.angle_degrees >= 0) || !(parameters.angle_degrees <= 180)) {
-    throw UsageError(fmt::format("photon cloud: angle {} degrees: must be between 0 and 180",
-                                 parameters.angle_degrees));
-  }
-  if (!(parameters.photons_per_cell > 0) || !std::isfinite(parameters.photons_per_cell)) {
-    throw UsageError(fmt::format("photon cloud: photons per cell {}: must be a positive number",
-                                 parameters.photons_per_cell));
-  }
+  check_setting("angle_degrees", setting_value(parameters.angle_degrees));
+  check_setting("photons_per_cell", setting_value(parameters.photons_per_cell));
   if (!photons.normal.empty()) check_size("normals", photons.normal.size(), count, "photons");
   if (!photons.flux.empty()) check_size("flux values", photons.flux.size(), count, "photons");
   if (!photons.light.empty()) check_size("lights", photons.light.size(), count, "photons");

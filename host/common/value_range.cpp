@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 namespace photile {
@@ -47,6 +48,10 @@ bool holds(const Range&, const Value&) {
 }
 
 }  // namespace
+
+double shortest_double(float value) {
+  return std::strtod(fmt::format("{}", value).c_str(), nullptr);
+}
 
 std::string text_of(const SettingValue& value) {
   return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);

@@ -1,6 +1,7 @@
 // The values that a setting, or an option of the command, can have, and how a refusal names them.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -35,5 +36,25 @@ bool contains(const ValueRange& range, const SettingValue& value);
 
 /// "'0' is not a whole number from 1 to 4096".
 std::string out_of_range(std::string_view found, const ValueRange& range);
+
+/// The double with the float's shortest text: 0.1 for 0.1f.
+double shortest_double(float value);
+inline double shortest_double(double value) { return value; }
+
+/// A field of parameters that is no word.
+template <class T>
+SettingValue setting_value(const T& field) {
+  if constexpr (std::integral<T>) {
+    // What is below zero is in no range of whole numbers, as a number that is none.
+    if (field < T{0}) return static_cast<double>(field);
+    return static_cast<std::uint64_t>(field);
+  } else {
+    return shortest_double(field);
+  }
+}
+
+/// Refuses what is out of the range that the table of settings (render/setting.hpp) has for it: for
+/// stages, which others may call without a rendering. Errors: UsageError, which names the setting.
+void check_setting(std::string_view name, const SettingValue& value);
 
 }  // namespace photile

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/value_range.hpp"
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_batches.hpp"
 #include "estimate/hit_buffers.hpp"
@@ -14,7 +15,6 @@
 #include "geometry/radius_range.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 
 namespace photile {
 
@@ -128,10 +128,7 @@ std::string_view name_of(AreaMode area) {
 
 Estimator::Estimator(const PhotonMaps& maps, const Scene& scene,
                      const EstimateParameters& parameters) {
-  if (parameters.neighbours < 1 || parameters.neighbours > limits::max_neighbours) {
-    throw UsageError(fmt::format("{} neighbours: must be between 1 and {}", parameters.neighbours,
-                                 limits::max_neighbours));
-  }
+  check_setting("neighbours", setting_value(parameters.neighbours));
   if (!(parameters.radius >= 0) || parameters.radius > maps.parameters().radius) {
     throw UsageError(fmt::format("estimate radius {} m: must be between 0 and the maps' {} m",
                                  parameters.radius, maps.parameters().radius));

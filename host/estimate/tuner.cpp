@@ -8,11 +8,11 @@
 #include <map>
 #include <optional>
 
+#include "common/value_range.hpp"
 #include "estimate/hit_buffers.hpp"
 #include "estimate/query.hpp"
 #include "estimate/tuning_search.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/statistics.hpp"
@@ -84,10 +84,7 @@ class Bench {
 
 TuningResult tune_on_sample(Device& device, const SceneNeeds& needs, int neighbours,
                             const TuningSampleSize& size, Progress& progress) {
-  if (neighbours < 1 || neighbours > limits::max_neighbours) {
-    throw UsageError(
-        fmt::format("{} neighbours: must be between 1 and {}", neighbours, limits::max_neighbours));
-  }
+  check_setting("neighbours", setting_value(neighbours));
   progress.begin("tune estimate", 0, "trials");
   Bench bench(device, needs, neighbours, size);
   TuningResult result;

@@ -73,7 +73,7 @@ std::vector<LightSetting> settings_of(const SourcedScene& sourced, const SceneLo
       settings.push_back(setting);
     } else if (setting.changed()) {
       left_out.push_back(
-          fmt::format("{}: {}; set it by --light", light.name,
+          fmt::format("{}: {}; set it where the file is loaded", light.name,
                       is_picture ? "its pictures stay as they are" : "comes from an option"));
     }
   }

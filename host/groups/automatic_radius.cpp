@@ -17,9 +17,9 @@
 #include <cmath>
 #include <vector>
 
+#include "common/value_range.hpp"
 #include "groups/photon_blocks.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 
 namespace photile {
@@ -49,10 +49,7 @@ double median_squared_distance(const groups::PhotonBlocks& photons, std::size_t 
 }  // namespace
 
 double automatic_radius(const Photons& photons, int k) {
-  if (k < 1 || k > limits::max_neighbours) {
-    throw UsageError(
-        fmt::format("neighbours: {} is out of range; give 1 to {}", k, limits::max_neighbours));
-  }
+  check_setting("neighbours", setting_value(k));
   if (photons.size() < 2) {
     throw UsageError(
         fmt::format("automatic radius: {} photons were stored, at least 2 are needed; "

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/value_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -101,10 +102,7 @@ void check(const NeighbourGroupParameters& parameters) {
         "radius: {} m is out of range; give a positive number of metres, at most {:.3g}",
         parameters.radius, limits::max_radius));
   }
-  if (!(parameters.angle_degrees >= 0 && parameters.angle_degrees <= 180)) {
-    throw UsageError(fmt::format("group angle: {} degrees is out of range; give 0 to 180 degrees",
-                                 parameters.angle_degrees));
-  }
+  check_setting("angle_degrees", setting_value(parameters.angle_degrees));
 }
 
 NeighbourGroups collect_groups(std::size_t triangle_count,

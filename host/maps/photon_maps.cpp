@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/value_range.hpp"
 #include "geometry/radius_range.hpp"
 #include "maps/build_maps.hpp"
 #include "maps/check_photons.hpp"
@@ -24,10 +25,7 @@ void check(const Scene& scene, const Photons& photons, const NeighbourGroups& gr
     throw UsageError(fmt::format("radius {} m is larger than the neighbour groups' {} m",
                                  parameters.radius, groups.radius));
   }
-  if (!(parameters.photons_per_cell > 0) || !std::isfinite(parameters.photons_per_cell)) {
-    throw UsageError(
-        fmt::format("photons per cell {}: must be a positive number", parameters.photons_per_cell));
-  }
+  check_setting("photons_per_cell", setting_value(parameters.photons_per_cell));
   if (parameters.structure == MapStructure::kdtree_global && std::isinf(groups.radius)) {
     throw UsageError("a global kd-tree knows no triangles' maps: use other maps than naive");
   }

@@ -28,7 +28,7 @@ std::optional<Room> room_of(const RayScene& rays, const PlanAxes& axes, const Wo
   std::optional<Room> room = Room::around(rays, axes, *plane.inside - scene.origin);
   if (!room) {
     throw UsageError(
-        fmt::format("--inside {},{},{}: is in no room with a floor below and a ceiling above, each "
+        fmt::format("point {},{},{}: is in no room with a floor below and a ceiling above, each "
                     "less than {} m away; give another point",
                     plane.inside->x, plane.inside->y, plane.inside->z, Room::most_height));
   }
@@ -50,7 +50,7 @@ WorkingPlane parse_working_plane(const std::string& text) {
   if (error != std::errc() || end != height.data() + height.size() ||
       !(std::abs(plane.height) <= limits::max_coordinate) || (plane.above_floor && !plus)) {
     throw UsageError(fmt::format(
-        "--plane {}: is no height; write floor+0.75, or metres in the scene's world", text));
+        "working plane {}: is no height; write floor+0.75, or metres in the scene's world", text));
   }
   return plane;
 }
@@ -61,8 +61,8 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   const std::optional<Room> room = room_of(rays, axes, plane);
   const Floor floor = find_floor(rays, axes, room ? &*room : nullptr);
   if (floor.triangles.empty()) {
-    throw InputError(
-        fmt::format("{}: no floor found; describe the plane with --grid", scene.source.string()));
+    throw InputError(fmt::format("{}: no floor found; describe the plane by a grid of points",
+                                 scene.source.string()));
   }
   const FloorPlan plan(scene, floor, axes, room ? &*room : nullptr);
   const glm::dvec2 low = plan.low() + plane.wall_band, high = plan.high() - plane.wall_band;
@@ -79,7 +79,7 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   const double cells = static_cast<double>(counts.columns) * static_cast<double>(counts.rows);
   if (cells > static_cast<double>(limits::max_sensors)) {
     throw UsageError(
-        fmt::format("--spacing {}: makes more than {} points", plane.spacing, limits::max_sensors));
+        fmt::format("spacing {} m: makes more than {} points", plane.spacing, limits::max_sensors));
   }
 
   PlaneLayout layout;

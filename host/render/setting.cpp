@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <concepts>
-#include <cstdlib>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -33,14 +32,8 @@ template <class T>
 SettingValue value_of(const T& field) {
   if constexpr (std::is_enum_v<T>) {
     return name_of(field);
-  } else if constexpr (std::integral<T>) {
-    // What is below zero is in no range of whole numbers, as a number that is none.
-    if (field < T{0}) return static_cast<double>(field);
-    return static_cast<std::uint64_t>(field);
-  } else if constexpr (std::is_same_v<T, float>) {
-    return std::strtod(fmt::format("{}", field).c_str(), nullptr);  // 0.1f is 0.1
   } else {
-    return field;
+    return setting_value(field);
   }
 }
 
@@ -129,7 +122,8 @@ std::vector<Setting> picture_rows() {
           "primary rays per pixel, over all passes; at least one in each", not_kept),
       row<&P::seed>("seed", "seed", "all", WholeNumbers{0, most_seed},
                     "the same seed gives the same picture", kept_as_it_is),
-      row<&P::max_specular_depth>("max_specular_depth", "", hits, WholeNumbers{0, 1'000'000},
+      row<&P::max_specular_depth>("max_specular_depth", "", hits,
+                                  WholeNumbers{0, limits::max_specular_depth},
                                   "mirrors and glass that a ray from the eye follows", not_kept),
   };
 }
@@ -251,13 +245,16 @@ std::string photon_settings(const RenderParameters& parameters) {
   return words;
 }
 
+void check_setting(std::string_view name, const SettingValue& value) {
+  const Setting& setting = setting_named(name);
+  if (contains(setting.range, value)) return;
+  throw SettingError(setting, out_of_range(text_of(value), setting.range));
+}
+
 void check(const RenderParameters& parameters) {
   for (const Setting& setting : settings()) {
     if (!setting.is_given(parameters)) continue;
-    const SettingValue value = setting.value(parameters);
-    if (!contains(setting.range, value)) {
-      throw SettingError(setting, out_of_range(text_of(value), setting.range));
-    }
+    check_setting(setting.name, setting.value(parameters));
     if (setting.name == "least_neighbours" && parameters.least_neighbours > parameters.neighbours) {
       throw SettingError(setting, fmt::format("{} is more than the {} neighbours",
                                               parameters.least_neighbours, parameters.neighbours));

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "common/value_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
@@ -31,17 +32,9 @@ struct Chunk {
 constexpr std::uint64_t paths_per_chunk = 4096;
 
 void check(const PhotonTracerParameters& parameters) {
-  if (parameters.emitted_photons < limits::min_photons ||
-      parameters.emitted_photons > limits::max_emitted_photons)
-    throw UsageError("emitted photons: " + std::to_string(parameters.emitted_photons) +
-                     " is not between " + std::to_string(limits::min_photons) + " and " +
-                     std::to_string(limits::max_emitted_photons));
-  if (parameters.max_path_length < 1)
-    throw UsageError("longest path: " + std::to_string(parameters.max_path_length) +
-                     " surface interactions; give at least 1");
-  if (parameters.roulette_start < 1)
-    throw UsageError("start of Russian roulette: bounce " +
-                     std::to_string(parameters.roulette_start) + "; give at least 1");
+  check_setting("photons_emitted", setting_value(parameters.emitted_photons));
+  check_setting("max_path_length", setting_value(parameters.max_path_length));
+  check_setting("roulette_start", setting_value(parameters.roulette_start));
 }
 
 std::vector<Chunk> chunks_of(const std::vector<std::uint64_t>& paths_per_light) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "common/value_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
@@ -29,14 +30,14 @@ void check_range(const char* what, std::int64_t value, std::int64_t low, std::in
 }
 
 void check(const PrimaryHitParameters& film, int first_row, int last_row) {
-  check_range("picture width", film.width, 1, limits::max_image_side);
-  check_range("picture height", film.height, 1, limits::max_image_side);
-  check_range("samples per pixel", film.samples_per_pixel, 1, limits::max_samples_per_pixel);
-  check_range("specular depth", film.max_specular_depth, 0, 1'000'000);
-  check_range("direct rays", film.direct_rays, 0, limits::max_direct_rays);
+  check_setting("width", setting_value(film.width));
+  check_setting("height", setting_value(film.height));
+  check_setting("samples_per_pixel", setting_value(film.samples_per_pixel));
+  check_setting("max_specular_depth", setting_value(film.max_specular_depth));
+  if (film.direct_rays != 0) check_setting("direct_rays", setting_value(film.direct_rays));
+  check_setting("passes", setting_value(film.passes));
   check_range("first row", first_row, 0, film.height);
   check_range("last row", last_row, first_row, film.height);
-  check_range("passes", film.passes, 1, limits::max_passes);
   check_range("pass", film.pass, 0, film.passes - 1);
   const std::int64_t samples = (film.samples_per_pixel - 1) / film.passes + 1;
   check_range("samples in one batch", std::int64_t{last_row - first_row} * film.width * samples, 0,

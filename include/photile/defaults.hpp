@@ -31,6 +31,12 @@ inline constexpr double group_angle_degrees = 60.0;  ///< largest angle between 
 /// The automatic radius is this many times the median distance to the k-th photon.
 inline constexpr double radius_over_median_kth_distance = 2.0;
 
+// Light maps
+inline constexpr double light_map_spacing = 0.04;   ///< metres, of the coarsest nodes
+inline constexpr int light_map_levels = 4;          ///< the finest is an eighth
+inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
+inline constexpr double light_map_near = 0.5;       ///< cells larger than this part of the distance
+
 // Uniform grid
 inline constexpr float photons_per_cell = 4.0f;  ///< aimed at; about 4 is best for k = 50
 

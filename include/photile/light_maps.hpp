@@ -18,17 +18,6 @@
 
 namespace photile {
 
-namespace defaults {
-inline constexpr double light_map_spacing = 0.04;   ///< metres, of the coarsest nodes
-inline constexpr int light_map_levels = 4;          ///< the finest is an eighth
-inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
-inline constexpr double light_map_near = 0.5;       ///< cells larger than this part of the distance
-}  // namespace defaults
-
-namespace limits {
-inline constexpr int max_light_map_levels = 12;  ///< of refinement: places fit 32 bits
-}  // namespace limits
-
 /// Whether pictures of cameras read the light of matt surfaces from light maps.
 enum class LightMapMode {
   off,       ///< an estimate at each hit: the method of the paper

@@ -14,9 +14,10 @@ inline constexpr std::uint64_t max_stored_photons = 0xFFFF'FFFEull;
 inline constexpr std::uint64_t max_emitted_photons = 10'000'000'000ull;
 /// Each traces a sample of every pixel at least.
 inline constexpr int max_passes = 65'536;
-inline constexpr int max_neighbours = 1'000'000;    ///< k
-inline constexpr int max_direct_rays = 4096;        ///< looks at lamps from a hit
-inline constexpr int max_final_gather_rays = 4096;  ///< from a hit; each has its random numbers
+inline constexpr int max_specular_depth = 1'000'000;  ///< mirrors and glass that a ray follows
+inline constexpr int max_neighbours = 1'000'000;      ///< k
+inline constexpr int max_direct_rays = 4096;          ///< looks at lamps from a hit
+inline constexpr int max_final_gather_rays = 4096;    ///< from a hit; each has its random numbers
 
 // Radii of search
 /// Metres. The square of a hundred-thousandth of it is a normal float, and so is its inverse.
@@ -30,6 +31,9 @@ inline constexpr double max_radius = 1e13;
 // Neighbour groups
 /// 4 GB of members; a radius as large as the scene would fill any memory.
 inline constexpr std::uint64_t max_group_members = 1'000'000'000;
+
+// Light maps
+inline constexpr int max_light_map_levels = 12;  ///< of refinement: places fit 32 bits
 
 // Scene
 inline constexpr std::uint64_t max_file_bytes = 2ull << 30;      ///< the scene file itself

@@ -214,7 +214,7 @@ walk::CameraMotion read_camera_animation(const std::filesystem::path& file,
   AreaLights area_lights(scene);
   ImportContext context{scene, folder, options, warnings, area_lights, {}};
   if (file.extension() != ".gltf" && file.extension() != ".glb") {
-    throw context.error("only glTF files have animations; describe the path with --camera-path");
+    throw context.error("only glTF files have animations; describe the path in a file of its own");
   }
   try {
     const tinygltf::Model model = read_gltf(context);
@@ -234,7 +234,7 @@ walk::CameraMotion read_camera_animation(const std::filesystem::path& file,
     }
     if (chain.channels.empty()) {
       throw context.error(
-          fmt::format("no animation {}moves camera '{}'; describe the path with --camera-path",
+          fmt::format("no animation {}moves camera '{}'; describe the path in a file of its own",
                       animation.empty() ? "" : "'" + animation + "' ", camera.name));
     }
     return motion_of(std::move(chain), camera);

@@ -51,8 +51,12 @@ struct WalkOptions {
 
 walk::CameraMotion motion_of(const WalkOptions& options, const Camera& camera) {
   if (!options.path.empty()) return walk::read_camera_path(options.path, camera);
-  return scene_io::read_camera_animation(options.render.scene, options.render.load, camera,
-                                         options.animation);
+  try {
+    return scene_io::read_camera_animation(options.render.scene, options.render.load, camera,
+                                           options.animation);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{} (--camera-path)", error.what()));
+  }
 }
 
 int count_of(const walk::CameraMotion& motion, double frames_per_second) {
