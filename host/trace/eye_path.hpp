@@ -50,14 +50,14 @@ struct DirectRays {
 /// What all samples of a picture share.
 struct EyeSetup {
   const RayScene::Impl* rays;
-  const FilmDirections* film;  ///< of the camera; null where rays do not start at one
-  glm::vec3 eye;               ///< where they start
+  const FilmDirections* film = nullptr;  ///< of the camera; null where rays do not start at one
+  glm::vec3 eye{0.0f};                   ///< where they start
   const PrimaryHitParameters* parameters;
   /// Per light, of white texels, and what rays that leave the scene see. Both null where rays look
   /// for surfaces alone.
-  const std::vector<glm::vec3>* emitted_radiance;
-  const std::vector<DistantLight>* distant;
-  const DirectRays* direct;  ///< null where photons bring all light
+  const std::vector<glm::vec3>* emitted_radiance = nullptr;
+  const std::vector<DistantLight>* distant = nullptr;
+  const DirectRays* direct = nullptr;  ///< null where photons bring all light
   /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.
   bool reflections_only = false;
 };

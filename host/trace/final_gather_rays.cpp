@@ -115,13 +115,7 @@ FinalGatherRays trace_final_gather(const RayScene& rays, const PrimaryHits& hits
                                    std::span<const std::uint32_t> map_of) {
   PrimaryHitParameters specular;
   specular.max_specular_depth = parameters.max_specular_depth;
-  const EyeSetup setup{.rays = &impl_of(rays),
-                       .film = nullptr,
-                       .eye = {},
-                       .parameters = &specular,
-                       .emitted_radiance = nullptr,
-                       .distant = nullptr,
-                       .direct = nullptr};
+  const EyeSetup setup{.rays = &impl_of(rays), .parameters = &specular};
   std::vector<TaskRays> tasks((count + hits_per_task - 1) / hits_per_task);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
     const FlushDenormals flush_denormals;

@@ -18,12 +18,9 @@
 namespace photile::trace {
 namespace {
 
-/// A plane sensor may lie on a surface: its rays start a little above, as far as surface.cpp keeps
-/// them from the triangles that they leave.
-constexpr double clearance_per_coordinate = 0x1p-19;
-
 glm::vec3 origin_of(const Sensor& sensor, SensorResponse response) {
   if (response == SensorResponse::cylindrical) return glm::vec3(sensor.position);
+  // A plane sensor may lie on a surface: its rays start a little above.
   const glm::dvec3 size = glm::abs(sensor.position);
   const double clearance = clearance_per_coordinate * std::max({size.x, size.y, size.z, 1e-3});
   return glm::vec3(sensor.position + clearance * sensor.normal);
@@ -135,12 +132,9 @@ PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensor
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
   const std::vector<DistantLight> distant = distant_lights(rays.scene());
   const EyeSetup setup{.rays = &impl_of(rays),
-                       .film = nullptr,
-                       .eye = {},
                        .parameters = &film,
                        .emitted_radiance = &radiance,
-                       .distant = &distant,
-                       .direct = nullptr};
+                       .distant = &distant};
   const auto count = static_cast<std::size_t>(last_row - first_row);
   std::vector<EyeRecord> rows(count);
   std::vector<std::vector<SeenEmission>> seen(count);

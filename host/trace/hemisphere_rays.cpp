@@ -91,12 +91,9 @@ HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points
   PrimaryHitParameters specular;
   specular.max_specular_depth = parameters.max_specular_depth;
   const EyeSetup setup{.rays = &impl_of(rays),
-                       .film = nullptr,
-                       .eye = {},
                        .parameters = &specular,
                        .emitted_radiance = parameters.emitted_radiance,
-                       .distant = parameters.lamps ? &parameters.lamps->distant() : nullptr,
-                       .direct = nullptr};
+                       .distant = parameters.lamps ? &parameters.lamps->distant() : nullptr};
   std::vector<TaskEnds> tasks((count + points_per_task - 1) / points_per_task);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
     const FlushDenormals flush_denormals;

@@ -11,14 +11,6 @@ namespace photile::trace {
 
 namespace {
 
-/// Clearance over the largest coordinate of the triangle's corners. The position is interpolated in
-/// double precision and rounded once (2^-24 of a coordinate), and Embree's plane distance is wrong
-/// by a few roundings of the corners' distances, so 2^-19 leaves a margin of an order of magnitude.
-/// The idea of an offset in units of rounding is Waechter and Binder's ("A fast and robust method
-/// for avoiding self-intersection", Ray Tracing Gems, 2019); theirs scales with the point, which
-/// is too little at the origin of a large triangle and too much on a small scene.
-constexpr double clearance_per_coordinate = 0x1p-19;
-
 struct Interpolated {
   glm::dvec3 position;
   glm::dvec3 normal;  ///< unit, of side 0

@@ -10,6 +10,14 @@
 
 namespace photile::trace {
 
+/// Clearance over the largest coordinate of the triangle's corners. The position is interpolated in
+/// double precision and rounded once (2^-24 of a coordinate), and Embree's plane distance is wrong
+/// by a few roundings of the corners' distances, so 2^-19 leaves a margin of an order of magnitude.
+/// The idea of an offset in units of rounding is Waechter and Binder's ("A fast and robust method
+/// for avoiding self-intersection", Ray Tracing Gems, 2019); theirs scales with the point, which
+/// is too little at the origin of a large triangle and too much on a small scene.
+inline constexpr double clearance_per_coordinate = 0x1p-19;
+
 /// A point on one side of a triangle.
 struct SurfacePoint {
   TriangleHit where;
