@@ -72,8 +72,7 @@ class AreaBench {
     const NeighbourGroups groups = default_groups(*subject.scene, subject.photons, radius);
     const PhotonMaps maps(device_, *subject.scene, subject.photons, groups, {.radius = radius});
     const auto surface = std::make_shared<const SurfaceIndex>(
-        index_surface(*subject.scene, landed_on(*subject.scene, subject.photons), radius,
-                      defaults::group_angle_degrees));
+        index_surface(*subject.scene, subject.photons, radius, defaults::group_angle_degrees));
     for (const Place& place : subject.places) {
       run(place, in_map_order(place.hits, groups), *subject.scene, maps, surface);
     }

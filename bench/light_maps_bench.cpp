@@ -100,7 +100,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   const double radius = automatic_radius(photons, settings.neighbours);
   const NeighbourGroups groups = default_groups(scene, photons, radius);
   const auto surface = std::make_shared<const SurfaceIndex>(
-      index_surface(scene, landed_on(scene, photons), radius, defaults::group_angle_degrees));
+      index_surface(scene, photons, radius, defaults::group_angle_degrees));
   EstimateTuning alone = shipped_tuning(device.info());
   alone.hits_per_item = 1;
   const EstimateParameters estimate{

@@ -36,7 +36,7 @@ class StrategiesBench {
       const NeighbourGroups groups = default_groups(scene, photons, radius);
       const PrimaryHits hits = in_map_order(workload.hits, groups);
       const auto surface = std::make_shared<const SurfaceIndex>(
-          index_surface(scene, landed_on(scene, photons), radius, defaults::group_angle_degrees));
+          index_surface(scene, photons, radius, defaults::group_angle_degrees));
       for (const float cells : {2.0f, 4.0f, 8.0f}) {
         const PhotonMaps maps(device_, scene, photons, groups,
                               {.radius = radius, .photons_per_cell = cells});

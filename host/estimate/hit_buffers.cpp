@@ -73,7 +73,8 @@ HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::s
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t own = hits.sided_triangle[first + i];
       const std::uint32_t triangle = triangle_of(index.original[own]);
-      places.insert(places.end(), {index.facet[triangle], triangle, index.sheet[own]});
+      places.insert(places.end(), {index.facet[triangle], triangle,
+                                   index.sheet_at(own, hits.position[first + i])});
       inwards[i] = surface->centroid[triangle] - hits.position[first + i];
     }
     buffers.place = context.upload(std::span<const std::uint32_t>(places), "places of hits");

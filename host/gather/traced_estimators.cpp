@@ -31,11 +31,10 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
   const double radius = plan.radius(traced.photons);
   const NeighbourGroups groups =
       find_map_groups(scene, traced.photons, plan.map_mode(), plan.groups(radius), progress);
-  const auto surface =
-      plan.clips_areas()
-          ? std::make_shared<const SurfaceIndex>(index_surface(
-                scene, landed_on(scene, traced.photons), radius, plan.used().angle_degrees))
-          : nullptr;
+  const auto surface = plan.clips_areas()
+                           ? std::make_shared<const SurfaceIndex>(index_surface(
+                                 scene, traced.photons, radius, plan.used().angle_degrees))
+                           : nullptr;
   const auto estimators_of = [&](const Photons& photons) {
     std::vector<EstimateParameters> levels = plan.estimates(0, surface);
     estimate_each_alone(levels, devices.front());

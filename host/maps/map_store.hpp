@@ -24,12 +24,12 @@ struct MapStore {
   mutable ResidentMaps pages;  ///< maps without photons may lie in none; using one moves others
   /// Per sided triangle; `none` where no photon comes near. Empty where that is the map itself.
   std::vector<std::uint32_t> map_of;
-  MapTilings tilings;                ///< of maps that lie in several pages
-  double angle_degrees = 0;          ///< largest angle between normals of neighbours
-  double cos_angle = 0;              ///< its cosine
-  bool naive = false;                ///< maps hold the photons of their own triangle only
-  std::vector<std::uint8_t> landed;  ///< per sided triangle: 1 where a photon landed
-  std::vector<glm::vec3> normals;    ///< per sided triangle; only if a page has entry_normal
+  MapTilings tilings;                 ///< of maps that lie in several pages
+  double angle_degrees = 0;           ///< largest angle between normals of neighbours
+  double cos_angle = 0;               ///< its cosine
+  bool naive = false;                 ///< maps hold the photons of their own triangle only
+  std::vector<std::uint32_t> landed;  ///< per sided triangle: photons that landed there
+  std::vector<glm::vec3> normals;     ///< per sided triangle; only if a page has entry_normal
 
   /// The maps of hits [first, first + count); those on tiles get the tiles' numbers, which follow
   /// those of all maps.

@@ -261,7 +261,7 @@ void Rendering::find_surface(const Photons& photons) {
   if (!plan_.clips_areas()) return;
   const Stopwatch stopwatch;
   surface_ = std::make_shared<const SurfaceIndex>(
-      index_surface(scene_, landed_on(scene_, photons), radius_, plan_.used().angle_degrees));
+      index_surface(scene_, photons, radius_, plan_.used().angle_degrees));
   costs_.surface.add(stopwatch.taken(), surface_->bytes());
   costs_.sheets = surface_->sheets;
   costs_.surface_leaves = surface_->leaves.size();

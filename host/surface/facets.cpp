@@ -29,12 +29,20 @@ const MeshEdge* continuation(const SurfaceMesh& mesh, std::span<const MeshEdge> 
   return found;
 }
 
-std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh) {
+bool equally_dark(std::span<const std::uint8_t> dark, const MeshEdge& a, const MeshEdge& b) {
+  if (dark.empty()) return true;
+  const std::uint32_t flip = flip_between(a, b);
+  return dark[sided(a.triangle, 0)] == dark[sided(b.triangle, flip)] &&
+         dark[sided(a.triangle, 1)] == dark[sided(b.triangle, 1 ^ flip)];
+}
+
+std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh, std::span<const std::uint8_t> dark) {
   std::vector<Beyond> beyond(mesh.corner.size(), Beyond{none, none, none});
   mesh.for_each_edge([&](std::span<const MeshEdge> edges) {
     for (const MeshEdge& edge : edges) {
       const MeshEdge* next = continuation(mesh, edges, edge);
       if (next == nullptr || continuation(mesh, edges, *next) != &edge) continue;
+      if (!equally_dark(dark, edge, *next)) continue;
       beyond[edge.triangle][edge.index] = next->triangle;
     }
   });
@@ -106,7 +114,7 @@ void add_borders(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, std
 
 }  // namespace
 
-Facets find_facets(const SurfaceMesh& mesh, double radius) {
+Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::uint8_t> dark) {
   const std::size_t count = mesh.corner.size();
   std::vector<std::uint32_t> seeds;
   std::vector<double> area(count);
@@ -116,7 +124,7 @@ Facets find_facets(const SurfaceMesh& mesh, double radius) {
   }
   std::stable_sort(seeds.begin(), seeds.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
-  const std::vector<Beyond> beyond = triangles_beyond(mesh);
+  const std::vector<Beyond> beyond = triangles_beyond(mesh, dark);
   Facets facets;
   facets.of_triangle.assign(count, PHOTILE_NO_FACET);
   facets.plane.assign(count, none);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "surface/surface_mesh.hpp"
@@ -26,6 +27,7 @@ struct Facets {
 
 /// Grows facets from the largest triangles on. Normals within a facet differ by less than the slack
 /// of normals_agree, heights by less than a thousandth of the radius.
-Facets find_facets(const SurfaceMesh& mesh, double radius);
+///   dark   per sided triangle: no facet goes on where that of one of its sides changes; or empty
+Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::uint8_t> dark = {});
 
 }  // namespace photile::surface

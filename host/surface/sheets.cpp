@@ -2,39 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "geometry/box_tree.hpp"
 #include "photile/neighbour_groups.hpp"
+#include "surface/disjoint_sets.hpp"
 
 namespace photile::surface {
 namespace {
-
-/// Disjoint sets of sided triangles; the smallest of a set stands for it.
-class SheetUnion {
- public:
-  explicit SheetUnion(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-void join_sides(SheetUnion& sheets, std::uint32_t a, std::uint32_t b, std::uint32_t flip) {
-  for (const std::uint32_t side : {0u, 1u}) sheets.join(sided(a, side), sided(b, side ^ flip));
-}
 
 /// An edge that no other has both corners of.
 struct LoneEdge {
@@ -64,7 +38,7 @@ bool run_along(const LoneEdge& a, const LoneEdge& b, double tolerance) {
 }
 
 void join_along_edges(const SurfaceMesh& mesh, const std::vector<LoneEdge>& edges, double tolerance,
-                      double cos_angle, SheetUnion& sheets) {
+                      double cos_angle, std::vector<Connection>& connections) {
   std::vector<geometry::Box> boxes;
   for (const LoneEdge& edge : edges) boxes.push_back(box_of(edge));
   const geometry::BoxTree tree(boxes);
@@ -77,7 +51,7 @@ void join_along_edges(const SurfaceMesh& mesh, const std::vector<LoneEdge>& edge
       const std::uint32_t flip = directions > 0 ? 1 : 0;
       const glm::dvec3 other = flip == 0 ? mesh.normal[b] : -mesh.normal[b];
       if (mesh.stores(a) != mesh.stores(b)) return false;
-      if (normals_agree(mesh.normal[a], other, cos_angle)) join_sides(sheets, a, b, flip);
+      if (normals_agree(mesh.normal[a], other, cos_angle)) connections.push_back({a, b, flip});
       return false;
     });
   }
@@ -85,9 +59,10 @@ void join_along_edges(const SurfaceMesh& mesh, const std::vector<LoneEdge>& edge
 
 }  // namespace
 
-Sheets find_sheets(const SurfaceMesh& mesh, double radius, double angle_degrees) {
+std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
+                                         double angle_degrees) {
   const double cos_angle = std::cos(glm::radians(angle_degrees));
-  SheetUnion joined(mesh.original.size());
+  std::vector<Connection> connections;
   std::vector<LoneEdge> lone;
   mesh.for_each_edge([&](std::span<const MeshEdge> edges) {
     if (edges.size() == 1) {
@@ -98,12 +73,21 @@ Sheets find_sheets(const SurfaceMesh& mesh, double radius, double angle_degrees)
     for (std::size_t i = 0; i < edges.size(); ++i) {
       for (std::size_t j = i + 1; j < edges.size(); ++j) {
         if (!(fold_cosine(mesh, edges[i], edges[j]) >= cos_angle - 1e-6)) continue;
-        join_sides(joined, edges[i].triangle, edges[j].triangle, flip_between(edges[i], edges[j]));
+        connections.push_back(
+            {edges[i].triangle, edges[j].triangle, flip_between(edges[i], edges[j])});
       }
     }
   });
-  join_along_edges(mesh, lone, 1e-3 * radius, cos_angle, joined);
+  join_along_edges(mesh, lone, 1e-3 * radius, cos_angle, connections);
+  return connections;
+}
 
+Sheets join_sheets(const SurfaceMesh& mesh, std::span<const Connection> connections,
+                   std::span<const std::uint8_t> dark) {
+  DisjointSets joined(mesh.original.size());
+  for_each_pair_of_sides(connections, [&](std::uint32_t a, std::uint32_t b) {
+    if (dark.empty() || dark[a] == dark[b]) joined.join(a, b);
+  });
   Sheets sheets;
   sheets.of.assign(mesh.original.size(), none);
   for (std::uint32_t s = 0; s < mesh.original.size(); ++s) {
@@ -115,6 +99,10 @@ Sheets find_sheets(const SurfaceMesh& mesh, double radius, double angle_degrees)
     }
   }
   return sheets;
+}
+
+Sheets find_sheets(const SurfaceMesh& mesh, double radius, double angle_degrees) {
+  return join_sheets(mesh, find_connections(mesh, radius, angle_degrees));
 }
 
 }  // namespace photile::surface

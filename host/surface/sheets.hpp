@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "surface/surface_mesh.hpp"
@@ -13,9 +14,31 @@ struct Sheets {
   std::uint32_t count = 0;        ///< numbered in the order of their first sided triangles
 };
 
+/// Two triangles that go on across an edge: side i of the one as side i ^ flip of the other.
+struct Connection {
+  std::uint32_t a, b, flip;
+};
+
+/// Calls visit(a, b) for the sided triangles that connect, each pair once.
+template <class Visit>
+void for_each_pair_of_sides(std::span<const Connection> connections, const Visit& visit) {
+  for (const auto& [a, b, flip] : connections) {
+    for (const std::uint32_t side : {0u, 1u}) visit(sided(a, side), sided(b, side ^ flip));
+  }
+}
+
 /// Triangles connect where they share both corners of an edge, or where their edges run along each
 /// other, however unlike their ends (as tiles do).
 ///   radius   metres: edges at most a thousandth of it apart run along each other
+std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
+                                         double angle_degrees);
+
+/// What connects, but for sides of which one is dark and the other is not.
+///   dark   per sided triangle, or empty
+Sheets join_sheets(const SurfaceMesh& mesh, std::span<const Connection> connections,
+                   std::span<const std::uint8_t> dark = {});
+
+/// All that connects.
 Sheets find_sheets(const SurfaceMesh& mesh, double radius, double angle_degrees);
 
 }  // namespace photile::surface

@@ -1,5 +1,6 @@
 #include "photile/surface_index.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene_builder.hpp"
+#include "surface/dark_parts.hpp"
+#include "surface/dark_sides.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"
 #include "surface/plane_tree.hpp"
@@ -50,20 +53,18 @@ PhotileSurfaceLeaf leaf_of(const SurfaceIndex& index,
     leaf.back_sheet[lane] = index.sheet[sided(triangle, 1)];
     leaf.front_exposure[lane] = index.exposure[sided(triangle, 0)];
     leaf.back_exposure[lane] = index.exposure[sided(triangle, 1)];
+    if (piece.dark_side == none) continue;
+    const bool front = side_of(piece.dark_side) == 0;
+    leaf.front_sheet[lane] = front ? index.sheets : PHOTILE_NO_SHEET;
+    leaf.back_sheet[lane] = front ? PHOTILE_NO_SHEET : index.sheets;
+    leaf.front_exposure[lane] = leaf.back_exposure[lane] = -1.0f;
   }
   return leaf;
 }
 
-}  // namespace
-
-std::uint64_t SurfaceIndex::bytes() const {
-  return (original.size() + facet.size() + sheet.size()) * sizeof(std::uint32_t) +
-         normal.size() * (sizeof(glm::vec3) + sizeof(float)) + nodes.size() * sizeof(nodes[0]) +
-         leaves.size() * sizeof(leaves[0]);
-}
-
-SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& landed,
-                           double radius, double angle_degrees) {
+/// Where photons are given, with dark parts.
+SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& landed,
+                      const Photons* photons, double radius, double angle_degrees) {
   check_scene(scene);
   check_radius(scene, radius);
   SurfaceIndex index;
@@ -72,9 +73,12 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& 
   radius = std::min(radius, scene_diagonal(scene));
   index.angle_degrees = angle_degrees;
   surface::SurfaceMesh mesh(scene);
-  const surface::Facets facets = surface::find_facets(mesh, radius);
+  const auto connections = surface::find_connections(mesh, radius, angle_degrees);
+  index.dark =
+      surface::find_dark_sides(mesh, connections, surface::join_sheets(mesh, connections), landed);
+  const surface::Sheets sheets = surface::join_sheets(mesh, connections, index.dark);
+  const surface::Facets facets = surface::find_facets(mesh, radius, index.dark);
   const surface::PlaneTree planes(mesh, facets);
-  const surface::Sheets sheets = surface::find_sheets(mesh, radius, angle_degrees);
   index.sheet = sheets.of;
   index.sheets = sheets.count;
   index.normal.resize(2 * scene.triangle_count());
@@ -84,7 +88,20 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& 
   index.exposure = surface::find_exposure(mesh, facets, sheets, lit_sheets(index, landed), radius,
                                           angle_degrees);
   index.facet = facets.of_triangle;
-  const auto pieces = surface::find_pieces(mesh, facets, planes, radius, angle_degrees);
+  if (photons != nullptr) {
+    index.dark_parts = surface::find_dark_parts(mesh, *photons, index.dark, radius);
+    // What counts in part for most hits has no holes for others.
+    std::erase_if(index.dark_parts,
+                  [&](const DarkPart& part) { return index.exposure[part.sided_triangle] < 1; });
+    index.first_dark_part.resize(2 * scene.triangle_count() + 1);
+    std::size_t next = 0;
+    for (std::size_t s = 0; s < index.first_dark_part.size(); ++s) {
+      while (next < index.dark_parts.size() && index.dark_parts[next].sided_triangle < s) ++next;
+      index.first_dark_part[s] = static_cast<std::uint32_t>(next);
+    }
+  }
+  const auto pieces =
+      surface::find_pieces(mesh, facets, planes, index.dark_parts, radius, angle_degrees);
   index.original = std::move(mesh.original);
   surface::SurfaceTree tree = surface::build_surface_tree(pieces);
   index.nodes = std::move(tree.nodes);
@@ -95,23 +112,60 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint8_t>& 
   return index;
 }
 
-std::vector<std::uint8_t> landed_on(const Scene& scene, const Photons& photons) {
-  std::vector<std::uint8_t> landed(2 * scene.triangle_count(), 0);
+}  // namespace
+
+SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint32_t>& landed,
+                           double radius, double angle_degrees) {
+  return index_of(scene, landed, nullptr, radius, angle_degrees);
+}
+
+SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double radius,
+                           double angle_degrees) {
+  return index_of(scene, landed_on(scene, photons), &photons, radius, angle_degrees);
+}
+
+std::uint64_t SurfaceIndex::bytes() const {
+  return (original.size() + facet.size() + sheet.size()) * sizeof(std::uint32_t) + dark.size() +
+         dark_parts.size() * sizeof(DarkPart) + first_dark_part.size() * sizeof(std::uint32_t) +
+         normal.size() * (sizeof(glm::vec3) + sizeof(float)) + nodes.size() * sizeof(nodes[0]) +
+         leaves.size() * sizeof(leaves[0]);
+}
+
+std::uint32_t SurfaceIndex::sheet_at(std::uint32_t s, const glm::vec3& position) const {
+  const std::uint32_t own = original[s];
+  if (first_dark_part.empty()) return sheet[own];
+  for (std::uint32_t i = first_dark_part[own]; i < first_dark_part[own + 1]; ++i) {
+    const auto& corner = dark_parts[i].corner;
+    const glm::dvec3 n(normal[own]), p(position);
+    int left = 0, right = 0;
+    for (int c = 0; c < 3; ++c) {
+      const glm::dvec3 from(corner[c]), to(corner[(c + 1) % 3]);
+      const double turn = glm::dot(n, glm::cross(to - from, p - from));
+      left += turn >= 0, right += turn <= 0;
+    }
+    if (left == 3 || right == 3) return sheets;
+  }
+  return sheet[own];
+}
+
+std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons) {
+  std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
   for (const std::uint32_t s : photons.sided_triangle) {
     if (s >= landed.size()) {
       throw InputError(fmt::format("{}: a photon lies on sided triangle {} of {}",
                                    scene.source.string(), s, landed.size()));
     }
-    landed[s] = 1;
+    ++landed[s];
   }
   return landed;
 }
 
 std::vector<std::uint8_t> lit_sheets(const SurfaceIndex& surface,
-                                     const std::vector<std::uint8_t>& landed) {
-  std::vector<std::uint8_t> lit(surface.sheets, 0);
+                                     const std::vector<std::uint32_t>& landed) {
+  std::vector<std::uint8_t> lit(surface.sheets + 1, 0);
+  lit.back() = 1;
   for (std::size_t s = 0; s < landed.size(); ++s) {
-    if (landed[s] != 0) lit[surface.sheet[s]] = 1;
+    if (landed[s] != 0 && surface.dark[s] == 0) lit[surface.sheet[s]] = 1;
   }
   return lit;
 }

@@ -50,8 +50,8 @@ SurfacePiece border_piece(const BorderEdge& edge, std::uint32_t facet) {
 }  // namespace
 
 std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets,
-                                      const PlaneTree& planes, double radius,
-                                      double angle_degrees) {
+                                      const PlaneTree& planes, std::span<const DarkPart> dark_parts,
+                                      double radius, double angle_degrees) {
   const NearbyPlanes nearby(mesh, planes, radius, angle_degrees);
   std::vector<std::uint8_t> is_piece(mesh.corner.size(), 0);
   tbb::parallel_for(std::size_t{0}, is_piece.size(), [&](std::size_t i) {
@@ -62,6 +62,17 @@ std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& fac
   std::vector<SurfacePiece> pieces;
   for (const BorderEdge& edge : facets.borders) {
     pieces.push_back(border_piece(edge, facets.of_triangle[edge.triangle]));
+  }
+  for (const DarkPart& part : dark_parts) {
+    const auto& [a, b, c] = part.corner;
+    SurfacePiece piece{.a = a,
+                       .b = b,
+                       .c = c,
+                       .facet = PHOTILE_NO_FACET,
+                       .triangle = triangle_of(part.sided_triangle),
+                       .dark_side = part.sided_triangle};
+    for (const glm::vec3& corner : part.corner) piece.box.extend(corner);
+    pieces.push_back(piece);
   }
   for (std::uint32_t t = 0; t < is_piece.size(); ++t) {
     if (is_piece[t] == 0) continue;

@@ -78,7 +78,9 @@ ClippedArea::ClippedArea(const Scene& scene, const Photons& photons, const Surfa
       surface_(surface),
       cos_angle_(std::cos(glm::radians(angle_degrees))),
       lit_(surface.sheets, false) {
-  for (const std::uint32_t s : photons.sided_triangle) lit_[surface.sheet[s]] = true;
+  for (const std::uint32_t s : photons.sided_triangle) {
+    if (surface.dark[s] == 0) lit_[surface.sheet[s]] = true;
+  }
   for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
     normals_.push_back(sided_normal(scene, s));
   }

@@ -246,7 +246,7 @@ TEST_CASE("a scene that was filled wrongly by hand is an error of every stage, a
     refuses([&] { find_neighbour_groups(scene, {.radius = 0.1}); });
     refuses([&] { find_patches(scene, 0.1, MapMode::patch); });
     refuses([&] { find_map_groups(scene, photons, MapMode::automatic, {.radius = 0.1}); });
-    refuses([&] { index_surface(scene, std::vector<std::uint8_t>(24), 0.1, 60); });
+    refuses([&] { index_surface(scene, std::vector<std::uint32_t>(24), 0.1, 60); });
     refuses([&] { PhotonMaps(device(), scene, photons, groups, {.radius = 0.1}); });
     refuses([&] { trace_paths(scene, Camera(), {.width = 2, .height = 2}); });
     refuses([&] { render(scene, Camera(), device(), {}); });

@@ -27,7 +27,7 @@ Scene tiled_floor(float side, float thickness) {
 
 /// The floor's upper side, where photons landed on all that looks up, or on nothing else.
 float floor_exposure(const Scene& scene, bool tiles_lit) {
-  std::vector<std::uint8_t> landed(2 * scene.triangle_count(), 0);
+  std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
   std::uint32_t floor = none;
   for (std::uint32_t s = 0; s < landed.size(); ++s) {
     const bool is_floor = triangle_of(s) < 2;
@@ -55,7 +55,7 @@ TEST_CASE("what is higher than a fifth of the radius, or lit from below, covers 
     room.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
     room.grid({0, 0, height}, {1, 0, 0}, {0, 1, 0}, 1, white);
     const Scene scene = room.build();
-    std::vector<std::uint8_t> landed(2 * scene.triangle_count(), 0);
+    std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
     for (std::uint32_t s = 0; s < landed.size(); ++s) {
       landed[s] = lit_below || sided_normal(scene, s).z > 0;
     }

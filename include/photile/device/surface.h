@@ -23,6 +23,7 @@ typedef struct {
 
 #define PHOTILE_PIECE_BORDER 0x80000000u /* in `triangle`: the piece is a border edge */
 #define PHOTILE_SHEET_UNLIT 0x80000000u  /* in `front_sheet`, `back_sheet`: without photons */
+#define PHOTILE_NO_SHEET 0xFFFFFFFFu     /* in `front_sheet`, `back_sheet`: none, and unlit */
 #define PHOTILE_NO_FACET 0xFFFFFFFFu     /* in `facet`: none whose border is known */
 
 /* Eight pieces. A triangle has its corners a, b, c. A border edge runs from a to b; c is the unit
@@ -39,7 +40,8 @@ typedef struct {
   unsigned int front_sheet[PHOTILE_SURFACE_WIDTH]; /* of the triangle's side 0 */
   unsigned int back_sheet[PHOTILE_SURFACE_WIDTH];  /* of its side 1 */
   float front_exposure[PHOTILE_SURFACE_WIDTH];     /* that counts of its area: 1, or less where */
-  float back_exposure[PHOTILE_SURFACE_WIDTH];      /* most of it lies under other surface */
+  float back_exposure[PHOTILE_SURFACE_WIDTH];      /* most of it lies under other surface; -1 of */
+                                                   /* dark parts, which lie on others */
 } PhotileSurfaceLeaf;
 
 #endif

@@ -1,0 +1,27 @@
+// Surface of a lit sheet that no photon reaches: the wall behind a cabinet, or above a ceiling.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surface/sheets.hpp"
+#include "surface/surface_mesh.hpp"
+
+namespace photile::surface {
+
+/// Photons on dark surface, at most, over those that are expected there.
+inline constexpr double most_found_in_the_dark = 0.005;
+
+/// Per sided triangle: 1 where its sheet's mean density leads to expect photons, and next to none
+/// landed. Triangles of which so many are expected that chance alone leaves one in a hundred empty
+/// are judged together with those that they connect to, and are dark where all of them together
+/// are.
+///   sheets   those of `connections`
+///   landed   per sided triangle: how many photons did
+std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
+                                          std::span<const Connection> connections,
+                                          const Sheets& sheets,
+                                          std::span<const std::uint32_t> landed);
+
+}  // namespace photile::surface
