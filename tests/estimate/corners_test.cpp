@@ -59,12 +59,25 @@ std::vector<std::uint32_t> some_triangles(const Scene& scene, std::size_t count)
   return triangles;
 }
 
+/// Whether a triangle is wider than the rounding of its corners: else no hit has a place within it,
+/// as in the kitchen's slivers of one micrometre, ten metres from its origin.
+bool has_inside(const Scene& scene, std::uint32_t triangle) {
+  double longest = 0, size = 0;
+  const auto corners = scene.corners(triangle);
+  for (int i = 0; i < 3; ++i) {
+    longest = std::max(longest, double{glm::distance(corners[i], corners[(i + 1) % 3])});
+    size = std::max(size, double{glm::length(corners[i])});
+  }
+  constexpr double rounding = 0x1p-22;  // four times that of a coordinate
+  return 2 * triangle_area(scene, triangle) > longest * size * rounding;
+}
+
 /// Corners, middles of edges and, where another triangle's corner lies on an edge, T-junctions.
 std::vector<Place> places_of(const Scene& scene, std::span<const std::uint32_t> triangles) {
   std::mt19937_64 random(162);
   std::vector<Place> places;
   for (const std::uint32_t t : triangles) {
-    if (!(triangle_area(scene, t) > 0)) continue;
+    if (!has_inside(scene, t)) continue;
     const auto corners = scene.corners(t);
     const std::uint32_t own = sided(t, static_cast<std::uint32_t>(random() & 1));
     for (int c = 0; c < 3; ++c) {
