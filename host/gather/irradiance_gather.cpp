@@ -91,8 +91,8 @@ struct RunLight {
             static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch), samples,
             found);
       } else {
-        trace::find_direct_light(rays, lamps, where, -where.normal, false, looks_per_batch, samples,
-                                 found);
+        trace::find_direct_light(rays, lamps, where, -where.normal, trace::ReflectedPart::all,
+                                 looks_per_batch, samples, found);
       }
       for (const trace::ReceivedLight& light : found)
         sums.add(light.layer, batch, light.irradiance);

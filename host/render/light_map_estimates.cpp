@@ -118,7 +118,7 @@ LightMapEstimates::LightMapEstimates(const Scene& scene, const LightMapParameter
 Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress) {
   std::vector<std::uint32_t> served, alone, place(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (serves(hits.sided_triangle[hit])) {
+    if (serves(hits, hit)) {
       served.push_back(hit);
       continue;
     }
@@ -147,10 +147,11 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   return all;
 }
 
-bool LightMapEstimates::serves(std::uint32_t sided_triangle) const {
+bool LightMapEstimates::serves(const PrimaryHits& hits, std::size_t hit) const {
   const Material& material =
-      scene_.materials[scene_.triangle_material[triangle_of(sided_triangle)]];
-  return !material.glossy() && material.normal_texture == none;
+      scene_.materials[scene_.triangle_material[triangle_of(hits.sided_triangle[hit])]];
+  const bool has_lobe = !hits.lobe.empty() && hits.lobe[hit].f90 > 0.0f;
+  return !has_lobe && material.normal_texture == none;
 }
 
 }  // namespace photile

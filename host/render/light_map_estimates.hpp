@@ -29,8 +29,8 @@ class LightMapEstimates : private PointSource {
   LightMapEstimates(const Scene& scene, const LightMapParameters& parameters,
                     MapEstimators& photons, NodeSource* nodes = nullptr);
 
-  /// Of hits in any order. Hits whose surface has a specular lobe or a normal map are estimated
-  /// where they are. Errors: as DeviceEstimators; Interrupted.
+  /// Of hits in any order. Those with a specular lobe or a normal map are estimated where they are.
+  /// Errors: as DeviceEstimators; Interrupted.
   Estimates estimate(const PrimaryHits& hits, const Progress& progress);
 
   LightMaps& maps() { return maps_; }
@@ -44,9 +44,9 @@ class LightMapEstimates : private PointSource {
  private:
   Estimates irradiance(const PrimaryHits& nodes) override { return photons_.estimate(nodes); }
 
-  /// Whether the light of a surface can be read: it has no specular lobe and no normal map, which
-  /// ask where light comes from.
-  bool serves(std::uint32_t sided_triangle) const;
+  /// Whether the light of a hit can be read: it has no specular lobe and no normal map, which ask
+  /// where light comes from.
+  bool serves(const PrimaryHits& hits, std::size_t hit) const;
 
   const Scene& scene_;
   const SceneNeeds needs_;

@@ -27,6 +27,18 @@ PhotonTracerParameters all_photons(const RenderParameters& used) {
 
 }  // namespace
 
+std::string_view name_of(GlossMode mode) {
+  switch (mode) {
+    case GlossMode::photons:
+      return "photons";
+    case GlossMode::rays:
+      return "rays";
+    case GlossMode::automatic:
+      return "auto";
+  }
+  return "unknown";
+}
+
 PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
   return {.width = parameters.film.width,
           .height = parameters.film.height,
@@ -45,6 +57,9 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
     used_.light_maps = at_hits ? LightMapMode::off : LightMapMode::on;
   }
   if (!reads_light_maps()) used_.light_map_rays = 0;
+  if (asked.gloss == GlossMode::automatic) {
+    used_.gloss = reads_light_maps() && !gathers() ? GlossMode::rays : GlossMode::photons;
+  }
   // Beyond the scene there is nothing to find.
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
   if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
@@ -128,6 +143,7 @@ PrimaryHitParameters RenderPlan::hits(const Film& film, int pass) const {
   hits.pass = pass;
   hits.passes = passes();
   hits.direct_rays = used_.direct_rays;  // as the photons are traced
+  hits.lobe_rays = used_.gloss == GlossMode::rays;
   return hits;
 }
 

@@ -280,14 +280,21 @@ int Rendering::rows_per_batch(const HitSource& source) const {
 
 void Rendering::add_rows(const HitSource& source, int first, int last) {
   const Stopwatch hit_watch;
-  const PrimaryHitBatch batch = source.trace(rays_, film_, first, last, photons_->map_of());
+  PrimaryHitBatch batch = source.trace(rays_, film_, first, last, photons_->map_of());
   costs_.hits.add(hit_watch.taken());
-  const Estimates estimates =
-      reads_light_maps(source) ? read_light_maps(batch.hits) : estimate(batch.hits, first, last);
-  const Stopwatch film_watch;
-  add_to_film(layers_, batch, estimates, 1.0f / static_cast<float>(film_.samples_per_pixel));
-  costs_.film.add(film_watch.taken());
   costs_.rays += batch.rays;
+  const auto add = [&](const PrimaryHitBatch& seen, float illuminance_weight) {
+    const Estimates estimates =
+        reads_light_maps(source) ? read_light_maps(seen.hits) : estimate(seen.hits, first, last);
+    const Stopwatch film_watch;
+    add_to_film(layers_, seen, estimates, illuminance_weight);
+    costs_.film.add(film_watch.taken());
+  };
+  add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel));
+  if (batch.reflected.size() == 0) return;
+  PrimaryHitBatch reflected;
+  reflected.hits = std::move(batch.reflected);
+  add(reflected, 0.0f);  // the pixel's illuminance is not theirs
 }
 
 /// Of the hits of rows [first_row, last_row).

@@ -19,6 +19,7 @@ const auto& all_values(MapStructure) { return all_map_structures; }
 const auto& all_values(AreaMode) { return all_area_modes; }
 const auto& all_values(DensityKernel) { return all_density_kernels; }
 const auto& all_values(LightMapMode) { return all_light_map_modes; }
+const auto& all_values(GlossMode) { return all_gloss_modes; }
 const auto& all_values(PhotonQuota) { return all_photon_quotas; }
 
 template <class Values>
@@ -189,6 +190,10 @@ std::vector<Setting> estimate_rows() {
           WholeNumbers{0, limits::max_final_gather_rays},
           "rays from each hit that gather the light of other surfaces; direct light by rays",
           not_kept),
+      row<&P::gloss>("gloss", "gloss", "primary hits", words_of(all_gloss_modes),
+                     "what finds the light that lobes reflect; auto: rays where light maps are "
+                     "read, else photons",
+                     not_kept),
       row<&P::light_maps>("light_maps", "light-maps", "light maps", words_of(all_light_map_modes),
                           "matt surfaces are read between nodes; auto: but where rays gather, and "
                           "not with naive maps; off: an estimate at each hit",
@@ -266,6 +271,10 @@ void check(const RenderParameters& parameters) {
     }
     if (setting.name == "light_map_rays" && parameters.direct_rays > 0) {
       throw SettingError(setting, "light maps hold direct light, which rays at hits replace");
+    }
+    if (setting.name == "gloss" && parameters.gloss == GlossMode::rays &&
+        parameters.final_gather_rays > 0) {
+      throw SettingError(setting, "rays that gather follow lobes, too");
     }
     if (setting.name == "structure" && parameters.structure == MapStructure::kdtree_global &&
         parameters.maps == MapMode::naive) {

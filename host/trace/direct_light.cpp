@@ -92,11 +92,11 @@ class DirectLight {
 
 }  // namespace
 
-LookSamples::LookSamples(const RandomStream& sequences, std::uint32_t first)
-    : scrambles_{sequences.block(Purpose::direct_light, 0),
-                 sequences.block(Purpose::direct_light, 1),
-                 sequences.block(Purpose::direct_light, 2),
-                 sequences.block(Purpose::direct_light, 3)},
+LookSamples::LookSamples(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface)
+    : scrambles_{sequences.block(Purpose::direct_light, 4 * surface),
+                 sequences.block(Purpose::direct_light, 4 * surface + 1),
+                 sequences.block(Purpose::direct_light, 4 * surface + 2),
+                 sequences.block(Purpose::direct_light, 4 * surface + 3)},
       first_(first) {}
 
 LookSamples::Look LookSamples::look(std::uint32_t number) const {
@@ -110,10 +110,11 @@ LookSamples::Look LookSamples::look(std::uint32_t number) const {
 }
 
 void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
-                       const glm::vec3& direction, bool lobe_only, int count,
+                       const glm::vec3& direction, ReflectedPart part, int count,
                        const LookSamples& samples, std::vector<ReceivedLight>& found) {
   OpaqueBsdf bsdf(rays.scene(), point, direction);
-  if (lobe_only) bsdf.drop_diffuse();
+  if (part == ReflectedPart::but_the_base) bsdf.drop_diffuse();
+  if (part == ReflectedPart::but_the_lobe) bsdf.drop_lobe();
   const Receiver receiver(point, bsdf);
   DirectLight light(rays, lamps, point, receiver, 1.0f / static_cast<float>(count), found);
   for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {

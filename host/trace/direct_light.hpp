@@ -26,7 +26,8 @@ class LookSamples {
  public:
   /// `sequences`: receivers that share them, as the samples of a pixel do, take others of their
   /// points each.
-  LookSamples(const RandomStream& sequences, std::uint32_t first);
+  ///   surface   of a path, counted from 0: each has sequences of its own
+  LookSamples(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface = 0);
 
   /// Random numbers of one look. All words of a block may be used; the blocks of a direction and
   /// of a lamp share some, so that no estimate may multiply what is found by both.
@@ -41,15 +42,22 @@ class LookSamples {
   std::uint32_t first_;
 };
 
+/// What of a surface's reflection is wanted.
+enum class ReflectedPart : std::uint8_t {
+  all,
+  but_the_base,  ///< OpaqueBsdf::drop_diffuse
+  but_the_lobe   ///< OpaqueBsdf::drop_lobe
+};
+
 /// Estimates what lamps send straight to a point of an opaque surface, or through panes of thin
 /// glass and holes of cut-out surfaces: just what photons bring that are not scattered before.
 /// `count` times a lamp is looked at, and a direction of the surface's own is followed; what both
 /// would find is weighed (Veach and Guibas 1995, power heuristic). The sum over what is appended to
 /// `found` is unbiased.
 ///   direction   of the ray that arrived at the point, unit
-///   lobe_only   leaves the diffuse reflection out of the radiance
+///   part        of the reflection that the radiance has
 void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
-                       const glm::vec3& direction, bool lobe_only, int count,
+                       const glm::vec3& direction, ReflectedPart part, int count,
                        const LookSamples& samples, std::vector<ReceivedLight>& found);
 
 /// The part of the irradiance that looks at lamps find where directions with the density of the

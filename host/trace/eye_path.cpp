@@ -4,6 +4,7 @@
 
 #include "trace/direct_light.hpp"
 #include "trace/holes.hpp"
+#include "trace/lobe_path.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/sobol.hpp"
@@ -14,16 +15,36 @@ namespace photile::trace {
 namespace {
 
 void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
-                      bool lobe_only, const LookSamples& samples, EyeRecord& record) {
+                      ReflectedPart part, const LookSamples& samples, EyeRecord& record) {
   thread_local std::vector<ReceivedLight> found;
   found.clear();
-  find_direct_light(setup.direct->rays, setup.direct->lamps, point, ray.direction, lobe_only,
+  find_direct_light(setup.direct->rays, setup.direct->lamps, point, ray.direction, part,
                     setup.direct->count, samples, found);
   const float sample_weight = 1.0f / static_cast<float>(setup.parameters->samples_per_pixel);
   for (const ReceivedLight& light : found) {
     record.direct.push_back({ray.pixel, light.layer, ray.radiance_weight() * light.radiance,
                              sample_weight * static_cast<float>(luminance(light.irradiance))});
   }
+}
+
+/// Whether rays are to follow the lobe of a surface; `base` is then what else it reflects.
+bool leaves_lobe(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
+                 glm::vec3& base) {
+  if (!setup.lobes || !material_of(*setup.rays->scene, point).glossy()) return false;
+  const OpaqueBsdf bsdf(*setup.rays->scene, point, ray.direction);
+  if (!bsdf.lobe_suits_rays()) return false;
+  base = bsdf.base_reflectance();
+  return true;
+}
+
+/// Makes the hit that was appended last one whose surface has a base alone, as far as light from
+/// all sides tells it.
+void drop_lobe(const glm::vec3& base, EyeRecord& record) {
+  record.hits.back().diffuse_albedo = base;
+  HitLobe& lobe = record.glossy.back().lobe;
+  lobe.specular = glm::vec3(0.0f);
+  lobe.f90 = 0.0f;
+  lobe.roughness = 1.0f;
 }
 
 }  // namespace
@@ -39,8 +60,9 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
       {-ray.direction, {surface.f0, surface.alpha, normals.seen, surface.f90, normals.smooth}});
 }
 
-void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
-                    EyeRecord& record, const LampTechnique* other, const LookSamples* looks) {
+std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
+                                     EyeRecord& record, const LampTechnique* other,
+                                     const LookSamples* looks) {
   const Scene& scene = *setup.rays->scene;
   const glm::vec3 start = ray.origin;
   std::uint32_t holes = 0;
@@ -57,7 +79,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
     const auto met =
         next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, holes);
     if (!met) {
-      if (!sees_lamps) return;
+      if (!sees_lamps) return std::nullopt;
       for (const DistantLight& light : *setup.distant) {
         const glm::vec3 radiance = light.radiance(ray.direction);
         if (radiance == glm::vec3(0.0f)) continue;
@@ -66,7 +88,7 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
         record.emission.push_back(
             {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});
       }
-      return;
+      return std::nullopt;
     }
     const SurfacePoint& point = *met;
     if (emits(scene, point) && sees_lamps) {
@@ -77,13 +99,22 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
                                      emission_texel(scene, point)});
     }
     if (material_of(scene, point).interaction == Interaction::opaque) {
-      if (seen_directly && !material_of(scene, point).glossy()) return;
+      if (seen_directly && !material_of(scene, point).glossy()) return std::nullopt;
       append_hit(*setup.rays, point, ray, record);
       if (seen_directly) record.hits.back().diffuse_albedo = glm::vec3(0.0f);
-      if (setup.direct) add_direct_light(setup, point, ray, seen_directly, *looks, record);
-      return;
+      glm::vec3 base;
+      const bool lobe_left = leaves_lobe(setup, point, ray, base);
+      if (lobe_left) drop_lobe(base, record);
+      if (setup.direct) {
+        const ReflectedPart part = seen_directly ? ReflectedPart::but_the_base
+                                   : lobe_left   ? ReflectedPart::but_the_lobe
+                                                 : ReflectedPart::all;
+        add_direct_light(setup, point, ray, part, *looks, record);
+      }
+      if (!lobe_left) return std::nullopt;
+      return EyeEnd{point, ray};
     }
-    if (depth >= setup.parameters->max_specular_depth) return;
+    if (depth >= setup.parameters->max_specular_depth) return std::nullopt;
     const RandomBlock numbers = random.block(Purpose::eye_scattering, depth);
     const Scattered scattered =
         scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word));
@@ -95,10 +126,12 @@ void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& rando
   }
 }
 
-void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record) {
+void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record,
+                    EyeRecord& reflected) {
   const PrimaryHitParameters& film = *setup.parameters;
   const auto pixel = static_cast<std::uint32_t>(y) * film.width + x;
-  const RandomStream random(film.seed, std::uint64_t{pixel} * film.samples_per_pixel + sample, 0);
+  const std::uint64_t path = std::uint64_t{pixel} * film.samples_per_pixel + sample;
+  const RandomStream random(film.seed, path, 0);
   // All samples of a pixel share their sequences.
   const RandomStream of_pixel(film.seed, pixel, 0);
   const auto index = static_cast<std::uint32_t>(sample);
@@ -109,7 +142,8 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   if (setup.direct) {
     looks.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
   }
-  follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr);
+  const auto end = follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr);
+  if (end) follow_lobes(setup, *end, {of_pixel, index, path}, reflected);
 }
 
 }  // namespace photile::trace

@@ -1,8 +1,10 @@
-// One sample of a pixel: the ray from the eye, through mirrors and glass, to an opaque surface.
+// One sample of a pixel: the ray from the eye, through mirrors and glass, to an opaque surface, and
+// on in the direction of its lobe.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "photile/camera.hpp"
@@ -47,6 +49,12 @@ struct DirectRays {
   int count;  ///< looks per hit
 };
 
+/// How light is found that lobes reflect, where it is not left to the photons.
+struct LobeRays {
+  const RayScene& rays;
+  const LightSampler& lamps;
+};
+
 /// What all samples of a picture share.
 struct EyeSetup {
   const RayScene::Impl* rays;
@@ -58,6 +66,7 @@ struct EyeSetup {
   const std::vector<glm::vec3>* emitted_radiance = nullptr;
   const std::vector<DistantLight>* distant = nullptr;
   const DirectRays* direct = nullptr;  ///< null where photons bring all light
+  const LobeRays* lobes = nullptr;     ///< null where hits reflect with their lobes
   /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.
   bool reflections_only = false;
 };
@@ -78,6 +87,12 @@ struct EyeRay {
 void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
                 EyeRecord& record);
 
+/// An opaque surface, and the ray that arrived there.
+struct EyeEnd {
+  SurfacePoint point;
+  EyeRay ray;
+};
+
 /// Looking at lamps, as another technique that finds those which a ray meets at once, or through
 /// panes.
 struct LampTechnique {
@@ -87,13 +102,17 @@ struct LampTechnique {
 };
 
 /// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to
-/// `record`. Lamps that `other` would find as well are weighed by the power heuristic.
+/// `record`. Lamps that `other` would find as well are weighed by the power heuristic. Returns the
+/// surface if it has a lobe that rays are to follow, which is not in the hit then.
 ///   looks   of the hit, where EyeSetup::direct is set
-void follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
-                    EyeRecord& record, const LampTechnique* other = nullptr,
-                    const LookSamples* looks = nullptr);
+std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
+                                     EyeRecord& record, const LampTechnique* other = nullptr,
+                                     const LookSamples* looks = nullptr);
 
-/// Traces sample `sample` of pixel (x, y) and appends what it sees to `record`.
-void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record);
+/// Traces sample `sample` of pixel (x, y) and appends what it sees.
+///   record      of the surface that the pixel sees
+///   reflected   of those which lobes reflect
+void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record,
+                    EyeRecord& reflected);
 
 }  // namespace photile::trace

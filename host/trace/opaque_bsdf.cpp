@@ -8,6 +8,13 @@
 #include "trace/scatter.hpp"
 
 namespace photile::trace {
+namespace {
+
+/// One ray a sample is noisy where a lobe is wide and reflects much; photons are where it is
+/// narrow.
+constexpr float narrow_lobe_alpha = 0.3f, faint_lobe_albedo = 0.25f;
+
+}  // namespace
 
 OpaqueBsdf::OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
                        PathStart start)
@@ -32,13 +39,37 @@ OpaqueBsdf::Lobe OpaqueBsdf::lobe_of(const Scene& scene, const SurfacePoint& poi
   const float specular_albedo = largest(surface_.f0) * f0_weight + surface_.f90 * f90_weight;
   const float diffuse_albedo = largest(diffuse_reflectance(lobe.diffuse, surface_.alpha));
   const float sum = specular_albedo + diffuse_albedo;
-  lobe.share = sum > 0.0f && lobe.view.z > 0.0f ? specular_albedo / sum : 0.0f;
+  const bool in_front = lobe.view.z > 0.0f;
+  lobe.albedo = in_front ? specular_albedo : 0.0f;
+  lobe.share = sum > 0.0f && in_front ? specular_albedo / sum : 0.0f;
   return lobe;
 }
 
 void OpaqueBsdf::drop_diffuse() {
   surface_.albedo = glm::vec3(0.0f);
   if (lobe_) lobe_->diffuse = diffuse_part(surface_, lobe_->n_dot_view);
+}
+
+void OpaqueBsdf::keep_lobe() {
+  surface_.albedo = glm::vec3(0.0f);
+  if (!lobe_) return;
+  lobe_->diffuse = {};
+  lobe_->share = lobe_->albedo > 0.0f ? 1.0f : 0.0f;
+}
+
+void OpaqueBsdf::drop_lobe() {
+  surface_.f0 = glm::vec3(0.0f);
+  surface_.f90 = 0.0f;
+  if (lobe_) lobe_->share = 0.0f;
+}
+
+bool OpaqueBsdf::lobe_suits_rays() const {
+  if (!lobe_ || !(lobe_->albedo > 0.0f)) return false;
+  return surface_.alpha < narrow_lobe_alpha || lobe_->albedo < faint_lobe_albedo;
+}
+
+glm::vec3 OpaqueBsdf::base_reflectance() const {
+  return lobe_ ? diffuse_reflectance(lobe_->diffuse, surface_.alpha) : surface_.albedo;
 }
 
 std::optional<glm::vec3> OpaqueBsdf::sample(const RandomBlock& random) const {
@@ -65,6 +96,28 @@ float OpaqueBsdf::density(const glm::vec3& direction) const {
          (1.0f - lobe_->share) * cosine / PHOTILE_PI;
 }
 
+float OpaqueBsdf::bump_at(const glm::vec3& out) const {
+  if (!lobe_->mapped) return 1.0f;
+  const glm::vec3& light = start_ == PathStart::eye ? out : lobe_->view;
+  return photile_bump_weight(light.z, glm::dot(lobe_->frame.to_world(light), lobe_->smooth_normal),
+                             most_bump(surface_.albedo + surface_.f0));
+}
+
+glm::vec3 OpaqueBsdf::base_deviation(const glm::vec3& direction) const {
+  const float cosine = glm::dot(direction, normal_);
+  if (!lobe_ || !(cosine > 0.0f)) return glm::vec3(0.0f);
+  const glm::vec3 out = lobe_->frame.to_local(direction), mean = base_reflectance() / PHOTILE_PI;
+  float f0_weight = 0, f90_weight = 0;
+  photile_lobe_albedo(&lobe_->fit, out.z, &f0_weight, &f90_weight);
+  glm::vec3 result;
+  for (int c = 0; c < 3; ++c) {
+    result[c] = photile_diffuse(lobe_->diffuse[0][c], lobe_->diffuse[1][c], lobe_->diffuse[2][c],
+                                f0_weight, f90_weight) -
+                mean[c];
+  }
+  return bump_at(out) * cosine * result;
+}
+
 glm::vec3 OpaqueBsdf::reflected(const glm::vec3& direction) const {
   const float cosine = glm::dot(direction, normal_);
   if (!(cosine > 0.0f)) return glm::vec3(0.0f);
@@ -77,13 +130,7 @@ glm::vec3 OpaqueBsdf::reflected(const glm::vec3& direction) const {
   const float schlick = photile_schlick(glm::dot(lobe_->view, half));
   float f0_weight = 0, f90_weight = 0;
   photile_lobe_albedo(&lobe_->fit, out.z, &f0_weight, &f90_weight);
-  float bump = 1.0f;
-  if (lobe_->mapped) {
-    const glm::vec3& light = start_ == PathStart::eye ? out : lobe_->view;
-    bump =
-        photile_bump_weight(light.z, glm::dot(lobe_->frame.to_world(light), lobe_->smooth_normal),
-                            most_bump(surface_.albedo + surface_.f0));
-  }
+  const float bump = bump_at(out);
   glm::vec3 result;
   for (int c = 0; c < 3; ++c) {
     const float diffuse = photile_diffuse(lobe_->diffuse[0][c], lobe_->diffuse[1][c],

@@ -29,6 +29,23 @@ class OpaqueBsdf {
   /// Leaves the reflection of the base out; directions are drawn as before.
   void drop_diffuse();
 
+  /// Leaves all but the reflection of one facet out: directions are those of the lobe.
+  void keep_lobe();
+
+  /// Leaves the reflection of one facet out; directions follow the cosine.
+  void drop_lobe();
+
+  /// Whether rays find what the lobe reflects better than photons do: it is narrow, or reflects
+  /// little.
+  bool lobe_suits_rays() const;
+
+  /// Share of light from all sides that is reflected, but for one facet's reflection.
+  glm::vec3 base_reflectance() const;
+
+  /// What reflection but for one facet's is at a direction, f x cosine per steradian, less what it
+  /// is in the mean over all of them: a coat lets less through at grazing angles.
+  glm::vec3 base_deviation(const glm::vec3& direction) const;
+
   /// Whether it is more than a Lambertian lobe.
   bool glossy() const { return lobe_.has_value(); }
   const glm::vec3& albedo() const { return surface_.albedo; }  ///< of the Lambertian lobe
@@ -51,10 +68,13 @@ class OpaqueBsdf {
     float n_dot_view = 0;  ///< kept above 0
     PhotileAlbedoFit fit{};
     DiffusePart diffuse{};
+    float albedo = 0;     ///< of one facet's reflection, of the channel that reflects most
     float share = 0;      ///< of the directions drawn, in [0, 1]
     bool mapped = false;  ///< there is a normal map
     glm::vec3 smooth_normal{0.0f};
   };
+  /// What a normal map multiplies f by at a direction in the frame of the lobe.
+  float bump_at(const glm::vec3& out) const;
   Lobe lobe_of(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) const;
 
   scene_io::Reflectance surface_;

@@ -52,10 +52,13 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
   const std::vector<trace::DistantLight> distant = trace::distant_lights(ray_scene.scene());
   std::optional<trace::LightSampler> lamps;
   std::optional<trace::DirectRays> direct;
+  std::optional<trace::LobeRays> lobes;
+  const bool lobe_rays = parameters.lobe_rays && !reflections_only;
+  if (parameters.direct_rays > 0 || lobe_rays) lamps.emplace(ray_scene.scene());
   if (parameters.direct_rays > 0) {
-    lamps.emplace(ray_scene.scene());
     direct.emplace(trace::DirectRays{ray_scene, *lamps, parameters.direct_rays});
   }
+  if (lobe_rays) lobes.emplace(trace::LobeRays{ray_scene, *lamps});
   const FilmDirections directions = camera.directions(parameters.width, parameters.height);
   const trace::EyeSetup setup{.rays = &impl_of(ray_scene),
                               .film = &directions,
@@ -64,18 +67,30 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
                               .emitted_radiance = &radiance,
                               .distant = &distant,
                               .direct = direct ? &*direct : nullptr,
+                              .lobes = lobes ? &*lobes : nullptr,
                               .reflections_only = reflections_only};
   std::vector<EyeRecord> rows(static_cast<std::size_t>(last_row - first_row));
+  std::vector<EyeRecord> reflected_rows(rows.size());
   tbb::parallel_for(first_row, last_row, [&](int y) {
     const trace::FlushDenormals flush_denormals;
     EyeRecord& row = rows[static_cast<std::size_t>(y - first_row)];
+    EyeRecord& reflected = reflected_rows[static_cast<std::size_t>(y - first_row)];
     for (int x = 0; x < parameters.width; ++x)
       for (int sample = parameters.pass; sample < parameters.samples_per_pixel;
            sample += parameters.passes)
-        trace::trace_eye_path(setup, x, y, sample, row);
+        trace::trace_eye_path(setup, x, y, sample, row, reflected);
   });
 
-  return trace::batch_of(ray_scene, std::move(rows), map_of);
+  PrimaryHitBatch batch = trace::batch_of(ray_scene, std::move(rows), map_of);
+  if (!lobe_rays) return batch;
+  PrimaryHitBatch reflected = trace::batch_of(ray_scene, std::move(reflected_rows), map_of);
+  batch.rays += reflected.rays;
+  for (SeenEmission& seen : reflected.emission) {
+    seen.illuminance = 0;  // of another surface
+    batch.emission.push_back(seen);
+  }
+  batch.reflected = std::move(reflected.hits);
+  return batch;
 }
 
 }  // namespace

@@ -57,10 +57,14 @@ struct PrimaryHitParameters {
   /// many directions of its own, and photons have to bring the rest alone
   /// (PhotonTracerParameters::store_direct).
   int direct_rays = 0;
+  /// Lobes that are narrow, or reflect little, are left out of hits: a ray of each hit follows them
+  /// to the surfaces that they reflect (PrimaryHitBatch::reflected).
+  bool lobe_rays = false;
 };
 
 struct PrimaryHitBatch {
   PrimaryHits hits;
+  PrimaryHits reflected;  ///< on surfaces seen in lobes; their illuminance is not the pixel's
   std::vector<SeenEmission> emission;
   std::uint64_t rays = 0;
 };

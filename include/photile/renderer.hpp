@@ -1,8 +1,10 @@
 // The whole method in one call: trace, group, build, estimate.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "photile/camera.hpp"
@@ -36,6 +38,18 @@ struct PhotonPaths {
   int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
 };
 
+/// What finds the light that a specular lobe reflects (docs/gloss.md).
+enum class GlossMode {
+  photons,   ///< the photons around a hit, weighed by the lobe: the method of the paper
+  rays,      ///< a ray of each hit, along lobes that are narrow or faint; photons for others
+  automatic  ///< rays where light maps are read, else photons
+};
+
+/// "photons", "rays", "auto".
+std::string_view name_of(GlossMode mode);
+inline constexpr std::array all_gloss_modes = {GlossMode::photons, GlossMode::rays,
+                                               GlossMode::automatic};
+
 /// What is asked of a rendering, each setting once. What follows from them, and which stage reads
 /// which, is said in docs/settings.md; their ranges are those of the table there.
 struct RenderParameters {
@@ -67,6 +81,7 @@ struct RenderParameters {
   /// up where they end; at the hit itself only caustics are (docs/final-gathering.md). 0 = all
   /// light is looked up at the hit.
   int final_gather_rays = 0;
+  GlossMode gloss = GlossMode::automatic;
   LightMapMode light_maps = LightMapMode::off;  ///< see docs/light-maps.md
   /// > 0: nodes of light maps gather light by so many rays each, and as many looks at lamps, fewer
   /// at finer levels (docs/light-maps.md). 0 = the photon estimate values them.

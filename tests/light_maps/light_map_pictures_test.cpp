@@ -138,7 +138,7 @@ TEST_CASE("A hit on a wall reads the same light from wherever it is seen", "[lig
   CHECK(same_bits(first.layers, later.layers));
 }
 
-TEST_CASE("Glossy surfaces keep the estimate at the hit", "[light_map_pictures]") {
+TEST_CASE("Glossy surfaces keep the estimate at the hit where photons bring gloss", "[light_map_pictures]") {
   // Only the table is glossy: pixels that see nothing else are those of an estimate at each hit.
   test::SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));
@@ -147,6 +147,7 @@ TEST_CASE("Glossy surfaces keep the estimate at the hit", "[light_map_pictures]"
   builder.add(test::point_light("lamp", {0.3f, 0.2f, 1}, 1.0));
   const Scene scene = builder.build();
   RenderParameters parameters = with_light_maps();
+  parameters.gloss = GlossMode::photons;
   const Camera camera = test::above(0, 0, 10, 0.6);
   const RenderResult maps = render(scene, camera, test::device(), parameters);
   parameters.light_maps = LightMapMode::off;

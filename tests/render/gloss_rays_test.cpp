@@ -1,0 +1,240 @@
+// Light that lobes reflect, by rays: --gloss rays.
+#define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "photile/errors.hpp"
+#include "photile/path_tracer.hpp"
+#include "photile/renderer.hpp"
+#include "pictures.hpp"
+#include "render/hit_source.hpp"
+#include "statistical_tests.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+#include "tools/validation/glossy_reflectance.hpp"
+
+namespace photile::test {
+namespace {
+
+using std::numbers::pi;
+
+RenderParameters with_rays(std::uint64_t seed = 1) {
+  RenderParameters parameters;
+  parameters.gloss = GlossMode::rays;
+  parameters.light_maps = LightMapMode::on;
+  parameters.film.width = parameters.film.height = 8;
+  parameters.film.samples_per_pixel = 16;
+  parameters.photons.emitted_photons = 50'000;
+  parameters.seed = seed;
+  return parameters;
+}
+
+/// Means over the picture of one layer.
+struct LayerMeans {
+  double illuminance = 0, radiance = 0;
+
+  explicit LayerMeans(const LightLayers::Layer& layer) {
+    for (const float value : layer.illuminance) illuminance += value;
+    for (const glm::vec3& value : layer.radiance) radiance += luminance(value);
+    illuminance /= static_cast<double>(layer.illuminance.size());
+    radiance /= static_cast<double>(layer.radiance.size());
+  }
+};
+
+Scene glossy_room(const Material& floor) {
+  Scene scene = furnished_room(3);
+  scene.materials[0] = floor;
+  return scene;
+}
+
+/// Both layers of a furnished room with a floor of this material beside the path tracer, in the
+/// mean over a place beside a block.
+void check_room(const Material& floor, RenderParameters parameters, double delta) {
+  const Scene scene = glossy_room(floor);
+  const Camera camera = above(2.6, 2.2, 2.0, 0.4);
+  std::vector<std::vector<double>> differences(4);
+  parameters.photons.emitted_photons = 400'000;
+  parameters.neighbours = 200;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    parameters.seed = seed;
+    const LightLayers own = render(scene, camera, device(), parameters).layers;
+    PrimaryHitParameters film = eye_rays(parameters);
+    film.samples_per_pixel = 1024;
+    const LightLayers paths = trace_paths(scene, camera, film).layers;
+    for (std::size_t layer = 0; layer < 2; ++layer) {
+      const LayerMeans mean(own.layers[layer]), truth(paths.layers[layer]);
+      differences[2 * layer].push_back(mean.illuminance / truth.illuminance - 1);
+      differences[2 * layer + 1].push_back(mean.radiance / truth.radiance - 1);
+    }
+  }
+  for (const std::vector<double>& difference : differences) {
+    CHECK_VERDICT(mean_is(difference, 0.0, delta));
+  }
+}
+
+/// A plate of this material in a black box whose walls all emit the same.
+Scene plate_in_furnace(const Material& material) {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t walls = builder.add(area_light("walls"));
+  const glm::vec3 low(-2.0f), x(4, 0, 0), y(0, 4, 0), z(0, 0, 4);
+  builder.grid(low, x, y, 1, black, walls);
+  builder.grid(low + z, y, x, 1, black, walls);
+  builder.grid(low, z, x, 1, black, walls);
+  builder.grid(low + y, x, z, 1, black, walls);
+  builder.grid(low, y, z, 1, black, walls);
+  builder.grid(low + x, z, y, 1, black, walls);
+  builder.grid({-1, -1, -1.5f}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(material));
+  return builder.build();
+}
+
+/// A lamp of 0.5 m, one metre above a plate of this material, and a camera whose middle looks at
+/// the lamp's image.
+Scene plate_under_lamp(const Material& material) {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, 1, builder.add(material));
+  builder.grid({-0.25f, -0.25f, 1}, {0, 0.5f, 0}, {0.5f, 0, 0}, 1, black,
+               builder.add(area_light("lamp")));
+  return builder.build();
+}
+
+Camera at_image() { return Camera::look_at({0, -1.5, 1}, {0, -0.75, 0}, {0, 0, 1}, 0.5); }
+
+}  // namespace
+
+TEST_CASE("gloss by rays: uniform light from all sides is reflected as the BSDF's integral says") {
+  const auto [albedo, f0, alpha] = GENERATE(table<double, double, double>(
+      {{1.0, 0.04, 0.1}, {0.5, 0.04, 0.4}, {0.0, 0.9, 0.05}, {0.0, 0.9, 0.25}, {0.3, 0.2, 0.2}}));
+  CAPTURE(albedo, f0, alpha);
+  const Scene scene =
+      plate_in_furnace(glossy(glm::vec3(static_cast<float>(albedo)),
+                              glm::vec3(static_cast<float>(f0)), static_cast<float>(alpha)));
+  // 96 m2 of walls, power 1.
+  const double truth = validation::glossy_reflectance(albedo, f0, alpha) / (96 * pi);
+  std::vector<double> radiance;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    RenderParameters parameters = with_rays(seed);
+    parameters.photons.emitted_photons = 200'000;
+    parameters.neighbours = 1000;
+    const RenderResult result = render(scene, above(0, 0, 0.5, 0.2), device(), parameters);
+    radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
+  }
+  CHECK_VERDICT(mean_is(radiance, 1.0, 0.06));
+}
+
+TEST_CASE(
+    "gloss by rays: a lamp's image in a plate is the path tracer's, at any width of the lobe") {
+  const auto alpha = GENERATE(0.03f, 0.1f, 0.28f);
+  CAPTURE(alpha);
+  const Scene scene = plate_under_lamp(glossy(glm::vec3(0.0f), glm::vec3(0.6f), alpha));
+  std::vector<double> ratio;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    RenderParameters parameters = with_rays(seed);
+    parameters.film.samples_per_pixel = 64;
+    const double own =
+        LayerMeans(render(scene, at_image(), device(), parameters).layers.layers[0]).radiance;
+    PrimaryHitParameters film = eye_rays(parameters);
+    film.samples_per_pixel = 1024;
+    film.seed = seed + 100;
+    ratio.push_back(own /
+                    LayerMeans(trace_paths(scene, at_image(), film).layers.layers[0]).radiance);
+  }
+  CHECK_VERDICT(mean_is(ratio, 1.0, 0.05));
+}
+
+TEST_CASE("gloss by rays: the narrowest lobe reflects a room as a mirror does") {
+  const auto radiance_of = [](const Material& material, std::uint64_t seed) {
+    RenderParameters parameters = with_rays(seed);
+    parameters.film.samples_per_pixel = 256;
+    const Scene scene = plate_under_lamp(material);
+    return LayerMeans(render(scene, at_image(), device(), parameters).layers.layers[0]).radiance;
+  };
+  std::vector<double> ratio;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    ratio.push_back(radiance_of(glossy(glm::vec3(0.0f), glm::vec3(1.0f), 0.02f), seed) /
+                    radiance_of(mirror(glm::vec3(1.0f)), seed));
+  }
+  CHECK_VERDICT(mean_is(ratio, 1.0, 0.03));
+}
+
+TEST_CASE("gloss by rays: lobes and light maps together see what paths see", "[long][slow]") {
+  check_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), with_rays(), 0.06);
+  check_room(glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.5f), with_rays(), 0.06);
+}
+
+TEST_CASE("gloss by rays: with looks at lamps from each hit they see what paths see, too",
+          "[long][slow]") {
+  RenderParameters parameters = with_rays();
+  parameters.light_maps = LightMapMode::off;
+  parameters.direct_rays = 2;
+  check_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), parameters, 0.06);
+}
+
+TEST_CASE("gloss by rays: illuminance is that of the surface seen, as without lobes") {
+  const Material base = diffuse(glm::vec3(0.4f));
+  RenderParameters parameters = with_rays();
+  const Camera camera = above(2.6, 2.2, 2.0, 0.4);
+  // Photons bounce alike where the lobe reflects next to nothing.
+  const Scene faint = glossy_room(glossy(base.diffuse, glm::vec3(0.0f), 0.5f));
+  const LightLayers with = render(faint, camera, device(), parameters).layers;
+  const LightLayers without = render(glossy_room(base), camera, device(), parameters).layers;
+  CHECK(LayerMeans(with.layers[0]).illuminance ==
+        Approx(LayerMeans(without.layers[0]).illuminance).epsilon(0.1));
+}
+
+TEST_CASE("gloss by rays: the same bits on any number of threads and in any rows") {
+  const Scene scene = glossy_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f));
+  RenderParameters parameters = with_rays();
+  parameters.film.width = 48;
+  parameters.film.height = 36;
+  parameters.film.samples_per_pixel = 2;
+  const Camera camera = room_camera();
+  std::vector<LightLayers> pictures;
+  for (const std::size_t threads : {1u, 2u, 3u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    pictures.push_back(render(scene, camera, device(), parameters).layers);
+  }
+  CHECK(same_bits(pictures[0], pictures[1]));
+  CHECK(same_bits(pictures[0], pictures[2]));
+  const WatchedHits watched(camera, [](const LightLayers&, int, int, double) {});
+  const RenderResult in_rows = render_hits(scene, watched, parameters.film, std::span(&device(), 1),
+                                           parameters, Progress::none());
+  CHECK(same_bits(pictures[0], in_rows.layers));
+}
+
+TEST_CASE("gloss by rays: layers are the same whatever the powers") {
+  Scene scene = glossy_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f));
+  scene.lights.pop_back();  // with one lamp the choice does not depend on it
+  const LightLayers dim = render(scene, room_camera(), device(), with_rays()).layers;
+  scene.lights[0].power *= 1024;
+  const LightLayers bright = render(scene, room_camera(), device(), with_rays()).layers;
+  CHECK(same_bits(dim, bright));
+}
+
+TEST_CASE("gloss by rays: where nothing is glossy, not a bit changes") {
+  const Scene scene = furnished_room(3);
+  RenderParameters parameters = with_rays();
+  const LightLayers by_rays = render(scene, room_camera(), device(), parameters).layers;
+  parameters.gloss = GlossMode::photons;
+  CHECK(same_bits(by_rays, render(scene, room_camera(), device(), parameters).layers));
+}
+
+TEST_CASE("gloss by rays: rays are for light maps unless asked for, and not where rays gather") {
+  const Scene scene = glossy_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f));
+  RenderParameters parameters = with_rays();
+  parameters.gloss = GlossMode::automatic;
+  const auto used = [&] { return render(scene, room_camera(), device(), parameters).used.gloss; };
+  CHECK(used() == GlossMode::rays);
+  parameters.light_maps = LightMapMode::off;
+  CHECK(used() == GlossMode::photons);
+  parameters.final_gather_rays = 1;
+  CHECK(used() == GlossMode::photons);
+  parameters.gloss = GlossMode::rays;
+  CHECK_THROWS_AS(used(), UsageError);
+}
+
+}  // namespace photile::test
