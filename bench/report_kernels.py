@@ -150,7 +150,7 @@ def startup(result):
             "kernel at its first launch, which is in the kernel's row. With a full cache most of the "
             "time is clang's preprocessor, which PoCL runs over each program, and over OpenCL's "
             "built-in functions before it, to find it in its cache. Shared libraries are those of the "
-            "whole of photile, nearly all of them OpenImageIO's.")
+            "whole of photile.")
     return text + "\n\n" + table([""] + [name for _, name in columns], lines)
 
 

@@ -1,9 +1,8 @@
 # photile_add_tests(<folder> <source>... [LIBRARIES <target>...])
 #
 # The executable of a folder of tests/. The test cases of a source file are one test of CTest,
-# <folder>/<file>, with the label of the folder: a process for each case would take longer to start (a
-# third of a second, for all that OpenImageIO brings along) than most take to run. Cases tagged [slow]
-# are another, <folder>/<file> (slow), with the label "slow".
+# <folder>/<file>, with the label of the folder: a process for each case would take longer to start than
+# most take to run. Cases tagged [slow] are another, <folder>/<file> (slow), with the label "slow".
 #
 # Run as a script, it asks a built executable for its files and writes what CTest includes. (Catch's own
 # module makes a test of each case.)

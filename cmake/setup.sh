@@ -18,10 +18,15 @@ pocl-opencl-icd        | OpenCL device on the CPU
 libembree-dev          | ray tracing
 libtbb-dev             | threads
 libglm-dev             | vectors
-libopenimageio-dev     | pictures: EXR, PNG, textures
+libopenexr-dev         | pictures: EXR
+libpng-dev             | PNG
+libjpeg-dev            | JPEG
+libtiff-dev            | TIFF
+libwebp-dev            | WebP
+libfreetype-dev        | the letters of legends
 libtinygltf-dev        | reads glTF
 libtinyobjloader-dev   | reads OBJ
-libstb-dev             | picture decoder that tinygltf's header names
+libstb-dev             | BMP, GIF, Targa; tinygltf's header names it
 nlohmann-json3-dev     | JSON
 libfmt-dev             | text output
 libcli11-dev           | command line
@@ -30,7 +35,7 @@ libimgui-dev           | its panels
 libgl-dev              | what draws them
 robin-map-dev          | hash tables, for meshes of millions of triangles
 libxxhash-dev          | checksums of the program cache
-fonts-dejavu-core      | the letters of legends and of photile compare's pictures
+fonts-dejavu-core      | the font of legends and of photile compare's pictures
 catch2                 | tests
 libfcl-dev             | tests: an independent triangle distance
 libnanoflann-dev       | tests and benches: an independent nearest-neighbour search
@@ -41,6 +46,7 @@ xauth                  | the same
 xdotool                | tests: keys and mouse for the window
 libgl1-mesa-dri        | tests: OpenGL in software
 oclgrind               | tests: checks every memory access of the kernels
+libopenimageio-dev     | tests: another reader and writer of pictures
 openimageio-tools      | tests: reads the pictures as other tools do
 python3                | scripts of the docs and the tests
 python3-numpy          | the script that compares pictures with references

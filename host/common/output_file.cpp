@@ -7,7 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
-#include <vector>
+#include <utility>
 
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
@@ -27,8 +27,7 @@ void sync_folder(const fs::path& folder) {
 
 }  // namespace
 
-OutputFile::OutputFile(const fs::path& file)
-    : IOProxy(file.string(), Write), file_(file), target_(target_of(file)) {
+OutputFile::OutputFile(const fs::path& file) : file_(file), target_(target_of(file)) {
   refuse_input(file);
   struct stat status {};
   if (::stat(target_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
@@ -50,22 +49,12 @@ OutputFile::~OutputFile() {
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-void OutputFile::fail(const std::string& reason) const { fail_with(write_error_, reason); }
-
-void OutputFile::fail_with(int error, const std::string& reason) const {
+void OutputFile::fail(const std::string& reason) const {
+  const int error = write_error_;
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
   throw OutputError(fmt::format("{}: cannot be written: {}{}", file_.string(),
                                 error != 0 ? std::strerror(error) : reason,
                                 full ? "; free space or choose another folder" : ""));
-}
-
-void OutputFile::fail_on_behalf(const std::string& reason) const {
-  // More than what a last block may have left free.
-  const std::vector<char> bytes(1 << 20, '\0');
-  if (::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size())) < 0) {
-    fail_with(errno, reason);
-  }
-  fail(reason);
 }
 
 void OutputFile::commit() {
@@ -78,34 +67,18 @@ void OutputFile::commit() {
   sync_folder(target_.has_parent_path() ? target_.parent_path() : fs::path("."));
 }
 
-std::size_t OutputFile::write(const void* bytes, std::size_t count) {
-  const std::size_t written = pwrite(bytes, count, m_pos);
-  m_pos += static_cast<std::int64_t>(written);
-  return written;
-}
-
-std::size_t OutputFile::pwrite(const void* bytes, std::size_t count, std::int64_t offset) {
+void OutputFile::write(const void* bytes, std::size_t count) {
   std::size_t written = 0;
   while (written < count && write_error_ == 0) {
     const ssize_t result = ::pwrite(descriptor_, static_cast<const char*>(bytes) + written,
-                                    count - written, offset + static_cast<off_t>(written));
+                                    count - written, static_cast<off_t>(place_ + written));
     if (result > 0) {
       written += static_cast<std::size_t>(result);
     } else if (result == 0 || errno != EINTR) {
       write_error_ = result == 0 ? ENOSPC : errno;
     }
   }
-  return written;
-}
-
-bool OutputFile::seek(std::int64_t offset) {
-  m_pos = offset;
-  return true;
-}
-
-std::size_t OutputFile::size() const {
-  struct stat status {};
-  return ::fstat(descriptor_, &status) == 0 ? static_cast<std::size_t>(status.st_size) : 0;
+  place_ += written;
 }
 
 void write_file(const fs::path& file, std::string_view content) {

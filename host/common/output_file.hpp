@@ -1,8 +1,6 @@
 // A file that appears under its name only when it is complete.
 #pragma once
 
-#include <OpenImageIO/filesystem.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -11,15 +9,14 @@
 namespace photile {
 
 /// Written under a temporary name in the folder of its target, then renamed by `commit`. Destroyed
-/// without a commit, it leaves nothing behind and an earlier file under the name untouched. It is
-/// an OpenImageIO proxy, so encoders write through it and every short write is noticed.
-class OutputFile : public OIIO::Filesystem::IOProxy {
+/// without a commit, it leaves nothing behind and an earlier file under the name untouched.
+class OutputFile {
  public:
   /// Opens the temporary file. A symbolic link is followed, so that the link stays one.
   /// Errors: OutputError when the folder cannot be written, or when the name belongs to something
   /// that is no regular file (a folder, a device). UsageError: those of refuse_input.
   explicit OutputFile(const std::filesystem::path& file);
-  ~OutputFile() override;
+  ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
@@ -30,24 +27,20 @@ class OutputFile : public OIIO::Filesystem::IOProxy {
   /// Throws the OutputError of this file: the first failed write's reason, or else `reason`.
   [[noreturn]] void fail(const std::string& reason) const;
 
-  /// Where the bytes go until `commit`, for an encoder that opens files by name.
-  const std::filesystem::path& temporary() const { return temporary_; }
-  /// As `fail`, after such an encoder has failed: finds out whether the storage device is full.
-  [[noreturn]] void fail_on_behalf(const std::string& reason) const;
-
-  const char* proxytype() const override { return "file"; }
-  std::size_t write(const void* bytes, std::size_t count) override;
-  std::size_t pwrite(const void* bytes, std::size_t count, std::int64_t offset) override;
-  bool seek(std::int64_t offset) override;
-  std::size_t size() const override;
+  /// At the place of the last write's end, or that of `seek`. Does nothing after a failure: what
+  /// encoders cannot report is reported by `commit`.
+  void write(const void* bytes, std::size_t count);
+  std::uint64_t place() const { return place_; }
+  void seek(std::uint64_t place) { place_ = place; }
+  /// Whether a write has failed.
+  bool failed() const { return write_error_ != 0; }
 
  private:
-  [[noreturn]] void fail_with(int error, const std::string& reason) const;
-
   std::filesystem::path file_;       ///< as the user named it, for messages
   std::filesystem::path target_;     ///< links resolved
   std::filesystem::path temporary_;  ///< empty once renamed
   int descriptor_ = -1;
+  std::uint64_t place_ = 0;
   int write_error_ = 0;  ///< errno of the first failed write
 };
 

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <functional>
@@ -13,16 +12,11 @@
 #include <string_view>
 #include <vector>
 
+#include "common/letter_case.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::device {
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// Smaller is better.
 int rank(const DeviceInfo& device) {

@@ -1,11 +1,17 @@
 #include "image/picture_file.hpp"
 
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
+#include <fstream>
+#include <limits>
 
+#include "image/decoder.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -13,31 +19,45 @@ namespace photile::image {
 namespace {
 
 namespace fs = std::filesystem;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
-
-/// Attributes that describe how the file was stored, not what it shows.
+/// Attributes that describe how the file is stored, not what it shows.
 bool describes_storage(const std::string& name) {
-  for (const char* prefix : {"oiio:", "openexr:", "png:", "jpeg:", "tiff:", "screenWindow"}) {
-    if (name.rfind(prefix, 0) == 0) return true;
-  }
-  for (const char* known :
-       {"compression", "DateTime", "chromaticities", "colorInteropID", "name"}) {
-    if (name == known) return true;
-  }
-  return false;
+  static const std::set<std::string> known{"capDate",
+                                           "channels",
+                                           "chromaticities",
+                                           "chunkCount",
+                                           "colorInteropID",
+                                           "compression",
+                                           "dataWindow",
+                                           "displayWindow",
+                                           "lineOrder",
+                                           "name",
+                                           "owner",
+                                           "pixelAspectRatio",
+                                           "preview",
+                                           "screenWindowCenter",
+                                           "screenWindowWidth",
+                                           "tiles",
+                                           "type",
+                                           "version",
+                                           "view",
+                                           "multiView",
+                                           "DateTime"};
+  return name.starts_with("oiio:") || known.contains(name);
 }
 
-void take_attributes(const ImageSpec& spec, PictureHeader& image) {
-  for (const OIIO::ParamValue& value : spec.extra_attribs) {
-    const std::string name = value.name().string();
+void take_attributes(const Imf::Header& header, PictureHeader& image) {
+  for (auto i = header.begin(); i != header.end(); ++i) {
+    const std::string name = i.name();
+    const Imf::Attribute& value = i.attribute();
     if (describes_storage(name)) continue;
-    if (value.type() == TypeDesc::STRING) {
-      image.attributes.try_emplace(name, value.get_string());
-    } else if (value.type() == TypeDesc::TypeMatrix) {
-      std::memcpy(image.matrices[name].data(), value.data(), sizeof(float) * 16);
-    } else if (value.type() == TypeDesc::FLOAT || value.type() == TypeDesc::INT) {
-      image.numbers.try_emplace(name, value.get_float());
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&value)) {
+      image.attributes.try_emplace(name, text->value());
+    } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&value)) {
+      std::copy_n(&matrix->value()[0][0], 16, image.matrices[name].begin());
+    } else if (const auto* real = dynamic_cast<const Imf::FloatAttribute*>(&value)) {
+      image.numbers.try_emplace(name, real->value());
+    } else if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&value)) {
+      image.numbers.try_emplace(name, static_cast<float>(integer->value()));
     }
   }
 }
@@ -55,18 +75,17 @@ std::string unreadable(const fs::path& file) {
 }
 
 /// Why a part cannot be read whatever is done with it, or "".
-std::string beyond_limits(const ImageSpec& spec) {
-  if (spec.deep) return "holds deep pixels; flatten it, e.g. with oiiotool --flatten";
-  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) {
-    return fmt::format("is {} x {} x {} pixels with {} channels; a flat picture is needed",
-                       spec.width, spec.height, spec.depth, spec.nchannels);
+std::string beyond_limits(int width, int height, std::size_t channels) {
+  if (width < 1 || height < 1 || channels < 1) {
+    return fmt::format("is {} x {} pixels with {} channels; pixels are needed", width, height,
+                       channels);
   }
-  const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * spec.height;
-  if (spec.width > limits::max_image_side || spec.height > limits::max_image_side ||
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * height;
+  if (width > limits::max_image_side || height > limits::max_image_side ||
       pixels > limits::max_image_pixels) {
     return fmt::format(
-        "is {} x {} pixels, more than the limit of {} a side or {} in all; scale it down",
-        spec.width, spec.height, limits::max_image_side, limits::max_image_pixels);
+        "is {} x {} pixels, more than the limit of {} a side or {} in all; scale it down", width,
+        height, limits::max_image_side, limits::max_image_pixels);
   }
   return {};
 }
@@ -82,6 +101,31 @@ std::string too_large(std::uint64_t pixels, std::size_t channels) {
       channels, bytes, limits::max_image_channels, limits::max_image_bytes);
 }
 
+std::vector<unsigned char> bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<unsigned char> bytes(fs::file_size(file));
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!stream) throw DecodeError("the file ends too early");
+  return bytes;
+}
+
+/// Interleaved values as planes of floats; integers as shares of the largest.
+std::vector<float> planes_of(const Pixels& pixels, std::size_t channels) {
+  return std::visit(
+      [&](const auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        constexpr bool real = std::is_same_v<T, float>;
+        constexpr float white = real ? 1.0f : static_cast<float>(std::numeric_limits<T>::max());
+        std::vector<float> planes(values.size());
+        const std::size_t pixels = values.size() / channels;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          planes[i % channels * pixels + i / channels] = static_cast<float>(values[i]) / white;
+        }
+        return planes;
+      },
+      pixels);
+}
+
 }  // namespace
 
 PictureFile::PictureFile(const fs::path& file) : file_(file) {
@@ -90,48 +134,78 @@ PictureFile::PictureFile(const fs::path& file) : file_(file) {
     read_headers();
   } catch (const Error&) {
     throw;
+  } catch (const DecodeError& error) {
+    refuse(error.what());
   } catch (const std::exception& error) {  // a decoder's own
     refuse(std::string("cannot be read: ") + error.what());
   }
 }
 
 void PictureFile::read_headers() {
-  input_ = OIIO::ImageInput::open(file_.string());
-  if (!input_) refuse("is no picture that can be read: " + OIIO::geterror());
-  const bool exr = std::strcmp(input_->format_name(), "openexr") == 0;
-  // Other formats keep thumbnails, frames of a film and the like in further subimages.
-  for (int part = 0; (part == 0 || exr) && input_->seek_subimage(part, 0); ++part) add_part(part);
+  unsigned char magic[4] = {};
+  std::ifstream(file_, std::ios::binary).read(reinterpret_cast<char*>(magic), sizeof magic);
+  const bool exr =
+      std::equal(std::begin(magic), std::end(magic), "\x76\x2F\x31\x01",
+                 [](unsigned char a, char b) { return a == static_cast<unsigned char>(b); });
+  exr ? open_exr() : open_other();
 }
 
-void PictureFile::add_part(int part) {
-  const ImageSpec& spec = input_->spec();
-  std::string reason = beyond_limits(spec);
+void PictureFile::open_exr() {
+  exr_ = std::make_unique<ExrInput>(file_);
+  for (std::size_t part = 0; part < exr_->parts().size(); ++part) {
+    add_part(exr_->parts()[part]);
+    take_attributes(exr_->header(part), header_);
+  }
+  check_expansion(header_.pixels() * header_.channel_names.size() * sizeof(float));
+}
+
+/// Their pixels are decoded at once, when some are asked for.
+void PictureFile::open_other() {
+  const std::vector<unsigned char> bytes = bytes_of(file_);
+  const std::unique_ptr<Decoder> decoder = open_picture(file_.string(), bytes);
+  const PictureShape& shape = decoder->shape();
+  std::vector<std::string> names{"Y", "A"};
+  if (shape.channels > 2) names = {"R", "G", "B", "A"};
+  while (static_cast<int>(names.size()) < shape.channels) {
+    names.push_back(fmt::format("channel{}", names.size()));
+  }
+  names.resize(static_cast<std::size_t>(shape.channels));
+  add_part({shape.width, shape.height, "", names});
+  check_expansion(shape.bytes());
+}
+
+void PictureFile::check_expansion(std::uint64_t decoded) const {
+  const std::uintmax_t encoded = fs::file_size(file_);
+  if (decoded > limits::unchecked_image_bytes && decoded / encoded > limits::max_image_expansion) {
+    refuse(fmt::format("is damaged or empty: {} bytes decode to {}; the limit is a factor of {}",
+                       encoded, decoded, limits::max_image_expansion));
+  }
+}
+
+void PictureFile::add_part(const ExrInput::Part& part) {
+  std::string reason = beyond_limits(part.width, part.height, part.channels.size());
   if (reason.empty()) {
-    reason = too_large(static_cast<std::uint64_t>(spec.width) * spec.height,
-                       static_cast<std::size_t>(spec.nchannels));
+    reason = too_large(static_cast<std::uint64_t>(part.width) * part.height, part.channels.size());
   }
   if (!reason.empty()) refuse(reason);
-  if (part == 0) {
-    header_.width = spec.width;
-    header_.height = spec.height;
-  } else if (spec.width != header_.width || spec.height != header_.height) {
+  if (header_.channel_names.empty()) {
+    header_.width = part.width;
+    header_.height = part.height;
+  } else if (part.width != header_.width || part.height != header_.height) {
     refuse(fmt::format("has parts of {} x {} and {} x {} pixels; all must be of one size",
-                       header_.width, header_.height, spec.width, spec.height));
+                       header_.width, header_.height, part.width, part.height));
   }
-  take_attributes(spec, header_);
-  largest_part_ = std::max(largest_part_, static_cast<std::size_t>(spec.nchannels));
-  for (int i = 0; i < spec.nchannels; ++i) add_channel(part, static_cast<std::size_t>(i));
+  largest_part_ = std::max(largest_part_, part.channels.size());
+  ++parts_;
+  for (std::size_t i = 0; i < part.channels.size(); ++i) add_channel(part, i);
 }
 
 /// A channel has its own name, or that behind the part's name where an earlier part has taken it
 /// (parts "left" and "right" with R, G, B each).
-void PictureFile::add_channel(int part, std::size_t index) {
-  const ImageSpec& spec = input_->spec();
-  const std::string own = spec.channel_name(static_cast<int>(index));
+void PictureFile::add_channel(const ExrInput::Part& part, std::size_t index) {
+  const std::string& own = part.channels[index];
   std::string name = own;
-  if (names_.contains(name)) {
-    name = spec.get_string_attribute("oiio:subimagename").str() + "." + own;
-  }
+  if (names_.contains(name)) name = part.name + "." + own;
   if (!names_.insert(name).second) {
     refuse(fmt::format("has two channels named '{}'; rename one", own));
   }
@@ -139,7 +213,7 @@ void PictureFile::add_channel(int part, std::size_t index) {
     refuse(fmt::format("has more than {} channels; leave some out", limits::max_layered_channels));
   }
   header_.channel_names.push_back(name);
-  places_.push_back({part, index});
+  places_.push_back({parts_ - 1, index});
 }
 
 void PictureFile::check_total() const {
@@ -160,41 +234,26 @@ std::vector<float> PictureFile::read(std::size_t channel, int first, int end) {
     } catch (const Error&) {
       throw;
     } catch (const std::exception& error) {  // a decoder's own, or no memory for what it announces
-      refuse(std::string("cannot be read: ") + error.what());
+      refuse(std::string("is damaged: ") + error.what());
     }
   }
-  const auto width = static_cast<std::size_t>(header_.width);
-  const float* const rows =
-      &block_.interleaved[static_cast<std::size_t>(first - block_.first) * width * block_.channels];
-  std::vector<float> values(static_cast<std::size_t>(end - first) * width);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = rows[i * block_.channels + place.index];
-  }
-  return values;
+  const auto width = static_cast<std::size_t>(header_.width),
+             rows = static_cast<std::size_t>(block_.end - block_.first);
+  const float* const begin =
+      &block_.planes[(place.index * rows + static_cast<std::size_t>(first - block_.first)) * width];
+  return {begin, begin + static_cast<std::size_t>(end - first) * width};
 }
 
 void PictureFile::decode(int part, int first, int end) {
   block_.part = -1;  // nothing is kept of a failure
-  if (!input_->seek_subimage(part, 0)) refuse("is damaged: " + input_->geterror());
-  const ImageSpec& spec = input_->spec();
-  const bool tiled = spec.tile_width != 0;
-  if (tiled) {
+  if (exr_) {
+    exr_->read(static_cast<std::size_t>(part), first, end, block_.planes);
+  } else {
+    const std::vector<unsigned char> bytes = bytes_of(file_);
+    block_.planes = planes_of(open_picture(file_.string(), bytes)->decode(), largest_part_);
     first = 0;
     end = header_.height;
   }
-  block_.channels = static_cast<std::size_t>(spec.nchannels);
-  block_.interleaved.resize(static_cast<std::size_t>(end - first) *
-                            static_cast<std::size_t>(header_.width) * block_.channels);
-  float* const values = block_.interleaved.data();
-  // Reading floats as floats in one call would still convert them, through 64 MB of memory.
-  const bool floats = spec.format == TypeDesc::FLOAT && spec.channelformats.empty();
-  const int first_row = spec.y + first, end_row = spec.y + end, channels = spec.nchannels;
-  const bool read =
-      tiled    ? input_->read_image(part, 0, 0, channels, TypeDesc::FLOAT, values)
-      : floats ? input_->read_native_scanlines(part, 0, first_row, end_row, 0, 0, channels, values)
-               : input_->read_scanlines(part, 0, first_row, end_row, 0, 0, channels,
-                                        TypeDesc::FLOAT, values);
-  if (!read) refuse("is damaged: " + input_->geterror());
   block_.first = first;
   block_.end = end;
   block_.part = part;

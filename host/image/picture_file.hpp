@@ -1,8 +1,6 @@
 // A picture file, opened: what it says of itself, and its pixels a few rows at a time.
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -11,11 +9,12 @@
 #include <vector>
 
 #include "image/channel_rows.hpp"
+#include "image/exr_input.hpp"
 #include "photile/image.hpp"
 
 namespace photile::image {
 
-/// All parts of an EXR as one picture, or the first subimage of any other format.
+/// All parts of an EXR as one picture, or a picture of any other format that open_picture reads.
 class PictureFile : public ChannelRows {
  public:
   /// Reads the headers. Checks each part against limits.hpp, but not their sum.
@@ -35,25 +34,29 @@ class PictureFile : public ChannelRows {
   /// Where a channel is.
   struct Place {
     int part;
-    std::size_t index;  ///< among the channels of its part
+    std::size_t index;  ///< among ExrInput::Part::channels
   };
-  /// Rows of all channels of a part, as decoded last.
+  /// Rows of all channels of a part, as decoded last: channels x rows x width.
   struct Block {
     int part = -1, first = 0, end = 0;  ///< no part: nothing yet
-    std::size_t channels = 0;
-    std::vector<float> interleaved;
+    std::vector<float> planes;
   };
   void read_headers();
-  void add_part(int part);
-  void add_channel(int part, std::size_t index);
+  void open_exr();
+  void open_other();
+  void add_part(const ExrInput::Part& part);
+  void add_channel(const ExrInput::Part& part, std::size_t index);
+  /// Against files of a few kilobytes that would fill the memory.
+  void check_expansion(std::uint64_t decoded) const;
   void decode(int part, int first, int end);
   [[noreturn]] void refuse(std::string reason) const;
 
   std::filesystem::path file_;
-  std::unique_ptr<OIIO::ImageInput> input_;
+  std::unique_ptr<ExrInput> exr_;  ///< null for other formats
   PictureHeader header_;
   std::vector<Place> places_;    ///< per channel
   std::set<std::string> names_;  ///< of the channels
+  int parts_ = 0;
   std::size_t largest_part_ = 0;
   Block block_;
 };

@@ -1,9 +1,15 @@
+#include <algorithm>
 #include <new>
 
 #include "image/picture_file.hpp"
 #include "photile/errors.hpp"
 
 namespace photile {
+namespace {
+
+constexpr int rows_per_read = 256;
+
+}  // namespace
 
 PictureHeader read_header(const std::filesystem::path& file) {
   return image::PictureFile(file).header();
@@ -15,8 +21,15 @@ Image read_image(const std::filesystem::path& file) {
   try {
     Image image;
     static_cast<PictureHeader&>(image) = source.header();
-    for (std::size_t i = 0; i < image.channel_names.size(); ++i) {
-      image.channels.push_back(source.read(i, 0, image.height));
+    image.channels.resize(image.channel_names.size());
+    for (std::vector<float>& plane : image.channels) plane.reserve(image.pixels());
+    // All channels of some rows, so that what is decoded at a time is little.
+    for (int first = 0; first < image.height; first += rows_per_read) {
+      const int end = std::min(first + rows_per_read, image.height);
+      for (std::size_t i = 0; i < image.channels.size(); ++i) {
+        const std::vector<float> rows = source.read(i, first, end);
+        image.channels[i].insert(image.channels[i].end(), rows.begin(), rows.end());
+      }
     }
     return image;
   } catch (const std::bad_alloc&) {

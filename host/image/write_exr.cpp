@@ -1,110 +1,117 @@
 #include <algorithm>
-#include <functional>
+#include <utility>
 
 #include "common/output_file.hpp"
-#include "image/exr_spec.hpp"
-#include "image/write_exr_parts.hpp"
+#include "image/exr_output.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
 
 namespace photile {
 namespace {
 
-/// Rows that are interleaved and handed over at once; a multiple of the 16 rows of a ZIP block.
+/// Rows that are handed over at once; a multiple of the 16 rows of a ZIP block.
 constexpr int rows_per_write = 64;
 
-/// Fills rows [first, end), interleaved.
-using FillRows = std::function<void(int first, int end, std::vector<float>& rows)>;
+/// Gives work(first, end) all rows of a picture, in turn.
+template <class Work>
+void for_rows(int height, const Work& work) {
+  for (int first = 0; first < height; first += rows_per_write) {
+    work(first, std::min(first + rows_per_write, height));
+  }
+}
 
-void write_single_part(const std::filesystem::path& file, const PictureHeader& header,
-                       const std::vector<std::string>& channels, const FillRows& fill) {
-  OutputFile output(file);
-  if (header.width < 1 || header.height < 1 || channels.empty()) {
+void check_pixels(const OutputFile& output, const Image& picture) {
+  if (picture.width < 1 || picture.height < 1 || picture.channel_names.empty()) {
     output.fail("the picture has no pixels");
   }
-  OIIO::ImageSpec spec = image::exr_spec(header, channels, "zip");
-  image::add_attributes(header, spec);
-  const auto encoder = OIIO::ImageOutput::create("exr", &output);
-  if (!encoder || !encoder->open(file.string(), spec)) {
-    output.fail(encoder ? encoder->geterror() : OIIO::geterror());
+}
+
+/// Adds the planes of a picture from a row on.
+void add_planes(const Image& picture, int first, std::vector<const float*>& planes) {
+  for (const std::vector<float>& plane : picture.channels) {
+    planes.push_back(plane.data() + static_cast<std::ptrdiff_t>(first) * picture.width);
   }
-  std::vector<float> rows;
-  for (int first = 0; first < header.height; first += rows_per_write) {
-    const int end = std::min(first + rows_per_write, header.height);
-    rows.resize(static_cast<std::size_t>(end - first) * static_cast<std::size_t>(header.width) *
-                channels.size());
-    fill(first, end, rows);
-    if (!encoder->write_scanlines(first, end, 0, OIIO::TypeDesc::FLOAT, rows.data())) {
-      output.fail(encoder->geterror());
+}
+
+void add_planes(const LightRows& rows, std::vector<const float*>& planes) {
+  for (const std::vector<float>& plane : rows.rgb) planes.push_back(plane.data());
+  if (!rows.illuminance.empty()) planes.push_back(rows.illuminance.data());
+}
+
+/// All channels in one part, which every program reads.
+void write_single_part(OutputFile& output, const LayeredPicture& picture, const Image& root) {
+  std::vector<std::string> names = root.channel_names;
+  for (std::size_t light = 0; light < picture.lights(); ++light) {
+    for (std::string& name : picture.channel_names(light)) names.push_back(std::move(name));
+  }
+  Imf::Header header = image::exr_header(root, names, Imf::ZIP_COMPRESSION);
+  image::add_attributes(root, header);
+  image::ExrOutput file(output, {header});
+  for_rows(root.height, [&](int first, int end) {
+    std::vector<LightRows> rows;
+    for (std::size_t light = 0; light < picture.lights(); ++light) {
+      rows.push_back(picture.read(light, first, end));
     }
-  }
-  if (!encoder->close()) output.fail(encoder->geterror());
-  output.commit();
+    std::vector<const float*> planes;
+    add_planes(root, first, planes);
+    for (const LightRows& light : rows) add_planes(light, planes);
+    file.write(0, end - first, names, planes);
+  });
+  file.close();
 }
 
-/// Sets one of several channels of interleaved rows.
-void interleave(const float* values, std::size_t channel, std::size_t channels,
-                std::vector<float>& rows) {
-  for (std::size_t i = 0; i * channels < rows.size(); ++i) rows[i * channels + channel] = values[i];
-}
-
-/// Positions of the planes in the order of the file: R G B A of the root, then the others as they
-/// stand, so that viewers without layers find the picture first.
-std::vector<std::size_t> file_order(const Image& image) {
-  std::vector<std::size_t> order;
-  const auto is_root = [](const std::string& name) {
-    return name == "R" || name == "G" || name == "B" || name == "A";
-  };
-  for (const char* root : {"R", "G", "B", "A"}) {
-    const auto& names = image.channel_names;
-    const auto found = std::find(names.begin(), names.end(), root);
-    if (found != names.end()) order.push_back(static_cast<std::size_t>(found - names.begin()));
+/// The root as the first part, which has the picture's attributes, and each light as a part that
+/// bears the name of its layer. No more than a few rows of one light are in memory.
+void write_parts(OutputFile& output, const LayeredPicture& picture, const Image& root) {
+  // A row a block. OpenEXR keeps two blocks of each part for each thread until the file is closed:
+  // the 16 rows of ZIP would add up to the picture.
+  std::vector<std::vector<std::string>> names{root.channel_names};
+  std::vector<Imf::Header> headers{image::exr_header(root, names.front(), Imf::ZIPS_COMPRESSION)};
+  image::add_attributes(root, headers.front());
+  headers.front().setName("Combined");
+  for (std::size_t light = 0; light < picture.lights(); ++light) {
+    names.push_back(picture.channel_names(light));
+    const std::string& red = names.back().front();
+    headers.push_back(image::exr_header(root, names.back(), Imf::ZIPS_COMPRESSION));
+    headers.back().setName(red.substr(0, red.rfind('.')));
   }
-  for (std::size_t i = 0; i < image.channel_names.size(); ++i) {
-    if (!is_root(image.channel_names[i])) order.push_back(i);
+  image::ExrOutput file(output, headers);
+  for (std::size_t part = 0; part < headers.size(); ++part) {
+    for_rows(root.height, [&](int first, int end) {
+      std::vector<const float*> planes;
+      LightRows rows;
+      if (part == 0) {
+        add_planes(root, first, planes);
+      } else {
+        rows = picture.read(part - 1, first, end);
+        add_planes(rows, planes);
+      }
+      file.write(part, end - first, names[part], planes);
+    });
   }
-  return order;
+  file.close();
 }
 
 }  // namespace
 
 void write_exr(const std::filesystem::path& file, const Image& image) {
-  const std::vector<std::size_t> order = file_order(image);
-  std::vector<std::string> names;
-  for (const std::size_t i : order) names.push_back(image.channel_names[i]);
-  write_single_part(file, image, names, [&](int first, int, std::vector<float>& rows) {
-    const std::size_t offset =
-        static_cast<std::size_t>(first) * static_cast<std::size_t>(image.width);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      interleave(&image.channels[order[i]][offset], i, order.size(), rows);
-    }
-  });
+  OutputFile output(file);
+  check_pixels(output, image);
+  Imf::Header header = image::exr_header(image, image.channel_names, Imf::ZIP_COMPRESSION);
+  image::add_attributes(image, header);
+  image::ExrOutput writer(output, {header});
+  std::vector<const float*> planes;
+  add_planes(image, 0, planes);
+  writer.write(0, image.height, image.channel_names, planes);
+  writer.close();
 }
 
 void write_exr(const std::filesystem::path& file, const LayeredPicture& picture) {
   const Image root = picture.root();
-  if (picture.lights() > limits::max_single_part_lights) {
-    image::write_exr_parts(file, picture, root);
-    return;
-  }
-  std::vector<std::string> names = root.channel_names;
-  for (std::size_t light = 0; light < picture.lights(); ++light) {
-    for (std::string& name : picture.channel_names(light)) names.push_back(std::move(name));
-  }
-  write_single_part(file, root, names, [&](int first, int end, std::vector<float>& rows) {
-    const std::size_t offset =
-        static_cast<std::size_t>(first) * static_cast<std::size_t>(root.width);
-    std::size_t channel = 0;
-    const auto add = [&](const float* values) {
-      interleave(values, channel++, names.size(), rows);
-    };
-    for (const std::vector<float>& plane : root.channels) add(&plane[offset]);
-    for (std::size_t light = 0; light < picture.lights(); ++light) {
-      const LightRows values = picture.read(light, first, end);
-      for (const std::vector<float>& plane : values.rgb) add(plane.data());
-      if (!values.illuminance.empty()) add(values.illuminance.data());
-    }
-  });
+  OutputFile output(file);
+  check_pixels(output, root);
+  const bool single = picture.lights() <= limits::max_single_part_lights;
+  single ? write_single_part(output, picture, root) : write_parts(output, picture, root);
 }
 
 }  // namespace photile

@@ -1,5 +1,4 @@
 // From a file of either format to a scene that later stages can trust.
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "common/letter_case.hpp"
 #include "import/area_lights.hpp"
 #include "import/finishing.hpp"
 #include "import/import_context.hpp"
@@ -27,8 +27,7 @@ namespace {
 using namespace scene_io;
 
 void import_by_extension(ImportContext& context) {
-  const std::string extension =
-      OIIO::Strutil::lower(context.folder.scene_file().extension().string());
+  const std::string extension = lower(context.folder.scene_file().extension().string());
   if (extension == ".obj") {
     import_obj(context);
   } else if (extension == ".gltf" || extension == ".glb") {

@@ -1,60 +1,38 @@
 #include "import/texture_decoder.hpp"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <string_view>
+#include <limits>
+#include <memory>
+#include <type_traits>
 #include <vector>
 
+#include "image/decoder.hpp"
 #include "import/resource_error.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {
 namespace {
 
-/// OpenImageIO's name of the format, by signature, or else by the extension of the few formats
-/// without one. Empty when unknown: OpenImageIO's own guessing would also try video and archives.
-std::string format_of(const std::string& name, std::span<const unsigned char> bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  using namespace std::string_view_literals;
-  if (text.starts_with("\x89PNG"sv)) return "png";
-  if (text.starts_with("\xFF\xD8"sv)) return "jpeg";
-  if (text.starts_with("\x76\x2F\x31\x01"sv)) return "openexr";
-  if (text.starts_with("#?"sv)) return "hdr";
-  if (text.starts_with("II*\0"sv) || text.starts_with("MM\0*"sv)) return "tiff";
-  if (text.starts_with("BM"sv)) return "bmp";
-  if (text.starts_with("GIF8"sv)) return "gif";
-  if (text.starts_with("RIFF"sv) && text.substr(8).starts_with("WEBP"sv)) return "webp";
-  const std::string extension =
-      OIIO::Strutil::lower(std::filesystem::path(name).extension().string());
-  if (extension == ".tga") return "targa";
-  if (extension == ".ppm" || extension == ".pgm" || extension == ".pnm") return "pnm";
-  return "";
-}
+using image::PictureShape;
 
-void check_limits(const OIIO::ImageSpec& spec, std::size_t encoded_bytes) {
-  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 || spec.deep || spec.nchannels <= 0) {
-    throw ResourceError("not a plain two-dimensional picture");
-  }
+void check_limits(const PictureShape& shape, std::size_t encoded_bytes) {
   const auto pixels =
-      static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
-  if (spec.width > limits::max_image_side || spec.height > limits::max_image_side ||
+      static_cast<std::uint64_t>(shape.width) * static_cast<std::uint64_t>(shape.height);
+  if (shape.width > limits::max_image_side || shape.height > limits::max_image_side ||
       pixels > limits::max_image_pixels) {
     throw ResourceError(fmt::format("{} x {} pixels; the limit is {} a side and {} in all",
-                                    spec.width, spec.height, limits::max_image_side,
+                                    shape.width, shape.height, limits::max_image_side,
                                     limits::max_image_pixels));
   }
-  if (spec.nchannels > limits::max_image_channels) {
+  if (shape.channels > limits::max_image_channels) {
     throw ResourceError(
-        fmt::format("{} channels; the limit is {}", spec.nchannels, limits::max_image_channels));
+        fmt::format("{} channels; the limit is {}", shape.channels, limits::max_image_channels));
   }
-  const std::uint64_t decoded = spec.image_bytes(true);
+  const std::uint64_t decoded = shape.bytes();
   if (decoded > limits::max_image_bytes) {
     throw ResourceError(
         fmt::format("{} bytes decoded; the limit is {}", decoded, limits::max_image_bytes));
@@ -66,6 +44,34 @@ void check_limits(const OIIO::ImageSpec& spec, std::size_t encoded_bytes) {
   }
 }
 
+/// An encoded picture, opened and within the limits. What a decoder throws becomes a ResourceError.
+class OpenPicture {
+ public:
+  OpenPicture(const std::string& name, std::span<const unsigned char> bytes) {
+    guarded([&] { decoder_ = image::open_picture(name, bytes); });
+    check_limits(shape(), bytes.size());
+  }
+
+  const PictureShape& shape() const { return decoder_->shape(); }
+  image::Pixels decode() {
+    image::Pixels pixels;
+    guarded([&] { pixels = decoder_->decode(); });
+    return pixels;
+  }
+
+ private:
+  template <class Work>
+  static void guarded(const Work& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {  // a decoder's own, or no memory
+      throw ResourceError(error.what());
+    }
+  }
+
+  std::unique_ptr<image::Decoder> decoder_;
+};
+
 std::uint8_t byte_of(float value) {
   const float c = std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, 1.0f);
   return static_cast<std::uint8_t>(c * 255.0f + 0.5f);
@@ -76,74 +82,43 @@ std::uint8_t srgb_byte(float linear) {
   return byte_of(c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f);
 }
 
-/// Red, green, blue and alpha of a pixel of 1 (grey), 2 (grey, alpha), 3 or 4 channels. `alpha` is
-/// that of pixels without one.
+/// Red, green, blue and alpha of a pixel of 1 (grey), 2 (grey, alpha), 3, 4 or more channels.
+/// `alpha` is that of pixels without one.
 template <typename T>
 std::array<T, 4> rgba(const T* pixel, int channels, T alpha) {
   if (channels < 3) return {pixel[0], pixel[0], pixel[0], channels == 2 ? pixel[1] : alpha};
-  return {pixel[0], pixel[1], pixel[2], channels == 4 ? pixel[3] : alpha};
+  return {pixel[0], pixel[1], pixel[2], channels >= 4 ? pixel[3] : alpha};
 }
 
-template <typename T>
-std::vector<T> read_pixels(OIIO::ImageInput& input, int channels, OIIO::TypeDesc type) {
-  const OIIO::ImageSpec& spec = input.spec();
-  std::vector<T> pixels(static_cast<std::size_t>(spec.width) *
-                        static_cast<std::size_t>(spec.height) * static_cast<std::size_t>(channels));
-  if (!input.read_image(0, 0, 0, channels, type, pixels.data())) {
-    throw ResourceError(input.geterror());
-  }
-  return pixels;
+/// Nearest 8 bits of 16.
+std::uint8_t byte_of(std::uint16_t value) {
+  return static_cast<std::uint8_t>((value * 255u + 32767u) / 65535u);
 }
-
-/// An encoded picture in memory, opened and within the limits.
-class OpenPicture {
- public:
-  OpenPicture(const std::string& name, std::span<const unsigned char> bytes)
-      : memory_(const_cast<unsigned char*>(bytes.data()), bytes.size()) {
-    const std::string format = format_of(name, bytes);
-    if (format.empty()) throw ResourceError("not a picture format that is read (PNG, JPEG, ...)");
-    input_ = OIIO::ImageInput::create(format);
-    if (!input_ || !input_->supports("ioproxy")) {
-      throw ResourceError(format + " pictures are not read");
-    }
-    input_->set_ioproxy(&memory_);
-    OIIO::ImageSpec spec, config;
-    config["oiio:UnassociatedAlpha"] = 1;  // colours as stored
-    if (!input_->open(name, spec, config)) throw ResourceError(input_->geterror());
-    check_limits(spec, bytes.size());
-  }
-
-  OIIO::ImageInput& input() { return *input_; }
-  const OIIO::ImageSpec& spec() const { return input_->spec(); }
-
- private:
-  OIIO::Filesystem::IOMemReader memory_;
-  std::unique_ptr<OIIO::ImageInput> input_;
-};
 
 std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture, TextureContent content) {
-  const OIIO::ImageSpec& spec = picture.spec();
-  const int channels = std::min(spec.nchannels, 4);
-  const auto stride = static_cast<std::size_t>(channels);
+  const int channels = picture.shape().channels;
   const bool alpha_is_first = content == TextureContent::opacity;
-  std::vector<std::array<std::uint8_t, 4>> texels(static_cast<std::size_t>(spec.width) *
-                                                  static_cast<std::size_t>(spec.height));
-  if (spec.format.is_floating_point()) {
-    const auto encoded = content == TextureContent::color ? srgb_byte : byte_of;
-    const auto pixels = read_pixels<float>(picture.input(), channels, OIIO::TypeDesc::FLOAT);
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      const float* first = &pixels[i * stride];
-      const auto [r, g, b, a] = rgba(first, channels, alpha_is_first ? *first : 1.0f);
-      texels[i] = {encoded(r), encoded(g), encoded(b), byte_of(a)};
+  const auto texels_of = [&](const auto& values) {
+    using T = typename std::decay_t<decltype(values)>::value_type;
+    std::vector<std::array<std::uint8_t, 4>> texels;
+    texels.reserve(values.size() / static_cast<std::size_t>(channels));
+    for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(channels)) {
+      const T opaque = std::is_same_v<T, float> ? T{1} : std::numeric_limits<T>::max();
+      const auto [r, g, b, a] = rgba<T>(&values[i], channels, alpha_is_first ? values[i] : opaque);
+      if constexpr (std::is_same_v<T, std::uint8_t>) {
+        texels.push_back({r, g, b, a});
+      } else if constexpr (std::is_same_v<T, std::uint16_t>) {
+        texels.push_back({byte_of(r), byte_of(g), byte_of(b), byte_of(a)});
+      } else {
+        const auto encoded = [&](float value) {
+          return content == TextureContent::color ? srgb_byte(value) : byte_of(value);
+        };
+        texels.push_back({encoded(r), encoded(g), encoded(b), byte_of(a)});
+      }
     }
-  } else {
-    const auto pixels = read_pixels<std::uint8_t>(picture.input(), channels, OIIO::TypeDesc::UINT8);
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      const std::uint8_t* first = &pixels[i * stride];
-      texels[i] = rgba<std::uint8_t>(first, channels, alpha_is_first ? *first : 255);
-    }
-  }
-  return texels;
+    return texels;
+  };
+  return std::visit(texels_of, picture.decode());
 }
 
 }  // namespace
@@ -152,7 +127,7 @@ Texture decode_texture(const std::string& name, std::span<const unsigned char> b
                        TextureContent content) {
   try {
     OpenPicture picture(name, bytes);
-    return Texture(name, picture.spec().width, picture.spec().height, decode(picture, content));
+    return Texture(name, picture.shape().width, picture.shape().height, decode(picture, content));
   } catch (const ResourceError& error) {
     throw ResourceError(fmt::format("texture '{}': {}", name, error.what()));
   }
@@ -160,15 +135,14 @@ Texture decode_texture(const std::string& name, std::span<const unsigned char> b
 
 RadiancePicture decode_radiance(const std::string& name, std::span<const unsigned char> bytes) {
   OpenPicture picture(name, bytes);
-  const OIIO::ImageSpec& spec = picture.spec();
-  if (!spec.format.is_floating_point()) {
+  const PictureShape& shape = picture.shape();
+  if (shape.sample != image::Sample::real) {
     throw ResourceError("its pixels are no floating-point numbers");
   }
-  const int channels = std::min(spec.nchannels, 4);
-  const auto pixels = read_pixels<float>(picture.input(), channels, OIIO::TypeDesc::FLOAT);
-  RadiancePicture result{spec.width, spec.height, {}};
-  for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(channels)) {
-    const std::array<float, 4> pixel = rgba(&pixels[i], channels, 1.0f);
+  const auto pixels = std::get<std::vector<float>>(picture.decode());
+  RadiancePicture result{shape.width, shape.height, {}};
+  for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(shape.channels)) {
+    const std::array<float, 4> pixel = rgba(&pixels[i], shape.channels, 1.0f);
     result.texels.emplace_back(pixel[0], pixel[1], pixel[2]);
   }
   return result;

@@ -1,4 +1,4 @@
-// Pictures of a scene, decoded by OpenImageIO.
+// Pictures of a scene, decoded.
 #pragma once
 
 #include <span>

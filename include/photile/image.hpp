@@ -1,4 +1,4 @@
-// Pictures with named channels, read and written through OpenImageIO.
+// Pictures with named channels, read and written.
 #pragma once
 
 #include <array>
@@ -41,8 +41,9 @@ struct Image : PictureHeader {
 /// have. Errors: InputError naming the file.
 PictureHeader read_header(const std::filesystem::path& file);
 
-/// Reads an EXR (all parts; channels of part P that do not carry its name keep theirs) or any
-/// other picture that OpenImageIO reads. Checks limits.hpp before decoding.
+/// Reads an EXR (all parts; channels of part P that do not carry its name keep theirs), a PNG,
+/// JPEG, TIFF, WebP, BMP, GIF, Targa, PNM or Radiance picture. Integers become shares of the
+/// largest, as they are stored. Checks limits.hpp before decoding.
 /// Errors: InputError naming the file.
 Image read_image(const std::filesystem::path& file);
 

@@ -88,6 +88,8 @@ inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
 /// picture of a few kilobytes must not fill the memory.
 inline constexpr std::uint64_t max_image_expansion = 1'000;
 inline constexpr std::uint64_t unchecked_image_bytes = 64ull << 20;
+/// A tile or a strip of rows, decoded, of which a decoder keeps some at a time.
+inline constexpr std::uint64_t max_image_block_bytes = 256ull << 20;
 inline constexpr int max_samples_per_pixel = 65'536;
 
 /// Beyond, 2^stops times a bright pixel leaves the range of a float.

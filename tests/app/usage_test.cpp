@@ -107,7 +107,7 @@ TEST_CASE("the version names photile and what it was built with") {
   const Outcome outcome = run_photile({"--version"});
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("photile 0.") && Contains("Embree          3.") &&
-                                 Contains("OpenImageIO     2.") && Contains("TBB") &&
+                                 Contains("OpenEXR         3.") && Contains("TBB") &&
                                  Contains("OpenCL headers"));
 }
 

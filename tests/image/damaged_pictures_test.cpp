@@ -2,6 +2,8 @@
 // sharp.
 #include <array>
 
+#include "memory_meter.hpp"
+#include "photile/layered_picture.hpp"
 #include "picture_support.hpp"
 
 namespace photile::test {
@@ -61,6 +63,33 @@ TEST_CASE("an EXR with one bit flipped gives an error or a picture, 300 times") 
   }
   CHECK(outcomes[0] + outcomes[1] == 300);
   CHECK(outcomes[1] > 0);
+}
+
+TEST_CASE("a small EXR that announces gigabytes is refused without taking them") {
+  using namespace std::string_literals;
+  const TemporaryFolder folder;
+  const std::string whole = layered_exr();
+  const auto changed = [&](const std::string& attribute, std::size_t behind, unsigned value) {
+    std::string bytes = whole;
+    const std::size_t place = bytes.find(attribute);
+    REQUIRE(place != std::string::npos);
+    for (std::size_t i = 0; i < 4; ++i) {
+      bytes[place + attribute.size() + behind + i] = static_cast<char>(value >> (8 * i));
+    }
+    return bytes;
+  };
+  std::vector<std::string> damaged;
+  for (const unsigned side : {16'000u, 1u << 20, 1u << 30}) {
+    damaged.push_back(changed("dataWindow\0box2i\0"s, 12, side));      // right
+    damaged.push_back(changed("dataWindow\0box2i\0"s, 16, side));      // bottom
+    damaged.push_back(changed("photile.lights\0string\0"s, 0, side));  // size
+  }
+  for (const std::string& bytes : damaged) {
+    write_bytes(folder / "damaged.exr", bytes);
+    const MemoryMeter meter;
+    CHECK_THROWS_AS(relit_picture(folder / "damaged.exr", {}), InputError);
+    CHECK(meter.peak() < std::size_t{256} << 20);
+  }
 }
 
 }  // namespace photile::test

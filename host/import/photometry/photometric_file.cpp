@@ -1,10 +1,10 @@
 #include "import/photometry/photometric_file.hpp"
 
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <string_view>
 
+#include "common/letter_case.hpp"
 #include "import/photometry/eulumdat_reader.hpp"
 #include "import/photometry/ies_reader.hpp"
 #include "import/resource_error.hpp"
@@ -20,9 +20,8 @@ IntensityDistribution read_photometry(const std::string& name, std::span<const u
       throw ResourceError(
           fmt::format("{} bytes; the limit is {}", bytes.size(), limits::max_photometry_bytes));
     }
-    IntensityDistribution distribution = OIIO::Strutil::iends_with(name, ".ldt")
-                                             ? read_eulumdat(name, text, warnings)
-                                             : read_ies(name, text, warnings);
+    IntensityDistribution distribution = ends_in(name, ".ldt") ? read_eulumdat(name, text, warnings)
+                                                               : read_ies(name, text, warnings);
     if (!(distribution.flux() > 0.0)) throw ResourceError("all intensities are 0");
     return distribution;
   } catch (const ResourceError& error) {

@@ -1,6 +1,5 @@
 #include "tools/bake/write_baked.hpp"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <string_view>
 
 #include "common/output_file.hpp"
+#include "image/png_output.hpp"
 #include "photile/image.hpp"
 
 namespace photile::bake {
@@ -57,14 +57,7 @@ void write_texture(const std::filesystem::path& file, const Texture& texture) {
       }
     }
   }
-  OIIO::ImageSpec spec(texture.width(), texture.height(), 4, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  const auto encoder = OIIO::ImageOutput::create("png", &output);
-  if (!encoder || !encoder->open(file.string(), spec) ||
-      !encoder->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !encoder->close()) {
-    output.fail(encoder ? encoder->geterror() : OIIO::geterror());
-  }
+  image::encode_png(output, texture.width(), texture.height(), bytes);
   output.commit();
 }
 

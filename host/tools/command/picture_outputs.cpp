@@ -1,10 +1,10 @@
 #include "tools/command/picture_outputs.hpp"
 
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
+#include "common/letter_case.hpp"
 #include "photile/errors.hpp"
 #include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"
@@ -46,8 +46,8 @@ PictureOutputs::PictureOutputs(const PictureOptions& options)
       tone_mapping_(options.tone_mapping),
       false_colour_(options.false_colour) {
   for (const std::string& file : options.outputs) {
-    const bool exr = OIIO::Strutil::iends_with(file, ".exr");
-    if (!exr && !OIIO::Strutil::iends_with(file, ".png")) {
+    const bool exr = ends_in(file, ".exr");
+    if (!exr && !ends_in(file, ".png")) {
       throw UsageError(fmt::format("{}: an output ends in .exr or .png; rename it", file));
     }
     (exr ? exr_ : png_).emplace_back(file);

@@ -1,6 +1,5 @@
 #include "tools/command/validators.hpp"
 
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -9,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include "common/letter_case.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::app {
@@ -180,7 +180,7 @@ CLI::Validator picture_size() {
 
 CLI::Validator file_ending_in(const std::string& ending) {
   const auto check = [=](std::string& file) -> std::string {
-    if (OIIO::Strutil::iends_with(file, ending)) return {};
+    if (ends_in(file, ending)) return {};
     return fmt::format("'{}' does not end in {}; rename it", file, ending);
   };
   return {check, ""};

@@ -1,7 +1,5 @@
 #include "tools/report/palette.hpp"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,24 +7,13 @@
 
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
+#include "tools/report/colour_knots.hpp"
 #include "tools/report/radiance_palettes.hpp"
 
 namespace photile::image {
 namespace {
 
 constexpr int entries = 256;
-
-/// Blue, white, red, linear.
-constexpr std::array<float, 9> blue_red{0.02f, 0.08f, 0.6f, 1.0f, 1.0f, 1.0f, 0.6f, 0.03f, 0.02f};
-
-OIIO::ImageBuf ramp() {
-  OIIO::ImageBuf values(OIIO::ImageSpec(entries, 1, 1, OIIO::TypeDesc::FLOAT));
-  for (int i = 0; i < entries; ++i) {
-    const float value = static_cast<float>(i) / (entries - 1);
-    values.setpixel(i, 0, &value);
-  }
-  return values;
-}
 
 }  // namespace
 
@@ -42,23 +29,13 @@ Palette::Palette(const std::string& name) {
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     throw UsageError(fmt::format("no palette '{}'; there are {}", name, fmt::join(known, ", ")));
   }
-  for (int i = 0; i < entries && is_radiance_palette(name); ++i) {
-    const glm::dvec3 rgb = radiance_palette(name, static_cast<double>(i) / (entries - 1));
+  for (int i = 0; i < entries; ++i) {
+    const double share = static_cast<double>(i) / (entries - 1);
+    const glm::dvec3 rgb =
+        is_radiance_palette(name) ? radiance_palette(name, share) : knot_colour(name, share);
     colours_.push_back({srgb8_from_linear(static_cast<float>(rgb.r)),
                         srgb8_from_linear(static_cast<float>(rgb.g)),
                         srgb8_from_linear(static_cast<float>(rgb.b))});
-  }
-  if (!colours_.empty()) return;
-  const OIIO::ImageBuf mapped = name == "blue-red"
-                                    ? OIIO::ImageBufAlgo::color_map(ramp(), 0, 3, 3, blue_red)
-                                    : OIIO::ImageBufAlgo::color_map(ramp(), 0, name);
-  for (int i = 0; i < entries; ++i) {
-    std::array<float, 3> rgb{};
-    mapped.getpixel(i, 0, rgb.data(), 3);
-    auto& colour = colours_.emplace_back();
-    for (std::size_t c = 0; c < 3; ++c) {
-      colour[c] = srgb8_from_linear(rgb[c]);  // OpenImageIO's tables are linear
-    }
   }
 }
 

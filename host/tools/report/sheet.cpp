@@ -1,19 +1,12 @@
 #include "tools/report/sheet.hpp"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "image/srgb.hpp"
+#include "tools/report/font.hpp"
 
 namespace photile::image {
-namespace {
-
-constexpr const char* font = "DejaVuSans";
-
-}  // namespace
 
 Sheet::Sheet(int width, int height) {
   image_.width = width;
@@ -39,26 +32,16 @@ void Sheet::set(int x, int y, const std::array<std::uint8_t, 3>& srgb) {
 }
 
 void Sheet::write(int x, int y, int end, const std::string& text) {
-  const int width = std::min(end, image_.width) - x;
-  constexpr int ascent = 2 * font_size, height = 3 * font_size;  // room for any letter
-  if (width <= 0) return;
-  OIIO::ImageBuf ink(OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT));
-  if (!OIIO::ImageBufAlgo::render_text(ink, 0, ascent, text, font_size, font, 1.0f)) {
-    ink.geterror();  // fetched, or OpenImageIO prints it
-    return;
-  }
-  for (int v = std::max(0, ascent - y); v < std::min(height, image_.height - y + ascent); ++v) {
-    for (int u = 0; u < width; ++u) {
-      const float black = std::clamp(ink.getchannel(u, v, 0, 0), 0.0f, 1.0f);
-      for (auto& channel : image_.channels) channel[index(x + u, y + v - ascent)] *= 1 - black;
-    }
-  }
+  const int right = std::min(end, image_.width);
+  Font::dejavu(font_size).draw(text, [&](int u, int v, float ink) {
+    u += x;
+    v += y;
+    if (u < std::max(x, 0) || u >= right || v < 0 || v >= image_.height) return;
+    for (auto& channel : image_.channels) channel[index(u, v)] *= 1 - ink;
+  });
 }
 
-int Sheet::width_of(const std::string& text) {
-  const OIIO::ROI size = OIIO::ImageBufAlgo::text_size(text, font_size, font);
-  return size.defined() ? size.width() : 0;
-}
+int Sheet::width_of(const std::string& text) { return Font::dejavu(font_size).width_of(text); }
 
 Image Sheet::take() { return std::move(image_); }
 

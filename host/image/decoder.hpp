@@ -1,0 +1,68 @@
+// Encoded pictures, opened: their size first, then their pixels.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace photile::image {
+
+/// A picture that is damaged or of no format that is read. `what()` is the reason alone.
+struct DecodeError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+enum class PictureFormat { exr, png, jpeg, radiance, tiff, webp, bmp, gif, targa, pnm };
+
+/// By signature, or else by the extension of the few formats without one.
+/// Errors: DecodeError where it is none of them.
+PictureFormat format_of(const std::string& name, std::span<const unsigned char> bytes);
+
+/// How the values of a picture are stored.
+enum class Sample { byte, word, real };
+
+struct PictureShape {
+  int width = 0, height = 0;
+  int channels = 0;  ///< 1: grey, 2: grey and alpha, 3: RGB, 4: RGBA; others: an EXR's first ones
+  Sample sample = Sample::byte;
+
+  std::uint64_t values() const {
+    return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
+           static_cast<std::uint64_t>(channels);
+  }
+  std::uint64_t bytes() const {
+    return values() * (sample == Sample::byte ? 1 : sample == Sample::word ? 2 : 4);
+  }
+};
+
+/// Rows x width x channels, row 0 at the top, as stored: no curve is undone, no colour multiplied
+/// with alpha. The alternative is that of PictureShape::sample.
+using Pixels =
+    std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>>;
+
+class Decoder {
+ public:
+  virtual ~Decoder() = default;
+
+  /// As the header has it, positive but otherwise unchecked: compare it with limits.hpp before
+  /// decoding.
+  const PictureShape& shape() const { return shape_; }
+
+  /// Once. Errors: DecodeError, std::bad_alloc.
+  virtual Pixels decode() = 0;
+
+ protected:
+  PictureShape shape_;
+};
+
+/// Opens a picture of which only the header is read. `bytes` must outlive the decoder; `name`
+/// tells, by its extension, formats that have no signature.
+/// Errors: DecodeError.
+std::unique_ptr<Decoder> open_picture(const std::string& name,
+                                      std::span<const unsigned char> bytes);
+
+}  // namespace photile::image

@@ -1,0 +1,201 @@
+#include "image/exr_input.hpp"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfThreading.h>
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "image/decoder.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::image {
+namespace {
+
+class MemoryStream : public Imf::IStream {
+ public:
+  explicit MemoryStream(std::span<const unsigned char> bytes) : IStream("memory"), bytes_(bytes) {}
+
+  bool read(char* to, int count) override {
+    const auto wanted = static_cast<std::uint64_t>(count);
+    if (place_ > bytes_.size() || wanted > bytes_.size() - place_) {
+      throw DecodeError("the file ends too early");
+    }
+    if (wanted > 0) std::memcpy(to, bytes_.data() + place_, wanted);
+    place_ += wanted;
+    return place_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return place_; }
+  void seekg(std::uint64_t place) override { place_ = place; }
+
+ private:
+  std::span<const unsigned char> bytes_;
+  std::uint64_t place_ = 0;
+};
+
+/// The colours of the root, so that viewers and photile find the picture first.
+int rank(const std::string& channel) {
+  static constexpr std::string_view root = "RGBA";
+  const std::size_t place = channel.size() == 1 ? root.find(channel) : std::string_view::npos;
+  return static_cast<int>(std::min(place, root.size()));
+}
+
+/// Rows that are compressed together.
+std::uint64_t rows_of_block(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::NO_COMPRESSION:
+    case Imf::RLE_COMPRESSION:
+    case Imf::ZIPS_COMPRESSION:
+      return 1;
+    case Imf::ZIP_COMPRESSION:
+    case Imf::PXR24_COMPRESSION:
+      return 16;
+    case Imf::DWAB_COMPRESSION:
+      return 256;
+    default:
+      return 32;
+  }
+}
+
+ExrInput::Part part_of(const Imf::Header& header) {
+  if (header.hasType() && Imf::isDeepData(header.type())) {
+    throw DecodeError("holds deep pixels; flatten it, e.g. with oiiotool --flatten");
+  }
+  const Imath::Box2i& window = header.dataWindow();
+  ExrInput::Part part;
+  part.width = window.max.x - window.min.x + 1;
+  part.height = window.max.y - window.min.y + 1;
+  if (header.hasName()) part.name = header.name();
+  std::uint64_t pixel_bytes = 0;
+  for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+    if (i.channel().xSampling != 1 || i.channel().ySampling != 1) {
+      throw DecodeError(std::string("channel '") + i.name() + "' leaves pixels out");
+    }
+    part.channels.emplace_back(i.name());
+    pixel_bytes += i.channel().type == Imf::HALF ? 2 : 4;
+  }
+  std::stable_sort(part.channels.begin(), part.channels.end(),
+                   [](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  std::uint64_t block =
+      static_cast<std::uint64_t>(part.width) * rows_of_block(header.compression());
+  if (header.hasTileDescription()) {
+    block = std::uint64_t{header.tileDescription().xSize} * header.tileDescription().ySize;
+  }
+  if (block * pixel_bytes > limits::max_image_block_bytes) {
+    throw DecodeError(fmt::format("has blocks of {} bytes, more than the limit of {}",
+                                  block * pixel_bytes, limits::max_image_block_bytes));
+  }
+  return part;
+}
+
+/// Before OpenEXR believes them: it reserves what an attribute and a table of the rows are said to
+/// take, and its own limits would hold for the whole process.
+void check_headers(Imf::IStream& stream, std::uint64_t bytes) {
+  const auto number = [&] {
+    std::array<char, 4> text{};
+    stream.read(text.data(), 4);
+    std::uint32_t value = 0;
+    for (int i = 3; i >= 0; --i) value = value << 8 | static_cast<unsigned char>(text[i]);
+    return value;
+  };
+  const auto word = [&] {
+    std::string text;
+    for (char letter = 0; text.size() < 256; text += letter) {
+      stream.read(&letter, 1);
+      if (letter == '\0') return text;
+    }
+    throw DecodeError("the header is damaged");
+  };
+  stream.seekg(4);
+  const bool many = (number() & 0x1000u) != 0;
+  for (bool more = true; more;) {
+    std::size_t attributes = 0;
+    for (std::string name = word(); !name.empty(); name = word(), ++attributes) {
+      word();  // its type
+      const std::uint32_t size = number();
+      const std::uint64_t place = stream.tellg();
+      if (size > bytes - place) throw DecodeError("the header is damaged");
+      if (name == "dataWindow" && size == 16) {
+        const auto left = static_cast<std::int32_t>(number()),
+                   top = static_cast<std::int32_t>(number()),
+                   right = static_cast<std::int32_t>(number()),
+                   bottom = static_cast<std::int32_t>(number());
+        const std::int64_t width = std::int64_t{right} - left, height = std::int64_t{bottom} - top;
+        if (width >= limits::max_image_side || height >= limits::max_image_side) {
+          throw DecodeError(
+              fmt::format("is {} x {} pixels, more than the limit of {} a side; scale it down",
+                          width + 1, height + 1, limits::max_image_side));
+        }
+      }
+      stream.seekg(place + size);
+    }
+    more = many && attributes > 0;
+  }
+  stream.seekg(0);
+}
+
+}  // namespace
+
+void set_up_openexr() {
+  static const bool done = [] {
+    Imf::setGlobalThreadCount(static_cast<int>(
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+struct ExrInput::File : Imf::MultiPartInputFile {
+  using MultiPartInputFile::MultiPartInputFile;
+};
+
+ExrInput::ExrInput(const std::filesystem::path& file)
+    : stream_(std::make_unique<Imf::StdIFStream>(file.c_str())) {
+  find_parts(std::filesystem::file_size(file));
+}
+
+ExrInput::ExrInput(std::span<const unsigned char> bytes)
+    : stream_(std::make_unique<MemoryStream>(bytes)) {
+  find_parts(bytes.size());
+}
+
+ExrInput::~ExrInput() = default;
+
+void ExrInput::find_parts(std::uint64_t bytes) {
+  set_up_openexr();
+  check_headers(*stream_, bytes);
+  file_ = std::make_unique<File>(*stream_);
+  for (int part = 0; part < file_->parts(); ++part) parts_.push_back(part_of(file_->header(part)));
+}
+
+const Imf::Header& ExrInput::header(std::size_t part) const {
+  return file_->header(static_cast<int>(part));
+}
+
+void ExrInput::read(std::size_t part, int first, int end, std::vector<float>& planes) {
+  const Part& shape = parts_[part];
+  const auto width = static_cast<std::size_t>(shape.width);
+  const std::size_t plane = static_cast<std::size_t>(end - first) * width;
+  planes.resize(plane * shape.channels.size());
+  const Imath::Box2i& window = header(part).dataWindow();
+  const Imath::V2i corner(window.min.x, window.min.y + first);
+  Imf::FrameBuffer buffer;
+  for (std::size_t i = 0; i < shape.channels.size(); ++i) {
+    buffer.insert(shape.channels[i],
+                  Imf::Slice::Make(Imf::FLOAT, &planes[i * plane], corner, shape.width, end - first,
+                                   sizeof(float), sizeof(float) * width));
+  }
+  Imf::InputPart input(*file_, static_cast<int>(part));
+  input.setFrameBuffer(buffer);
+  input.readPixels(corner.y, corner.y + (end - first) - 1);
+}
+
+}  // namespace photile::image

@@ -1,0 +1,40 @@
+#include "image/exr_input.hpp"
+#include "image/formats/formats.hpp"
+
+namespace photile::image {
+namespace {
+
+/// The first part.
+class ExrDecoder : public Decoder {
+ public:
+  explicit ExrDecoder(Encoded bytes) : input_(bytes) {
+    const ExrInput::Part& part = input_.parts().front();
+    shape_ = {part.width, part.height, static_cast<int>(part.channels.size()), Sample::real};
+  }
+
+  Pixels decode() override {
+    constexpr int rows_at_once = 64;
+    const auto channels = static_cast<std::size_t>(shape_.channels),
+               width = static_cast<std::size_t>(shape_.width);
+    std::vector<float> values(shape_.values()), planes;
+    for (int first = 0; first < shape_.height; first += rows_at_once) {
+      const int end = std::min(first + rows_at_once, shape_.height);
+      input_.read(0, first, end, planes);
+      const std::size_t pixels = static_cast<std::size_t>(end - first) * width;
+      float* const to = &values[static_cast<std::size_t>(first) * width * channels];
+      for (std::size_t c = 0; c < channels; ++c) {
+        for (std::size_t i = 0; i < pixels; ++i) to[i * channels + c] = planes[c * pixels + i];
+      }
+    }
+    return values;
+  }
+
+ private:
+  ExrInput input_;
+};
+
+}  // namespace
+
+std::unique_ptr<Decoder> open_exr(Encoded bytes) { return std::make_unique<ExrDecoder>(bytes); }
+
+}  // namespace photile::image
