@@ -51,6 +51,11 @@ struct RunLight {
     if (!traced) return;
     ends.add_point(*traced, i, static_cast<std::uint32_t>(parameters.batches),
                    static_cast<std::uint32_t>(rays_per_batch), sums);
+    const trace::HemisphereRays& met = traced->rays;
+    for (std::size_t e = met.first_direct[i]; e < met.first_direct[i + 1]; ++e) {
+      const SeenEmission& light = met.ends.direct[e];
+      sums.add(light.light, batch_of(light.pixel), light.radiance);
+    }
   }
   void add_direct(std::size_t i, std::size_t point, BatchSums& sums) const {
     if (looks_per_batch > 0) {
@@ -65,19 +70,17 @@ struct RunLight {
                       });
   }
   /// Harmonic mean, metres.
-  float distance(std::size_t i, std::size_t point) const {
+  float distance(std::size_t i) const {
     if (!traced) return std::numeric_limits<float>::infinity();
-    double sum = 0;
-    const trace::HemisphereRays& met = traced->rays;
-    for (std::size_t end = met.first[i]; end < met.first[i + 1]; ++end) {
-      sum +=
-          1 / std::max(1e-6,
-                       double{glm::distance(points.position[point], met.ends.hits[end].position)});
-    }
-    return static_cast<float>(rays_per_batch * parameters.batches / sum);
+    return static_cast<float>(rays_per_batch * parameters.batches) /
+           traced->rays.inverse_distances[i];
   }
 
  private:
+  std::uint32_t batch_of(std::uint32_t ray) const {
+    return ray / static_cast<std::uint32_t>(rays_per_batch) %
+           static_cast<std::uint32_t>(parameters.batches);
+  }
   void look(std::size_t point, BatchSums& sums) const {
     thread_local std::vector<trace::ReceivedLight> found;
     const trace::SurfacePoint where = trace::point_of(rays.scene(), points, point);
@@ -103,8 +106,7 @@ struct RunLight {
     const trace::HemisphereRays& met = traced->rays;
     for (std::size_t e = met.first_emission[i]; e < met.first_emission[i + 1]; ++e) {
       const SeenEmission& lamp = met.ends.emission[e];
-      sums.add(lamps.layer(lamp.light), lamp.pixel / rays_per_batch % parameters.batches,
-               lamp.radiance);
+      sums.add(lamps.layer(lamp.light), batch_of(lamp.pixel), lamp.radiance);
     }
   }
 };
@@ -125,7 +127,7 @@ void add_run(const RunLight& light, std::size_t first, std::size_t count, Gather
       indirect.end_point();
       light.add_direct(i, first + i, direct);
       direct.end_point();
-      own.distance.push_back(light.distance(i, first + i));
+      own.distance.push_back(light.distance(i));
     }
   });
   for (GatheredParts& part : parts) {
@@ -168,17 +170,17 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
 
   const int rays_per_batch = per_batch(rays, parameters_.batches);
   const int looks_per_batch = per_batch(looks, parameters_.batches);
-  const bool looks_too = looks_per_batch > 0;
   const trace::HemisphereParameters hemisphere{
       .batches = parameters_.batches,
       .rays = rays_per_batch,
       .seed = parameters_.seed,
       .max_specular_depth = parameters_.max_specular_depth,
-      .lamps = looks_too ? &lamps_ : nullptr,
-      .emitted_radiance = looks_too ? &emitted_ : nullptr,
-      .rays_per_look =
-          looks_too ? static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch)
-                    : 0.0f};
+      .lamps = &lamps_,
+      .emitted_radiance = &emitted_,
+      .rays_per_look = looks_per_batch > 0 ? static_cast<float>(rays_per_batch) /
+                                                 static_cast<float>(looks_per_batch)
+                                           : 0.0f,
+      .near = caustics_ ? 0.0f : static_cast<float>(parameters_.near)};
   const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
   const std::size_t at_a_time =
       std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));

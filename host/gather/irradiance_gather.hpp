@@ -24,6 +24,10 @@ struct IrradianceGatherParameters {
   /// Rays and looks are shared by so many independent batches, rounded up to a whole number in
   /// each: their scatter is the error.
   int batches = 8;
+  /// Surface nearer than this, metres, is not read but gathered from by one ray and one look at
+  /// lamps, for photon estimates blur over such distances and miss what hides there. Not where
+  /// there are caustics, which only photons know. 0 = all is read.
+  double near = 0;
   std::uint64_t seed = defaults::seed;
   int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
 };

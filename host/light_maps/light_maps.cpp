@@ -426,6 +426,16 @@ void LightMaps::restore(LightMapContents contents) {
   }
 }
 
+double LightMaps::relative_error(const NodeBlend& blend) const {
+  if (impl_->error.empty()) return 0;
+  double error = 0, light = 0;
+  for (std::size_t i = 0; i < blend.node.size(); ++i) {
+    error += double{blend.weight[i]} * impl_->error[blend.node[i]];
+    light += double{blend.weight[i]} * impl_->together[blend.node[i]];
+  }
+  return light > 0 ? error / light : 0;
+}
+
 const Charts& LightMaps::charts() const { return impl_->charts; }
 const Tiles& LightMaps::tiles() const { return impl_->tiles; }
 

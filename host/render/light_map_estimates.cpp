@@ -50,6 +50,19 @@ class Blend {
     return estimates;
   }
 
+  /// Sum of the squares of relative standard errors of hits [first, last) that maps serve.
+  double squared_errors(std::size_t first, std::size_t last) const {
+    double sum = 0;
+    for (std::size_t hit = first; hit < last; ++hit) {
+      if (place_[hit] != none) continue;
+      NodeBlend blend;
+      maps_.find(hits_.sided_triangle[hit], hits_.position[hit], blend);
+      const double error = maps_.relative_error(blend);
+      sum += error * error;
+    }
+    return sum;
+  }
+
  private:
   void add_from_maps(std::size_t hit, estimate::EstimateWriter& writer) const {
     NodeBlend blend;
@@ -137,14 +150,23 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
       alone.empty() ? Estimates{} : photons_.estimate(estimate::reordered(hits, 0, alone));
   const Blend blend(needs_, maps_, hits, own, place);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
+  std::vector<double> squared_errors(parts.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::size_t first = part * hits_per_blend_task;
-    parts[part] = blend.of(first, std::min(hits.size(), first + hits_per_blend_task));
+    const std::size_t last = std::min(hits.size(), first + hits_per_blend_task);
+    parts[part] = blend.of(first, last);
+    squared_errors[part] = blend.squared_errors(first, last);
   });
+  hits_read_ += served.size();
+  for (const double part : squared_errors) squared_errors_ += part;
   Estimates all;
   if (needs_.many_lights()) all.first.push_back(0);
   for (Estimates& part : parts) all.append(std::move(part));
   return all;
+}
+
+double LightMapEstimates::error() const {
+  return hits_read_ == 0 ? 0.0 : std::sqrt(squared_errors_ / static_cast<double>(hits_read_));
 }
 
 bool LightMapEstimates::serves(const PrimaryHits& hits, std::size_t hit) const {

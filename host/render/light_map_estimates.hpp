@@ -39,6 +39,9 @@ class LightMapEstimates : private PointSource {
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
+  /// Root mean square, over all hits read so far, of the relative standard error of all light; 0
+  /// where photons value nodes.
+  double error() const;
   TimeTaken fill_time() const { return fill_time_; }
 
  private:
@@ -53,7 +56,8 @@ class LightMapEstimates : private PointSource {
   MapEstimators& photons_;
   NodeSource* source_;
   LightMaps maps_;
-  std::uint64_t hits_alone_ = 0;
+  std::uint64_t hits_alone_ = 0, hits_read_ = 0;
+  double squared_errors_ = 0;  ///< relative, of hits read
   TimeTaken fill_time_;
 };
 

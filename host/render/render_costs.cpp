@@ -67,7 +67,9 @@ RunStatistics RenderCosts::statistics() const {
                             {"caustic photons", number(caustic_photons)}}));
   }
   if (light_maps.time.seconds > 0) {
-    stages.push_back(stage("light maps", light_maps, {{"new nodes", number(light_map_nodes)}}));
+    std::vector<std::pair<std::string, double>> figures{{"new nodes", number(light_map_nodes)}};
+    if (light_map_error > 0) figures.emplace_back("standard error percent", 100 * light_map_error);
+    stages.push_back(stage("light maps", light_maps, std::move(figures)));
   }
   std::vector<std::pair<std::string, double>> estimate_figures{
       {"hits", number(hit_count)},

@@ -128,9 +128,10 @@ LightMapParameters RenderPlan::ends(int pass, double first_radius, const Photons
                               powers);
 }
 
-IrradianceGatherParameters RenderPlan::node_gathering(int pass) const {
+IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {
   return {.rays = used_.light_map_rays,
           .looks = used_.light_map_rays,
+          .near = estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
           .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(pass)),
           .max_specular_depth = used_.max_specular_depth};
 }

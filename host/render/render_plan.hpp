@@ -59,7 +59,8 @@ class RenderPlan {
   LightMapParameters ends(int pass, double first_radius, const Photons& photons,
                           std::span<const double> powers) const;
   /// At nodes of light maps.
-  IrradianceGatherParameters node_gathering(int pass) const;
+  ///   first_radius   of the first pass, metres
+  IrradianceGatherParameters node_gathering(int pass, double first_radius) const;
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.

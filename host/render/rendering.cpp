@@ -323,7 +323,7 @@ LightMapEstimates& Rendering::light_maps() {
   if (light_maps_) return *light_maps_;
   if (plan_.gathers_at_nodes()) {
     node_gather_.emplace(rays_, *photons_, end_parameters_, caustics_ ? &*caustics_ : nullptr,
-                         plan_.node_gathering(pass_));
+                         plan_.node_gathering(pass_, radius_));
     constexpr double inset_of_spacing = 1.0 / 512;
     gathered_nodes_.emplace(scene_, *node_gather_, layer_powers_,
                             rays_of_nodes(plan_.used().light_map_rays,
@@ -350,6 +350,7 @@ Estimates Rendering::read_light_maps(const PrimaryHits& hits) {
   const TimeTaken filling = light_maps.fill_time() - filled_before;
   costs_.light_maps.add(filling, maps.value_bytes + maps.index_bytes);
   costs_.light_map_nodes += maps.nodes - nodes_before;
+  costs_.light_map_error = light_maps.error();
   costs_.estimate.add(stopwatch.taken() - filling);
   costs_.hit_count += light_maps.hits_alone() - alone_before;
   return estimates;

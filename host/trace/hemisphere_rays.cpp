@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
-#include <optional>
 
+#include "trace/direct_light.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_point.hpp"
 #include "trace/sampling.hpp"
@@ -17,21 +17,79 @@ namespace {
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t points_per_task = 16;
 
+/// Near surfaces in a row that a ray goes on from.
+constexpr std::uint32_t most_near = 3;
+
 struct TaskEnds {
   EyeRecord ends;
-  std::vector<std::size_t> count, emission_count;  ///< of each point
+  std::vector<std::size_t> count, emission_count, direct_count;  ///< of each point
+  std::vector<float> inverse_distances;                          ///< of each point
 };
 
-/// All rays of a point.
+/// What the rays of a run share.
+struct RunSetup {
+  const RayScene& rays;
+  const HemisphereParameters& parameters;
+  EyeSetup first;  ///< of rays that leave a point
+  EyeSetup later;  ///< of those that go on from near surface
+};
+
+/// Replaces the last end by light that reaches it, as long as it is matt surface near the point.
+///   from     the point
+///   before   ends of the rays before
+///   stream   of the ray; those of later ones are `streams` apart
+void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_t number,
+                     std::size_t before, std::uint32_t stream, std::uint32_t streams,
+                     EyeRecord& ends) {
+  const Scene& scene = run.rays.scene();
+  const LightSampler& lamps = *run.parameters.lamps;
+  thread_local std::vector<ReceivedLight> found;
+  for (std::uint32_t bounce = 1; bounce <= most_near && ends.hits.size() > before; ++bounce) {
+    const EyeHit hit = ends.hits.back();
+    if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
+    const std::uint32_t triangle = triangle_of(hit.sided_triangle);
+    if (scene.materials[scene.triangle_material[triangle]].glossy()) return;
+    ends.hits.pop_back();
+    if (!ends.glossy.empty()) ends.glossy.pop_back();
+    const SurfacePoint point =
+        surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
+                      side_of(hit.sided_triangle));
+    const glm::vec3 throughput = hit.throughput * hit.diffuse_albedo;
+    const RandomStream random(run.parameters.seed, number, stream + bounce * streams);
+    found.clear();
+    look_at_lamps(run.rays, lamps, point, 1, 1.0f, LookSamples(random, 0), found);
+    for (const ReceivedLight& light : found) {
+      ends.direct.push_back(
+          {hit.pixel, light.layer, throughput * glm::one_over_pi<float>() * light.irradiance});
+    }
+    const RandomBlock numbers = random.block(Purpose::hemisphere_direction, 0);
+    const glm::vec3 direction =
+        Frame(point.normal)
+            .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
+    const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
+    const LampTechnique look{lamps, cosine * glm::one_over_pi<float>(), true};
+    const std::size_t seen_before = ends.emission.size();
+    follow_eye_ray(run.later, {point.origin_towards(direction), direction, throughput, hit.pixel},
+                   random, ends, &look);
+    for (std::size_t i = seen_before; i < ends.emission.size(); ++i) {
+      const SeenEmission& seen = ends.emission[i];
+      ends.direct.push_back({seen.pixel, lamps.layer(seen.light), seen.radiance});
+    }
+    ends.emission.resize(seen_before);
+  }
+}
+
+/// All rays of a point. Returns the sum of their inverse distances to what they meet first.
 ///   run_point   its place in the run
-void trace_point(const EyeSetup& setup, const HemisphereParameters& parameters,
-                 const SurfacePoint& point, std::uint64_t number, std::uint32_t run_point,
-                 EyeRecord& ends) {
+float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t number,
+                  std::uint32_t run_point, EyeRecord& ends) {
+  const HemisphereParameters& parameters = run.parameters;
   const auto batches = static_cast<std::uint32_t>(parameters.batches);
   const auto rays = static_cast<std::uint32_t>(parameters.rays);
   const RandomStream of_point(parameters.seed, number, 0);
   const Frame frame(point.normal);
   const glm::vec3 throughput(glm::pi<float>() / static_cast<float>(rays));
+  float inverse_distances = 0;
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
     const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
     for (std::uint32_t i = 0; i < rays; ++i) {
@@ -39,25 +97,32 @@ void trace_point(const EyeSetup& setup, const HemisphereParameters& parameters,
       const glm::vec3 direction =
           frame.to_world(sample_cosine_hemisphere(std::min(place.x, 0x1.fffffep-1f), place.y));
       // A stream for each, apart from the point's own.
-      const RandomStream random(parameters.seed, number, batch * rays + i + 1);
-      std::optional<LampTechnique> looks;
-      if (parameters.lamps) {
-        const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
-        looks.emplace(*parameters.lamps,
-                      parameters.rays_per_look * cosine * glm::one_over_pi<float>(), true);
-      }
-      follow_eye_ray(setup,
+      const std::uint32_t stream = batch * rays + i + 1;
+      const RandomStream random(parameters.seed, number, stream);
+      const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
+      const LampTechnique looks{
+          *parameters.lamps, parameters.rays_per_look * cosine * glm::one_over_pi<float>(), true};
+      const std::size_t before = ends.hits.size();
+      follow_eye_ray(run.first,
                      {point.origin_towards(direction), direction, throughput,
                       (run_point * batches + batch) * rays + i},
-                     random, ends, looks ? &*looks : nullptr);
+                     random, ends, &looks);
+      if (ends.hits.size() == before) continue;
+      inverse_distances +=
+          1 / std::max(1e-6f, glm::distance(point.position, ends.hits.back().position));
+      if (parameters.near > 0) {
+        go_on_from_near(run, point, number, before, stream, batches * rays, ends);
+      }
     }
   }
+  return inverse_distances;
 }
 
 HemisphereRays join(std::vector<TaskEnds> tasks) {
   HemisphereRays all;
   all.first.push_back(0);
   all.first_emission.push_back(0);
+  all.first_direct.push_back(0);
   std::vector<std::size_t> first_of;
   const auto extend = [](std::vector<std::size_t>& first, const std::vector<std::size_t>& counts) {
     for (const std::size_t count : counts) first.push_back(first.back() + count);
@@ -66,8 +131,13 @@ HemisphereRays join(std::vector<TaskEnds> tasks) {
     first_of.push_back(all.first.back());
     extend(all.first, task.count);
     extend(all.first_emission, task.emission_count);
-    const std::vector<SeenEmission>& seen = task.ends.emission;
-    all.ends.emission.insert(all.ends.emission.end(), seen.begin(), seen.end());
+    extend(all.first_direct, task.direct_count);
+    const auto append = [](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(all.ends.emission, task.ends.emission);
+    append(all.ends.direct, task.ends.direct);
+    append(all.inverse_distances, task.inverse_distances);
     all.ends.rays += task.ends.rays;
   }
   all.ends.hits.resize(all.first.back());
@@ -90,10 +160,13 @@ HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points
                                  const HemisphereParameters& parameters) {
   PrimaryHitParameters specular;
   specular.max_specular_depth = parameters.max_specular_depth;
-  const EyeSetup setup{.rays = &impl_of(rays),
+  const EyeSetup later{.rays = &impl_of(rays),
                        .parameters = &specular,
                        .emitted_radiance = parameters.emitted_radiance,
-                       .distant = parameters.lamps ? &parameters.lamps->distant() : nullptr};
+                       .distant = &parameters.lamps->distant()};
+  EyeSetup leaving = later;
+  if (!(parameters.rays_per_look > 0)) leaving.emitted_radiance = nullptr;
+  const RunSetup run{rays, parameters, leaving, later};
   std::vector<TaskEnds> tasks((count + points_per_task - 1) / points_per_task);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
     const FlushDenormals flush_denormals;
@@ -102,8 +175,11 @@ HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points
     for (std::size_t i = task * points_per_task; i < last; ++i) {
       const std::size_t before = found.ends.hits.size();
       const std::size_t emission_before = found.ends.emission.size();
-      trace_point(setup, parameters, point_of(rays.scene(), points, first + i), number[first + i],
-                  static_cast<std::uint32_t>(i), found.ends);
+      const std::size_t direct_before = found.ends.direct.size();
+      found.inverse_distances.push_back(trace_point(run, point_of(rays.scene(), points, first + i),
+                                                    number[first + i],
+                                                    static_cast<std::uint32_t>(i), found.ends));
+      found.direct_count.push_back(found.ends.direct.size() - direct_before);
       found.count.push_back(found.ends.hits.size() - before);
       found.emission_count.push_back(found.ends.emission.size() - emission_before);
     }

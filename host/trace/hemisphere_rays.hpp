@@ -18,10 +18,14 @@ struct HemisphereParameters {
   int rays;     ///< of a batch: spread evenly (sobol.hpp)
   std::uint64_t seed;
   int max_specular_depth;  ///< mirrors and glass that a ray follows
-  /// Rays also see the lamps that they meet at once or through panes; null: they see none.
-  const LightSampler* lamps = nullptr;
-  const std::vector<glm::vec3>* emitted_radiance = nullptr;  ///< per light, where lamps are seen
-  float rays_per_look = 0;  ///< looks at lamps find the same: by the power heuristic
+  const LightSampler* lamps;
+  const std::vector<glm::vec3>* emitted_radiance;  ///< per light, at power 1
+  /// > 0: rays also see the lamps that they meet at once or through panes, and looks at lamps find
+  /// the same: by the power heuristic. 0 = they see none.
+  float rays_per_look = 0;
+  /// Matt surface nearer than this, metres, does not end a ray: what light falls there is looked
+  /// for by one more look at lamps and one more ray, a few times over. 0 = all opaque surface does.
+  float near = 0;
 };
 
 /// Rays of a run of points that end on an opaque surface, in the order point, batch, ray.
@@ -30,10 +34,13 @@ struct HemisphereRays {
   /// `throughput` is such that throughput x radiance, summed over a point's batch, is an unbiased
   /// estimate of the irradiance that other surfaces send there straight or over mirrors and glass.
   /// `emission` is the same of lamps, weighed.
+  /// `direct` is light that lamps send to near surface, by layer.
   EyeRecord ends;
-  /// Ends of the run's point i are [first[i], first[i + 1]), and lamps that its rays saw
-  /// [first_emission[i], first_emission[i + 1]).
-  std::vector<std::size_t> first, first_emission;
+  /// Of the run's point i are [first[i], first[i + 1]): ends, lamps that its rays saw and light
+  /// that reached near surface.
+  std::vector<std::size_t> first, first_emission, first_direct;
+  /// Per point: sum of the inverse distances to the surfaces that rays met first, 1/m.
+  std::vector<float> inverse_distances;
 };
 
 /// Traces rays with the density of the cosine to the geometric normal, through holes, mirrors and

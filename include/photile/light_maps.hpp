@@ -159,6 +159,10 @@ class LightMaps {
   /// `none` where no level is.
   bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
 
+  /// Standard error of the light of all lights between nodes, relative; 0 where the source does not
+  /// tell it, or without light. Errors of neighbours are taken for the same.
+  double relative_error(const NodeBlend& blend) const;
+
   /// What nodes hold, in the form of estimates: node n is hit n.
   const Estimates& values() const;
 

@@ -69,6 +69,31 @@ TEST_CASE("a picture and its statistics tell every setting that it was made with
   CHECK(recorded["radius"] > 0);  // the one used
 }
 
+TEST_CASE("--quality sets settings that go together, and those given beside it count") {
+  const FileFolder folder;
+  const auto made_with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "render", write_box(folder), "-o", folder / "a.exr", "--size",
+        "8x6",    "--photons",       "5k", "--stats",        folder / "a.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    REQUIRE(run_photile(arguments).exit_code == 0);
+    return nlohmann::json::parse(folder.read("a.json"))["parameters"];
+  };
+  const nlohmann::json draft = made_with({"--quality", "draft"});
+  CHECK(draft == made_with({}));
+  // Photons come before the quality on the line, samples after it.
+  const nlohmann::json good = made_with({"--quality", "good", "--samples", "2"});
+  CHECK(good["photons_emitted"] == 5000);
+  CHECK(good["samples_per_pixel"] == 2);
+  CHECK(good["light_maps"] == "on");
+  CHECK(good["neighbours"] > draft["neighbours"]);
+  CHECK(good["light_map_rays"] > 0);
+  CHECK_THAT(only_error(run_photile({"render", write_box(folder), "-o", folder / "b.exr",
+                                     "--quality", "best"}),
+                        usage),
+             Contains("draft, good, final"));
+}
+
 TEST_CASE("settings that go with no other are refused by the names of their options") {
   const FileFolder folder;
   const auto refusal = [&](const std::vector<std::string>& more) {

@@ -14,6 +14,7 @@
 #include "photile/light_maps.hpp"
 #include "render/reflected_radiance.hpp"
 #include "test_scenes.hpp"
+#include "tools/validation/form_factors.hpp"
 
 namespace photile::test {
 namespace {
@@ -114,6 +115,40 @@ TEST_CASE("gathered nodes: a furnace is the same all over, corners and edges amo
   CAPTURE(rms, mean);
   CHECK(rms < 0.05);
   CHECK(std::abs(mean) < 0.02);
+}
+
+TEST_CASE("gathered nodes: direct light is that of form factors, closer than rays alone tell it") {
+  SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))),
+               builder.add(area_light("lamp")));
+  GatheringScene plain(builder.build(), looked_up(20'000));
+  PrimaryHits floor;
+  const PrimaryHits all = points_on(plain.scene, 14);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::uint32_t triangle = triangle_of(all.sided_triangle[i]);
+    if (triangle < 8 && side_of(all.sided_triangle[i]) == plain.scene.front_side[triangle]) {
+      add_hit(floor, all.position[i], all.sided_triangle[i]);
+    }
+  }
+  const auto truth = [](const glm::vec3& position) {
+    return validation::rectangle_factor(glm::dvec3(position), {0, 0, 1}, {0.5, -0.5, 1}, {1, 0, 0},
+                                        {0, 1, 0});
+  };
+  GatheredMaps maps(plain, few_rays, 0.04);
+  maps.fill(floor);
+  const auto [rms, mean] = errors_of(maps, floor, truth);
+  const GatheredIrradiance raw =
+      plain.gather({.rays = 32, .looks = 32}).gather(floor, numbers(floor.size()));
+  double squares = 0;
+  for (std::size_t i = 0; i < floor.size(); ++i) {
+    squares +=
+        std::pow(luminance(glm::dvec3(raw.mean.irradiance[i])) / truth(floor.position[i]) - 1, 2) /
+        static_cast<double>(floor.size());
+  }
+  CAPTURE(rms, mean, std::sqrt(squares));
+  CHECK(rms < 0.6 * std::sqrt(squares));
+  CHECK(std::abs(mean) < 0.01);
 }
 
 TEST_CASE("gathered nodes: the same bits whatever was looked at before, on any number of threads") {

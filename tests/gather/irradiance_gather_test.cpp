@@ -79,10 +79,11 @@ std::vector<Sensor> room_sensors(int count) {
 
 /// Whether light gathered in a room is that of the path tracer, layer by layer.
 ///   bias   root mean square of what photons are wrong by, relative
-void check_against_paths(const Scene& scene, double bias) {
+void check_against_paths(const Scene& scene, double bias,
+                         const IrradianceGatherParameters& parameters = {}) {
   GatheringScene room(scene, looked_up(400'000));
   const std::vector<Sensor> sensors = room_sensors(5);
-  const GatheredIrradiance light = room.at(sensors);
+  const GatheredIrradiance light = room.at(sensors, parameters);
   const PathReference truth = by_paths(room.rays, sensors, 4096);
   REQUIRE(light.mean.irradiance.size() == truth.lux.size());
   double squares = 0, relative = 0, error = 0;
@@ -147,6 +148,11 @@ TEST_CASE("gathering: direct light is that of form factors, within its own error
 
 TEST_CASE("gathering: layers of a furnished room are those of paths") {
   check_against_paths(furnished_room(), 0.03);
+}
+
+TEST_CASE("gathering: light gathered from near surface is that of paths, with less bias") {
+  Scene scene = furnished_room();
+  check_against_paths(scene, 0.015, {.near = 0.6});
 }
 
 TEST_CASE("gathering: layers of glossy rooms are those of paths", "[slow]") {

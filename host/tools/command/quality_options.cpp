@@ -4,7 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <string>
 
+#include "render/quality.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/validators.hpp"
 
@@ -47,6 +49,24 @@ void tell(const QualityTarget& target, const QualityModels& models, const Qualit
 
 }  // namespace
 
+void add_quality_preset(CLI::App& command, RenderParameters& parameters) {
+  Words names;
+  for (const Quality quality : all_qualities) names.words.push_back(name_of(quality));
+  command
+      .add_option_function<std::string>(
+          "--quality",
+          [&parameters](const std::string& word) {
+            for (const Quality quality : all_qualities) {
+              if (name_of(quality) == word) set_quality(parameters, quality);
+            }
+          },
+          "photons, k, samples and light maps together; options given beside it count")
+      ->type_name("draft|good|final")
+      ->transform(within(names))
+      ->default_str("draft")
+      ->group("Picture");
+}
+
 void add_quality_options(CLI::App& command, QualityTarget& target) {
   CLI::Option* error =
       command
@@ -63,7 +83,8 @@ void add_quality_options(CLI::App& command, QualityTarget& target) {
                           ->transform(duration())
                           ->group("Quality");
   // The model of error and time knows nothing of --final-gather.
-  for (const char* chosen : {"--neighbours", "--samples", "--radius", "--final-gather"}) {
+  for (const char* chosen :
+       {"--quality", "--neighbours", "--samples", "--radius", "--final-gather"}) {
     error->excludes(chosen);
     time->excludes(chosen);
   }

@@ -1,6 +1,8 @@
-// `--target-error` and `--time-budget`: settings chosen for a wanted error or frame time.
+// `--quality`, `--target-error` and `--time-budget`: settings by name, or chosen for a wanted error
+// or frame time.
 #pragma once
 
+#include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
 #include "tools/trade/quality_target.hpp"
 
@@ -9,6 +11,10 @@ class App;
 }
 
 namespace photile::app {
+
+/// Adds --quality, which sets several settings at once. To be added before theirs: options that are
+/// given override it, wherever they stand on the line.
+void add_quality_preset(CLI::App& command, RenderParameters& parameters);
 
 /// Adds both options. They exclude the options whose values they choose, which must be there.
 void add_quality_options(CLI::App& command, QualityTarget& target);

@@ -97,6 +97,7 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
 
 void add_picture_settings(CLI::App& command, RenderOptions& options,
                           std::initializer_list<std::string_view> without) {
+  add_quality_preset(command, options.parameters);  // before the settings that override it
   add_setting_options(command, options, without);
   add_view_group(command, options);
   command

@@ -1,0 +1,41 @@
+#include "render/quality.hpp"
+
+namespace photile {
+namespace {
+
+void set(RenderParameters& parameters, std::uint64_t photons, int neighbours, int samples,
+         LightMapMode light_maps, int rays) {
+  parameters.photons.emitted_photons = photons;
+  parameters.neighbours = neighbours;
+  parameters.film.samples_per_pixel = samples;
+  parameters.light_maps = light_maps;
+  parameters.light_map_rays = rays;
+}
+
+}  // namespace
+
+std::string_view name_of(Quality quality) {
+  switch (quality) {
+    case Quality::draft:
+      return "draft";
+    case Quality::good:
+      return "good";
+    case Quality::best:
+      return "final";
+  }
+  return "unknown";
+}
+
+void set_quality(RenderParameters& parameters, Quality quality) {
+  switch (quality) {
+    case Quality::draft:
+      return set(parameters, defaults::emitted_photons, defaults::neighbours,
+                 defaults::samples_per_pixel, LightMapMode::off, 0);
+    case Quality::good:
+      return set(parameters, 500'000, 100, 16, LightMapMode::on, 64);
+    case Quality::best:
+      return set(parameters, 2'000'000, 100, 64, LightMapMode::on, 256);
+  }
+}
+
+}  // namespace photile
