@@ -95,7 +95,7 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   const std::size_t lights = layer_powers_.size();
   std::vector<std::uint32_t> coarse, fine;
   for (std::uint32_t i = 0; i < batch.points.size(); ++i) {
-    (i < batch.nodes && batch.parents[i][0] != none ? fine : coarse).push_back(i);
+    (i < batch.nodes && batch.parents[i][0] != NodeBatch::no_parent ? fine : coarse).push_back(i);
   }
   gather_new(batch, coarse, progress);
   const GatheredParts smooth = smoothed(batch, coarse);
@@ -105,11 +105,11 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   found.direct = corrected(nodes_.direct, found.direct, batch, fine);
 
   const std::size_t before = nodes_.distance.size();
-  row_of_.resize(batch.first);
   std::size_t next_coarse = 0, next_fine = 0;
   for (std::uint32_t node = 0; node < batch.nodes; ++node) {
-    row_of_.push_back(static_cast<std::uint32_t>(nodes_.distance.size()));
-    if (batch.parents[node][0] == none) {
+    row_of_.insert_or_assign(batch.number[node],
+                             static_cast<std::uint32_t>(nodes_.distance.size()));
+    if (batch.parents[node][0] == NodeBatch::no_parent) {
       append(smooth, next_coarse++, lights, nodes_);
     } else {
       append(found, next_fine++, lights, nodes_);
@@ -189,7 +189,7 @@ GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
       std::array<std::uint32_t, 4> rows;
       double variance = 0;
       for (std::size_t parent = 0; parent < rows.size(); ++parent) {
-        rows[parent] = row_of_[batch.parents[fine[i]][parent]];
+        rows[parent] = row_of_.at(batch.parents[fine[i]][parent]);
         const GatheredIrradiance::Total total = known.total(rows[parent], layer_powers_);
         expected.luminance += 0.25 * total.luminance;
         variance += 0.25 * total.error * total.error;

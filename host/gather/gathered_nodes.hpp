@@ -58,7 +58,7 @@ class GatheredNodes : public NodeSource {
   GatheredNodesParameters parameters_;
   tsl::robin_map<std::uint64_t, std::uint32_t> raw_of_;  ///< by number of the point
   GatheredParts raw_;                                    ///< of coarse places, as gathered
-  std::vector<std::uint32_t> row_of_;                    ///< of each node, in `nodes_`
+  tsl::robin_map<std::uint64_t, std::uint32_t> row_of_;  ///< by number of a node, in `nodes_`
   GatheredParts nodes_;
 };
 

@@ -202,9 +202,8 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
 void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source,
                             const Progress& progress) {
   if (nodes.empty()) return;
-  NodeBatch batch = light_maps::node_batch(scene, charts, nodes, levels, needs.glossy, node_at,
-                                           source.surroundings());
-  batch.first = static_cast<std::uint32_t>(together.size());
+  NodeBatch batch =
+      light_maps::node_batch(scene, charts, nodes, levels, needs.glossy, source.surroundings());
   NodeValues valued = source.value(batch, progress);
   append(std::move(valued.irradiance), nodes.size());
   error.insert(error.end(), valued.error.begin(), valued.error.end());
@@ -368,8 +367,13 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
   impl_->values = {};
   if (impl_->needs.many_lights()) impl_->values.first.push_back(0);
   impl_->together.clear();
-  impl_->error.clear();
-  impl_->distance.clear();
+  for (std::vector<float>* of_nodes : {&impl_->error, &impl_->distance}) {
+    if (of_nodes->empty()) continue;
+    for (std::size_t node = 0; node < former.size(); ++node) {
+      (*of_nodes)[node] = (*of_nodes)[former[node]];
+    }
+    of_nodes->resize(former.size());
+  }
   impl_->cells = 0;
   restore(std::move(left));
   return former;

@@ -19,19 +19,20 @@ std::uint64_t hash_of(const NodePlace& node) {
 /// Bits of the numbers of points: as many as random streams tell apart.
 constexpr int number_bits = 48;
 
+std::uint64_t number_of(const NodePlace& node) { return hash_of(node) >> (64 - number_bits); }
+
 /// The places next to a node in the lattice of the next coarser level, or none at the coarsest.
-std::array<std::uint32_t, 4> parents_of(const NodePlace& node, int levels,
-                                        const NodeIndex& node_at) {
-  std::array<std::uint32_t, 4> parents{none, none, none, none};
+std::array<std::uint64_t, 4> parents_of(const NodePlace& node, int levels) {
+  std::array<std::uint64_t, 4> parents;
+  parents.fill(NodeBatch::no_parent);
   const std::uint32_t coarsest = 1u << (levels - 1);
   std::uint32_t step = 1;
   while (step < coarsest && (node.x | node.y) % (2 * step) == 0) step *= 2;
   if (step == coarsest) return parents;
   const std::uint32_t dx = node.x % (2 * step), dy = node.y % (2 * step);
   for (std::uint32_t i = 0; i < 4; ++i) {
-    const NodePlace parent{node.chart, i & 1 ? node.x + dx : node.x - dx,
-                           i & 2 ? node.y + dy : node.y - dy};
-    parents[i] = node_at.at(parent);
+    parents[i] = number_of(
+        {node.chart, i & 1 ? node.x + dx : node.x - dx, i & 2 ? node.y + dy : node.y - dy});
   }
   return parents;
 }
@@ -116,11 +117,10 @@ std::size_t NodePlaceHash::operator()(const NodePlace& node) const {
 }
 
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
-                     int levels, bool glossy, const NodeIndex& node_at,
-                     const NodeSource::Surroundings& surroundings) {
+                     int levels, bool glossy, const NodeSource::Surroundings& surroundings) {
   NodeBatch batch;
   batch.nodes = nodes.size();
-  for (const NodePlace& node : nodes) batch.parents.push_back(parents_of(node, levels, node_at));
+  for (const NodePlace& node : nodes) batch.parents.push_back(parents_of(node, levels));
   std::vector<NodePlace> places(nodes.begin(), nodes.end());
   if (surroundings.rounds > 0) {
     const CoarsePlaces lattice(charts, levels);
@@ -129,7 +129,7 @@ NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePla
     link(lattice, surroundings.window, places, index, batch);
   }
   for (const NodePlace& place : places) {
-    batch.number.push_back(hash_of(place) >> (64 - number_bits));
+    batch.number.push_back(number_of(place));
   }
   batch.points = node_points(scene, charts, places, levels, glossy);
   return batch;

@@ -18,13 +18,11 @@ struct NodePlaceHash {
 /// Numbers of nodes.
 using NodeIndex = tsl::robin_map<NodePlace, std::uint32_t, NodePlaceHash>;
 
-/// All of a batch but the number of its first node.
+/// Their points, the numbers of these, parents and links.
 ///   levels         of the light maps
 ///   glossy         whether hits of the scene have lobes
-///   node_at        of coarser nodes, at least
 ///   surroundings   of nodes of the coarsest level
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
-                     int levels, bool glossy, const NodeIndex& node_at,
-                     const NodeSource::Surroundings& surroundings);
+                     int levels, bool glossy, const NodeSource::Surroundings& surroundings);
 
 }  // namespace photile::light_maps

@@ -42,10 +42,10 @@ struct NodeBatch {
   PrimaryHits points;
   std::size_t nodes = 0;
   std::vector<std::uint64_t> number;  ///< of each point: by its place alone, below 2^48
-  /// Of each node: those of coarser levels between which it lies, two or four, one of two twice.
-  /// All `none` at the coarsest level.
-  std::vector<std::array<std::uint32_t, 4>> parents;
-  std::uint32_t first = 0;  ///< number of the first node among all that are valued
+  /// Of each node: the numbers of those of coarser levels between which it lies, two or four, one
+  /// of two twice. All `no_parent` at the coarsest level.
+  std::vector<std::array<std::uint64_t, 4>> parents;
+  static constexpr std::uint64_t no_parent = ~std::uint64_t{0};
   /// Point i of the coarsest lattice is linked to neighbour[first_neighbour[i] ..
   /// first_neighbour[i + 1]), others to none. Empty without surroundings.
   std::vector<std::uint32_t> first_neighbour, neighbour;
@@ -174,7 +174,7 @@ class LightMaps {
 
   /// Forgets all but the cells whose corner of least column and row is to be kept, and what is
   /// coarser there. Nodes get other numbers, in the same order; what is forgotten is valued again
-  /// when it is needed, to the same bits. For sources that keep nothing of nodes.
+  /// when it is needed, to the same bits.
   ///   keep   per node
   /// Returns the former numbers of the nodes that are left.
   std::vector<std::uint32_t> forget(std::span<const std::uint8_t> keep);
