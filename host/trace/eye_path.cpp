@@ -5,6 +5,7 @@
 #include "trace/direct_light.hpp"
 #include "trace/holes.hpp"
 #include "trace/lobe_path.hpp"
+#include "trace/opaque_bsdf.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/sobol.hpp"
