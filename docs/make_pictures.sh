@@ -8,9 +8,8 @@ photile=build/release/photile
 pictures=docs/pictures
 mkdir -p "$pictures"
 
-# Noise is plain on even walls: five times the photons of the quick start calm them.
-"$photile" render scenes/living-room/living-room.gltf --size 640x480 --samples 9 \
-  --photons 10M --neighbours 600 -o "$pictures/living-room.png"
+"$photile" render scenes/living-room/living-room.gltf --size 960x640 --quality good \
+  -o "$pictures/living-room.png"
 
 # Few photons for so many neighbours make the dark edges wide, many neighbours make the rest calm.
 for maps in naive triangle; do

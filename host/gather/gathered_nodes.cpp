@@ -86,7 +86,8 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 }  // namespace
 
 GatheredNodesParameters rays_of_nodes(int coarse, double inset) {
-  return {{coarse, coarse}, {(3 * coarse + 7) / 8, (coarse + 1) / 2}, inset};
+  // Shadow borders stand at the finer levels: there looks at lamps matter more than other rays.
+  return {{coarse, 2 * coarse}, {(3 * coarse + 7) / 8, 3 * coarse}, inset};
 }
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return {window, rounds}; }

@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+"""What gathering at the nodes of light maps makes of pictures, and what it costs: the table in
+docs/light-maps.md.
+
+    bench/clean_pictures.py SCENES [--photile COMMAND]
+
+SCENES holds <scene>/<scene>-diffuse.gltf and references/<scene>-diffuse-256x192.exr, as for
+bench/quality.py. Takes about two minutes. Needs the built command and the Debian packages
+python3-numpy and python3-openimageio.
+"""
+
+import argparse
+import json
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+
+try:
+    import numpy as np
+
+    import picture_error
+except ImportError as missing:
+    sys.exit(f"clean_pictures.py: error: {missing}; install the Debian packages python3-numpy and "
+             "python3-openimageio, and run it with /usr/bin/python3")
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROWS = (("classroom", "--light-maps on --photons 500k -k 100"),
+        ("classroom", "--quality good"),
+        ("classroom", "--quality good --photons 1M --light-map-rays 128"),
+        ("kitchen", "--light-maps on --photons 500k -k 100"),
+        ("kitchen", "--quality good"))
+
+
+def windows(plane, reach):
+    """The planes that are moved by up to `reach` pixels, borders repeated."""
+    height, width = plane.shape
+    padded = np.pad(plane, reach, mode="edge")
+    side = 2 * reach + 1
+    return np.stack([padded[y:y + height, x:x + width] for y in range(side) for x in range(side)])
+
+
+def mottle(picture, reference):
+    """Rms relative error of the luminance after a 3x3 mean, where the reference varies by less than
+    a tenth within 5x5 pixels and no lamp is seen."""
+    own, true = (image @ picture_error.LUMINANCE for image in (picture, reference))
+    around = windows(true, 2)
+    smooth = around.max(0) - around.min(0) < 0.1 * around.mean(0)
+    smooth &= picture_error.without_lamps(reference)
+    error = windows(own, 1).mean(0) / windows(true, 1).mean(0) - 1
+    return float(np.sqrt((error[smooth] ** 2).mean()))
+
+
+def processor_seconds():
+    """Of all processes that ended so far."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def measured(given, scene, options, folder):
+    """A row of the table."""
+    before = processor_seconds()
+    subprocess.run([given.photile, "render", given.scenes / scene / f"{scene}-diffuse.gltf", "--size",
+                    "256x192", "--samples", "16", "--quota", "power", *options.split(), "--quiet",
+                    "-o", folder / "picture.exr", "--stats", folder / "stats.json"], check=True)
+    seconds = processor_seconds() - before
+    picture = picture_error.read_picture(folder / "picture.exr")
+    reference = picture_error.read_picture(
+        given.scenes / "references" / f"{scene}-diffuse-256x192.exr")
+    figures = picture_error.measure(picture, reference)
+    stages = json.loads((folder / "stats.json").read_text())["stages"]
+    maps = next(stage["figures"] for stage in stages if stage["stage"] == "light maps")
+    stated = maps.get("standard error percent")
+    return (f"| {scene} | `{options}` | {figures['rel_mse']:.4f} "
+            f"({figures['rel_mse_without_worst']:.4f}) | {100 * mottle(picture, reference):.1f}% | "
+            f"{figures['mean_ratio']:.3f} | {f'{stated:.1f}%' if stated else ''} | "
+            f"{maps['new nodes']:,.0f} | {seconds:.1f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", type=pathlib.Path, metavar="SCENES")
+    parser.add_argument("--photile", type=pathlib.Path, default=ROOT / "build/release/photile")
+    given = parser.parse_args()
+    print("| | settings | relMSE | mottle | mean | stated error | nodes | processor s |")
+    print("|---|---|--:|--:|--:|--:|--:|--:|")
+    with tempfile.TemporaryDirectory() as name:
+        for scene, options in ROWS:
+            print(measured(given, scene, options, pathlib.Path(name)), flush=True)
+
+
+if __name__ == "__main__":
+    main()
