@@ -138,7 +138,8 @@ TEST_CASE("A hit on a wall reads the same light from wherever it is seen", "[lig
   CHECK(same_bits(first.layers, later.layers));
 }
 
-TEST_CASE("Glossy surfaces keep the estimate at the hit where photons bring gloss", "[light_map_pictures]") {
+TEST_CASE("Glossy surfaces keep the estimate at the hit where photons bring gloss",
+          "[light_map_pictures]") {
   // Only the table is glossy: pixels that see nothing else are those of an estimate at each hit.
   test::SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));
