@@ -34,18 +34,6 @@ RenderParameters gathering(int rays, std::uint64_t photons, std::uint64_t seed =
   return parameters;
 }
 
-/// Means over the picture of one layer.
-struct LayerMeans {
-  double illuminance = 0, radiance = 0;
-
-  explicit LayerMeans(const LightLayers::Layer& layer) {
-    for (const float value : layer.illuminance) illuminance += value;
-    for (const glm::vec3& value : layer.radiance) radiance += luminance(value);
-    illuminance /= static_cast<double>(layer.illuminance.size());
-    radiance /= static_cast<double>(layer.radiance.size());
-  }
-};
-
 /// A closed cube of one metre whose walls all emit and reflect, the same everywhere. The wall at
 /// x = 1 can be a mirror, in which they go on.
 Scene furnace(double albedo, bool has_mirror) {

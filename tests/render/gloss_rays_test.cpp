@@ -32,18 +32,6 @@ RenderParameters with_rays(std::uint64_t seed = 1) {
   return parameters;
 }
 
-/// Means over the picture of one layer.
-struct LayerMeans {
-  double illuminance = 0, radiance = 0;
-
-  explicit LayerMeans(const LightLayers::Layer& layer) {
-    for (const float value : layer.illuminance) illuminance += value;
-    for (const glm::vec3& value : layer.radiance) radiance += luminance(value);
-    illuminance /= static_cast<double>(layer.illuminance.size());
-    radiance /= static_cast<double>(layer.radiance.size());
-  }
-};
-
 Scene glossy_room(const Material& floor) {
   Scene scene = furnished_room(3);
   scene.materials[0] = floor;

@@ -6,6 +6,7 @@
 
 #include "photile/camera.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::test {
 
@@ -35,5 +36,17 @@ inline bool same_bits(const LightLayers& a, const LightLayers& b) {
   }
   return true;
 }
+
+/// Means over the picture of one layer.
+struct LayerMeans {
+  double illuminance = 0, radiance = 0;
+
+  explicit LayerMeans(const LightLayers::Layer& layer) {
+    for (const float value : layer.illuminance) illuminance += value;
+    for (const glm::vec3& value : layer.radiance) radiance += luminance(value);
+    illuminance /= static_cast<double>(layer.illuminance.size());
+    radiance /= static_cast<double>(layer.radiance.size());
+  }
+};
 
 }  // namespace photile::test
