@@ -172,12 +172,7 @@ TEST_CASE("gathered nodes: the same bits whatever was looked at before, on any n
 
 TEST_CASE("gathered nodes: many lights, each in its layer, are what their group is") {
   Scene scene = furnished_room();
-  while (scene.lights.size() < 12) {
-    Light light = scene.lights.back();
-    light.name = "lamp " + std::to_string(scene.lights.size());
-    light.position.x = 0.3f * static_cast<float>(scene.lights.size());
-    scene.lights.push_back(light);
-  }
+  add_lamps(scene, 12);
   RenderParameters parameters = looked_up(50'000);
   parameters.radius = 0.3;
   const PrimaryHits hits = points_on(scene, 3);

@@ -289,12 +289,7 @@ TEST_CASE("gathering: layers are the same whatever the powers") {
 
 TEST_CASE("gathering: many lights, each in its layer, are what their group is") {
   Scene scene = furnished_room();
-  while (scene.lights.size() < 12) {
-    Light light = scene.lights.back();
-    light.name = "lamp " + std::to_string(scene.lights.size());
-    light.position.x = 0.3f * static_cast<float>(scene.lights.size());
-    scene.lights.push_back(light);
-  }
+  add_lamps(scene, 12);
   RenderParameters parameters = looked_up(50'000);
   parameters.radius = 0.3;
   const std::vector<Sensor> sensors = room_sensors(3);

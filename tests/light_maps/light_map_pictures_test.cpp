@@ -21,11 +21,7 @@ using test::same_bits;
 namespace {
 
 RenderParameters with_light_maps() {
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 30'000;
-  parameters.film.width = 64;
-  parameters.film.height = 48;
-  parameters.film.samples_per_pixel = 2;
+  RenderParameters parameters = small_picture(30'000, 64, 48);
   parameters.light_maps = LightMapMode::on;
   return parameters;
 }
@@ -33,12 +29,7 @@ RenderParameters with_light_maps() {
 /// Rows of many lights, a lamp and its copies side by side.
 Scene many_lamps() {
   Scene scene = test::furnished_room(2);
-  while (scene.lights.size() < 20) {
-    Light light = scene.lights.back();
-    light.name = "lamp " + std::to_string(scene.lights.size());
-    light.position.x = 0.2f * static_cast<float>(scene.lights.size());
-    scene.lights.push_back(light);
-  }
+  add_lamps(scene, 20);
   return scene;
 }
 

@@ -140,15 +140,8 @@ TEST_CASE("under an even sky a sensor reads pi L, a deviation of 1% would be see
   constexpr double radiance = 5;
   Scene scene = test::plate(test::diffuse(glm::vec3(0)), 2);
   const EnvironmentMap map("even", 6, 3, std::vector<glm::vec3>(18, glm::vec3(radiance)));
-  Light sky;
-  sky.name = "sky";
-  sky.kind = LightKind::environment;
-  sky.environment = 0;
-  sky.power =
-      luminance(glm::dvec3(map.integral())) * pi * std::pow(bounding_sphere(scene).radius, 2);
-  scene.environments.push_back(map);
-  scene.lights.push_back(sky);
-  const double truth = pi * radiance / sky.power;
+  add_environment(scene, map);
+  const double truth = pi * radiance / scene.lights.back().power;
   CHECK_VERDICT(paths_give(scene, {{0.2, 0.1, 0.5}, up}, {.rays = 4096}, truth, 0.01 * truth));
 }
 

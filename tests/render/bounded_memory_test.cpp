@@ -13,11 +13,7 @@ namespace photile::test {
 namespace {
 
 RenderParameters small_parameters(MapStructure structure) {
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 20'000;
-  parameters.film.width = 48;
-  parameters.film.height = 36;
-  parameters.film.samples_per_pixel = 2;
+  RenderParameters parameters = small_picture(20'000, 48, 36);
   parameters.structure = structure;
   return parameters;
 }

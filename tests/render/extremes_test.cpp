@@ -19,12 +19,8 @@ using nlohmann::json;
 
 namespace {
 
-RenderParameters small_picture() {
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 40'000;
-  parameters.film.width = 64;
-  parameters.film.height = 48;
-  parameters.film.samples_per_pixel = 2;
+RenderParameters one_pass_picture() {
+  RenderParameters parameters = small_picture(40'000, 64, 48);
   parameters.passes = 1;
   return parameters;
 }
@@ -149,7 +145,7 @@ Scene gltf_room(const glm::dvec3& offset) {
 }
 
 LightLayers picture_of(const Scene& scene, const glm::dvec3& offset) {
-  RenderParameters parameters = small_picture();
+  RenderParameters parameters = one_pass_picture();
   parameters.film.samples_per_pixel = 8;  // rounding moves single samples across edges
   return render(scene, camera_at(scene, offset), test::device(), parameters).layers;
 }
@@ -190,7 +186,7 @@ TEST_CASE("extremes: a room a million times larger or smaller gives the same pic
     for (Light& light : scene.lights) light.position *= factor;
     Camera camera = test::room_camera();
     camera.position *= factor;
-    RenderResult result = render(scene, camera, test::device(), small_picture());
+    RenderResult result = render(scene, camera, test::device(), one_pass_picture());
     for (auto& layer : result.layers.layers) {
       for (glm::vec3& radiance : layer.radiance) radiance *= factor * factor;
     }
@@ -245,7 +241,7 @@ TEST_CASE("extremes: a lamp of a millimetre in a hall of 1e5 m lights it as theo
 }
 
 TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a line") {
-  RenderParameters parameters = small_picture();
+  RenderParameters parameters = one_pass_picture();
   parameters.photons.emitted_photons = 500;
   parameters.film.width = 16;
   parameters.film.height = 12;

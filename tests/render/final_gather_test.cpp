@@ -200,12 +200,7 @@ TEST_CASE("final gathering: many lights, each in its layer, are what their group
   Scene scene = test::furnished_room();
   scene.materials[2] = test::glossy(glm::vec3(0.2f), glm::vec3(0.4f), 0.2f);
   scene.materials[1] = test::mirror(glm::vec3(0.9f));
-  while (scene.lights.size() < 12) {
-    Light light = scene.lights.back();
-    light.name = "lamp " + std::to_string(scene.lights.size());
-    light.position.x = 0.3f * static_cast<float>(scene.lights.size());
-    scene.lights.push_back(light);
-  }
+  add_lamps(scene, 12);
   RenderParameters parameters = gathering(8, 20'000);
   parameters.radius = 0.3;
   const Camera camera = test::room_camera();

@@ -74,15 +74,8 @@ struct Pool {
     // The middle of a map lies towards -z: a hemisphere around z is its left and right quarter.
     const glm::vec3 on(1.0f), off(0.0f);
     const EnvironmentMap map("even", 4, 1, {on, off, off, on});
-    Light sky;
-    sky.name = "sky";
-    sky.kind = LightKind::environment;
-    sky.environment = 0;
-    sky.power =
-        luminance(glm::dvec3(map.integral())) * pi * std::pow(bounding_sphere(scene).radius, 2);
-    scene.environments.push_back(map);
-    scene.lights.push_back(sky);
-    unit = 1 / sky.power;
+    add_environment(scene, map);
+    unit = 1 / scene.lights.back().power;
   }
 };
 

@@ -26,12 +26,8 @@ std::vector<double> sums(const LightLayers& picture) {
 
 TEST_CASE("instances render the picture of the flattened scene") {
   const Scene scene = test::room_of_balls();
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 30'000;
+  RenderParameters parameters = small_picture(30'000, 64, 48);
   parameters.radius = 0.15;
-  parameters.film.width = 64;
-  parameters.film.height = 48;
-  parameters.film.samples_per_pixel = 2;
   const LightLayers shared = render(scene, test::room_camera(), test::device(), parameters).layers;
   const LightLayers flat =
       render(test::flattened(scene), test::room_camera(), test::device(), parameters).layers;

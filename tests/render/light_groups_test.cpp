@@ -31,12 +31,8 @@ Scene room_of_lamps() {
 }
 
 RenderResult rendered(const Scene& scene, bool glossy) {
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 20'000;
+  RenderParameters parameters = small_picture(20'000, 24, 18, samples);
   parameters.neighbours = neighbours;
-  parameters.film.width = 24;
-  parameters.film.height = 18;
-  parameters.film.samples_per_pixel = samples;
   parameters.radius = glossy ? 0.4 : 0;  // one that is chosen is the same in both, too
   const Camera camera = Camera::look_at({3.6, 0.4, 1.2}, {1, 2, 1.9}, {0, 0, 1}, 1.3);
   return render(scene, camera, test::device(), parameters);

@@ -15,11 +15,7 @@ namespace photile::test {
 namespace {
 
 RenderParameters small_parameters(int passes) {
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 30'000;
-  parameters.film.width = 48;
-  parameters.film.height = 36;
-  parameters.film.samples_per_pixel = 2;
+  RenderParameters parameters = small_picture(30'000, 48, 36);
   parameters.passes = passes;
   return parameters;
 }

@@ -6,9 +6,21 @@
 
 #include "photile/camera.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::test {
+
+/// A picture of so few photons and pixels that a test can render several.
+inline RenderParameters small_picture(std::uint64_t photons, int width, int height,
+                                      int samples = 2) {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = photons;
+  parameters.film.width = width;
+  parameters.film.height = height;
+  parameters.film.samples_per_pixel = samples;
+  return parameters;
+}
 
 /// Looks into furnished_room.
 inline Camera room_camera() {

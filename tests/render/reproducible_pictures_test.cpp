@@ -19,14 +19,7 @@ using test::same_bits;
 
 namespace {
 
-RenderParameters small_parameters() {
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 30'000;
-  parameters.film.width = 64;
-  parameters.film.height = 48;
-  parameters.film.samples_per_pixel = 2;
-  return parameters;
-}
+RenderParameters small_parameters() { return small_picture(30'000, 64, 48); }
 
 }  // namespace
 
@@ -43,12 +36,7 @@ TEST_CASE("one, two and three threads render the same bits") {
 
 TEST_CASE("one, two and three threads render the same bits of many lights") {
   Scene scene = test::furnished_room(4);
-  while (scene.lights.size() < 20) {
-    Light light = scene.lights.back();
-    light.name = "lamp " + std::to_string(scene.lights.size());
-    light.position.x = 0.2f * static_cast<float>(scene.lights.size());
-    scene.lights.push_back(light);
-  }
+  add_lamps(scene, 20);
   std::vector<LightLayers> pictures;
   for (const std::size_t threads : {1u, 2u, 3u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

@@ -22,14 +22,7 @@ Scene room(bool is_glossy) {
 }
 
 /// Large enough for all rounds: the warm-up, the probe, and a share by throughput.
-RenderParameters parameters() {
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 30'000;
-  parameters.film.width = 160;
-  parameters.film.height = 120;
-  parameters.film.samples_per_pixel = 4;
-  return parameters;
-}
+RenderParameters parameters() { return small_picture(30'000, 160, 120, 4); }
 
 std::vector<Device> halves() { return open_devices({.selector = "/2"}); }
 

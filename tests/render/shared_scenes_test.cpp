@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "photile/renderer.hpp"
+#include "pictures.hpp"
 
 namespace photile::test {
 namespace {
@@ -37,11 +38,7 @@ TEST_CASE("every shared scene that loads renders to finite light under a sky", "
     return;
   }
   Device device;
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 2'000;
-  parameters.film.width = 16;
-  parameters.film.height = 12;
-  parameters.film.samples_per_pixel = 1;
+  RenderParameters parameters = small_picture(2'000, 16, 12, 1);
   int pictures = 0, lit = 0;
   for (const test::SharedScene& shared : test::shared_scenes) {
     if (!shared.refusal.empty()) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
 #include <string>
 
 #include "photile/scene_builder.hpp"
@@ -96,6 +97,29 @@ inline Scene furnished_room(int cells = 1) {
   builder.box({0.6f, 1.6f, 0.0f}, {1.4f, 2.4f, 1.2f}, white, false, std::max(1, cells / 3));
   builder.box({2.3f, 0.5f, 0.0f}, {3.1f, 1.3f, 0.6f}, white, false, std::max(1, cells / 3));
   return builder.build();
+}
+
+/// Copies of a scene's last lamp beside each other, 0.2 m times their number along x, until there
+/// are `count` lights.
+inline void add_lamps(Scene& scene, std::size_t count) {
+  while (scene.lights.size() < count) {
+    Light light = scene.lights.back();
+    light.name = "lamp " + std::to_string(scene.lights.size());
+    light.position.x = 0.2f * static_cast<float>(scene.lights.size());
+    scene.lights.push_back(light);
+  }
+}
+
+/// Surroundings as a picture: the only environment of a scene.
+inline void add_environment(Scene& scene, const EnvironmentMap& map) {
+  Light light;
+  light.name = "environment";
+  light.kind = LightKind::environment;
+  light.environment = 0;
+  const double radius = bounding_sphere(scene).radius;
+  light.power = luminance(glm::dvec3(map.integral())) * glm::pi<double>() * radius * radius;
+  scene.environments.push_back(map);
+  scene.lights.push_back(light);
 }
 
 /// The same scene as another exporter might have wound it: the fronts of all triangles for which

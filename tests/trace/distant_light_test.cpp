@@ -21,15 +21,8 @@ namespace {
 using std::numbers::pi;
 const glm::dvec3 up(0, 0, 1);  // of the plates; a map's zenith is y
 
-Scene with_environment(Scene scene, EnvironmentMap map) {
-  Light light;
-  light.name = "environment";
-  light.kind = LightKind::environment;
-  light.environment = 0;
-  const double radius = bounding_sphere(scene).radius;
-  light.power = luminance(map.integral()) * pi * radius * radius;
-  scene.environments.push_back(std::move(map));
-  scene.lights.push_back(light);
+Scene with_environment(Scene scene, const EnvironmentMap& map) {
+  add_environment(scene, map);
   return scene;
 }
 

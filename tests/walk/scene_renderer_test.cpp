@@ -5,20 +5,14 @@
 
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
+#include "render/pictures.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
 
-RenderParameters small() {
-  RenderParameters parameters;
-  parameters.photons.emitted_photons = 20'000;
-  parameters.film.width = 24;
-  parameters.film.height = 16;
-  parameters.film.samples_per_pixel = 2;
-  return parameters;
-}
+RenderParameters small() { return small_picture(20'000, 24, 16); }
 
 }  // namespace
 
