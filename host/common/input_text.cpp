@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "common/regular_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -16,10 +17,10 @@ std::string read_input_text(const std::filesystem::path& file) {
 }
 
 std::string read_own_text(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw InputError(fmt::format("{}: no such file", file.string()));
+  if (const std::string reason = why_no_regular_file(file); !reason.empty()) {
+    throw InputError(fmt::format("{}: {}", file.string(), reason));
   }
+  std::error_code error;
   const auto bytes = std::filesystem::file_size(file, error);
   if (error || bytes > limits::max_input_text_bytes) {
     throw InputError(fmt::format("{}: larger than {} bytes; split it", file.string(),

@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <utility>
 
 #include "common/run_files.hpp"
@@ -25,6 +28,47 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
+/// Between the name of an output and the number of the process that writes it.
+constexpr std::string_view infix = ".photile.";
+
+/// Whether it is a name that `temporary_` has.
+bool is_temporary(std::string_view name) {
+  const std::size_t place = name.rfind(infix);
+  if (!name.starts_with('.') || place == std::string_view::npos) return false;
+  const std::string_view number = name.substr(place + infix.size());
+  return !number.empty() && number.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Removes the temporary files in a folder that no process holds: those of killed runs. A lock says
+/// so across machines and containers, where process numbers mean nothing.
+void remove_abandoned(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> done;  // a walk writes thousands of files into one folder
+  const std::lock_guard lock(mutex);
+  if (!done.insert(fs::absolute(folder).lexically_normal()).second) return;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (!is_temporary(entry->path().filename().string())) continue;
+    const int file = ::open(entry->path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (file < 0) continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(entry->path().c_str());
+    ::close(file);
+  }
+}
+
+/// A new file that is locked until it is closed, or its process ends; -1 with errno.
+int create_locked(const fs::path& file) {
+  for (;;) {
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0) return -1;
+    ::flock(descriptor, LOCK_EX);  // without locks of the file system nobody removes it either
+    struct stat status {};
+    if (::fstat(descriptor, &status) != 0 || status.st_nlink > 0) return descriptor;
+    ::close(descriptor);  // another run has found it before it was locked
+  }
+}
+
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& file) : file_(file), target_(target_of(file)) {
@@ -35,9 +79,10 @@ OutputFile::OutputFile(const fs::path& file) : file_(file), target_(target_of(fi
         fmt::format("{}: is not a regular file; name a file to be written", file.string()));
   }
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
-  temporary_ = folder / fmt::format(".{}.tmp.{}", target_.filename().string(), ::getpid());
+  remove_abandoned(folder);
+  temporary_ = folder / fmt::format(".{}{}{}", target_.filename().string(), infix, ::getpid());
   ::unlink(temporary_.c_str());  // left by a killed process that had the same number
-  descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  descriptor_ = create_locked(temporary_);
   if (descriptor_ < 0) {
     throw OutputError(fmt::format("{}: cannot be created: {}; choose a folder that can be written",
                                   file.string(), std::strerror(errno)));

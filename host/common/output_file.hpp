@@ -9,7 +9,8 @@
 namespace photile {
 
 /// Written under a temporary name in the folder of its target, then renamed by `commit`. Destroyed
-/// without a commit, it leaves nothing behind and an earlier file under the name untouched.
+/// without a commit, it leaves nothing behind and an earlier file under the name untouched. What a
+/// killed process leaves behind is removed by the next that writes into the folder.
 class OutputFile {
  public:
   /// Opens the temporary file. A symbolic link is followed, so that the link stays one.

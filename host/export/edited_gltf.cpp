@@ -283,9 +283,9 @@ void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::p
     Json json = Json::parse(binary ? BinaryFile(bytes).json : bytes);
     Document(json, options, left_out).set(settings);
     write_file(copy, binary ? BinaryFile(bytes).joined(json.dump()) : json.dump(2) + "\n");
-  } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: its lights cannot be set ({}); export it again",
-                                 scene.string(), error.what()));
+  } catch (const Json::exception&) {  // its text means something to programmers alone
+    throw InputError(fmt::format(
+        "{}: its lights cannot be set, for it is malformed; export it again", scene.string()));
   }
 }
 

@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-namespace Imf = OPENEXR_IMF_NAMESPACE;
-
 namespace photile::image {
 
 /// Lets OpenEXR use the cores that photile may use. Called before a file is opened.

@@ -12,8 +12,6 @@
 #include "common/output_file.hpp"
 #include "photile/image.hpp"
 
-namespace Imf = OPENEXR_IMF_NAMESPACE;
-
 namespace photile::image {
 
 /// A part of 32-bit floats with the header's size and the given channels. Says what its colours

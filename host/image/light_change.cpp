@@ -125,8 +125,9 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
       power = light.unit == PowerUnit::lumen ? power * lumen_per_watt : power / lumen_per_watt;
     }
   }
-  if (!std::isfinite(power)) {
-    throw UsageError(fmt::format("light '{}': its power would be infinite; use less", light.name));
+  if (!(power <= limits::max_light_power)) {
+    throw UsageError(fmt::format("light '{}': its power would be {:g}; the limit is {:g}; use less",
+                                 light.name, power, limits::max_light_power));
   }
   light.power = power;
 }

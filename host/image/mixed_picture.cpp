@@ -44,7 +44,7 @@ class MixedPicture : public LayeredPicture {
     image::write_light_records(header_, records);
   }
 
-  LightRows read(std::size_t light, int first, int end) const override {
+  LightRows read_any(std::size_t light, int first, int end) const override {
     const auto width = static_cast<std::size_t>(header_.width);
     const std::size_t pixels = static_cast<std::size_t>(end - first) * width;
     LightRows rows;
@@ -60,7 +60,7 @@ class MixedPicture : public LayeredPicture {
     return rows;
   }
 
-  Image root() const override {
+  Image sum_any() const override {
     std::vector<glm::vec3> sums(header_.pixels());
     combine_layers(source_, mix_, sums);
     Image image;

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 
+#include "common/regular_file.hpp"
 #include "image/decoder.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -64,10 +65,8 @@ void take_attributes(const Imf::Header& header, PictureHeader& image) {
 
 /// What keeps a file from being read as a picture, or "".
 std::string unreadable(const fs::path& file) {
+  if (const std::string reason = why_no_regular_file(file); !reason.empty()) return reason;
   std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) return "no such file; check the path";
-  if (!fs::is_regular_file(status)) return "is not a regular file; name a picture";
   const std::uintmax_t bytes = fs::file_size(file, error);
   if (error) return "cannot be read: " + error.message();
   if (bytes == 0) return "is empty; a picture is needed";
@@ -214,6 +213,14 @@ void PictureFile::add_channel(const ExrInput::Part& part, std::size_t index) {
   }
   header_.channel_names.push_back(name);
   places_.push_back({parts_ - 1, index});
+}
+
+std::vector<std::size_t> PictureFile::first_channels() const {
+  std::vector<std::size_t> channels;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (static_cast<std::size_t>(places_[i].part) == channels.size()) channels.push_back(i);
+  }
+  return channels;
 }
 
 void PictureFile::check_total() const {

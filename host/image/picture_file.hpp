@@ -26,6 +26,8 @@ class PictureFile : public ChannelRows {
   std::vector<float> read(std::size_t channel, int first, int end) override;
 
   std::size_t channels_of_largest_part() const { return largest_part_; }
+  /// A channel of each part.
+  std::vector<std::size_t> first_channels() const;
 
   /// Refuses a picture that would be too large in memory. Errors: InputError naming the file.
   void check_total() const;

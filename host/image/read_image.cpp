@@ -15,6 +15,16 @@ PictureHeader read_header(const std::filesystem::path& file) {
   return image::PictureFile(file).header();
 }
 
+void check_pixels(const std::filesystem::path& file) {
+  image::PictureFile source(file);
+  const int height = source.header().height;
+  for (const std::size_t channel : source.first_channels()) {
+    for (int first = 0; first < height; first += rows_per_read) {
+      source.read(channel, first, std::min(first + rows_per_read, height));
+    }
+  }
+}
+
 Image read_image(const std::filesystem::path& file) {
   image::PictureFile source(file);
   source.check_total();

@@ -68,7 +68,7 @@ class RelitPicture : public LayeredPicture {
     image::write_light_records(header_, now);
   }
 
-  LightRows read(std::size_t light, int first, int end) const override {
+  LightRows read_any(std::size_t light, int first, int end) const override {
     LightRows rows = read_rgb(light, first, end);
     if (const auto channel = before_.channels[light].illuminance) {
       rows.illuminance = source_->read(*channel, first, end);
@@ -77,17 +77,20 @@ class RelitPicture : public LayeredPicture {
     return rows;
   }
 
-  Image root() const override {
+  Image sum_any() const override {
     Image image;
     static_cast<PictureHeader&>(image) = header_;
     for (const char* component : {"R", "G", "B"}) image.add(component);
-    for (std::size_t light = 0; light < lights(); ++light) {
-      for (int first = 0; first < image.height; first += rows_per_read) {
-        const int end = std::min(first + rows_per_read, image.height);
+    std::vector<float>& alpha = image.add("A");
+    // All lights of some rows: those of one part are decoded together.
+    for (int first = 0; first < image.height; first += rows_per_read) {
+      const int end = std::min(first + rows_per_read, image.height);
+      for (std::size_t light = 0; light < lights(); ++light) {
         add_rows(read_rgb(light, first, end), first, image);
       }
+      const std::vector<float> rows = read_alpha(first, end);
+      std::copy(rows.begin(), rows.end(), alpha.begin() + std::ptrdiff_t{first} * image.width);
     }
-    image.add("A") = alpha();
     return image;
   }
 
@@ -125,17 +128,30 @@ class RelitPicture : public LayeredPicture {
     }
   }
 
-  std::vector<float> alpha() const {
+  std::vector<float> read_alpha(int first, int end) const {
     const auto& names = source_->header().channel_names;
     const auto found = std::find(names.begin(), names.end(), "A");
-    if (found == names.end()) return std::vector<float>(header_.pixels(), 1.0f);
-    return source_->read(static_cast<std::size_t>(found - names.begin()), 0, header_.height);
+    const auto rows = static_cast<std::size_t>(end - first);
+    if (found == names.end()) {
+      return std::vector<float>(rows * static_cast<std::size_t>(header_.width), 1.0f);
+    }
+    return source_->read(static_cast<std::size_t>(found - names.begin()), first, end);
   }
 
   const std::unique_ptr<image::ChannelRows> source_;
   const image::LayerSet before_;
   std::vector<Factors> factors_;  ///< per light
 };
+
+/// Whatever is wrong with what a file holds, by its name.
+template <class Work>
+auto about(const std::filesystem::path& file, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
 
 }  // namespace
 
@@ -149,13 +165,22 @@ std::unique_ptr<LayeredPicture> relit_picture(const std::filesystem::path& file,
   auto source = std::make_unique<image::PictureFile>(file);
   // To read one light's rows is to decode those of its whole part.
   constexpr std::size_t few = 4 + 4 * limits::max_single_part_lights;
-  const bool many = source->header().channel_names.size() > few;
-  if (many && source->channels_of_largest_part() <= few) {
-    return std::make_unique<RelitPicture>(std::move(source), changes);
+  constexpr std::uint64_t little = 256ull << 20;  // bytes
+  const std::size_t channels = source->header().channel_names.size();
+  const bool much = channels > few || source->header().pixels() * channels > little / sizeof(float);
+  if (much && source->channels_of_largest_part() <= few) {
+    return about(file, [&] { return std::make_unique<RelitPicture>(std::move(source), changes); });
   }
   auto image = std::make_shared<const Image>(read_image(file));
-  return std::make_unique<RelitPicture>(std::make_unique<image::ImageRows>(std::move(image)),
-                                        changes);
+  return about(file, [&] {
+    return std::make_unique<RelitPicture>(std::make_unique<image::ImageRows>(std::move(image)),
+                                          changes);
+  });
+}
+
+LightMix read_light_mix(const std::filesystem::path& file) {
+  const PictureHeader header = read_header(file);
+  return about(file, [&] { return read_light_mix(header); });
 }
 
 LightMix read_light_mix(const PictureHeader& layered) {

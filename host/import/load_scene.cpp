@@ -80,6 +80,16 @@ void finish_directional_lights(const ImportContext& context) {
   }
 }
 
+void check_powers(const Scene& scene) {
+  for (const Light& light : scene.lights) {
+    if (light.power <= limits::max_light_power) continue;
+    throw InputError(fmt::format("{}: light '{}' emits {:.4g} {}; the limit is {:g}; give it less",
+                                 scene.source.string(), light.name, light.power,
+                                 scene.unit == PowerUnit::lumen ? "lm" : "W",
+                                 limits::max_light_power));
+  }
+}
+
 /// Objects of a glTF file are its visits, then its panels; those of an OBJ file have no nodes.
 LightSource source_of(const AreaLights::Origin& origin, const ImportContext& context) {
   const std::vector<std::uint32_t>& nodes = context.visited_nodes;
@@ -132,6 +142,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   make_light_names_unique(scene.lights);
   apply_profiles(scene, options.profiles, warnings);
   apply_temperatures(scene, options.temperatures);
+  check_powers(scene);
   group_lights(scene, options.light_groups);
   if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
   scene.report.warnings = warnings.lines();

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -14,6 +15,12 @@
 namespace photile::scene_io {
 namespace {
 
+void check_lux(const char* light, double lux) {
+  if (lux > 0.0 && lux <= limits::max_illuminance) return;
+  throw UsageError(fmt::format("{} of {:g} lux: give more than 0, and {:g} at most", light, lux,
+                               limits::max_illuminance));
+}
+
 /// What is given in lux, in the scene's unit.
 double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& options) {
   return scene.unit == PowerUnit::lumen ? lux : lux / options.lumen_per_watt;
@@ -21,7 +28,17 @@ double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& opt
 
 void add_picture(const EnvironmentPicture& picture, Scene& scene) {
   RadiancePicture read = read_radiance_picture(picture.file);
-  for (glm::vec3& texel : read.texels) texel *= static_cast<float>(picture.scale);
+  std::size_t lost = 0;
+  for (glm::vec3& texel : read.texels) {
+    texel *= static_cast<float>(picture.scale);
+    lost += std::isfinite(texel.x) && std::isfinite(texel.y) && std::isfinite(texel.z) ? 0 : 1;
+  }
+  if (lost > 0) {
+    throw InputError(
+        fmt::format("{}: {} of its {} texels, times {:g}, are beyond any number; give a smaller "
+                    "scale",
+                    picture.file.string(), lost, read.texels.size(), picture.scale));
+  }
   EnvironmentMap map(picture.file.filename().string(), read.width, read.height,
                      std::move(read.texels), picture.rotation_degrees);
   if (!(luminance(map.integral()) > 0.0)) {
@@ -32,6 +49,7 @@ void add_picture(const EnvironmentPicture& picture, Scene& scene) {
 }
 
 void add_sun(const Sun& sun, const SceneLoadOptions& options, Scene& scene) {
+  check_lux("sun", sun.illuminance);
   const double diameter = sun.diameter_degrees * std::numbers::pi / 180.0;
   Light light;
   light.name = "sun";
@@ -44,6 +62,7 @@ void add_sun(const Sun& sun, const SceneLoadOptions& options, Scene& scene) {
 }
 
 void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
+  check_lux("sky", sky.illuminance);
   glm::dvec3 to_sun(0.0, 1.0, 0.0);
   if (sky.kind == SkyKind::clear) {
     if (!options.sun || !(options.sun->elevation_degrees > 0.0)) {

@@ -1,8 +1,12 @@
 #include "measuring/readings.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "image/light_change.hpp"
+#include "photile/errors.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::measuring {
@@ -16,8 +20,15 @@ void Readings::add(const LightLayers& layers, const LightMix& mix, double factor
     const glm::dvec3 scale =
         factor * glm::pi<double>() * light.power * lumens * glm::dvec3(light.tint);
     std::vector<float>& values = repeat.emplace_back(sensors_);
+    std::size_t lost = 0;
     for (std::size_t sensor = 0; sensor < sensors_; ++sensor) {
       values[sensor] = static_cast<float>(luminance(scale * glm::dvec3(layer.radiance[sensor])));
+      lost += std::isfinite(values[sensor]) ? 0 : 1;
+    }
+    if (lost > 0) {
+      throw InputError(
+          fmt::format("light '{}': its lux at {} of {} points are beyond any number; turn it down",
+                      layer.light, lost, sensors_));
     }
   }
 }

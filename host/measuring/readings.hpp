@@ -19,6 +19,7 @@ class Readings {
 
   /// Adds a repeat: the layers of `gather`, each at its power in the mix.
   ///   factor   of all values: the maintenance factor
+  /// Errors: InputError naming a light whose lux no number holds.
   void add(const LightLayers& layers, const LightMix& mix, double factor);
 
   std::size_t sensors() const { return sensors_; }

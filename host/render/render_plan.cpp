@@ -1,5 +1,7 @@
 #include "render/render_plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "geometry/radius_range.hpp"
@@ -48,7 +50,7 @@ PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
 }
 
 RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Progress& progress)
-    : used_(asked) {
+    : used_(asked), scene_(rays.scene().source.filename().string()) {
   check(asked);
   if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
@@ -80,7 +82,11 @@ double RenderPlan::radius(const Photons& photons) const {
   if (used_.radius > 0) return used_.radius;
   // Where rays bring all the light there is, no photon is stored, and any radius serves.
   if (!all_photons(used_).store_direct && photons.size() < 2) return 1;
-  return automatic_radius(photons, used_.neighbours);
+  try {
+    return automatic_radius(photons, used_.neighbours);
+  } catch (const UsageError& error) {
+    throw SettingError(setting_named("radius"), fmt::format("{}: {}", scene_, error.what()));
+  }
 }
 
 MapMode RenderPlan::map_mode() const {

@@ -38,7 +38,8 @@ class RenderPlan {
   ///   paths_before   of each light
   PhotonTracerParameters tracing(int pass, const std::vector<std::uint64_t>& paths_before) const;
 
-  /// Of the first pass, metres: as asked, or by its photons.
+  /// Of the first pass, metres: as asked, or by its photons. Errors: SettingError where they tell
+  /// none.
   double radius(const Photons& photons) const;
 
   MapMode map_mode() const;
@@ -70,6 +71,7 @@ class RenderPlan {
 
  private:
   RenderParameters used_;
+  std::string scene_;  ///< for messages
 };
 
 }  // namespace photile

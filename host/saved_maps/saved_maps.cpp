@@ -13,6 +13,7 @@
 
 #include "common/content_hash.hpp"
 #include "common/output_file.hpp"
+#include "common/regular_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "saved_maps/check_photons.hpp"
@@ -119,8 +120,8 @@ class Checksum {
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : file_(file) {
+    if (const std::string reason = why_no_regular_file(file); !reason.empty()) refuse(reason);
     std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) refuse("no such file");
     note_input(file);
     left_ = std::filesystem::file_size(file, error);
     stream_.open(file, std::ios::binary);

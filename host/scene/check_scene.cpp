@@ -198,9 +198,9 @@ class SceneCheck {
   void check_light(std::size_t index) const {
     const Light& light = scene_.lights[index];
     const std::string owner = fmt::format("light {} '{}'", index, light.name);
-    if (!(light.power >= 0) || !std::isfinite(light.power)) {
-      refuse(scene_,
-             fmt::format("{} has the power {}; it must be a number from 0 on", owner, light.power));
+    if (!(light.power >= 0 && light.power <= limits::max_light_power)) {
+      refuse(scene_, fmt::format("{} has the power {}; it must be a number from 0 to {}", owner,
+                                 light.power, limits::max_light_power));
     }
     const float numbers = light.color.x + light.color.y + light.color.z + light.inner_cone_angle +
                           light.outer_cone_angle + light.angular_diameter + light.texel_radiance.x +

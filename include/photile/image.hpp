@@ -47,6 +47,10 @@ PictureHeader read_header(const std::filesystem::path& file);
 /// Errors: InputError naming the file.
 Image read_image(const std::filesystem::path& file);
 
+/// Reads every pixel of a picture, a few rows at a time, and forgets it. Errors: InputError naming
+/// the file where it is damaged, or not whole.
+void check_pixels(const std::filesystem::path& file);
+
 /// Writes a single-part scan-line EXR of 32-bit floats, through a temporary name and a rename.
 /// Errors: OutputError naming the file; an existing file is kept then.
 void write_exr(const std::filesystem::path& file, const Image& image);

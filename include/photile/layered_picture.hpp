@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,20 +35,37 @@ class LayeredPicture {
   /// known.
   std::vector<std::string> channel_names(std::size_t light) const;
 
-  /// Rows [first, end) of a light. Asking for lights in ascending order is the fastest.
+  /// Rows [first, end) of a light: finite numbers, the nearest where a value is beyond them, and 0
+  /// for what is none. Asking for lights in ascending order is the fastest.
   /// Errors: InputError where they come from a file that is damaged.
-  virtual LightRows read(std::size_t light, int first, int end) const = 0;
+  LightRows read(std::size_t light, int first, int end) const;
 
-  /// The root R G B A: the float sum of all lights in order. Errors: as `read`.
-  virtual Image root() const = 0;
+  /// The root R G B A: the float sum of all lights in order, finite as they are. Errors: as `read`.
+  Image root() const;
+
+  /// A line for each light of whose pixels some were not finite, among those that have been read,
+  /// or for the root where only their sum was not: which, how many and the remedy.
+  std::vector<std::string> overflows() const;
 
  protected:
+  /// As `read` and `root`, whatever the numbers.
+  virtual LightRows read_any(std::size_t light, int first, int end) const = 0;
+  virtual Image sum_any() const = 0;
+
   struct Layer {
     std::string light;
     bool illuminance;
   };
   PictureHeader header_;
   std::vector<Layer> layers_;
+
+ private:
+  struct Overflow {
+    int counted = 0;  ///< rows, from the top
+    std::uint64_t pixels = 0;
+  };
+  mutable std::map<std::size_t, Overflow> overflows_;  ///< by light
+  mutable std::uint64_t lost_sums_ = 0;                ///< pixels of the root
 };
 
 /// Layers x powers, as mix_layers gives them. Keeps a reference to the layers. Errors: UsageError

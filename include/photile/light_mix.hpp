@@ -1,6 +1,7 @@
 // Relighting: the powers and colours of lights, applied to their layers.
 #pragma once
 
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <span>
 #include <string>
@@ -68,7 +69,9 @@ void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<gl
 /// or a colour that it lacks there, is to be turned up.
 Image relight(const Image& layered, const std::vector<LightChange>& changes);
 
-/// The lights of a picture, as `relight` sees them.
+/// The lights of a picture, as `relight` sees them. Errors: InputError as `relight`, naming the
+/// file.
 LightMix read_light_mix(const PictureHeader& layered);
+LightMix read_light_mix(const std::filesystem::path& file);
 
 }  // namespace photile

@@ -48,15 +48,18 @@ inline constexpr std::uint64_t max_lights = 10'000;
 inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulation is quadratic
 inline constexpr int max_node_depth = 512;
 inline constexpr std::uint64_t max_nodes = 1'000'000;
-inline constexpr std::uint64_t max_node_visits = 10'000'000;  ///< shared children multiply
+/// Places of nodes beyond their number: shared children multiply. The format has none.
+inline constexpr std::uint64_t max_repeated_visits = 100'000;
+inline constexpr std::uint64_t max_node_visits = max_nodes + max_repeated_visits;
 inline constexpr int max_json_depth = 256;  ///< recursive parsers overflow the stack
-/// Triangles that a glTF file places beyond those that its buffers can hold, three bytes each:
-/// nodes may repeat a mesh, and meshes share buffers, so that a file of kilobytes could ask for any
-/// memory.
-inline constexpr std::uint64_t max_repeated_triangles = 50'000'000;
+/// Triangles that a glTF file places for each that its buffers and nodes can hold (three bytes, or
+/// a node), above a number that is not worth a check: nodes may repeat a mesh, and meshes share
+/// buffers, so that a file of kilobytes could ask for any memory.
+inline constexpr std::uint64_t max_triangle_expansion = 1'000;
+inline constexpr std::uint64_t unchecked_triangles = 1'000'000;
 
 /// Elements of a glTF accessor that has no buffer view: zeros that cost a file nothing.
-inline constexpr std::uint64_t max_implicit_elements = 16'000'000;
+inline constexpr std::uint64_t max_implicit_elements = 1'000'000;
 
 // Materials
 inline constexpr double max_index_of_refraction = 1e6;  ///< F0 is 1 within rounding
@@ -69,6 +72,9 @@ inline constexpr std::uint64_t max_photometric_values = 4'000'000;
 
 // Light
 inline constexpr double min_color_temperature = 1'000, max_color_temperature = 40'000;  ///< kelvin
+/// Lumens or watts of a light: over any area above a square millimetre, floats hold its radiance.
+inline constexpr double max_light_power = 1e30;
+inline constexpr double max_illuminance = 1e30;  ///< lux of a sun or a sky
 /// Degrees of a sun's disc: the light of a wider one is that of an environment.
 inline constexpr double max_sun_diameter_degrees = 90;
 

@@ -143,4 +143,43 @@ TEST_CASE("relight refuses what it cannot do with one line and the right exit co
   CHECK_FALSE(std::filesystem::exists(out));
 }
 
+TEST_CASE("relight names the picture that lacks what it needs") {
+  const FileFolder folder;
+  Image plain;
+  plain.width = plain.height = 4;
+  for (const char* channel : {"R", "G", "B"}) plain.add(channel).assign(16, 0.5f);
+  write_exr(folder / "plain.exr", plain);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{},
+                                               {"-o", folder / "out.exr"},
+                                               {"--illuminance", folder / "l.png"}}) {
+    std::vector<std::string> arguments{"relight", folder / "plain.exr"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    CHECK_THAT(last_error(run_photile(arguments), bad_input),
+               Contains("plain.exr: ") && Contains("no light layers"));
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
+}
+
+TEST_CASE("a lamp turned up beyond what files hold is told with its name and its pixels") {
+  const FileFolder folder;
+  const std::string original = render(folder, "original.exr", {"--light", "left=1e29"});
+  const Outcome outcome = run_photile(
+      {"relight", original, "--light", "left=1e30", "--light", "left=x1", "-o", folder / "a.exr"});
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.errors.empty());  // a power that floats carry
+  CHECK_THAT(
+      only_error(run_photile({"relight", original, "--light", "left=x1e9", "-o", folder / "b.exr"}),
+                 usage),
+      Contains("'left'") && Contains("1e+30"));
+  Image bright = read_image(original);
+  for (std::vector<float>& plane : bright.channels) {
+    for (float& value : plane) value = 3e38f;
+  }
+  write_exr(folder / "bright.exr", bright);
+  const Outcome told =
+      run_photile({"relight", folder / "bright.exr", "--light", "left=x5", "-o", folder / "c.exr"});
+  CHECK(told.exit_code == 0);
+  CHECK_THAT(told.errors, Contains("warning: light 'left': 384 of 384 pixels"));
+}
+
 }  // namespace photile::test

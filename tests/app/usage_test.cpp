@@ -66,22 +66,64 @@ TEST_CASE("a window does without final gathering, and says so") {
 
 TEST_CASE("values out of range are usage errors that name the option and the value") {
   const auto [option, value] = GENERATE(table<std::string, std::string>({
-      {"--neighbours", "0"},    {"--neighbours", "-3"},      {"--neighbours", "2000000"},
-      {"--neighbours", "many"}, {"--radius", "0"},           {"--radius", "-1"},
-      {"--radius", "nan"},      {"--radius", "inf"},         {"--radius", "1e-60"},
-      {"--photons", "0"},       {"--photons", "1e11"},       {"--photons", "1.5"},
-      {"--samples", "0"},       {"--samples", "70000"},      {"--angle", "181"},
-      {"--angle", "-1"},        {"--photons-per-cell", "0"}, {"--seed", "-1"},
-      {"--seed", "1e30"},       {"--size", "0x10"},          {"--size", "10"},
-      {"--size", "10x20x30"},   {"--size", "100000x10"},     {"--maps", "magic"},
-      {"--quota", "magic"},     {"--threads", "-1"},         {"--threads", "1000000"},
-      {"--exposure", "nan"},    {"--lumen-per-watt", "0"},   {"--emissive-scale", "-1"},
+      {"--neighbours", "0"},
+      {"--neighbours", "-3"},
+      {"--neighbours", "2000000"},
+      {"--neighbours", "many"},
+      {"--radius", "0"},
+      {"--radius", "-1"},
+      {"--radius", "nan"},
+      {"--radius", "inf"},
+      {"--radius", "1e-60"},
+      {"--photons", "0"},
+      {"--photons", "1e11"},
+      {"--photons", "1.5"},
+      {"--samples", "0"},
+      {"--samples", "70000"},
+      {"--angle", "181"},
+      {"--angle", "-1"},
+      {"--photons-per-cell", "0"},
+      {"--seed", "-1"},
+      {"--seed", "1e30"},
+      {"--size", "0x10"},
+      {"--size", "10"},
+      {"--size", "10x20x30"},
+      {"--size", "100000x10"},
+      {"--maps", "magic"},
+      {"--quota", "magic"},
+      {"--threads", "-1"},
+      {"--threads", "1000000"},
+      {"--exposure", "nan"},
+      {"--lumen-per-watt", "0"},
+      {"--emissive-scale", "-1"},
+      {"--scale", "nan"},
+      {"--scale", "0"},
+      {"--scale", "24x24"},
   }));
   INFO(option << "=" << value);
   const FileFolder folder;
   const std::string line = only_error(render_with(folder, option, value), usage);
   CHECK_THAT(line, Contains(option) && Contains(value));
+  CHECK(line.size() < 250);  // no range of 300 digits
   CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
+}
+
+TEST_CASE("a preview at no port is a usage error") {
+  const FileFolder folder;
+  for (const char* port : {"99999", "0", "-1", "x", ""}) {
+    const std::string address = std::string("localhost:") + port;
+    CHECK_THAT(last_error(render_with(folder, "--preview", address), usage), Contains(address));
+  }
+}
+
+TEST_CASE("a scene that stores no photons is named, with the option that helps") {
+  const FileFolder folder;
+  const std::string scene = folder.write(
+      "lamp.obj", "mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lamp\nusemtl lamp\nf 1 2 3\n");
+  folder.write("lamp.mtl", "newmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
+  const Outcome outcome =
+      run_photile({"render", scene, "-o", folder / "out.exr", "--photons", "100", "--size", "4x4"});
+  CHECK_THAT(last_error(outcome, usage), Contains("--radius: lamp.obj: automatic radius"));
 }
 
 TEST_CASE("a change of a light without a value is a usage error") {

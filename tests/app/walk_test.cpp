@@ -78,6 +78,28 @@ TEST_CASE("a walk writes its frames, PNGs and a contact sheet, and again only th
   CHECK_THAT(done(arguments).errors, Contains("4 of 4 frames are finished"));
 }
 
+TEST_CASE("damaged frames and PNGs of a walk are made again, and no others") {
+  const FileFolder folder;
+  const std::vector<std::string> arguments = walk(folder, {"--png", folder / "f.##.png"});
+  done(arguments);
+  const std::string second = folder.read("f.02.exr"), third = folder.read("f.03.exr"),
+                    png = folder.read("f.04.png");
+  folder.write("f.02.exr", second.substr(0, second.size() / 2));
+  std::string flipped = third;
+  flipped[third.size() - 100] = static_cast<char>(~flipped[third.size() - 100]);
+  folder.write("f.03.exr", flipped);
+  folder.write("f.04.png", png.substr(0, png.size() / 2));
+  const auto first_written = written(folder / "f.01.exr"),
+             last_written = written(folder / "f.04.exr");
+  CHECK_THAT(done(arguments).errors, Contains("2 of 4 frames are finished"));
+  CHECK(written(folder / "f.01.exr") == first_written);
+  CHECK(written(folder / "f.04.exr") == last_written);
+  folder.write("whole.exr", second);
+  CHECK(*read_image(folder / "f.02.exr").find("G") == *read_image(folder / "whole.exr").find("G"));
+  CHECK(read_image(folder / "f.03.exr").width == 16);
+  CHECK(folder.read("f.04.png") == png);
+}
+
 TEST_CASE("a walk that is killed keeps its whole frames, and loses the one in progress at most") {
   constexpr std::size_t frames = 201;
   const FileFolder folder;

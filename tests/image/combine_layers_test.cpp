@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -14,7 +15,10 @@ void check_equal_to_sum(const LightLayers& layers, const LightMix& mix) {
   combine_layers(layers, mix, picture);
   for (int c = 0; c < 3; ++c) {
     std::vector<float> plane;
-    for (const glm::vec3& pixel : picture) plane.push_back(pixel[c]);
+    // What is infinite is the largest float in layers.
+    for (const glm::vec3& pixel : picture) {
+      plane.push_back(std::min(pixel[c], std::numeric_limits<float>::max()));
+    }
     std::vector<float> sum(pixels, 0.0f);
     for (const LightLayers::Layer& layer : layers.layers) {
       const std::vector<float>& part =

@@ -1,8 +1,10 @@
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstring>
 
+#include "common/output_file.hpp"
 #include "file_limits.hpp"
 #include "picture_support.hpp"
 
@@ -41,6 +43,58 @@ TEST_CASE("a device is refused as an output and stays the device it was") {
     REQUIRE(::stat("/dev/full", &status) == 0);
     CHECK(S_ISCHR(status.st_mode));
   }
+}
+
+TEST_CASE("a run removes what killed runs left in the folder, and nothing that is in use") {
+  const TemporaryFolder folder;
+  // Files that no process holds; the last two names are not of photile's.
+  for (const char* name : {".a.exr.photile.4194305", ".b.png.photile.1"}) {
+    write_bytes(folder / name, "half");
+  }
+  for (const char* name :
+       {".a.exr.photile.x", ".a.exr.tmp.12", "a.exr.photile.12", ".photile.7x"}) {
+    write_bytes(folder / name, "mine");
+  }
+  // A child that writes.
+  int ready[2], done[2];
+  REQUIRE(::pipe(ready) == 0);
+  REQUIRE(::pipe(done) == 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    char byte = 0;
+    try {
+      OutputFile output(folder / "c.exr");
+      output.write("whole", 5);
+      if (::write(ready[1], "r", 1) != 1 || ::read(done[0], &byte, 1) != 1) ::_exit(2);
+      output.commit();
+    } catch (const std::exception&) {
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  char byte = 0;
+  REQUIRE(::read(ready[0], &byte, 1) == 1);
+  write_exr(folder / "a.exr", noise(4, 4));
+  CHECK_FALSE(fs::exists(folder / ".a.exr.photile.4194305"));
+  CHECK_FALSE(fs::exists(folder / ".b.png.photile.1"));
+  CHECK(files_in(folder.path) == 6);  // a.exr, the child's and the four others
+  REQUIRE(::write(done[1], "d", 1) == 1);
+  int status = -1;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
+  CHECK(bytes_of(folder / "c.exr") == "whole");
+  for (const int end : {ready[0], ready[1], done[0], done[1]}) ::close(end);
+}
+
+TEST_CASE("a symbolic link to what does not exist is followed, or refused and kept") {
+  const TemporaryFolder folder;
+  fs::create_symlink("there.exr", folder / "to_file.exr");
+  fs::create_symlink("nowhere/a.exr", folder / "to_nowhere.exr");
+  write_exr(folder / "to_file.exr", noise(4, 4));
+  CHECK(fs::is_symlink(folder / "to_file.exr"));
+  CHECK(read_image(folder / "there.exr").width == 4);
+  refusal(write_exr, folder / "to_nowhere.exr");
+  CHECK(fs::is_symlink(folder / "to_nowhere.exr"));
 }
 
 TEST_CASE("a folder that is missing, is a file, or cannot be written is refused by name") {

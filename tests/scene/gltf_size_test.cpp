@@ -54,39 +54,39 @@ std::string size_refusal(const json& document) {
   return input_error_of([&] { scene_io::check_scene_size(model, accessors, visits, context); });
 }
 
-TEST_CASE("a file of a kilobyte that asks for terabytes is refused", "[size]") {
-  json document = placed_often(16);
+TEST_CASE("a file of a kilobyte that asks for a hundred gigabytes is refused", "[size]") {
+  json document = placed_often(15);
   make_large(document);
   CHECK(document.dump().size() < 4'000);
-  // 3.5e11 triangles: 4 TB for their indices alone.
+  // 1.1e10 triangles: 131 GB for their indices alone.
   const std::string error = input_error_of([&] { load_gltf(document); });
   CHECK_THAT(error, Catch::Contains("scene.gltf") &&
-                        Catch::Contains(std::to_string((many / 3) << 16)) &&
-                        Catch::Contains("65536 places of mesh 'square'") &&
+                        Catch::Contains(std::to_string((many / 3) << 15)) &&
+                        Catch::Contains("32768 places of mesh 'square'") &&
                         Catch::Contains(std::to_string(limits::max_triangles)));
 }
 
 TEST_CASE("meshes are not repeated beyond the limit from files that hold few bytes", "[size]") {
   json document = placed_often(4);
   make_large(document);
-  CHECK_THAT(size_refusal(document), Catch::Contains(std::to_string(16 * (many / 3))) &&
-                                         Catch::Contains("no more than 46") &&  // 140 bytes
-                                         Catch::Contains("mesh 'square'") &&
-                                         Catch::Contains("in 16 places"));
-  document = placed_often(3);
+  CHECK_THAT(size_refusal(document),
+             Catch::Contains(std::to_string(16 * (many / 3))) &&
+                 Catch::Contains("no more than 51") &&  // 140 bytes, 5 nodes
+                 Catch::Contains("mesh 'square'") && Catch::Contains("in 16 places"));
+  document = placed_often(1);
   make_large(document);
-  CHECK(8 * (many / 3) < limits::max_repeated_triangles);
+  CHECK(2 * (many / 3) < limits::unchecked_triangles);
   CHECK(size_refusal(document).empty());
 }
 
 TEST_CASE("vertices that no triangle uses, and primitives without any, count too", "[size]") {
   json document = placed_often(4);
   for (const int accessor : {0, 1, 3}) make_sparse(document["accessors"][accessor], many, 0);
-  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
-  document = placed_often(16);
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeat fewer"));
+  document = placed_often(15);
   json& primitives = document["meshes"][0]["primitives"];
   for (int i = 0; i < 1'000; ++i) primitives.push_back({{"attributes", {{"TEXCOORD_0", 1}}}});
-  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeat fewer"));
 }
 
 TEST_CASE("meshes that share a buffer count each", "[size]") {
@@ -97,7 +97,7 @@ TEST_CASE("meshes that share a buffer count each", "[size]") {
     document["nodes"].push_back({{"mesh", i}});
     document["scenes"][0]["nodes"].push_back(i);
   }
-  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeat fewer"));
 }
 
 TEST_CASE("counts near 2^64 do not wrap", "[size]") {
@@ -106,13 +106,16 @@ TEST_CASE("counts near 2^64 do not wrap", "[size]") {
   CHECK_THAT(size_refusal(document), Catch::Contains("triangles"));
 }
 
-TEST_CASE("the limit is one of triangles beyond those that the buffers hold", "[size]") {
+TEST_CASE("a large file may place each triangle that it holds a thousand times", "[size]") {
   json document = square_document();
-  const std::uint64_t most = limits::max_repeated_triangles + 140 / 3;
+  const std::uint64_t held = 140 / 3 + 1'200;  // bytes and nodes
+  for (int i = 1; i < 1'200; ++i) document["nodes"].push_back(json::object());
+  const std::uint64_t most = held * limits::max_triangle_expansion;
+  CHECK(most > limits::unchecked_triangles);
   document["accessors"][2]["count"] = 3 * most;  // the reader would not believe it
   CHECK(size_refusal(document).empty());
   document["accessors"][2]["count"] = 3 * most + 3;
-  CHECK_THAT(size_refusal(document), Catch::Contains("repeated"));
+  CHECK_THAT(size_refusal(document), Catch::Contains("repeat fewer"));
 }
 
 }  // namespace

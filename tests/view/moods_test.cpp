@@ -75,8 +75,11 @@ TEST_CASE("a damaged file of moods is refused with its name and what is wrong") 
   const TemporaryFolder folder;
   const auto file = folder.path / "room.moods.json";
   const auto [text, told] = GENERATE(table<std::string, std::string>(
-      {{"", "parse error"},
-       {"{", "parse error"},
+      {{"", "is no JSON"},
+       {"{", "is no JSON"},
+       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1e39}}}})", "from 0 to 1e+30"},
+       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": "5"}}}})", "another type"},
+       {R"([])", "another type"},
        {R"({"photile_moods": 2, "moods": {}})", "is not 1"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": -1}}}})", "mood 'x', light 'a'"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {}}}})", "power"},
@@ -87,6 +90,7 @@ TEST_CASE("a damaged file of moods is refused with its name and what is wrong") 
         "no colour temperature"}}));
   std::ofstream(file) << text;
   CHECK_THROWS_WITH(Moods(file), Contains("room.moods.json") && Contains(told));
+  CHECK_THROWS_WITH(Moods(file), !Contains("json.exception"));
   CHECK_THROWS_AS(Moods(file), InputError);
 }
 

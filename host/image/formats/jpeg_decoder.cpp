@@ -1,7 +1,9 @@
+// clang-format off
+#include <cstdio>  // before jpeglib.h, which needs it
 #include <jpeglib.h>
+// clang-format on
 
 #include <array>
-#include <cstdio>  // jpeglib.h needs it
 
 #include "image/formats/formats.hpp"
 

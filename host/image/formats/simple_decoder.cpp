@@ -45,21 +45,21 @@ struct Source {
     beyond |= there > static_cast<std::int64_t>(bytes.size());
     place = static_cast<std::size_t>(std::max<std::int64_t>(there, 0));
   }
-
-  static constexpr stbi_io_callbacks callbacks{
-      [](void* self, char* to, int count) { return static_cast<Source*>(self)->read(to, count); },
-      [](void* self, int count) { static_cast<Source*>(self)->skip(count); },
-      [](void* self) {
-        const auto* source = static_cast<Source*>(self);
-        return source->place >= source->bytes.size() ? 1 : 0;
-      }};
 };
+
+constexpr stbi_io_callbacks callbacks{
+    [](void* self, char* to, int count) { return static_cast<Source*>(self)->read(to, count); },
+    [](void* self, int count) { static_cast<Source*>(self)->skip(count); },
+    [](void* self) {
+      const auto* source = static_cast<Source*>(self);
+      return source->place >= source->bytes.size() ? 1 : 0;
+    }};
 
 class SimpleDecoder : public Decoder {
  public:
   explicit SimpleDecoder(Encoded bytes) : bytes_(bytes) {
     Source source{bytes};
-    if (stbi_info_from_callbacks(&Source::callbacks, &source, &shape_.width, &shape_.height,
+    if (stbi_info_from_callbacks(&callbacks, &source, &shape_.width, &shape_.height,
                                  &shape_.channels) == 0 ||
         shape_.width < 1 || shape_.height < 1) {
       throw DecodeError("the header is damaged, or of a kind that is not read");
@@ -70,8 +70,7 @@ class SimpleDecoder : public Decoder {
     Source source{bytes_};
     int width = 0, height = 0, channels = 0;
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-        stbi_load_from_callbacks(&Source::callbacks, &source, &width, &height, &channels,
-                                 shape_.channels),
+        stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, shape_.channels),
         stbi_image_free);
     if (!pixels) throw DecodeError("the pixels are damaged, or of a kind that is not read");
     if (source.beyond) throw DecodeError("the file ends too early");

@@ -181,9 +181,10 @@ void AccessorReader::check_implicit_count(const tinygltf::Accessor& accessor,
 void AccessorReader::for_each_sparse(const tinygltf::Accessor& accessor, std::uint64_t element_size,
                                      const std::string& use, const SparseVisit& visit) const {
   const auto& sparse = accessor.sparse;
-  if (!sparse.isSparse || sparse.count <= 0) return;
-  if (static_cast<std::uint64_t>(sparse.count) > accessor.count || sparse.indices.byteOffset < 0 ||
-      sparse.values.byteOffset < 0 || !is_index_type(sparse.indices.componentType)) {
+  if (!sparse.isSparse) return;
+  if (sparse.count < 1 || static_cast<std::uint64_t>(sparse.count) > accessor.count ||
+      sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0 ||
+      !is_index_type(sparse.indices.componentType)) {
     throw context_.error(use + ": malformed sparse accessor; export it again");
   }
   const auto count = static_cast<std::uint64_t>(sparse.count);

@@ -6,37 +6,15 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 
+#include "import/gltf/json_check.hpp"
 #include "import/resource_error.hpp"
-#include "photile/limits.hpp"
 
 namespace photile::scene_io {
 namespace {
-
-/// Deepest nesting of arrays and objects. tinygltf copies JSON recursively, so depth is stack.
-int json_depth(std::string_view json) {
-  int depth = 0, deepest = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (in_string) {
-      if (c == '\\') {
-        ++i;
-      } else if (c == '"') {
-        in_string = false;
-      }
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return deepest;
-}
 
 /// The JSON text of a file: all of a .gltf, the first chunk of a .glb.
 std::string_view json_text(std::span<const unsigned char> bytes, bool binary) {
@@ -83,17 +61,6 @@ std::string first_line(std::string text) {
   return text.empty() ? "not a glTF file" : text;
 }
 
-void check_counts(const tinygltf::Model& model, const ImportContext& context) {
-  if (model.nodes.size() > limits::max_nodes) {
-    throw context.error(
-        fmt::format("{} nodes; the limit is {}", model.nodes.size(), limits::max_nodes));
-  }
-  if (model.materials.size() >= limits::max_materials) {
-    throw context.error(fmt::format("{} materials; the limit is {}", model.materials.size(),
-                                    limits::max_materials));
-  }
-}
-
 }  // namespace
 
 tinygltf::Model read_gltf(ImportContext& context) {
@@ -105,27 +72,27 @@ tinygltf::Model read_gltf(ImportContext& context) {
   // tinygltf 2.7 leaves the 8 bytes of the second chunk's header out of its length check.
   bytes.resize(bytes.size() + 8, 0);
   const std::string_view json = json_text(std::span(bytes).first(size), binary);
-  const int depth = json_depth(json);
-  if (depth > limits::max_json_depth) {
-    throw context.error(
-        fmt::format("JSON nested {} levels deep; the limit is {}", depth, limits::max_json_depth));
-  }
+  check_json(json, context);
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks(context.folder));
   loader.SetImageLoader(keep_encoded, nullptr);
   tinygltf::Model model;
   std::string error, warning;
-  const bool loaded =
-      binary ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, "")
-             : loader.LoadASCIIFromString(&model, &error, &warning,
-                                          reinterpret_cast<const char*>(bytes.data()), size, "");
+  bool loaded = false;
+  try {
+    loaded =
+        binary ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, "")
+               : loader.LoadASCIIFromString(&model, &error, &warning,
+                                            reinterpret_cast<const char*>(bytes.data()), size, "");
+  } catch (const nlohmann::json::exception&) {  // its text means something to programmers alone
+    error = "a value of another type than the format has";
+  }
   if (!loaded) {
     check_required_extensions(json, context);
     throw context.error("malformed glTF: " + first_line(error) + "; export it again");
   }
   if (!error.empty()) context.warnings.add("malformed glTF: " + first_line(error));
   check_extensions(model, context);
-  check_counts(model, context);
   return model;
 }
 

@@ -92,10 +92,10 @@ void check_visit_count(const tinygltf::Model& model, const std::vector<int>& roo
   VisitCounter counter(model);
   std::uint64_t visits = 0;
   for (const int root : roots) visits += counter.count(root);
-  if (visits > limits::max_node_visits) {
+  if (visits > model.nodes.size() + limits::max_repeated_visits) {
     throw context.error(fmt::format(
-        "nodes with several parents appear more than {} times; export their meshes once",
-        limits::max_node_visits));
+        "{} nodes with several parents are at more than {} places; give each place a node",
+        model.nodes.size(), model.nodes.size() + limits::max_repeated_visits));
   }
 }
 

@@ -78,13 +78,15 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
         triangles, most, places[static_cast<std::size_t>(largest)], name_of_mesh(model, largest),
         limits::max_triangles));
   }
-  const std::uint64_t held = buffer_bytes / least_bytes_per_triangle;
-  if (triangles > held && triangles - held > limits::max_repeated_triangles) {
+  const std::uint64_t held = buffer_bytes / least_bytes_per_triangle + model.nodes.size();
+  const std::uint64_t most_placed =
+      std::max(limits::unchecked_triangles, held * limits::max_triangle_expansion);
+  if (triangles > most_placed) {
     throw context.error(
-        fmt::format("{} triangles from a file that holds no more than {}; the limit is {} repeated "
-                    "ones; repeat fewer: {} are of mesh '{}', in {} places",
-                    triangles, held, limits::max_repeated_triangles, most,
-                    name_of_mesh(model, largest), places[static_cast<std::size_t>(largest)]));
+        fmt::format("{} triangles from a file that holds no more than {}; the limit for it is {}; "
+                    "repeat fewer: {} are of mesh '{}', in {} places",
+                    triangles, held, most_placed, most, name_of_mesh(model, largest),
+                    places[static_cast<std::size_t>(largest)]));
   }
 }
 

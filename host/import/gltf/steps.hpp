@@ -11,7 +11,7 @@
 namespace photile::scene_io {
 
 /// Refuses scenes of too many triangles, and those whose nodes and meshes repeat few bytes too
-/// often (limits::max_repeated_triangles); nothing is read or allocated for that, and all is
+/// often (limits::max_triangle_expansion); nothing is read or allocated for that, and all is
 /// counted in 64 bits. Errors: InputError naming the mesh that asks for most.
 void check_scene_size(const tinygltf::Model& model, const AccessorReader& accessors,
                       const std::vector<NodeVisit>& visits, const ImportContext& context);

@@ -10,6 +10,7 @@
 
 #include "common/output_file.hpp"
 #include "image/png_output.hpp"
+#include "photile/errors.hpp"
 #include "photile/image.hpp"
 
 namespace photile::bake {
@@ -71,6 +72,17 @@ void write_layer(const std::filesystem::path& file, const BakedLight& baked, std
   for (int channel = 0; channel < 3; ++channel) {
     std::vector<float>& plane = image.add(std::string(1, "RGB"[channel]));
     for (std::size_t i = 0; i < texels.size(); ++i) plane[i] = scale[channel] * texels[i][channel];
+  }
+  std::size_t lost = 0;
+  for (const std::vector<float>& plane : image.channels) {
+    lost += static_cast<std::size_t>(std::count_if(
+        plane.begin(), plane.end(), [](float value) { return !std::isfinite(value); }));
+  }
+  if (lost > 0) {
+    throw InputError(
+        fmt::format("light '{}': {} of {} values of its texture are beyond any number; "
+                    "turn it down",
+                    light.name, lost, 3 * image.pixels()));
   }
   image.attributes["photile.light"] = light.name;
   write_exr(file, image);

@@ -7,6 +7,17 @@
 #include "tools/command/validators.hpp"
 
 namespace photile::app {
+namespace {
+
+CLI::Validator top_of_scale() {
+  const auto check = [](std::string& text) -> std::string {
+    if (text == "auto" || parse_value(text, PositiveNumbers{})) return {};
+    return fmt::format("'{}' is neither auto nor a number greater than 0", text);
+  };
+  return {check, ""};
+}
+
+}  // namespace
 
 FalseColourOptions::FalseColourOptions() : scale(fmt::format("{}", colours.scale)) {
   colours.label.clear();
@@ -24,7 +35,7 @@ void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
   const char* group = "False colour";
   command.add_option("-s,--scale", options.scale, "top of the scale, or auto: the largest value")
       ->type_name("X|auto")
-      ->check(CLI::IsMember({"auto"}) | CLI::PositiveNumber)
+      ->check(top_of_scale())
       ->capture_default_str()
       ->group(group);
   command.add_option("-l,--label", colours.label, "of the legend; default: the unit")

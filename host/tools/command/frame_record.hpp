@@ -21,8 +21,11 @@ std::string frame_settings(const std::string& scene_digest, const RunRecord& rec
 /// Sets the attribute `photile.settings`.
 void set_settings(PictureHeader& picture, const std::string& settings);
 
-/// Whether there is such a picture with these settings. Files are written whole, so then it is
-/// complete.
-bool has_settings(const std::filesystem::path& picture, const std::string& settings);
+/// Whether there is such a picture with these settings, and whole: its pixels are read, for copies
+/// may have been cut and disks fail.
+bool is_finished(const std::filesystem::path& picture, const std::string& settings);
+
+/// Whether there is a picture of which every pixel can be read.
+bool is_whole(const std::filesystem::path& picture);
 
 }  // namespace photile::app

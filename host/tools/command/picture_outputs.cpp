@@ -88,6 +88,7 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes) const
   };
   draw(illuminance_, lux, "lux");
   draw(luminance_, candela, "cd/m2");
+  for (const std::string& line : picture.overflows()) notes.note("warning: " + line);
 }
 
 }  // namespace photile::app

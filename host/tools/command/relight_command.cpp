@@ -42,7 +42,7 @@ void run_relight(const RelightOptions& options) {
   check_outputs(outputs.files());
 
   if (outputs.empty()) {
-    print_lights(read_light_mix(read_header(options.input)));
+    print_lights(read_light_mix(options.input));
     return;
   }
   const std::unique_ptr<LayeredPicture> picture = relit_picture(options.input, changes);

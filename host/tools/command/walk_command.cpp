@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <future>
@@ -96,8 +97,8 @@ class Walk {
   }
 
   void run() {
-    int kept = 0;
-    for (int frame = 0; frame < count_; ++frame) kept += is_finished(frame) ? 1 : 0;
+    const std::vector<bool> finished = find_finished();
+    const auto kept = static_cast<int>(std::count(finished.begin(), finished.end(), true));
     if (kept > 0) {
       progress_.note(
           fmt::format("{} of {} frames are finished, with these settings", kept, count_));
@@ -106,9 +107,9 @@ class Walk {
     progress_.begin("render frames", static_cast<std::uint64_t>(count_ - kept), "frames");
     for (int frame = 0; frame < count_; ++frame) {
       progress_.throw_if_cancelled();
-      const bool finished = is_finished(frame);
+      const bool keeps = finished[static_cast<std::size_t>(frame)];
       std::optional<Image> root;
-      if (!finished) root = options_.quick ? draw(frame) : render(frame);
+      if (!keeps) root = options_.quick ? draw(frame) : render(frame);
       wait_for_shown();
       const auto keep = [this, frame, root = std::move(root)] {
         if (options_.quick && root && to_exr_) write_exr(names_.of(number(frame)), *root);
@@ -119,7 +120,7 @@ class Walk {
       } else {
         keep();
       }
-      if (!finished) progress_.advance(1);
+      if (!keeps) progress_.advance(1);
     }
     wait_for_shown();
     progress_.end();
@@ -155,8 +156,16 @@ class Walk {
            (options_.quick ? " quick" : "");
   }
 
-  bool is_finished(int frame) const {
-    return to_exr_ && has_settings(names_.of(number(frame)), settings_of(camera_at(frame)));
+  /// Of each frame.
+  std::vector<bool> find_finished() const {
+    std::vector<bool> finished(static_cast<std::size_t>(count_), false);
+    if (!to_exr_) return finished;
+    for (int frame = 0; frame < count_; ++frame) {
+      progress_.throw_if_cancelled();
+      finished[static_cast<std::size_t>(frame)] =
+          is_finished(names_.of(number(frame)), settings_of(camera_at(frame)));
+    }
+    return finished;
   }
 
   void make_maps() {
@@ -180,6 +189,9 @@ class Walk {
     set_run_attributes(picture->header(), record);
     set_settings(picture->header(), settings);
     write_exr(names_.of(number(frame)), *picture);
+    for (const std::string& line : picture->overflows()) {
+      progress_.note(fmt::format("warning: frame {}: {}", number(frame), line));
+    }
     return picture->root();
   }
 
@@ -215,8 +227,7 @@ class Walk {
   /// The frame as PNG and on the contact sheet, all with the exposure of the first.
   void show(int frame, std::optional<Image> root) {
     const bool on_sheet = sheet_ && place_on_sheet(frame) >= 0;
-    const bool to_png =
-        png_names_ && (root || !std::filesystem::exists(png_names_->of(number(frame))));
+    const bool to_png = png_names_ && (root || !is_whole(png_names_->of(number(frame))));
     if (!on_sheet && !to_png && exposure_) return;
     if (!exposure_ && !sheet_ && !png_names_) return;
     if (!root) root = read_image(names_.of(number(frame)));

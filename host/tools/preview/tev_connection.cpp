@@ -11,6 +11,7 @@
 #include <array>
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -82,9 +83,12 @@ int connect_to(const addrinfo& address) {
 TevConnection::TevConnection(const std::string& address) : address_(address) {
   const std::size_t colon = address.rfind(':');
   const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
-  if (colon == 0 || port.empty() || port.find_first_not_of("0123456789") != std::string::npos) {
+  std::uint16_t number = 0;
+  const char* const end = port.data() + port.size();
+  const auto [rest, error] = std::from_chars(port.data(), end, number);
+  if (colon == 0 || rest != end || error != std::errc() || number == 0) {
     throw UsageError(
-        fmt::format("--preview {}: is no HOST:PORT, such as {}", address, tev_address));
+        fmt::format("preview at '{}': is no HOST:PORT, such as {}", address, tev_address));
   }
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;

@@ -76,8 +76,8 @@ std::vector<float> illuminance_of(const LayeredPicture& picture) {
   const int height = picture.header().height;
   const auto width = static_cast<std::size_t>(picture.header().width);
   std::vector<double> sums(picture.header().pixels());
-  for (std::size_t light = 0; light < picture.lights(); ++light) {
-    for (int first = 0; first < height; first += rows_per_read) {
+  for (int first = 0; first < height; first += rows_per_read) {
+    for (std::size_t light = 0; light < picture.lights(); ++light) {
       const LightRows rows = picture.read(light, first, std::min(first + rows_per_read, height));
       if (rows.illuminance.empty()) {
         const std::string channel = picture.channel_names(light).front();  // Combined_LIGHT.R

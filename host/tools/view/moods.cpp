@@ -53,8 +53,12 @@ std::filesystem::path Moods::file_of(const std::filesystem::path& scene) {
 Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
   if (!std::filesystem::exists(file_)) return;
   std::string place = "the file";
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError(fmt::format("{}: {}: {}; mend or remove it", file_.string(), place, reason));
+  };
+  const json document = json::parse(read_own_text(file_), nullptr, /*allow_exceptions=*/false);
+  if (document.is_discarded()) refuse("is no JSON");
   try {
-    const json document = json::parse(read_own_text(file_));
     if (document.at("photile_moods").get<int>() != version) {
       throw std::invalid_argument(fmt::format("\"photile_moods\" is not {}", version));
     }
@@ -63,19 +67,19 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
         place = fmt::format("mood '{}', light '{}'", name, light);
         Setting read{setting.at("power").get<double>(), unit_of(setting.value("unit", "lm")),
                      setting.value("on", true), std::nullopt, 0};
-        if (!(read.power >= 0) || !std::isfinite(read.power)) {
-          throw std::invalid_argument("its power is not a number of 0 or more");
+        if (!(read.power >= 0 && read.power <= limits::max_light_power)) {
+          throw std::invalid_argument(
+              fmt::format("its power is not a number from 0 to {:g}", limits::max_light_power));
         }
         if (setting.contains("color")) read.color = color_of(setting["color"].get<std::string>());
         if (setting.contains("kelvin")) read.kelvin = kelvin_of(setting["kelvin"].get<double>());
         moods_[name][light] = read;
       }
     }
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw InputError(
-        fmt::format("{}: {}: {}; mend or remove it", file_.string(), place, error.what()));
+  } catch (const json::exception&) {  // its text means something to programmers alone
+    refuse("lacks its power, or holds a value of another type than moods have");
+  } catch (const std::invalid_argument& error) {
+    refuse(error.what());
   }
 }
 
