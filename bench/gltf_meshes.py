@@ -11,7 +11,7 @@ import json
 import numpy as np
 
 TYPES = {5126: np.float32, 5125: np.uint32, 5123: np.uint16}  # by componentType
-COMPONENTS = {"SCALAR": 1, "VEC3": 3}
+COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 TRANSFORM = {"matrix", "translation", "rotation", "scale", "children"}
 
 

@@ -45,7 +45,7 @@ bake::BakeParameters baking(double texel = 0, int most_side = 4096) {
 
 }  // namespace
 
-TEST_CASE("Baked textures hold the irradiance of the brighter side at points of the surface",
+TEST_CASE("Baked textures hold the irradiance of both sides at points of the surface",
           "[baked_light]") {
   const Scene scene = with_one_lamp(furnished_room(2));
   FormulaSource source(gentle);
@@ -58,10 +58,9 @@ TEST_CASE("Baked textures hold the irradiance of the brighter side at points of 
   const double bound = 2 * 2 * 3 * 4.25 * 0.04 * 0.04 / 8;
   const PrimaryHits points = points_on(scene, 5);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t triangle = triangle_of(points.sided_triangle[i]);
-    CHECK(baked.side(triangle) == 1);  // three times as bright
-    const auto [a, b, c] = scene.corners(triangle);
-    const auto uv = baked.corners(triangle);
+    const std::uint32_t side = points.sided_triangle[i];
+    const auto [a, b, c] = scene.corners(triangle_of(side));
+    const auto uv = baked.corners(side);
     // The weights of the corners.
     const glm::vec3 normal = glm::cross(b - a, c - a);
     const float v =
@@ -70,8 +69,24 @@ TEST_CASE("Baked textures hold the irradiance of the brighter side at points of 
         glm::dot(glm::cross(points.position[i] - a, c - a), normal) / glm::dot(normal, normal);
     const glm::vec2 place = uv[0] + u * (uv[1] - uv[0]) + v * (uv[2] - uv[0]);
     REQUIRE(std::abs(bilinear(texels, baked.width(), baked.height(), place) -
-                     gentle(points.position[i], sided(triangle, 1))) < bound + 1e-3);
+                     gentle(points.position[i], side)) < bound + 1e-3);
   }
+}
+
+TEST_CASE("The brighter side of a triangle is baked, and the other where any light falls",
+          "[baked_light]") {
+  const Scene scene = with_one_lamp(furnished_room(2));
+  const auto sides_under = [&](const FormulaSource::Formula& light) {
+    FormulaSource source(light);
+    LightMaps maps(scene, quiet_parameters());
+    const bake::BakedLight baked(scene, maps, source, baking(0.1), Progress::none());
+    return std::vector<std::uint32_t>(baked.sides().begin(), baked.sides().end());
+  };
+  const auto backs =
+      sides_under([](const glm::vec3&, std::uint32_t s) { return side_of(s) == 1 ? 1.0f : 0.0f; });
+  REQUIRE(backs.size() == scene.triangle_count());
+  for (std::uint32_t t = 0; t < backs.size(); ++t) CHECK(backs[t] == sided(t, 1));
+  CHECK(sides_under(gentle).size() == 2 * std::size_t{scene.triangle_count()});
 }
 
 TEST_CASE("Texels become coarser until they fit, and those asked for are refused where they do not",

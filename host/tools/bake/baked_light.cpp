@@ -50,7 +50,7 @@ glm::vec3 blended(const Estimates& values, const NodeBlend& blend, std::size_t l
 
 BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
                        const BakeParameters& parameters, const Progress& progress)
-    : scene_(scene), maps_(maps), side_(scene.triangle_count(), 0) {
+    : scene_(scene), maps_(maps) {
   choose_sides(source, parameters, progress);
   const auto most_side = static_cast<std::uint32_t>(parameters.most_side);
   texel_ = parameters.texel > 0 ? parameters.texel : maps.charts().spacing() / 2;
@@ -67,28 +67,34 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
 void BakedLight::choose_sides(NodeSource& source, const BakeParameters& parameters,
                               const Progress& progress) {
   const std::span<const std::uint32_t> chart_of = maps_.charts().chart_of();
-  PrimaryHits middles;
+  PrimaryHits samples;  // the middle, and a point towards each corner
   for (std::uint32_t s = 0; s < chart_of.size(); ++s) {
-    const auto [a, b, c] = scene_.corners(triangle_of(s));
-    if (chart_of[s] != none) add(middles, (a + b + c) / 3.0f, s);
+    if (chart_of[s] == none) continue;
+    const std::array<glm::vec3, 3> corners = scene_.corners(triangle_of(s));
+    const glm::vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0f;
+    add(samples, middle, s);
+    for (const glm::vec3& corner : corners) add(samples, 0.5f * (middle + corner), s);
   }
-  maps_.fill(middles, source, progress);
-  std::vector<float> light(chart_of.size(), -1.0f);
+  maps_.fill(samples, source, progress);
+  std::vector<double> light_at(samples.size());
   const std::size_t layers = parameters.powers.size();
-  tbb::parallel_for(std::size_t{0}, middles.size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     NodeBlend blend{};
-    maps_.find(middles.sided_triangle[i], middles.position[i], blend);
-    double sum = 0;
+    maps_.find(samples.sided_triangle[i], samples.position[i], blend);
     for (std::size_t layer = 0; layer < layers; ++layer) {
-      sum += parameters.powers[layer] *
-             luminance(glm::dvec3(blended(maps_.values(), blend, layer, layers)));
+      light_at[i] += parameters.powers[layer] *
+                     luminance(glm::dvec3(blended(maps_.values(), blend, layer, layers)));
     }
-    light[middles.sided_triangle[i]] = static_cast<float>(sum);
   });
-  for (std::uint32_t t = 0; t < side_.size(); ++t) {
+  std::vector<double> light(chart_of.size(), 0.0);
+  for (std::size_t i = 0; i < samples.size(); ++i) light[samples.sided_triangle[i]] += light_at[i];
+  for (std::uint32_t t = 0; t < scene_.triangle_count(); ++t) {
     const std::uint32_t front = scene_.front_side[t];
-    side_[t] = static_cast<std::uint8_t>(
-        light[sided(t, 1 - front)] > light[sided(t, front)] ? 1 - front : front);
+    const std::uint32_t brighter =
+        light[sided(t, 1 - front)] > light[sided(t, front)] ? 1 - front : front;
+    for (const std::uint32_t side : {0u, 1u}) {
+      if (side == brighter || light[sided(t, side)] > 0) sides_.push_back(sided(t, side));
+    }
   }
 }
 
@@ -97,10 +103,10 @@ bool BakedLight::place_charts(double texel, std::uint32_t most_side) {
   placed_.clear();
   place_of_chart_.assign(charts.size(), none);
   member_.assign(charts.size(), none);
-  for (std::uint32_t t = 0; t < side_.size(); ++t) {
-    const std::uint32_t chart = charts.chart_of()[sided(t, side_[t])];
+  for (const std::uint32_t side : sides_) {
+    const std::uint32_t chart = charts.chart_of()[side];
     if (chart == none || place_of_chart_[chart] != none) continue;
-    member_[chart] = sided(t, side_[t]);
+    member_[chart] = side;
     place_of_chart_[chart] = static_cast<std::uint32_t>(placed_.size());
     const light_maps::Chart& lattice = charts[chart];
     const glm::dvec2 size = lattice.spacing * glm::dvec2(lattice.columns, lattice.rows);
@@ -157,14 +163,14 @@ void BakedLight::fill(NodeSource& source, const Progress& progress) {
   value();
 }
 
-std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t triangle) const {
+std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t sided_triangle) const {
   const light_maps::Charts& charts = maps_.charts();
-  const std::uint32_t chart = charts.chart_of()[sided(triangle, side_[triangle])];
+  const std::uint32_t chart = charts.chart_of()[sided_triangle];
   std::array<glm::vec2, 3> corners{};
   if (chart == none) return corners;
   const Placed& placed = placed_[place_of_chart_[chart]];
   const light_maps::Chart& lattice = charts[chart];
-  const auto positions = scene_.corners(triangle);
+  const auto positions = scene_.corners(triangle_of(sided_triangle));
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 offset = glm::dvec3(positions[i]) - lattice.origin;
     const glm::dvec2 place(glm::dot(offset, lattice.across), glm::dot(offset, lattice.along));

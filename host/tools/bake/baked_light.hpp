@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "photile/light_maps.hpp"
@@ -19,9 +20,9 @@ struct BakeParameters {
   std::vector<double> powers;  ///< per layer, by which the brighter side of a surface is told
 };
 
-/// The charts of the light maps side by side, one side of each triangle: the one on which more
-/// light falls at its middle. Texels are points of the charts' lattices, so that a bilinear lookup
-/// blends neighbours of one chart; a border of one texel repeats the last.
+/// The charts of the light maps side by side: of each triangle the side on which more light falls,
+/// and the other where it is lit, too. Texels are points of the charts' lattices, so that a
+/// bilinear lookup blends neighbours of one chart; a border of one texel repeats the last.
 class BakedLight {
  public:
   /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
@@ -33,10 +34,10 @@ class BakedLight {
   std::uint32_t height() const { return atlas_.height; }
   double texel() const { return texel_; }
 
-  /// Of a triangle's corners: (0, 0) is the top left corner of the picture.
-  std::array<glm::vec2, 3> corners(std::uint32_t triangle) const;
-  /// The side that is baked.
-  std::uint32_t side(std::uint32_t triangle) const { return side_[triangle]; }
+  /// Sided triangles that are baked, ascending.
+  std::span<const std::uint32_t> sides() const { return sides_; }
+  /// Of a baked triangle's corners: (0, 0) is the top left corner of the picture.
+  std::array<glm::vec2, 3> corners(std::uint32_t sided_triangle) const;
 
   /// Irradiance of a layer at power 1: width x height, row 0 at the top; 0 where no chart lies.
   std::vector<glm::vec3> layer(std::size_t layer) const;
@@ -55,7 +56,7 @@ class BakedLight {
 
   const Scene& scene_;
   LightMaps& maps_;
-  std::vector<std::uint8_t> side_;
+  std::vector<std::uint32_t> sides_;
   double texel_ = 0;
   Atlas atlas_;
   std::vector<Placed> placed_;

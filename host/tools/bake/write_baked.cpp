@@ -142,20 +142,20 @@ json material_of(const Scene& scene, const Material& material,
   if (material.diffuse_texture != none && !scene.corner_uv.empty()) {
     surface["baseColorTexture"] = {{"index", texture_number.at(material.diffuse_texture)}};
   }
-  return {{"name", material.name}, {"pbrMetallicRoughness", surface}, {"doubleSided", true}};
+  return {{"name", material.name}, {"pbrMetallicRoughness", surface}};
 }
 
-/// The triangles of a material.
+/// Baked sides of a material, each a triangle of its own that faces where it is seen from.
 json primitive_of(const Scene& scene, const BakedLight& baked,
-                  const std::vector<std::uint32_t>& triangles, std::uint32_t material,
+                  const std::vector<std::uint32_t>& sides, std::uint32_t material,
                   Document& document) {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec2> colours, lights;
-  for (const std::uint32_t t : triangles) {
+  for (const std::uint32_t s : sides) {
+    const std::uint32_t t = triangle_of(s);
     const auto corners = scene.corners(t);
-    const auto light = baked.corners(t);
-    const bool canonical = scene.front_side[t] == 0;
-    for (const std::size_t corner : {0, canonical ? 1 : 2, canonical ? 2 : 1}) {
+    const auto light = baked.corners(s);
+    for (const std::size_t corner : {0u, 1 + side_of(s), 2 - side_of(s)}) {
       positions.push_back(corners[corner]);
       lights.push_back(light[corner]);
       if (!scene.corner_uv.empty()) colours.push_back(scene.corner_uv[t][corner]);
@@ -193,15 +193,15 @@ void write_baked(const std::filesystem::path& file, const Scene& scene, const Ba
     document["images"].push_back({{"uri", picture.filename().string()}});
     document["textures"].push_back({{"source", document["images"].size() - 1}});
   }
-  std::vector<std::vector<std::uint32_t>> triangles(scene.materials.size());
-  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    triangles[scene.triangle_material[t]].push_back(t);
+  std::vector<std::vector<std::uint32_t>> sides(scene.materials.size());
+  for (const std::uint32_t side : baked.sides()) {
+    sides[scene.triangle_material[triangle_of(side)]].push_back(side);
   }
   json mesh;
-  for (std::uint32_t m = 0; m < triangles.size(); ++m) {
+  for (std::uint32_t m = 0; m < sides.size(); ++m) {
     document["materials"].push_back(material_of(scene, scene.materials[m], texture_number));
-    if (triangles[m].empty()) continue;
-    mesh["primitives"].push_back(primitive_of(scene, baked, triangles[m], m, document));
+    if (sides[m].empty()) continue;
+    mesh["primitives"].push_back(primitive_of(scene, baked, sides[m], m, document));
   }
   document["meshes"] = {mesh};
   document["nodes"] = {
