@@ -80,7 +80,8 @@ def consistency(photile, scenes):
             reference = picture_error.read_picture(reference_file)
         for photons in PHOTONS:
             k = neighbours(photons)
-            picture = render(photile, scene, size, out / "picture.exr", "--photons", str(photons),
+            picture = render(photile, scene, size, out / "picture.exr", "--light-maps", "off",
+                             "--photons", str(photons),
                              "-k", str(k), "--samples", "16", "--quota", "power")
             error = picture_error.measure(picture, reference)
             results.append({"view": name, "photons": photons, "k": k, **error})

@@ -25,7 +25,8 @@ except ImportError as missing:
 ROOT = scene_arguments.ROOT
 SCENES = ("kitchen", "classroom")
 WIDTH, HEIGHT = 512, 384
-SETTINGS = ("--photons", "1M", "--neighbours", "50", "--quota", "power", "--samples", "16")
+SETTINGS = ("--photons", "1M", "--neighbours", "50", "--quota", "power", "--samples", "16",
+            "--light-maps", "off")
 
 
 def arguments():

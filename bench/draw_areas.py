@@ -25,7 +25,8 @@ except ImportError as missing:
 ROOT = scene_arguments.ROOT
 AREAS = ("disc", "clipped")
 # Many neighbours: what is seen is the bias at borders, not the noise.
-SETTINGS = ("--photons", "2M", "-k", "300", "--quota", "power", "--samples", "16")
+SETTINGS = ("--photons", "2M", "-k", "300", "--quota", "power", "--samples", "16",
+            "--light-maps", "off")
 REFERENCE_SAMPLES = "512"
 
 

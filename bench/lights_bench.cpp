@@ -89,6 +89,7 @@ class LightsBench {
     parameters.film.width = size_.width;
     parameters.film.height = size_.height;
     parameters.film.samples_per_pixel = 1;
+    parameters.light_maps = LightMapMode::off;
     RenderResult result = render(scene, scene.cameras.front(), device_, parameters);
     StageTimes times;  // the first run compiled the kernels
     for (int i = 0; i < std::min(repeats_.most, 3); ++i) {

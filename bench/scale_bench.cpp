@@ -123,6 +123,7 @@ nlohmann::json measure_size(const Size& size, const std::string& selector) {
   Device device({.selector = selector});
   RenderParameters parameters;
   parameters.film.samples_per_pixel = 1;
+  parameters.light_maps = LightMapMode::off;
   prepare_kernels(device, scene->lights.size(), parameters);
   parameters.photons.emitted_photons = size.photons;
   const Stopwatch stopwatch;

@@ -114,6 +114,7 @@ class FrameTimer {
 bool run(BenchOptions& options) {
   Frames frames;
   RenderParameters parameters;
+  parameters.light_maps = LightMapMode::off;  // light_maps_bench.cpp measures those
   if (options.quick) {
     frames = {2, 32};
     parameters.photons.emitted_photons = 20'000;

@@ -61,12 +61,19 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
       served.pixel.push_back(0);
     }
   }
-  maps_.fill(served, *this, progress);
+  if (!maps_) maps_.emplace(rays_.scene(), parameters_);
+  maps_->fill(served, *this, progress);
   if (!own.empty()) light.own = estimates_at(ends, own);
   costs_.estimated += own.size();
   costs_.ends += ends.hits.size();
   costs_.rays += ends.rays;
   return light;
+}
+
+std::uint64_t EndLight::bytes() const {
+  if (!maps_) return 0;
+  const LightMapStatistics statistics = maps_->statistics();
+  return statistics.value_bytes + statistics.index_bytes;
 }
 
 Estimates EndLight::irradiance(const PrimaryHits& nodes) {
@@ -77,7 +84,7 @@ Estimates EndLight::irradiance(const PrimaryHits& nodes) {
 void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
                          std::uint32_t rays_per_batch, BatchSums& sums) const {
   const std::size_t lights = rays_.needs().light_count;
-  const Estimates& values = maps_.values();
+  const Estimates& values = maps_->values();
   for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
     const trace::EyeHit& hit = light.rays.ends.hits[end];
     const std::uint32_t batch = hit.pixel / rays_per_batch % batches;
@@ -92,7 +99,7 @@ void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uin
       continue;
     }
     NodeBlend blend;
-    maps_.find(hit.sided_triangle, hit.position, blend);
+    maps_->find(hit.sided_triangle, hit.position, blend);
     for (std::size_t corner = 0; corner < blend.node.size(); ++corner) {
       const glm::vec3 weight = blend.weight[corner] * light.weight[end];
       for_each_estimate(values, blend.node[corner], lights, [&](std::size_t layer, std::size_t i) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,7 +39,7 @@ class EndLight : private PointSource {
   /// References are kept.
   ///   photons   whose estimates of hits do not depend on the hits beside them
   EndLight(const RayScene& rays, MapEstimators& photons, const LightMapParameters& maps)
-      : rays_(rays), photons_(photons), maps_(rays.scene(), maps) {}
+      : rays_(rays), photons_(photons), parameters_(maps) {}
 
   /// Finds an estimate for each end.
   /// Errors: as DeviceEstimators; Interrupted.
@@ -47,6 +48,10 @@ class EndLight : private PointSource {
   /// Adds what the rays of a point of the run see, its batches having so many rays each.
   void add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
                  std::uint32_t rays_per_batch, BatchSums& sums) const;
+
+  /// Of the light maps; `forget` empties them.
+  std::uint64_t bytes() const;
+  void forget() { maps_.reset(); }
 
   /// What all calls took so far.
   struct Costs {
@@ -63,7 +68,8 @@ class EndLight : private PointSource {
 
   const RayScene& rays_;
   MapEstimators& photons_;
-  LightMaps maps_;
+  const LightMapParameters parameters_;
+  std::optional<LightMaps> maps_;  ///< made when the first ray ends
   Costs costs_;
 };
 

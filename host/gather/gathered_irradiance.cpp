@@ -35,6 +35,12 @@ void append_rows(std::vector<T>& to, const std::vector<T>& from, std::size_t fir
 
 }  // namespace
 
+std::uint64_t GatheredIrradiance::bytes() const {
+  return mean.irradiance.size() * sizeof(glm::vec3) + mean.first.size() * sizeof(std::uint64_t) +
+         mean.light.size() * sizeof(std::uint16_t) +
+         (batch.size() + shared_variance.size()) * sizeof(float);
+}
+
 double GatheredIrradiance::error(std::size_t estimate) const {
   const auto count = static_cast<std::size_t>(batches);
   const double shared = shared_variance.empty() ? 0.0 : double{shared_variance[estimate]};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct GatheredIrradiance {
   std::vector<float> batch;
   /// Variance of the luminance that all batches share, of caustics; empty where there are none.
   std::vector<float> shared_variance;
+
+  std::uint64_t bytes() const;
 
   std::size_t points(std::size_t lights) const {
     return mean.first.empty() ? mean.irradiance.size() / lights : mean.first.size() - 1;

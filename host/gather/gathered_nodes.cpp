@@ -92,6 +92,19 @@ GatheredNodesParameters rays_of_nodes(int coarse, double inset) {
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return {window, rounds}; }
 
+std::uint64_t GatheredNodes::bytes() const {
+  return raw_.bytes() + nodes_.bytes() + gather_.bytes() +
+         (raw_of_.size() + row_of_.size()) * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
+}
+
+void GatheredNodes::forget() {
+  raw_of_.clear();
+  row_of_.clear();
+  raw_ = {};
+  nodes_ = {};
+  gather_.forget();
+}
+
 NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress) {
   const std::size_t lights = layer_powers_.size();
   std::vector<std::uint32_t> coarse, fine;

@@ -42,6 +42,9 @@ class GatheredNodes : public NodeSource {
 
   Surroundings surroundings() const override;
   NodeValues value(const NodeBatch& batch, const Progress& progress) override;
+  bool knows(std::uint64_t number) const override { return row_of_.contains(number); }
+  std::uint64_t bytes() const override;
+  void forget() override;
 
  private:
   void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> coarse,

@@ -39,6 +39,10 @@ struct GatheredParts {
   /// Per point: harmonic mean of the distances to what its rays met, metres; infinite where they
   /// met nothing.
   std::vector<float> distance;
+
+  std::uint64_t bytes() const {
+    return indirect.bytes() + direct.bytes() + distance.size() * sizeof(float);
+  }
 };
 
 /// Gathers the light of each layer at points, in three parts that together are all light
@@ -73,6 +77,10 @@ class IrradianceGather {
   /// All light together.
   GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
                             const Progress& progress = Progress::none());
+
+  /// Of the light maps where rays end; `forget` empties them.
+  std::uint64_t bytes() const { return ends_.bytes(); }
+  void forget() { ends_.forget(); }
 
   /// What all calls took so far.
   struct Costs {

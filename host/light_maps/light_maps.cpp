@@ -75,6 +75,15 @@ bool are_values_of(const Estimates& values, std::size_t nodes, const SceneNeeds&
          maps::all_below(values.light, needs.light_count);
 }
 
+/// Whether these are errors and distances of so many nodes, or none.
+bool are_errors_of(const std::vector<float>& error, const std::vector<float>& distance,
+                   std::size_t nodes) {
+  const auto sensible = [](float value) { return value >= 0; };  // infinite: nothing is near
+  return (error.empty() || error.size() == nodes) && distance.size() == error.size() &&
+         std::all_of(error.begin(), error.end(), sensible) &&
+         std::all_of(distance.begin(), distance.end(), sensible);
+}
+
 }  // namespace
 
 std::string_view name_of(LightMapMode mode) {
@@ -202,9 +211,15 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
 void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source,
                             const Progress& progress) {
   if (nodes.empty()) return;
-  NodeBatch batch =
-      light_maps::node_batch(scene, charts, nodes, levels, needs.glossy, source.surroundings());
-  NodeValues valued = source.value(batch, progress);
+  const auto value_by_source = [&](std::span<const NodePlace> places) {
+    return source.value(
+        light_maps::node_batch(scene, charts, places, levels, needs.glossy, source.surroundings()),
+        progress);
+  };
+  for (const auto& places : light_maps::unknown_parents(nodes, levels, source)) {
+    if (!places.empty()) value_by_source(places);  // for the source: they have their values here
+  }
+  NodeValues valued = value_by_source(nodes);
   append(std::move(valued.irradiance), nodes.size());
   error.insert(error.end(), valued.error.begin(), valued.error.end());
   distance.insert(distance.end(), valued.distance.begin(), valued.distance.end());
@@ -309,6 +324,8 @@ LightMapContents LightMaps::contents() const {
     contents.nodes[node] = {place.chart, place.x, place.y};
   }
   contents.values = impl_->values;
+  contents.error = impl_->error;
+  contents.distance = impl_->distance;
   for (std::uint32_t i = 0; i < impl_->tiles.size(); ++i) {
     const Tile& tile = impl_->tiles[i];
     contents.tiles.push_back({tile.known, tile.split, tile.chart, tile.level, tile.x, tile.y});
@@ -355,6 +372,9 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
       if (many) left.values.light.push_back(values.light[i]);
     }
     if (many) left.values.first.push_back(left.values.light.size());
+    if (all.error.empty()) continue;
+    left.error.push_back(all.error[node]);
+    left.distance.push_back(all.distance[node]);
   }
   for (std::uint32_t index = 0; index < kept.size(); ++index) {
     if (kept[index] == 0) continue;
@@ -367,13 +387,6 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
   impl_->values = {};
   if (impl_->needs.many_lights()) impl_->values.first.push_back(0);
   impl_->together.clear();
-  for (std::vector<float>* of_nodes : {&impl_->error, &impl_->distance}) {
-    if (of_nodes->empty()) continue;
-    for (std::size_t node = 0; node < former.size(); ++node) {
-      (*of_nodes)[node] = (*of_nodes)[former[node]];
-    }
-    of_nodes->resize(former.size());
-  }
   impl_->cells = 0;
   restore(std::move(left));
   return former;
@@ -386,11 +399,14 @@ void LightMaps::restore(LightMapContents contents) {
   Tiles& tiles = impl_->tiles;
   const std::size_t count = contents.nodes.size();
   fit(are_values_of(contents.values, count, impl_->needs));
+  fit(are_errors_of(contents.error, contents.distance, count));
   for (std::uint32_t node = 0; node < count; ++node) {
     const auto& [chart, x, y] = contents.nodes[node];
     fit(impl_->node_at.insert({NodePlace{chart, x, y}, node}).second);
   }
   impl_->append(std::move(contents.values), count);
+  impl_->error = std::move(contents.error);
+  impl_->distance = std::move(contents.distance);
   const auto place_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,
                            std::uint32_t y) {
     return std::array{chart, level, x, y};
@@ -454,7 +470,7 @@ LightMapStatistics LightMaps::statistics() const {
           .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
                          values.first.size() * sizeof(std::uint64_t) +
                          values.light.size() * sizeof(std::uint16_t) +
-                         impl_->together.size() * sizeof(float),
+                         (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float),
           .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +
                          impl_->node_at.size() * 2 * sizeof(std::pair<NodePlace, std::uint32_t>),
           .chart_seconds = impl_->chart_seconds};

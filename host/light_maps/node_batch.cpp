@@ -3,6 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
 #include <vector>
 
 #include "light_maps/node_points.hpp"
@@ -21,20 +24,33 @@ constexpr int number_bits = 48;
 
 std::uint64_t number_of(const NodePlace& node) { return hash_of(node) >> (64 - number_bits); }
 
-/// The places next to a node in the lattice of the next coarser level, or none at the coarsest.
-std::array<std::uint64_t, 4> parents_of(const NodePlace& node, int levels) {
-  std::array<std::uint64_t, 4> parents;
-  parents.fill(NodeBatch::no_parent);
+/// Of the coarsest level that has the node, its distance from one place to the next.
+std::uint32_t step_of(const NodePlace& node, int levels) {
   const std::uint32_t coarsest = 1u << (levels - 1);
   std::uint32_t step = 1;
   while (step < coarsest && (node.x | node.y) % (2 * step) == 0) step *= 2;
-  if (step == coarsest) return parents;
+  return step;
+}
+
+/// The places next to a node in the lattice of the next coarser level, or none at the coarsest.
+std::optional<std::array<NodePlace, 4>> parents_of(const NodePlace& node, int levels) {
+  const std::uint32_t step = step_of(node, levels);
+  if (step == 1u << (levels - 1)) return std::nullopt;
   const std::uint32_t dx = node.x % (2 * step), dy = node.y % (2 * step);
+  std::array<NodePlace, 4> parents;
   for (std::uint32_t i = 0; i < 4; ++i) {
-    parents[i] = number_of(
-        {node.chart, i & 1 ? node.x + dx : node.x - dx, i & 2 ? node.y + dy : node.y - dy});
+    parents[i] = {node.chart, i & 1 ? node.x + dx : node.x - dx, i & 2 ? node.y + dy : node.y - dy};
   }
   return parents;
+}
+
+std::array<std::uint64_t, 4> parent_numbers(const NodePlace& node, int levels) {
+  std::array<std::uint64_t, 4> numbers;
+  numbers.fill(NodeBatch::no_parent);
+  if (const auto parents = parents_of(node, levels)) {
+    std::transform(parents->begin(), parents->end(), numbers.begin(), number_of);
+  }
+  return numbers;
 }
 
 /// Places of the coarsest lattice.
@@ -116,11 +132,30 @@ std::size_t NodePlaceHash::operator()(const NodePlace& node) const {
   return static_cast<std::size_t>(hash_of(node));
 }
 
+std::vector<std::vector<NodePlace>> unknown_parents(std::span<const NodePlace> nodes, int levels,
+                                                    const NodeSource& source) {
+  std::vector<std::vector<NodePlace>> by_level(static_cast<std::size_t>(levels));
+  NodeIndex found;
+  std::vector<NodePlace> open(nodes.begin(), nodes.end());
+  while (!open.empty()) {
+    const auto parents = parents_of(open.back(), levels);
+    open.pop_back();
+    if (!parents) continue;
+    for (const NodePlace& parent : *parents) {
+      if (source.knows(number_of(parent)) || !found.insert({parent, 0}).second) continue;
+      const int level = levels - 1 - std::countr_zero(step_of(parent, levels));
+      by_level[static_cast<std::size_t>(level)].push_back(parent);
+      open.push_back(parent);
+    }
+  }
+  return by_level;
+}
+
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
                      int levels, bool glossy, const NodeSource::Surroundings& surroundings) {
   NodeBatch batch;
   batch.nodes = nodes.size();
-  for (const NodePlace& node : nodes) batch.parents.push_back(parents_of(node, levels));
+  for (const NodePlace& node : nodes) batch.parents.push_back(parent_numbers(node, levels));
   std::vector<NodePlace> places(nodes.begin(), nodes.end());
   if (surroundings.rounds > 0) {
     const CoarsePlaces lattice(charts, levels);

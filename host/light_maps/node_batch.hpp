@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "light_maps/charts.hpp"
 #include "photile/light_maps.hpp"
@@ -24,5 +25,10 @@ using NodeIndex = tsl::robin_map<NodePlace, std::uint32_t, NodePlaceHash>;
 ///   surroundings   of nodes of the coarsest level
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
                      int levels, bool glossy, const NodeSource::Surroundings& surroundings);
+
+/// The places between which nodes lie, and those between which these do, as far as a source does
+/// not know them: by level, the coarsest first.
+std::vector<std::vector<NodePlace>> unknown_parents(std::span<const NodePlace> nodes, int levels,
+                                                    const NodeSource& source);
 
 }  // namespace photile::light_maps

@@ -22,7 +22,7 @@ class HitSource {
                                 int first_row, int last_row,
                                 std::span<const std::uint32_t> map_of) const = 0;
 
-  /// Whether light maps pay: hits lie so close that many share nodes.
+  /// Whether automatic light maps are read: hits lie so close that many share nodes.
   virtual bool dense() const { return false; }
 
   /// Whether somebody watches the film fill: renderers then finish fewer rows at a time.
@@ -62,6 +62,7 @@ class WatchedHits : public CameraHits {
 class ReflectedHits : public HitSource {
  public:
   explicit ReflectedHits(const Camera& camera) : camera_(camera) {}
+  bool dense() const override { return true; }
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
 

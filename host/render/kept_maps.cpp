@@ -12,12 +12,13 @@ KeptMaps::KeptMaps(const Scene& scene, std::span<Device> devices,
                    const KeepPhotons& keep, Progress& progress)
     : scene_(scene), rendering_(scene_, devices, parameters, progress) {
   const RenderPlan& plan = rendering_.plan();
-  if ((plan.gathers() || plan.gathers_at_nodes()) && (prepared || keep)) {
-    throw UsageError(
-        "gathering takes caustics from photons of their own, which saved maps do not hold: trace "
-        "the photons anew, or leave it out");
+  if (prepared && !prepared->caustics && plan.keeps_caustics()) {
+    throw SettingError(
+        setting_named(plan.gathers() ? "final_gather_rays" : "light_map_rays"),
+        "rays that gather take caustics from photons of their own, which these saved maps lack; "
+        "save them again with rays that gather");
   }
-  if (const int passes = rendering_.plan().passes(); passes > 1) {
+  if (const int passes = plan.passes(); passes > 1) {
     throw SettingError(
         setting_named("passes"),
         fmt::format("{} photon passes: walks, views, saved maps and glare need all photons in "

@@ -26,6 +26,9 @@ namespace {
 constexpr int packet_side = 4, block_side = 32;
 static_assert(packet_side * packet_side == trace::coherent_rays);
 
+/// Of valuing a place, before it is known: by photons, and by rays at it and around it.
+constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 2e-3;
+
 /// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread
 /// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). The same in every
 /// pixel and frame: nothing flickers.
@@ -101,7 +104,8 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
       surfaces_(scene_.triangle_count()),
       layer_of_(light_groups_of(scene_).group_of),
       emitted_(emitted_radiance_at_unit_power(scene_)),
-      distant_(trace::distant_lights(scene_)) {
+      distant_(trace::distant_lights(scene_)),
+      seconds_per_place_(source.surroundings().rounds > 0 ? seconds_of_rays : seconds_of_photons) {
   const std::span<const std::uint32_t> chart_of = maps.charts().chart_of();
   for (std::uint32_t t = 0; t < surfaces_.size(); ++t) {
     const Material& material = scene_.materials[scene_.triangle_material[t]];
@@ -148,10 +152,13 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
 /// Before a frame: the latest is the one before.
 void LightMapFrames::forget_unseen() {
   const LightMapStatistics statistics = maps_.statistics();
-  if (statistics.value_bytes + statistics.index_bytes <= bound_ || statistics.nodes == 0) return;
+  const std::uint64_t own = statistics.value_bytes + statistics.index_bytes;
+  if (own + source_.bytes() <= bound_ || statistics.nodes == 0) return;
+  source_.forget();
+  if (own <= bound_ / 2) return;
   seen_.resize(statistics.nodes, 0);
   // The oldest frame whose cells stay: so many nodes take half of the memory.
-  const auto bytes = static_cast<double>(statistics.value_bytes + statistics.index_bytes);
+  const auto bytes = static_cast<double>(own);
   const auto staying = static_cast<std::size_t>(static_cast<double>(bound_) / 2 / bytes *
                                                 static_cast<double>(statistics.nodes));
   std::vector<std::uint32_t> newest_first = seen_;

@@ -27,8 +27,8 @@ class LightMapFrames {
   LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource& source);
 
   /// From now on, frames forget the cells that were seen least recently where light maps take more
-  /// than so many bytes: down to half of it, but none that the latest frame sees. 0 = no bound. For
-  /// sources that keep nothing of nodes.
+  /// than so many bytes: down to half of it, but none that the latest frame sees; first of all,
+  /// what their source keeps. 0 = no bound.
   void bound(std::uint64_t bytes) { bound_ = bytes; }
 
   /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Pixels whose nodes
@@ -89,7 +89,7 @@ class LightMapFrames {
   std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
   mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell
   glm::vec3 ambient_{0.0f};                  ///< irradiance where no level is valued
-  double seconds_per_place_ = 20e-6;         ///< of valuing, learned from what it took
+  double seconds_per_place_;                 ///< of valuing, learned from what it took
 };
 
 }  // namespace photile

@@ -46,8 +46,10 @@ class MapEstimators {
   /// Of the maps, metres.
   double radius() const { return built().maps.front().parameters().radius; }
 
-  /// Each device's part of all hits so far.
-  std::vector<double> shares() const { return built().estimators.back().shares(); }
+  /// Each device's part of all hits so far; none without any.
+  std::vector<double> shares() const {
+    return built_ ? built_->estimators.back().shares() : std::vector<double>(devices_.size(), 0.0);
+  }
 
  private:
   struct Built {

@@ -30,7 +30,7 @@ void set_quality(RenderParameters& parameters, Quality quality) {
   switch (quality) {
     case Quality::draft:
       return set(parameters, defaults::emitted_photons, defaults::neighbours,
-                 defaults::samples_per_pixel, LightMapMode::off, 0);
+                 defaults::samples_per_pixel, LightMapMode::automatic, 0);
     case Quality::good:
       return set(parameters, 500'000, 100, 16, LightMapMode::on, 64);
     case Quality::best:

@@ -50,12 +50,15 @@ PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
 }
 
 RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Progress& progress)
-    : used_(asked), scene_(rays.scene().source.filename().string()) {
+    : used_(asked),
+      asked_light_maps_(asked.light_maps),
+      scene_(rays.scene().source.filename().string()) {
   check(asked);
   if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
+  if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
   if (asked.light_maps == LightMapMode::automatic) {
-    const bool at_hits = gathers() || asked.maps == MapMode::naive;
+    const bool at_hits = gathers() || asked.maps == MapMode::naive || passes() > 1;
     used_.light_maps = at_hits ? LightMapMode::off : LightMapMode::on;
   }
   if (!reads_light_maps()) used_.light_map_rays = 0;
@@ -64,7 +67,6 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
   }
   // Beyond the scene there is nothing to find.
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
-  if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
 }
 
 PhotonTracerParameters RenderPlan::tracing(int pass,

@@ -31,7 +31,12 @@ class RenderPlan {
   int passes() const { return used_.passes; }
   bool gathers() const { return used_.final_gather_rays > 0; }
   bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
+  /// Whether light maps are to be read by any hits, even if few share nodes.
+  bool asks_for_light_maps() const {
+    return asked_light_maps_ == LightMapMode::on || gathers_at_nodes();
+  }
   bool gathers_at_nodes() const { return used_.light_map_rays > 0; }
+  bool keeps_caustics() const { return gathers() || gathers_at_nodes(); }
   bool clips_areas() const { return used_.area == AreaMode::clipped; }
 
   /// Of this pass, whose paths follow those of the passes before.
@@ -71,6 +76,7 @@ class RenderPlan {
 
  private:
   RenderParameters used_;
+  LightMapMode asked_light_maps_;
   std::string scene_;  ///< for messages
 };
 

@@ -23,12 +23,12 @@ std::int64_t hits_per_batch(int neighbours) {
          std::max(defaults::neighbours, neighbours);
 }
 
-/// What nodes depend on beside the scene and the photons: the settings of estimates, and the kind
-/// of device, whose sums may have another order.
+/// What nodes depend on beside the scene and the photons: the settings of estimates and of rays
+/// that gather, and the kind of device, whose sums may have another order.
 std::string light_map_settings(const RenderParameters& used, std::span<Device> devices) {
   std::string words = devices.front().info().name;
   for (const Setting& setting : settings()) {
-    if (setting.group == "Estimate") {
+    if (setting.group == "Estimate" || setting.name == "max_specular_depth") {
       words += fmt::format(", {} {}", setting.name, text_with_unit(setting, used));
     }
   }
@@ -72,6 +72,7 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   node_gather_.reset();
   photons_.reset();
   caustics_.reset();
+  late_maps_.reset();
   pass_ = pass;
   if (prepared && reads_light_maps_of(*prepared)) {
     wait_with(*prepared, keep);
@@ -95,7 +96,7 @@ MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps) const {
 }
 
 bool Rendering::reads_light_maps_of(const PreparedPhotons& prepared) {
-  if (!prepared.light_maps || !plan_.reads_light_maps() || plan_.gathers_at_nodes()) return false;
+  if (!prepared.light_maps || !plan_.reads_light_maps()) return false;
   if (prepared.light_maps->settings == light_map_settings(plan_.used(), devices_)) return true;
   progress_->note("light maps of the saved photons are of other settings: they are made anew");
   return false;
@@ -103,20 +104,33 @@ bool Rendering::reads_light_maps_of(const PreparedPhotons& prepared) {
 
 void Rendering::wait_with(PreparedPhotons& prepared, const KeepPhotons* keep) {
   radius_ = prepared.radius;
-  light_map_parameters_ = plan_.light_maps(0, radius_, prepared.photons, layer_powers_);
-  const auto make = [this] {
-    report_to(Progress::none());  // photons that are given up on the way would be lost
-    return parts_of(trace_and_build(0, &waiting_, nullptr).photons);
+  choose_light_maps(0, prepared.photons);
+  const auto maker = [this](std::vector<PhotonMaps> Maps::*which) {
+    return [this, which] {
+      if (!late_maps_) {
+        report_to(Progress::none());  // photons that are given up on the way would be lost
+        late_maps_ = trace_and_build(0, &waiting_, nullptr);
+      }
+      return parts_of(std::move((*late_maps_).*which));
+    };
   };
-  photons_.emplace(devices_, scene_, make, layer_powers_);
+  photons_.emplace(devices_, scene_, maker(&Maps::photons), layer_powers_);
+  if (plan_.keeps_caustics() && prepared.caustics->size() > 0) {
+    caustics_.emplace(devices_, scene_, maker(&Maps::caustics), layer_powers_);
+  }
   light_maps().maps().restore(std::move(*prepared.light_maps));
   prepared.light_maps.reset();
   if (keep) (*keep)(prepared);
   waiting_ = std::move(prepared);
 }
 
+void Rendering::choose_light_maps(int pass, const Photons& photons) {
+  light_map_parameters_ = plan_.light_maps(pass, radius_, photons, layer_powers_);
+  end_parameters_ = plan_.ends(pass, radius_, photons, layer_powers_);
+}
+
 std::optional<LightMapContents> Rendering::light_map_contents() const {
-  if (!light_maps_ || plan_.gathers_at_nodes()) return std::nullopt;
+  if (!light_maps_) return std::nullopt;
   LightMapContents contents = light_maps_->maps().contents();
   contents.settings = light_map_settings(plan_.used(), devices_);
   return contents;
@@ -153,6 +167,7 @@ void Rendering::release() {
   node_gather_.reset();
   photons_.reset();
   caustics_.reset();
+  late_maps_.reset();
   surface_.reset();
   groups_ = {};
   costs_.release.add(stopwatch.taken());
@@ -183,6 +198,7 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
   PhotonTracerResult traced;
   if (prepared) {
     traced.photons = std::move(prepared->photons);
+    if (plan_.keeps_caustics()) traced.caustics = std::move(*prepared->caustics);
   } else {
     traced = trace_photons(rays_, plan_.tracing(pass, paths_before_), *progress_);
   }
@@ -195,15 +211,14 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
     find_groups(traced.photons, prepared);  // once: no later radius is larger
     find_surface(traced.photons);
   }
-  if (plan_.reads_light_maps()) {
-    light_map_parameters_ = plan_.light_maps(pass, radius_, traced.photons, layer_powers_);
-    end_parameters_ = plan_.ends(pass, radius_, traced.photons, layer_powers_);
-  }
+  if (plan_.reads_light_maps()) choose_light_maps(pass, traced.photons);
   if (keep) {
     PreparedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
+    if (plan_.keeps_caustics()) own.caustics = std::move(traced.caustics);
     (*keep)(own);
     traced.photons = std::move(own.photons);
     groups_ = std::move(own.groups);
+    if (own.caustics) traced.caustics = std::move(*own.caustics);
   }
   const PhotonMapParameters parameters = plan_.maps(pass, radius_);
   Maps maps{build(traced.photons, parameters), {}};
@@ -280,7 +295,10 @@ int Rendering::rows_per_batch(const HitSource& source) const {
 
 void Rendering::add_rows(const HitSource& source, int first, int last) {
   const Stopwatch hit_watch;
-  PrimaryHitBatch batch = source.trace(rays_, film_, first, last, photons_->map_of());
+  // Light maps ask for no order, and those of a file for no photons.
+  const auto map_of =
+      reads_light_maps(source) ? std::span<const std::uint32_t>() : photons_->map_of();
+  PrimaryHitBatch batch = source.trace(rays_, film_, first, last, map_of);
   costs_.hits.add(hit_watch.taken());
   costs_.rays += batch.rays;
   const auto add = [&](const PrimaryHitBatch& seen, float illuminance_weight) {

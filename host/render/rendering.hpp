@@ -72,13 +72,15 @@ class Rendering {
   /// On each device.
   struct Maps {
     std::vector<PhotonMaps> photons;
-    std::vector<PhotonMaps> caustics;  ///< for final gathering, where there are any
+    std::vector<PhotonMaps> caustics;  ///< for rays that gather, where there are any
   };
 
   /// Whether light maps that are kept with the photons are those of this rendering.
   bool reads_light_maps_of(const PreparedPhotons& prepared);
   /// Takes them in; maps of the photons are built when an estimate is first needed.
   void wait_with(PreparedPhotons& prepared, const KeepPhotons* keep);
+  /// Chooses nodes for the photons of a pass.
+  void choose_light_maps(int pass, const Photons& photons);
   MapEstimators::Parts parts_of(std::vector<PhotonMaps> maps) const;
   Maps trace_and_build(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
   std::vector<PhotonMaps> build(const Photons& photons, const PhotonMapParameters& parameters);
@@ -89,7 +91,7 @@ class Rendering {
   void add_rows(const HitSource& source, int first, int last);
   Estimates estimate(const PrimaryHits& hits, int first_row, int last_row);
   bool reads_light_maps(const HitSource& source) const {
-    return plan_.reads_light_maps() && source.dense();
+    return plan_.reads_light_maps() && (source.dense() || plan_.asks_for_light_maps());
   }
   Estimates read_light_maps(const PrimaryHits& hits);
   double compile_seconds() const;
@@ -105,7 +107,8 @@ class Rendering {
   std::vector<std::uint64_t> paths_before_;  ///< per light
   double radius_ = 0;                        ///< of the first pass, metres
   NeighbourGroups groups_;
-  PreparedPhotons waiting_;  ///< with light maps of their own: what has no maps yet
+  PreparedPhotons waiting_;        ///< with light maps of their own: what has no maps yet
+  std::optional<Maps> late_maps_;  ///< of what was waiting
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
   const std::vector<double> layer_powers_;
   std::optional<MapEstimators> photons_, caustics_;  ///< of the pass

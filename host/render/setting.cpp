@@ -103,9 +103,10 @@ std::string kept_for_tree(const Setting& setting, const RenderParameters& parame
   return global ? kept_as_it_is(setting, parameters) : std::string();
 }
 
-/// Rays leave no direct light to photons, however many there are.
+/// Rays leave no direct light to photons, however many there are; but rays that gather see it.
 std::string kept_for_direct_light(const Setting& setting, const RenderParameters& parameters) {
-  return setting.is_given(parameters) ? "direct light by rays" : std::string();
+  const bool by_rays = setting.is_given(parameters) && parameters.final_gather_rays == 0;
+  return by_rays ? "direct light by rays" : std::string();
 }
 
 constexpr std::uint64_t most_int = std::numeric_limits<int>::max();
@@ -195,8 +196,8 @@ std::vector<Setting> estimate_rows() {
                      "read, else photons",
                      not_kept),
       row<&P::light_maps>("light_maps", "light-maps", "light maps", words_of(all_light_map_modes),
-                          "matt surfaces are read between nodes; auto: but where rays gather, and "
-                          "not with naive maps; off: an estimate at each hit",
+                          "matt surfaces are read between nodes; auto: but where rays gather, with "
+                          "naive maps and several passes; off: an estimate at each hit",
                           not_kept),
       row<&P::light_map_rays>("light_map_rays", "light-map-rays", "light maps",
                               WholeNumbers{1, limits::max_final_gather_rays},

@@ -30,6 +30,11 @@ std::string problem_of(const PreparedPhotons& prepared, const Scene& scene) {
   if (prepared.photons.emitted_per_light.size() != scene.lights.size()) {
     return "another number of lights";
   }
+  if (prepared.caustics) {
+    const std::string of_caustics =
+        maps::problem_of(*prepared.caustics, needs_of(scene), sided_triangles);
+    if (!of_caustics.empty()) return of_caustics;
+  }
   if (!are_patches(groups.patches, sided_triangles)) return "patches that do not fit the scene";
   const std::uint64_t map_count =
       groups.patches.empty() ? sided_triangles : 2 * std::uint64_t{groups.patches.count()};

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -23,27 +24,25 @@ namespace photile::saved_maps {
 namespace {
 
 constexpr std::array<char, 8> magic{'P', 'H', 'O', 'T', 'M', 'A', 'P', 'S'};
-constexpr std::uint32_t version = 2;
+constexpr std::uint32_t version = 3;
 constexpr std::uint32_t byte_order = 0x0102'0304;
 
-/// The head of a file. No padding.
+/// A run of arrays. No padding.
+struct Part {
+  std::uint64_t bytes = 0;
+  ContentHash::Digest digest{};
+};
+
+/// The head of a file. It knows of all that follows, so that no part can be cut off unseen. No
+/// padding.
 struct Header {
   std::array<char, 8> magic;
   std::uint32_t version, byte_order;
   ContentHash::Digest scene;
-  std::uint64_t payload_bytes;
-  ContentHash::Digest payload;  ///< of all before and of the payload
+  Part photons, light_maps;  ///< one after the other; light maps may be none
+  ContentHash::Digest head;  ///< of all before
 };
-static_assert(sizeof(Header) == 56 && std::is_trivially_copyable_v<Header>);
-
-/// What stands before light maps, which follow the photons. No padding.
-struct LightMapHeader {
-  std::array<char, 8> magic;
-  std::uint64_t payload_bytes;
-  ContentHash::Digest payload;  ///< of the photons' digest and the payload
-};
-static_assert(sizeof(LightMapHeader) == 32 && std::is_trivially_copyable_v<LightMapHeader>);
-constexpr std::array<char, 8> light_map_magic{'P', 'H', 'O', 'T', 'N', 'O', 'D', 'E'};
+static_assert(sizeof(Header) == 96 && std::is_trivially_copyable_v<Header>);
 static_assert(sizeof(LightMapContents::Place) == 12 && sizeof(LightMapContents::Tile) == 32);
 
 ContentHash::Digest digest_of(const Scene& scene) {
@@ -52,10 +51,15 @@ ContentHash::Digest digest_of(const Scene& scene) {
   return hash.digest();
 }
 
-/// Calls `visit` with every array of the payload, in the order of the file.
-template <class Prepared, class Visit>
-void for_each_array(Prepared& prepared, const Visit& visit) {
-  auto& photons = prepared.photons;
+ContentHash::Digest digest_of(const Header& header) {
+  ContentHash hash;
+  hash.add_bytes(&header, offsetof(Header, head));
+  return hash.digest();
+}
+
+/// Calls `visit` with every array of photons.
+template <class Photons, class Visit>
+void for_each_array_of_photons(Photons& photons, const Visit& visit) {
   visit(photons.position);
   visit(photons.flux);
   visit(photons.incoming);
@@ -63,32 +67,44 @@ void for_each_array(Prepared& prepared, const Visit& visit) {
   visit(photons.sided_triangle);
   visit(photons.first_of);
   visit(photons.emitted_per_light);
+}
+
+/// Calls `visit` with every array of the photons' part, in the order of the file.
+template <class Prepared, class Visit>
+void for_each_array(Prepared& prepared, const Visit& visit) {
+  for_each_array_of_photons(prepared.photons, visit);
   auto& groups = prepared.groups;
   visit(groups.offsets);
   visit(groups.members);
   visit(groups.patches.map_of);
   visit(groups.patches.first_of);
   visit(groups.patches.members);
+  if (prepared.caustics) for_each_array_of_photons(*prepared.caustics, visit);
 }
 
-using Numbers = std::array<double, 3>;
+/// Radius of the maps, radius and angle of the groups, and whether caustics are there.
+using Numbers = std::array<double, 4>;
 
 Numbers numbers_of(const PreparedPhotons& prepared) {
-  return {prepared.radius, prepared.groups.radius, prepared.groups.angle_degrees};
+  return {prepared.radius, prepared.groups.radius, prepared.groups.angle_degrees,
+          prepared.caustics ? 1.0 : 0.0};
 }
 
-/// Calls `put` with all bytes of the payload, in runs.
+/// Calls `put` with the bytes of an array, its number of elements before it.
+template <class Put, class Array>
+void write_array(const Array& values, const Put& put) {
+  const std::uint64_t count = values.size();
+  put(&count, sizeof count);
+  put(values.data(), count * sizeof(values[0]));
+}
+
+/// Calls `put` with all bytes of the photons' part, in runs.
 template <class Put>
-void write_payload(const PreparedPhotons& prepared, const std::string& settings, const Put& put) {
-  const auto array = [&](const auto& values) {
-    const std::uint64_t count = values.size();
-    put(&count, sizeof count);
-    put(values.data(), count * sizeof(values[0]));
-  };
-  array(settings);
+void write_photons(const PreparedPhotons& prepared, const std::string& settings, const Put& put) {
+  write_array(settings, put);
   const Numbers numbers = numbers_of(prepared);
   put(numbers.data(), sizeof numbers);
-  for_each_array(prepared, array);
+  for_each_array(prepared, [&](const auto& values) { write_array(values, put); });
 }
 
 /// Calls `visit` with every array of light maps, in the order of the file.
@@ -99,22 +115,23 @@ void for_each_light_map_array(Contents& contents, const Visit& visit) {
   visit(contents.values.irradiance);
   visit(contents.values.first);
   visit(contents.values.light);
+  visit(contents.error);
+  visit(contents.distance);
   visit(contents.tiles);
 }
 
-/// The digest that a header holds.
-class Checksum {
- public:
-  explicit Checksum(const Header& header) { hash_.add_bytes(&header, offsetof(Header, payload)); }
-  explicit Checksum(const ContentHash::Digest& photons) {
-    hash_.add_bytes(&photons, sizeof photons);
-  }
-  void add(const void* bytes, std::uint64_t count) { hash_.add_bytes(bytes, count); }
-  ContentHash::Digest digest() const { return hash_.digest(); }
-
- private:
-  ContentHash hash_;
-};
+/// The part that `write(put)` writes.
+template <class Write>
+Part part_of(const Write& write) {
+  Part part;
+  ContentHash hash;
+  write([&](const void* bytes, std::uint64_t count) {
+    part.bytes += count;
+    hash.add_bytes(bytes, count);
+  });
+  part.digest = hash.digest();
+  return part;
+}
 
 /// A file being read: knows how many bytes are left before it takes memory for them.
 class Reader {
@@ -122,7 +139,6 @@ class Reader {
   explicit Reader(const std::filesystem::path& file) : file_(file) {
     if (const std::string reason = why_no_regular_file(file); !reason.empty()) refuse(reason);
     std::error_code error;
-    note_input(file);
     left_ = std::filesystem::file_size(file, error);
     stream_.open(file, std::ios::binary);
     if (error || !stream_) refuse("cannot be read");
@@ -135,19 +151,26 @@ class Reader {
     if (!stream_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(count))) {
       refuse("cannot be read");
     }
+    if (hash_) hash_->add_bytes(bytes, count);
     left_ -= count;
+  }
+
+  /// From here on, what is read counts for the digest of a part.
+  void begin_part() { hash_.emplace(); }
+  /// Errors: InputError where the part has another digest.
+  void end_part(const Part& part) {
+    if (hash_->digest() != part.digest) refuse("is damaged; save it again");
+    hash_.reset();
   }
 
   /// An array with its count before it.
   template <class Array>
-  void read_array(Array& values, Checksum& checksum) {
+  void read_array(Array& values) {
     std::uint64_t count = 0;
     read(&count, sizeof count);
     if (count > left_ / sizeof(values[0])) refuse("is truncated or damaged; save it again");
     values.resize(count);
     read(values.data(), count * sizeof(values[0]));
-    checksum.add(&count, sizeof count);
-    checksum.add(values.data(), count * sizeof(values[0]));
   }
 
   [[noreturn]] void refuse(const std::string& reason) const {
@@ -158,6 +181,7 @@ class Reader {
   const std::filesystem::path& file_;
   std::ifstream stream_;
   std::uint64_t left_ = 0;
+  std::optional<ContentHash> hash_;
 };
 
 Header read_header(Reader& reader) {
@@ -172,24 +196,23 @@ Header read_header(Reader& reader) {
     reader.refuse(fmt::format("has version {} of the format, this photile reads {}; save it again",
                               header.version, version));
   }
-  if (header.payload_bytes > reader.left()) reader.refuse("is truncated; save it again");
+  if (header.head != digest_of(header)) reader.refuse("is damaged; save it again");
+  const std::uint64_t left = reader.left();
+  const bool whole =
+      header.photons.bytes <= left && header.light_maps.bytes <= left - header.photons.bytes;
+  if (!whole) reader.refuse("is truncated; save it again");
+  if (header.photons.bytes + header.light_maps.bytes != left) {
+    reader.refuse("has bytes after its end; save it again");
+  }
   return header;
 }
 
-LightMapContents read_light_maps(Reader& reader, const Header& photons) {
-  LightMapHeader header{};
-  if (reader.left() < sizeof header) reader.refuse("has bytes after its end; save it again");
-  reader.read(&header, sizeof header);
-  if (header.magic != light_map_magic) reader.refuse("has bytes after its end; save it again");
-  if (header.payload_bytes != reader.left()) {
-    reader.refuse("is truncated or damaged; save it again");
-  }
-  Checksum checksum(photons.payload);
+LightMapContents read_light_maps(Reader& reader, const Part& part) {
   LightMapContents contents;
-  for_each_light_map_array(contents, [&](auto& values) { reader.read_array(values, checksum); });
-  if (reader.left() > 0 || checksum.digest() != header.payload) {
-    reader.refuse("is damaged; save it again");
-  }
+  reader.begin_part();
+  for_each_light_map_array(contents, [&](auto& values) { reader.read_array(values); });
+  reader.end_part(part);
+  if (reader.left() > 0) reader.refuse("is damaged; save it again");
   return contents;
 }
 
@@ -197,70 +220,53 @@ LightMapContents read_light_maps(Reader& reader, const Header& photons) {
 
 void save(const std::filesystem::path& file, const Scene& scene, const std::string& settings,
           const PreparedPhotons& prepared) {
-  Header header{magic, version, byte_order, digest_of(scene), 0, {}};
-  write_payload(prepared, settings,
-                [&](const void*, std::uint64_t count) { header.payload_bytes += count; });
-  Checksum checksum(header);
-  write_payload(prepared, settings,
-                [&](const void* bytes, std::uint64_t count) { checksum.add(bytes, count); });
-  header.payload = checksum.digest();
-
+  Header header{magic, version, byte_order, digest_of(scene), {}, {}, {}};
+  header.photons = part_of([&](const auto& put) { write_photons(prepared, settings, put); });
+  header.head = digest_of(header);
   OutputFile output(file);
   output.write(&header, sizeof header);
-  write_payload(prepared, settings,
+  write_photons(prepared, settings,
                 [&](const void* bytes, std::uint64_t count) { output.write(bytes, count); });
   output.commit();  // reports short writes, too
 }
 
 void add_light_maps(const std::filesystem::path& file, const LightMapContents& contents) {
   Reader reader(file);
-  const Header header = read_header(reader);
-  LightMapHeader own{light_map_magic, 0, {}};
-  Checksum checksum(header.payload);
-  const auto write_payload = [&](const auto& put) {
-    for_each_light_map_array(contents, [&](const auto& values) {
-      const std::uint64_t count = values.size();
-      put(&count, sizeof count);
-      put(values.data(), count * sizeof(values[0]));
-    });
+  Header header = read_header(reader);
+  const auto write_light_maps = [&](const auto& put) {
+    for_each_light_map_array(contents, [&](const auto& values) { write_array(values, put); });
   };
-  write_payload([&](const void* bytes, std::uint64_t count) {
-    own.payload_bytes += count;
-    checksum.add(bytes, count);
-  });
-  own.payload = checksum.digest();
-
+  header.light_maps = part_of(write_light_maps);
+  header.head = digest_of(header);
   OutputFile output(file);
   output.write(&header, sizeof header);
   std::vector<char> copied(std::size_t{1} << 20);
-  for (std::uint64_t left = header.payload_bytes; left > 0;) {
+  for (std::uint64_t left = header.photons.bytes; left > 0;) {
     const std::uint64_t count = std::min<std::uint64_t>(left, copied.size());
     reader.read(copied.data(), count);
     output.write(copied.data(), count);
     left -= count;
   }
-  output.write(&own, sizeof own);
-  write_payload([&](const void* bytes, std::uint64_t count) { output.write(bytes, count); });
+  write_light_maps([&](const void* bytes, std::uint64_t count) { output.write(bytes, count); });
   output.commit();
 }
 
 PreparedPhotons load(const std::filesystem::path& file, const Scene& scene,
                      const std::string& settings) {
   Reader reader(file);
+  note_input(file);
   const Header header = read_header(reader);
-  const std::uint64_t after_photons = reader.left() - header.payload_bytes;
-  Checksum checksum(header);
   PreparedPhotons prepared;
   std::string saved_settings;
   Numbers numbers{};
-  reader.read_array(saved_settings, checksum);
+  reader.begin_part();
+  reader.read_array(saved_settings);
   reader.read(numbers.data(), sizeof numbers);
-  checksum.add(numbers.data(), sizeof numbers);
-  for_each_array(prepared, [&](auto& values) { reader.read_array(values, checksum); });
-  if (reader.left() != after_photons || checksum.digest() != header.payload) {
-    reader.refuse("is damaged; save it again");
-  }
-  if (reader.left() > 0) prepared.light_maps = read_light_maps(reader, header);
+  if (numbers[3] != 0) prepared.caustics.emplace();
+  for_each_array(prepared, [&](auto& values) { reader.read_array(values); });
+  reader.end_part(header.photons);
+  if (reader.left() != header.light_maps.bytes) reader.refuse("is damaged; save it again");
+  if (reader.left() > 0) prepared.light_maps = read_light_maps(reader, header.light_maps);
   if (header.scene != digest_of(scene)) {
     reader.refuse(
         fmt::format("was saved from another scene than {}; save it again", scene.source.string()));

@@ -18,11 +18,11 @@
 
 namespace photile {
 
-/// Whether pictures of cameras read the light of matt surfaces from light maps.
+/// Whether the light of matt surfaces is read from light maps.
 enum class LightMapMode {
   off,       ///< an estimate at each hit: the method of the paper
   on,        ///< nodes, which the photon estimate values
-  automatic  ///< on, but where rays gather, and not with naive maps
+  automatic  ///< on for pictures, but where rays gather, with naive maps and with several passes
 };
 
 /// "off", "on", "auto".
@@ -75,6 +75,13 @@ class NodeSource {
   virtual Surroundings surroundings() const { return {}; }
 
   virtual NodeValues value(const NodeBatch& batch, const Progress& progress) = 0;
+
+  /// Whether it has all that it needs of the node of this number to value those that lie between it
+  /// and others. Those that it does not know are given to `value` once more, the coarsest first.
+  virtual bool knows(std::uint64_t /*number*/) const { return true; }
+  /// What it keeps of nodes; `forget` lets go of that.
+  virtual std::uint64_t bytes() const { return 0; }
+  virtual void forget() {}
 };
 
 /// Values each node by what is known at its point.
@@ -131,8 +138,9 @@ struct LightMapContents {
   };
   std::string settings;  ///< in words: what the light depends on beside the scene and the photons
   std::vector<Place> nodes;
-  Estimates values;         ///< of the nodes
-  std::vector<Tile> tiles;  ///< each after the one that it refines
+  Estimates values;                    ///< of the nodes
+  std::vector<float> error, distance;  ///< of the nodes, as NodeValues has them
+  std::vector<Tile> tiles;             ///< each after the one that it refines
 };
 
 /// Irradiance of every light at the nodes of lattices in the planes of the surface, finer where it

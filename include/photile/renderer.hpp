@@ -82,7 +82,7 @@ struct RenderParameters {
   /// light is looked up at the hit.
   int final_gather_rays = 0;
   GlossMode gloss = GlossMode::automatic;
-  LightMapMode light_maps = LightMapMode::off;  ///< see docs/light-maps.md
+  LightMapMode light_maps = LightMapMode::automatic;  ///< see docs/light-maps.md
   /// > 0: nodes of light maps gather light by so many rays each, and as many looks at lamps, fewer
   /// at finer levels (docs/light-maps.md). 0 = the photon estimate values them.
   int light_map_rays = 0;

@@ -19,6 +19,8 @@ struct PreparedPhotons {
   Photons photons;
   NeighbourGroups groups;
   double radius = 0;  ///< metres: of the maps
+  /// Of them, those that came by mirrors and glass alone; where rays gather.
+  std::optional<Photons> caustics = std::nullopt;
   /// What light maps of these photons held, if they are kept. Where its settings are those of the
   /// rendering, maps are built from the photons when an estimate is first needed.
   std::optional<LightMapContents> light_maps = std::nullopt;
@@ -38,7 +40,8 @@ class SceneRenderer {
   /// Traces the photons and builds the maps. The scene and the devices must outlive it.
   ///   prepared   in place of tracing, of the same scene and parameters; left empty. Null: none
   ///   keep       is called with what the maps are built from, before they are. Empty: nothing
-  /// Errors: those of `render`, and of `keep`; UsageError where the photons need several passes.
+  /// Errors: those of `render`, and of `keep`; UsageError where the photons need several passes, or
+  /// where rays gather and `prepared` has no caustics apart.
   SceneRenderer(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
                 PreparedPhotons* prepared = nullptr, const KeepPhotons& keep = {},
                 Progress& progress = Progress::none());

@@ -26,18 +26,36 @@ std::vector<std::string> arguments_of(const FileFolder& folder, const std::strin
 TEST_CASE("saved photons give the picture again, in other powers and sizes as well") {
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
-  REQUIRE(run_photile(arguments_of(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
+  const auto [option, value] = GENERATE(table<std::string, std::string>({{"--light-maps", "auto"},
+                                                                         {"--light-maps", "off"},
+                                                                         {"--light-map-rays", "8"},
+                                                                         {"--final-gather", "2"}}));
+  const auto render = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.end(), {option, value});
+    return run_photile(arguments_of(folder, name, more));
+  };
+  REQUIRE(render("a.exr", {"--save-maps", maps}).exit_code == 0);
   REQUIRE(std::filesystem::exists(maps));
-  const Outcome loaded = run_photile(arguments_of(folder, "b.exr", {"--load-maps", maps}));
+  const Outcome loaded = render("b.exr", {"--load-maps", maps});
   INFO(loaded.errors);
   REQUIRE(loaded.exit_code == 0);
-  REQUIRE(run_photile(arguments_of(folder, "c.exr", {})).exit_code == 0);
+  REQUIRE(render("c.exr", {}).exit_code == 0);
   const Image a = read_image(folder / "a.exr");
   CHECK(a.channels == read_image(folder / "b.exr").channels);
   CHECK(a.channels == read_image(folder / "c.exr").channels);
-  CHECK(run_photile(arguments_of(folder, "d.exr",
-                                 {"--load-maps", maps, "--light", "left=x2", "--samples", "1"}))
-            .exit_code == 0);
+  CHECK(render("d.exr", {"--load-maps", maps, "--light", "left=x2", "--samples", "1"}).exit_code ==
+        0);
+}
+
+TEST_CASE("rays that gather refuse saved photons without caustics, and say what to do") {
+  const FileFolder folder;
+  const std::string maps = folder / "box.maps";
+  REQUIRE(run_photile(arguments_of(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
+  for (const std::string gathering : {"--light-map-rays", "--final-gather"}) {
+    const Outcome outcome =
+        run_photile(arguments_of(folder, "b.exr", {"--load-maps", maps, gathering, "4"}));
+    CHECK_THAT(only_error(outcome, 2), Contains(gathering) && Contains("save them again"));
+  }
 }
 
 TEST_CASE("photons of other settings or scenes, and broken files, are refused by name") {

@@ -41,8 +41,7 @@ TEST_CASE("every setting is an option of render, and in its help") {
     CAPTURE(setting.name);
     CHECK_THAT(help.output, Contains(app::option_of(setting) + " "));
     const bool of_pictures = setting.name == "samples_per_pixel" || setting.name == "direct_rays" ||
-                             setting.name == "final_gather_rays" || setting.name == "gloss" ||
-                             setting.reader == "light maps";
+                             setting.name == "final_gather_rays" || setting.name == "gloss";
     CHECK((measure.output.find(app::option_of(setting) + " ") == std::string::npos) == of_pictures);
   }
 }

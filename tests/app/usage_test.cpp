@@ -44,8 +44,6 @@ TEST_CASE("an output is required") {
 TEST_CASE("final gathering names the options that it cannot go with") {
   const auto [option, value] =
       GENERATE(table<std::string, std::string>({{"--direct", "photons"},
-                                                {"--save-maps", "a.maps"},
-                                                {"--load-maps", "a.maps"},
                                                 {"--target-error", "5%"},
                                                 {"--time-budget", "1s"},
                                                 {"--integrator", "path"}}));

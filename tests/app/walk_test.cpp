@@ -185,6 +185,26 @@ TEST_CASE("quick frames as EXR hold R, G, B, and are not made twice") {
   CHECK_THAT(done(walk(folder)).errors, !Contains("finished"));
 }
 
+TEST_CASE("a walk from saved maps draws the same frames, without a photon") {
+  const FileFolder folder;
+  const std::string maps = folder / "box.maps";
+  const std::vector<std::string> rays{"--quick", "--light-map-rays", "4"};
+  const auto frames = [&](const std::string& option) {
+    std::vector<std::string> arguments = walk(folder, rays);
+    arguments.insert(arguments.end(), {option, maps});
+    done(arguments);
+    std::vector<Image> images;
+    for (const char* name : {"f.01.exr", "f.04.exr"}) {
+      images.push_back(read_image(folder / name));
+      std::filesystem::remove(folder / name);
+    }
+    return images;
+  };
+  const std::vector<Image> saved = frames("--save-maps");
+  const std::vector<Image> loaded = frames("--load-maps");
+  for (std::size_t i = 0; i < saved.size(); ++i) CHECK(saved[i].channels == loaded[i].channels);
+}
+
 TEST_CASE("walk refuses what it cannot do with one line and the right exit code") {
   const FileFolder folder;
   const auto error = [&](const std::vector<std::string>& arguments, int code) {

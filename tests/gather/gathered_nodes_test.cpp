@@ -4,6 +4,7 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -167,6 +168,43 @@ TEST_CASE("gathered nodes: the same bits whatever was looked at before, on any n
     backwards.fill(here);
     CHECK(forwards.all_lux(hits) == expected);
     CHECK(backwards.all_lux(hits) == expected);
+  }
+}
+
+TEST_CASE("gathered nodes: those found after others were saved or forgotten are the same bits") {
+  GatheringScene room(furnished_room(2), looked_up(50'000));
+  const PrimaryHits hits = points_on(room.scene, 5);
+  const auto [here, there] = halves(hits);
+  GatheredMaps at_once(room, few_rays), first(room, few_rays), second(room, few_rays);
+  at_once.fill(hits);
+  const std::vector<double> expected = at_once.all_lux(hits);
+  first.fill(here);
+  SECTION("taken in by other light maps, whose source knows none of them") {
+    second.maps.restore(first.maps.contents());
+    second.fill(there);
+    CHECK(second.all_lux(hits) == expected);
+    first.fill(there);  // the nodes may have another order
+    const auto errors_of = [](const GatheredMaps& maps) {
+      std::vector<float> errors = maps.maps.contents().error;
+      std::sort(errors.begin(), errors.end());
+      return errors;
+    };
+    CHECK((errors_of(second) == errors_of(first)));
+  }
+  SECTION("forgotten by the source alone") {
+    CHECK(first.nodes.bytes() > 0);
+    first.nodes.forget();
+    CHECK(first.nodes.bytes() == 0);
+    first.fill(there);
+    CHECK(first.all_lux(hits) == expected);
+  }
+  SECTION("forgotten by both") {
+    std::vector<std::uint8_t> keep(first.maps.statistics().nodes, 0);
+    for (std::size_t node = 0; node < keep.size(); node += 3) keep[node] = 1;
+    first.maps.forget(keep);
+    first.nodes.forget();
+    first.fill(hits);
+    CHECK(first.all_lux(hits) == expected);
   }
 }
 

@@ -5,7 +5,10 @@
 #include <tbb/global_control.h>
 
 #include <glm/gtc/constants.hpp>
+#include <limits>
+#include <memory>
 
+#include "photile/light_groups.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
@@ -127,6 +130,42 @@ TEST_CASE("A hit on a wall reads the same light from wherever it is seen", "[lig
   renderer.render(test::above(0.2, 0.1, 3, 1.0), parameters.film);
   const RenderResult later = renderer.render(test::above(0, 0, 10, 1.6), parameters.film);
   CHECK(same_bits(first.layers, later.layers));
+}
+
+TEST_CASE("Automatic light maps are read by pictures, but not by several passes or naive maps",
+          "[light_map_pictures]") {
+  const Scene scene = test::furnished_room(2);
+  RenderParameters parameters = with_light_maps();
+  parameters.light_maps = LightMapMode::automatic;
+  const auto used = [&] {
+    return render(scene, room_camera(), test::device(), parameters).used.light_maps;
+  };
+  CHECK(used() == LightMapMode::on);
+  parameters.passes = 2;
+  CHECK(used() == LightMapMode::off);
+  parameters.passes = 1;
+  parameters.maps = MapMode::naive;
+  CHECK(used() == LightMapMode::off);
+}
+
+TEST_CASE("Bounded light maps whose nodes gather draw the same bits", "[light_map_pictures]") {
+  const Scene scene = test::furnished_room(2);
+  RenderParameters parameters = with_light_maps();
+  parameters.light_map_rays = 8;
+  const auto renderer = [&] {
+    return std::make_unique<SceneRenderer>(scene, std::span(&test::device(), 1), parameters);
+  };
+  const auto free = renderer(), bounded = renderer();
+  const Film film{24, 16, 1};
+  const std::vector<glm::vec3> powers(light_groups_of(scene).groups.size(), glm::vec3(1.0f));
+  const auto draw = [&](SceneRenderer& from, double x) {
+    std::vector<glm::vec3> picture(24 * 16);
+    from.draw(Camera::look_at({x, 0.3, 1.5}, {2, 2, 0.5}, {0, 0, 1}, 1.0), film, powers,
+              std::numeric_limits<double>::infinity(), picture);
+    return picture;
+  };
+  bounded->bound_light_maps(1);
+  for (const double x : {0.5, 1.5, 0.5, 2.5}) CHECK(draw(*bounded, x) == draw(*free, x));
 }
 
 TEST_CASE("Glossy surfaces keep the estimate at the hit where photons bring gloss",

@@ -198,7 +198,8 @@ TEST_CASE("a pool by rays to lamps and by final gathering is the same pool", "[i
 
 TEST_CASE("whatever is seen in a pool is seen by refraction or reflection", "[immersed]") {
   const Pool pool(0.5);
-  const RenderParameters parameters = parameters_of(20'000, 16, 1);
+  RenderParameters parameters = parameters_of(20'000, 16, 1);
+  parameters.light_maps = GENERATE(LightMapMode::off, LightMapMode::on);
   SceneRenderer renderer(pool.scene, std::span(&test::device(), 1), parameters);
   const Camera camera = towards_water(0.3);
   CHECK(test::same_bits(renderer.render(camera, parameters.film).layers,

@@ -2,6 +2,7 @@
 #include "saved_maps/saved_maps.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -102,70 +103,117 @@ TEST_CASE("a file with any byte changed, or with more of them, is refused") {
   CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, "words"), Contains("after its end"));
 }
 
-TEST_CASE("light maps are kept with their photons, and read again without an estimate") {
-  const Scene scene = test::furnished_room();
-  RenderParameters parameters = small();
-  parameters.light_maps = LightMapMode::on;
-  const std::vector<glm::vec3> powers(2, glm::vec3(1.0f));
-  const Film film{24, 16, 1};
-  const auto draw = [&](SceneRenderer& renderer, double seconds, DrawnFrame& drawn) {
-    std::vector<glm::vec3> picture(24 * 16);
-    drawn = renderer.draw(Saved::scene_camera(), film, powers, seconds, picture);
-    return picture;
-  };
-  DrawnFrame drawn;
-  std::vector<glm::vec3> expected;
-  const TemporaryFolder folder;
-  const auto file = folder.path / "maps.photile";
-  LightLayers layers;
-  {
-    SceneRenderer renderer(
-        scene, std::span(&test::device(), 1), parameters, nullptr,
-        [&](const PreparedPhotons& photons) { saved_maps::save(file, scene, "words", photons); });
+namespace {
+
+/// Light maps of one view of a room, kept with their photons, and pictures from them.
+struct SavedRoom {
+  explicit SavedRoom(int light_map_rays) : parameters(small()) {
+    parameters.light_maps = LightMapMode::on;
+    parameters.light_map_rays = light_map_rays;
+    SceneRenderer renderer = made(parameters, nullptr, [&](const PreparedPhotons& photons) {
+      saved_maps::save(file, scene, "words", photons);
+    });
     CHECK_FALSE(renderer.light_maps());
-    expected = draw(renderer, std::numeric_limits<double>::infinity(), drawn);
-    layers = renderer.render(Saved::scene_camera(), parameters.film).layers;
+    first = draw(renderer, Saved::scene_camera(), all);
     saved_maps::add_light_maps(file, *renderer.light_maps());
     saved_maps::add_light_maps(file, *renderer.light_maps());  // in place of the first
+    aside = draw(renderer, towards_a_corner(), all);
+    layers = renderer.render(Saved::scene_camera(), parameters.film).layers;
   }
+
+  static Camera towards_a_corner() {
+    return Camera::look_at({0.5, 0.3, 1.5}, {0.1, 2.9, 0.2}, {0, 0, 1}, 1.0);
+  }
+  SceneRenderer made(const RenderParameters& with, PreparedPhotons* prepared,
+                     const KeepPhotons& keep = {}) const {
+    return SceneRenderer(scene, std::span(&test::device(), 1), with, prepared, keep);
+  }
+  PreparedPhotons loaded() const { return saved_maps::load(file, scene, "words"); }
+  std::vector<glm::vec3> draw(SceneRenderer& renderer, const Camera& camera, double seconds) {
+    std::vector<glm::vec3> picture(24 * 16);
+    const std::vector<glm::vec3> powers(2, glm::vec3(1.0f));
+    drawn = renderer.draw(camera, {24, 16, 1}, powers, seconds, picture);
+    return picture;
+  }
+  std::string bytes() const {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  void refused(const std::string& bytes) const {
+    std::ofstream(file, std::ios::binary) << bytes;
+    REQUIRE_THROWS_AS(loaded(), InputError);
+  }
+
+  static constexpr double all = std::numeric_limits<double>::infinity();
+  const Scene scene = furnished_room();
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path / "maps.photile";
+  RenderParameters parameters;
+  std::vector<glm::vec3> first, aside;  ///< frames of two views
+  LightLayers layers;                   ///< of the first
+  DrawnFrame drawn;
+};
+
+}  // namespace
+
+TEST_CASE("light maps are kept with their photons, and read again without an estimate") {
+  SavedRoom room(GENERATE(0, 16));  // nodes by photons, and by rays
+  PreparedPhotons prepared = room.loaded();
+  REQUIRE(prepared.light_maps);
   SECTION("the same settings") {
-    PreparedPhotons prepared = saved_maps::load(file, scene, "words");
-    REQUIRE(prepared.light_maps);
-    SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters, &prepared);
-    CHECK(draw(renderer, 0, drawn) == expected);
-    CHECK(drawn.lacking == 0);
-    const LightLayers again = renderer.render(Saved::scene_camera(), parameters.film).layers;
-    CHECK(again.layers[1].radiance == layers.layers[1].radiance);
+    SceneRenderer renderer = room.made(room.parameters, &prepared);
+    CHECK(room.draw(renderer, Saved::scene_camera(), 0) == room.first);
+    CHECK(room.drawn.lacking == 0);
+    room.draw(renderer, SavedRoom::towards_a_corner(), 0);
+    CHECK(room.drawn.lacking > 0);
+    CHECK(room.draw(renderer, SavedRoom::towards_a_corner(), SavedRoom::all) == room.aside);
+    const LightLayers again = renderer.render(Saved::scene_camera(), room.parameters.film).layers;
+    CHECK(again.layers[1].radiance == room.layers.layers[1].radiance);
   }
-  SECTION("another k: nodes are made anew") {
-    PreparedPhotons prepared = saved_maps::load(file, scene, "words");
-    RenderParameters other = parameters;
-    other.neighbours = parameters.neighbours / 2;
-    SceneRenderer renderer(scene, std::span(&test::device(), 1), other, &prepared);
-    draw(renderer, 0, drawn);
-    CHECK(drawn.lacking > 0);
+  SECTION("another k, or other rays: nodes are made anew") {
+    RenderParameters other = room.parameters;
+    SECTION("k") { other.neighbours /= 2; }
+    SECTION("rays") { other.light_map_rays = other.light_map_rays > 0 ? 0 : 16; }
+    if (other.light_map_rays > 0 && !prepared.caustics) {
+      CHECK_THROWS_WITH(room.made(other, &prepared), Contains("caustics"));
+      return;
+    }
+    SceneRenderer renderer = room.made(other, &prepared);
+    room.draw(renderer, Saved::scene_camera(), 0);
+    CHECK(room.drawn.lacking > 0);
   }
   SECTION("light maps off: photons alone") {
-    PreparedPhotons prepared = saved_maps::load(file, scene, "words");
-    SceneRenderer renderer(scene, std::span(&test::device(), 1), small(), &prepared);
-    CHECK(renderer.render(Saved::scene_camera(), parameters.film).layers.layers.size() == 2);
+    SceneRenderer renderer = room.made(small(), &prepared);
+    const RenderResult result = renderer.render(Saved::scene_camera(), room.parameters.film);
+    CHECK(result.layers.layers.size() == 2);
   }
-  SECTION("damage") {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string whole{std::istreambuf_iterator<char>(stream), {}};
-    const std::size_t photons = whole.find("PHOTNODE");
-    REQUIRE(photons != std::string::npos);
-    for (std::size_t i = 0; i < 100; ++i) {
-      const std::size_t at = photons + (i < 40 ? i : 32 + (i - 40) * (whole.size() - photons) / 80);
-      std::string spoilt = whole;
-      spoilt[at] = static_cast<char>(spoilt[at] ^ 4);
-      std::ofstream(file, std::ios::binary) << spoilt;
-      INFO("byte " << at);
-      REQUIRE_THROWS_AS(saved_maps::load(file, scene, "words"), InputError);
-      std::ofstream(file, std::ios::binary) << whole.substr(0, at + 1);
-      REQUIRE_THROWS_AS(saved_maps::load(file, scene, "words"), InputError);
-    }
+}
+
+TEST_CASE("a file whose light maps are damaged, or cut off anywhere, is refused") {
+  const SavedRoom room(16);
+  const std::string whole = room.bytes();
+  std::uint64_t photon_bytes = 0;
+  std::memcpy(&photon_bytes, whole.data() + 32, sizeof photon_bytes);
+  const std::size_t photons_end = 96 + photon_bytes;
+  REQUIRE(photons_end + 1000 < whole.size());
+  room.refused(whole.substr(0, photons_end));  // all photons, and nothing after them
+  for (std::size_t i = 0; i < 100; ++i) {
+    const std::size_t at =
+        photons_end + (i < 40 ? i : 32 + (i - 40) * (whole.size() - photons_end) / 80);
+    std::string spoilt = whole;
+    spoilt[at] = static_cast<char>(spoilt[at] ^ 4);
+    INFO("byte " << at);
+    room.refused(spoilt);
+    room.refused(whole.substr(0, at + 1));
   }
+  LightMapContents foreign = *[&] {
+    std::ofstream(room.file, std::ios::binary) << whole;
+    return room.loaded().light_maps;
+  }();
+  foreign.error.pop_back();
+  saved_maps::add_light_maps(room.file, foreign);
+  PreparedPhotons prepared = room.loaded();
+  CHECK_THROWS_AS(room.made(room.parameters, &prepared), InputError);
 }
 
 TEST_CASE("another scene, other settings and other files are told apart") {
@@ -228,6 +276,7 @@ TEST_CASE("a whole file whose indices lead nowhere is refused") {
   SECTION("NaN") { bad.photons.position[0].x = std::nanf(""); }
   SECTION("radius") { bad.radius = 0; }
   SECTION("lights") { bad.photons.emitted_per_light.push_back(1); }
+  SECTION("caustics") { bad.caustics.emplace(); }
   refused(bad);
 }
 

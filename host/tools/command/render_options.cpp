@@ -137,11 +137,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE")
       ->group("Run");
   add_saved_maps_options(command, options);
-  for (const char* without : {"--save-maps", "--load-maps"}) {  // they hold no caustics apart
-    for (const char* gathering : {"--final-gather", "--light-map-rays"}) {
-      command.get_option(gathering)->excludes(command.get_option(without));
-    }
-  }
   add_quality_options(command, options.target);
   add_preview_option(command, options, "Output");
   command

@@ -26,6 +26,7 @@
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
 #include "tools/command/run_record.hpp"
+#include "tools/command/saved_maps_option.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
@@ -103,7 +104,7 @@ class Walk {
       progress_.note(
           fmt::format("{} of {} frames are finished, with these settings", kept, count_));
     }
-    if (kept < count_) make_maps();
+    if (kept < count_ || !options_.render.save_maps.empty()) make_maps();
     progress_.begin("render frames", static_cast<std::uint64_t>(count_ - kept), "frames");
     for (int frame = 0; frame < count_; ++frame) {
       progress_.throw_if_cancelled();
@@ -124,6 +125,7 @@ class Walk {
     }
     wait_for_shown();
     progress_.end();
+    if (renderer_) keep_light_maps(renderer_->light_maps(), options_.render, progress_);
     if (sheet_) write_png(options_.sheet, sheet_->image());
   }
 
@@ -169,8 +171,9 @@ class Walk {
   }
 
   void make_maps() {
-    renderer_.emplace(scene_, devices_, options_.render.parameters, nullptr, KeepPhotons(),
-                      progress_);
+    std::optional<PreparedPhotons> prepared = load_maps(scene_, options_.render, progress_);
+    renderer_.emplace(scene_, devices_, options_.render.parameters, prepared ? &*prepared : nullptr,
+                      keep_maps(scene_, options_.render, progress_), progress_);
   }
 
   /// Renders a frame to its file and returns its R, G, B.
@@ -286,6 +289,7 @@ void check_names(const WalkOptions& options) {
     files.push_back(walk::FrameNames(options.png).of(options.first_number));
   }
   if (!options.sheet.empty()) files.emplace_back(options.sheet);
+  if (!options.render.save_maps.empty()) files.emplace_back(options.render.save_maps);
   note_inputs_of(options.render);
   note_input(options.path);
   check_outputs(files);
@@ -356,6 +360,7 @@ void add_walk_command(CLI::App& photile) {
       ->capture_default_str()
       ->group("Motion");
   add_picture_settings(*command, options->render);
+  add_saved_maps_options(*command, options->render);
   command->callback([options, command] {
     const bool given = command->count("--light-maps") > 0;
     check_quick(*options, given && options->render.parameters.light_maps == LightMapMode::off);

@@ -49,6 +49,8 @@ RenderParameters pilot_parameters(RenderParameters parameters) {
   parameters.passes = 1;
   parameters.radius = 0;
   parameters.least_neighbours = 0;
+  // The model is that of estimates at hits: light maps are quicker, and no worse.
+  if (parameters.light_maps == LightMapMode::automatic) parameters.light_maps = LightMapMode::off;
   return parameters;
 }
 

@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""What it takes to open a room whose photons and light maps were saved: the table in
+docs/light-maps.md.
+
+    bench/saved_rooms.py SCENES [--photile COMMAND]
+
+SCENES holds <scene>/<scene>-diffuse.gltf and references/<scene>-diffuse-256x192.exr, as for
+bench/quality.py. `photile walk --quick` turns once round
+in each room, from where its camera stands, and saves photons and light maps; then it draws the first
+frame, and all of them, from the file. Prints wall-clock and processor seconds of whole processes, the
+shortest of five for single frames; and of frames of 256x192 with 16 samples, what each costs more than the
+first, and the error of the first. Needs the built command and the Debian packages python3-numpy and
+python3-openimageio.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+
+try:
+    import picture_error
+    from gltf_meshes import read_gltf
+except ImportError as missing:
+    sys.exit(f"saved_rooms.py: error: {missing}; install the Debian packages python3-numpy and "
+             "python3-openimageio, and run it with /usr/bin/python3")
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROWS = (("classroom", "--photons 1M -k 250"),
+        ("classroom", "--photons 500k -k 100 --light-map-rays 64"),
+        ("kitchen", "--photons 1M -k 250"),
+        ("kitchen", "--photons 500k -k 100 --light-map-rays 64"))
+FRAMES = 24
+REPEATS = 5
+
+
+def turn(scene, file, degrees):
+    """Writes keyframes that turn about the vertical, one second for a whole turn."""
+    _, view = read_gltf(scene)
+    forward, eye = -view.to_world[:3, 2], view.to_world[:3, 3]
+    steps = max(1, round(degrees / 15))
+    keys = []
+    for step in range(steps + 1):
+        angle = math.radians(degrees * step / steps)
+        keys.append({"time": step * degrees / steps / 360, "position": eye.tolist(),
+                     "direction": [forward[0] * math.cos(angle) + forward[2] * math.sin(angle),
+                                   forward[1],
+                                   forward[2] * math.cos(angle) - forward[0] * math.sin(angle)]})
+    file.write_text(json.dumps({"interpolation": "linear", "keyframes": keys}))
+
+
+def seconds(command):
+    """Wall-clock and processor seconds of a process, and what it wrote to stderr."""
+    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return (time.monotonic() - begin,
+            after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, done.stderr)
+
+
+def row(given, name, options, folder):
+    scene, maps = given.scenes / name / f"{name}-diffuse.gltf", folder / "room.maps"
+    paths = {"first": folder / "first.json", "turn": folder / "turn.json"}
+    turn(scene, paths["first"], 1)
+    turn(scene, paths["turn"], 360)
+
+    def walk(path, frames, size, samples, *more):
+        return [given.photile, "walk", scene, "-o", folder / frames, "--quick", "--size", size,
+                "--samples", str(samples), "--quota", "power", "--fps",
+                str(FRAMES if path == "turn" else 1), "--camera-path", paths[path], *options.split(),
+                *more]
+
+    window, small = ("frame.###.png", "512x512", 1), ("frame.###.exr", "256x192", 16)
+    load = ("--load-maps", maps)
+    saved = seconds(walk("turn", *window, "--save-maps", maps))
+    # Both sizes once, so that no node is lacking.
+    seconds(walk("turn", *small, *load, "--save-maps", folder / "all.maps"))
+    maps = (folder / "all.maps").rename(maps)
+    for frame in folder.glob("frame.*.exr"):
+        frame.unlink()
+    first = min(seconds(walk("first", *window, *load)) for _ in range(REPEATS))
+    whole = seconds(walk("turn", *window, *load))
+    one = min(seconds(walk("first", *small, *load))[1] for _ in range(1))
+    picture = picture_error.read_picture(folder / "frame.001.exr")
+    (folder / "frame.001.exr").unlink()
+    all_small = seconds(walk("turn", *small, *load))
+    for frame in folder.glob("frame.*.exr"):
+        frame.unlink()
+    if any(re.search("trace photons|build photon maps", run[2]) for run in (first, whole, all_small)):
+        sys.exit(f"saved_rooms.py: error: {name} traced photons: {whole[2]}")
+    error = picture_error.measure(picture, picture_error.read_picture(
+        given.scenes / "references" / f"{name}-diffuse-256x192.exr"))
+    return (f"| {name} | `{options}` | {saved[1]:.1f} | {maps.stat().st_size / 1e6:.0f} | "
+            f"{first[0]:.2f} ({first[1]:.2f}) | {whole[0]:.2f} ({whole[1]:.2f}) | "
+            f"{1000 * (all_small[1] - one) / FRAMES:.0f} | {error['rel_mse']:.4f} "
+            f"({error['rel_mse_without_worst']:.4f}) |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", type=pathlib.Path, metavar="SCENES")
+    parser.add_argument("--photile", type=pathlib.Path, default=ROOT / "build/release/photile")
+    given = parser.parse_args()
+    print("| | | look round and save, processor s | file, MB | first frame from the file, s "
+          f"(processor s) | {FRAMES + 1} frames round, s (processor s) | each further frame of 256x192, "
+          "16 samples, processor ms | its relMSE |")
+    print("|---|---|--:|--:|--:|--:|--:|--:|")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, options in ROWS:
+            print(row(given, name, options, pathlib.Path(folder)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

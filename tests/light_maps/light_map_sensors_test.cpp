@@ -1,0 +1,137 @@
+// Sensors that read light maps, beside the estimate at each point and closed forms.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <vector>
+
+#include "photile/sensors.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+RenderParameters parameters_of(LightMapMode mode, int rays = 0) {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = 200'000;
+  parameters.neighbours = 200;
+  parameters.light_maps = mode;
+  parameters.light_map_rays = rays;
+  return parameters;
+}
+
+std::span<Device> one_device() { return {&test::device(), 1}; }
+
+/// Nodes that a run has valued.
+double nodes_of(const RenderResult& result) {
+  for (const StageStatistics& stage : result.statistics) {
+    if (stage.stage == "light maps") return stage.figures.front().second;
+  }
+  return 0;
+}
+
+/// Illuminance of all lights of a result, per sensor.
+std::vector<double> lux_of(const RenderResult& result) {
+  const LightLayers layers = result.layers.dense();
+  std::vector<double> lux(layers.layers.front().illuminance.size(), 0.0);
+  for (const LightLayers::Layer& layer : layers.layers) {
+    for (std::size_t i = 0; i < lux.size(); ++i) lux[i] += double{layer.illuminance[i]};
+  }
+  return lux;
+}
+
+/// A grid of sensors on the plane z = 0, facing up.
+std::vector<Sensor> grid_on_floor(double side, int count) {
+  std::vector<Sensor> sensors;
+  for (int y = 0; y < count; ++y) {
+    for (int x = 0; x < count; ++x) {
+      sensors.push_back(
+          {{((x + 0.5) / count - 0.5) * side, ((y + 0.5) / count - 0.5) * side, 0.0}, {0, 0, 1}});
+    }
+  }
+  return sensors;
+}
+
+/// Mean of the squares of relative errors.
+double error_of(const std::vector<double>& values, const std::vector<double>& truth) {
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) sum += std::pow(values[i] / truth[i] - 1, 2);
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+TEST_CASE("A grid on a floor under a lamp reads its closed form between nodes",
+          "[light_map_sensors]") {
+  SceneBuilder builder;
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 3, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.add(point_light("lamp", {0, 0, 1}, 1.0));
+  const Scene scene = builder.build();
+  const std::vector<Sensor> sensors = grid_on_floor(2.4, 24);
+  std::vector<double> truth;
+  for (const Sensor& sensor : sensors) {
+    const double squared = glm::dot(sensor.position, sensor.position) + 1;
+    truth.push_back(1 / (4 * glm::pi<double>() * std::pow(squared, 1.5)));
+  }
+  const RenderResult at_points =
+      measure(scene, sensors, one_device(), parameters_of(LightMapMode::automatic));
+  const RenderResult by_photons =
+      measure(scene, sensors, one_device(), parameters_of(LightMapMode::on));
+  const RenderResult by_rays =
+      measure(scene, sensors, one_device(), parameters_of(LightMapMode::on, 16));
+  CHECK(nodes_of(at_points) == 0);
+  CHECK(nodes_of(by_photons) > 0);
+  CHECK(nodes_of(by_rays) > 0);
+  const double error = error_of(lux_of(by_photons), truth);
+  CAPTURE(error, error_of(lux_of(at_points), truth));
+  CHECK(error < 2.0 / 200);  // noise of k photons, and some bias
+  CHECK(error <= 1.02 * error_of(lux_of(at_points), truth));
+  CHECK(error_of(lux_of(by_rays), truth) <
+        1e-4);  // a look at a lamp is exact; nodes lie 8 cm apart
+}
+
+TEST_CASE("Sensors in the air of a furnace read the same light everywhere, by rays to light maps",
+          "[light_map_sensors]") {
+  constexpr double albedo = 0.5;
+  Scene box = closed_box(diffuse(glm::vec3(albedo)));
+  box.lights = {area_light("walls")};
+  for (std::uint32_t t = 0; t < box.triangle_count(); ++t) {
+    box.triangle_light[t] = 0;
+    box.lights[0].triangles.push_back(t);
+  }
+  const double truth = 1.0 / 6 / (1 - albedo);  // 1 lm over 6 m2, and each bounce returns half
+  std::vector<Sensor> sensors;
+  for (const glm::dvec3& normal : {glm::dvec3(0, 0, 1), glm::dvec3(0, -1, 0)}) {
+    sensors.push_back({{0.3, 0.6, 0.5}, normal});
+    sensors.push_back({{0.9, 0.1, 0.2}, normal});
+  }
+  const RenderResult result =
+      gather(box, sensors, {.rays = 1024}, one_device(), parameters_of(LightMapMode::on));
+  CHECK(nodes_of(result) > 0);
+  for (const double lux : lux_of(result)) CHECK(lux == Approx(truth).epsilon(0.02));
+}
+
+TEST_CASE("Sensors in a furnished room read what estimates at the ends of their rays give",
+          "[light_map_sensors]") {
+  const Scene scene = furnished_room(2);
+  std::vector<Sensor> sensors;
+  for (int i = 0; i < 40; ++i) {
+    sensors.push_back({{0.3 + 0.08 * i, 0.4 + 0.05 * i, 1.2}, {0, 0, 1}});
+  }
+  const auto mean_of = [&](LightMapMode mode, double& nodes) {
+    const RenderResult result =
+        gather(scene, sensors, {.rays = 256}, one_device(), parameters_of(mode));
+    nodes = nodes_of(result);
+    return lux_of(result);
+  };
+  double nodes = 0;
+  const std::vector<double> at_ends = mean_of(LightMapMode::off, nodes);
+  CHECK(nodes == 0);
+  const std::vector<double> between_nodes = mean_of(LightMapMode::on, nodes);
+  CHECK(nodes > 0);
+  // The same rays and photons: what differs is the mean over 256 interpolations.
+  CHECK(error_of(between_nodes, at_ends) < 0.01 * 0.01);
+}
+
+}  // namespace photile::test
