@@ -40,15 +40,15 @@ FRAMES = 24
 REPEATS = 5
 
 
-def turn(scene, file, degrees):
-    """Writes keyframes that turn about the vertical, one second for a whole turn."""
+def turn(scene, file, degrees, time_of_turn=1.0):
+    """Writes keyframes that turn about the vertical."""
     _, view = read_gltf(scene)
     forward, eye = -view.to_world[:3, 2], view.to_world[:3, 3]
-    steps = max(1, round(degrees / 15))
+    steps = 24
     keys = []
     for step in range(steps + 1):
         angle = math.radians(degrees * step / steps)
-        keys.append({"time": step * degrees / steps / 360, "position": eye.tolist(),
+        keys.append({"time": step * time_of_turn / steps, "position": eye.tolist(),
                      "direction": [forward[0] * math.cos(angle) + forward[2] * math.sin(angle),
                                    forward[1],
                                    forward[2] * math.cos(angle) - forward[0] * math.sin(angle)]})
@@ -66,39 +66,38 @@ def seconds(command):
 
 def row(given, name, options, folder):
     scene, maps = given.scenes / name / f"{name}-diffuse.gltf", folder / "room.maps"
-    paths = {"first": folder / "first.json", "turn": folder / "turn.json"}
-    turn(scene, paths["first"], 1)
-    turn(scene, paths["turn"], 360)
+    paths = {name: folder / f"{name}.json" for name in ("round", "still", "one")}
+    turn(scene, paths["round"], 360)
+    turn(scene, paths["still"], 0)
+    turn(scene, paths["one"], 0, 1e-3)  # ends before a second frame
 
     def walk(path, frames, size, samples, *more):
-        return [given.photile, "walk", scene, "-o", folder / frames, "--quick", "--size", size,
-                "--samples", str(samples), "--quota", "power", "--fps",
-                str(FRAMES if path == "turn" else 1), "--camera-path", paths[path], *options.split(),
-                *more]
+        for frame in folder.glob("frame.*"):
+            frame.unlink()
+        return seconds([given.photile, "walk", scene, "-o", folder / frames, "--quick", "--size", size,
+                        "--samples", str(samples), "--quota", "power", "--fps", str(FRAMES),
+                        "--camera-path", paths[path], *options.split(), *more])
+
+    def without_photons(*arguments):
+        taken = walk(*arguments, "--load-maps", maps)
+        if re.search("trace photons|build photon maps", taken[2]):
+            sys.exit(f"saved_rooms.py: error: {name} asked for photons: {taken[2]}")
+        return taken
 
     window, small = ("frame.###.png", "512x512", 1), ("frame.###.exr", "256x192", 16)
-    load = ("--load-maps", maps)
-    saved = seconds(walk("turn", *window, "--save-maps", maps))
-    # Both sizes once, so that no node is lacking.
-    seconds(walk("turn", *small, *load, "--save-maps", folder / "all.maps"))
-    maps = (folder / "all.maps").rename(maps)
-    for frame in folder.glob("frame.*.exr"):
-        frame.unlink()
-    first = min(seconds(walk("first", *window, *load)) for _ in range(REPEATS))
-    whole = seconds(walk("turn", *window, *load))
-    one = min(seconds(walk("first", *small, *load))[1] for _ in range(1))
+    saved = walk("round", *window, "--save-maps", maps)
+    first = min(without_photons("one", *window) for _ in range(REPEATS))
+    whole = without_photons("round", *window)
+    size = maps.stat().st_size
+    walk("one", *small, "--save-maps", maps)
+    one = min(without_photons("one", *small)[1] for _ in range(REPEATS))
+    still = min(without_photons("still", *small)[1] for _ in range(REPEATS))
     picture = picture_error.read_picture(folder / "frame.001.exr")
-    (folder / "frame.001.exr").unlink()
-    all_small = seconds(walk("turn", *small, *load))
-    for frame in folder.glob("frame.*.exr"):
-        frame.unlink()
-    if any(re.search("trace photons|build photon maps", run[2]) for run in (first, whole, all_small)):
-        sys.exit(f"saved_rooms.py: error: {name} traced photons: {whole[2]}")
     error = picture_error.measure(picture, picture_error.read_picture(
         given.scenes / "references" / f"{name}-diffuse-256x192.exr"))
-    return (f"| {name} | `{options}` | {saved[1]:.1f} | {maps.stat().st_size / 1e6:.0f} | "
+    return (f"| {name} | `{options}` | {saved[1]:.1f} | {size / 1e6:.0f} | "
             f"{first[0]:.2f} ({first[1]:.2f}) | {whole[0]:.2f} ({whole[1]:.2f}) | "
-            f"{1000 * (all_small[1] - one) / FRAMES:.0f} | {error['rel_mse']:.4f} "
+            f"{1000 * (still - one) / FRAMES:.0f} | {error['rel_mse']:.4f} "
             f"({error['rel_mse_without_worst']:.4f}) |")
 
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <utility>
 
 #include "photile/scene_needs.hpp"
@@ -16,22 +17,27 @@ constexpr std::size_t nodes_per_mix_task = 4096;
 
 static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
 
-/// Sums three floats at a time as four, which processors have vectors of: the fourth, that of the
-/// next value, counts for nothing.
+/// Four numbers that processors add and multiply at once: a vector of GCC's and Clang's.
+struct Four {
+  float four __attribute__((vector_size(4 * sizeof(float))));
+};
+
+/// Sums three floats at a time as four: the fourth, that of the next value, counts for nothing.
 class Sum {
  public:
-  void add(const glm::vec3& value, const glm::vec4& power) {
-    const float* four = &value.x;
-    for (int i = 0; i < 4; ++i) sum_[i] += power[i] * four[i];
+  void add(const glm::vec3& value, const Four& power) {
+    Four values;
+    std::memcpy(&values, &value, sizeof values);
+    sum_.four += power.four * values.four;
   }
   /// Of the last value, which has no next one.
-  void add_last(const glm::vec3& value, const glm::vec4& power) {
-    for (int i = 0; i < 3; ++i) sum_[i] += power[i] * value[i];
+  void add_last(const glm::vec3& value, const Four& power) {
+    sum_.four += power.four * Four{{value.x, value.y, value.z, 0.0f}}.four;
   }
-  glm::vec4 get() const { return {sum_[0], sum_[1], sum_[2], 0.0f}; }
+  glm::vec4 get() const { return {sum_.four[0], sum_.four[1], sum_.four[2], 0.0f}; }
 
  private:
-  alignas(16) float sum_[4] = {};
+  Four sum_{{0, 0, 0, 0}};
 };
 
 /// The sum of values [first, last), in this order.
@@ -51,7 +57,9 @@ glm::vec4 summed(const Estimates& values, std::size_t first, std::size_t last, c
 /// processors work at several nodes at once.
 template <std::size_t lights>
 void mix_dense(const Estimates& values, std::size_t begin, std::size_t end,
-               std::span<const glm::vec4> powers, std::vector<glm::vec4>& mixed) {
+               std::span<const Four> all_powers, std::vector<glm::vec4>& mixed) {
+  std::array<Four, lights> powers;  // where nothing that is written can lie
+  std::copy_n(all_powers.begin(), lights, powers.begin());
   const bool last = end * lights == values.irradiance.size();
   for (std::size_t node = begin; node < end - (last ? 1 : 0); ++node) {
     const glm::vec3* value = &values.irradiance[node * lights];
@@ -65,7 +73,7 @@ void mix_dense(const Estimates& values, std::size_t begin, std::size_t end,
       summed(values, first, first + lights, [&](std::size_t i) { return powers[i - first]; });
 }
 
-using MixDense = void (*)(const Estimates&, std::size_t, std::size_t, std::span<const glm::vec4>,
+using MixDense = void (*)(const Estimates&, std::size_t, std::size_t, std::span<const Four>,
                           std::vector<glm::vec4>&);
 
 /// By number of lights, from one on.
@@ -103,8 +111,10 @@ void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const gl
   const bool one_of_many = changed.size() == 1 && !dense;
   light_.resize(nodes);
   powers_.assign(powers.begin(), powers.end());
-  std::vector<glm::vec4> padded;
-  for (const glm::vec3& power : powers) padded.emplace_back(power, 0.0f);
+  std::vector<Four> padded;
+  for (const glm::vec3& power : powers) {
+    padded.push_back(Four{{power.x, power.y, power.z, 0.0f}});
+  }
   const std::size_t tasks = (nodes - first + nodes_per_mix_task - 1) / nodes_per_mix_task;
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
     const std::size_t begin = first + task * nodes_per_mix_task;
