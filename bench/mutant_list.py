@@ -159,7 +159,7 @@ MUTANTS = (
            "std::sqrt((count - 1) / count * squares)", "std::sqrt(squares / (count - 1))",
            (("measuring", "standard errors are the spread*"),)),
     Mutant("hash of saved maps not compared", "host/saved_maps/saved_maps.cpp",
-           "reader.left() > 0 || checksum.digest() != header.payload", "reader.left() > 0",
+           "hash_->digest() != part.digest", "false",
            (("saved_maps", "a file with any byte changed*"),)),
     Mutant("paths begin at speed", "host/scene/interpolation.cpp",
            "if (i == 0 || i + 1 == times.size()) return glm::dvec3(0);",

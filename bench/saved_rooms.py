@@ -33,9 +33,9 @@ except ImportError as missing:
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ROWS = (("classroom", "--photons 1M -k 250"),
-        ("classroom", "--photons 500k -k 100 --light-map-rays 64"),
+        ("classroom", "--photons 500k -k 100 --light-map-rays 32"),
         ("kitchen", "--photons 1M -k 250"),
-        ("kitchen", "--photons 500k -k 100 --light-map-rays 64"))
+        ("kitchen", "--photons 500k -k 100 --light-map-rays 32"))
 FRAMES = 24
 REPEATS = 5
 
