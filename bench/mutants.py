@@ -26,6 +26,7 @@ from report_section import replace_section
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs/testing/mutants.json"
+SECONDS = None  # that a program of tests may take; one that takes longer counts as a crash
 
 
 class CannotRun(Exception):
@@ -69,8 +70,12 @@ def run_tests(build, folder, specification, kernels=None):
     if not program.is_file():
         raise CannotRun(f"{program} is missing; build the target photile_tests_{folder}")
     with tempfile.NamedTemporaryFile(suffix=".xml") as report:
-        done = subprocess.run([program, specification, "--reporter", "xml", "--out", report.name],
-                              env=environment, capture_output=True, text=True, check=False)
+        try:
+            done = subprocess.run([program, specification, "--reporter", "xml", "--out", report.name],
+                                  env=environment, capture_output=True, text=True, check=False,
+                                  timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            return Outcome([], True)
         text = pathlib.Path(report.name).read_text(encoding="utf-8", errors="replace")
     if "does not compile" in text or "BUILD_PROGRAM_FAILURE" in text:
         raise CannotRun("the mutant's kernels do not compile")

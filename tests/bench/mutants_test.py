@@ -11,6 +11,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
+import drawn_mutants
 import mutants
 from mutant_list import MUTANTS, Mutant
 
@@ -28,6 +29,28 @@ class Texts(unittest.TestCase):
         for mutant in MUTANTS:
             for folder, _ in mutant.tests:
                 self.assertTrue((ROOT / "tests" / folder / "CMakeLists.txt").is_file(), folder)
+
+
+class Drawn(unittest.TestCase):
+    def test_every_one_changes_one_place_of_a_line_of_code(self):
+        drawn = list(drawn_mutants.sites(sorted(ROOT.glob("kernels/estimate/*.cl*"))))
+        self.assertGreater(len(drawn), 300)
+        for mutant in drawn:
+            text = (ROOT / mutant.file).read_text(encoding="utf-8")
+            self.assertEqual((mutant.name, text.count(mutant.find)), (mutant.name, 1))
+            self.assertNotEqual(mutant.find, mutant.replace)
+            self.assertFalse(mutant.find.splitlines()[-1].strip().startswith("//"))
+
+    def test_operators_and_numbers_become_others(self):
+        for before, after in (("<", "<="), ("max", "min"), ("16", "17"), ("0.5f", "0.55f"),
+                              ("0.0f", "0.1f"), ("&&", "||")):
+            self.assertEqual(drawn_mutants.changed(before), after)
+
+    def test_the_interval_holds_the_share_and_is_never_empty(self):
+        for killed, count in ((0, 0), (0, 10), (10, 10), (28, 30)):
+            low, high = drawn_mutants.wilson(killed, count)
+            self.assertLess(low, high)
+            self.assertGreaterEqual(high, killed / max(count, 1) - 1e-12)
 
 
 class Changes(unittest.TestCase):
