@@ -8,7 +8,7 @@
 
 namespace photile::trace {
 
-AreaSampler::AreaSampler(const Scene& scene, const Light& light) : light_(&light) {
+AreaSampler::AreaSampler(const Scene& scene, const Light& light) : scene_(&scene), light_(&light) {
   double area = 0;
   area_up_to_.reserve(light.triangles.size());
   for (const std::uint32_t triangle : light.triangles)
@@ -17,7 +17,18 @@ AreaSampler::AreaSampler(const Scene& scene, const Light& light) : light_(&light
     throw InputError(scene.source.string() + ": area light '" + light.name + "' has " +
                      std::to_string(light.triangles.size()) +
                      " triangles and no area; give it a surface or remove it");
-  if (light.emission_texture != none) cells_.emplace(scene, light);
+  if (light.emission_texture != none) {
+    cells_.emplace(scene, light);
+    return;
+  }
+  fronts_.reserve(light.triangles.size());
+  for (const std::uint32_t triangle : light.triangles) {
+    const auto [a, b, c] = scene.corners(triangle);
+    const SurfacePoint front =
+        surface_point(scene, {triangle, 0.0f, 0.0f}, scene.front_side[triangle]);
+    fronts_.push_back({glm::dvec3(a), glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a),
+                       front.normal, front.clearance, front.side});
+  }
 }
 
 double AreaSampler::density(const TriangleHit& where) const {
@@ -31,11 +42,34 @@ TriangleHit AreaSampler::sample(const RandomBlock& random) const {
         cells_->sample(random.uniform_double(0), random.uniform(2), random.uniform(3));
     return {place.triangle, static_cast<float>(place.u), static_cast<float>(place.v)};
   }
+  const glm::vec2 uv = sample_triangle(random.uniform(2), random.uniform(3));
+  return {light_->triangles[chosen(random)], uv.x, uv.y};
+}
+
+SurfacePoint AreaSampler::sample_front(const RandomBlock& random) const {
+  if (cells_) {
+    const TriangleHit where = sample(random);
+    return surface_point(*scene_, where, scene_->front_side[where.triangle]);
+  }
+  const std::size_t number = chosen(random);
+  const Front& front = fronts_[number];
+  const glm::vec2 uv = sample_triangle(random.uniform(2), random.uniform(3));
+  SurfacePoint point;
+  point.where = {light_->triangles[number], uv.x, uv.y};
+  point.side = front.side;
+  point.position =
+      glm::vec3(front.corner + double{uv.x} * front.along_u + double{uv.y} * front.along_v);
+  point.normal = front.normal;
+  point.clearance = front.clearance;
+  return point;
+}
+
+/// Of the triangles, by area.
+std::size_t AreaSampler::chosen(const RandomBlock& random) const {
   const double target = random.uniform_double(0) * area_up_to_.back();
   // The last entry is larger than the target, so there always is one.
-  const auto chosen = std::upper_bound(area_up_to_.begin(), area_up_to_.end(), target);
-  const glm::vec2 uv = sample_triangle(random.uniform(2), random.uniform(3));
-  return {light_->triangles[static_cast<std::size_t>(chosen - area_up_to_.begin())], uv.x, uv.y};
+  const auto found = std::upper_bound(area_up_to_.begin(), area_up_to_.end(), target);
+  return static_cast<std::size_t>(found - area_up_to_.begin());
 }
 
 }  // namespace photile::trace

@@ -128,6 +128,10 @@ void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const Surfac
                    int count, float directions, const LookSamples& samples,
                    std::vector<ReceivedLight>& found) {
   const float share = 1.0f / static_cast<float>(count);
+  thread_local std::vector<LineOfSight> lines;
+  thread_local std::vector<std::uint8_t> hidden;
+  lines.clear();
+  const std::size_t before = found.size();
   for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {
     const LookSamples::Look look = samples.look(number);
     const auto lamp = lamps.sample(point.position, look.lamp, look.place);
@@ -138,9 +142,23 @@ void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const Surfac
     if (lamp->density > 0.0f) {
       arrives *= power_heuristic(lamp->density, directions * cosine * glm::one_over_pi<float>());
     }
-    arrives *= transmittance(rays, point.origin_towards(lamp->direction), lamp->target);
-    if (arrives != glm::vec3(0.0f)) found.push_back({lamp->layer, arrives, glm::vec3(0.0f)});
+    if (arrives == glm::vec3(0.0f)) continue;
+    lines.push_back({point.origin_towards(lamp->direction), lamp->target});
+    found.push_back({lamp->layer, arrives, glm::vec3(0.0f)});
   }
+  hidden.resize(lines.size());
+  occluded(rays, lines, hidden);
+  std::size_t left = before;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    ReceivedLight light = found[before + i];
+    if (hidden[i] != 0) {
+      if (!rays.needs().see_through) continue;
+      light.irradiance *= transmittance(rays, lines[i].from, lines[i].to);
+      if (light.irradiance == glm::vec3(0.0f)) continue;
+    }
+    found[left++] = light;
+  }
+  found.resize(left);
 }
 
 }  // namespace photile::trace

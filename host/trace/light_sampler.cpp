@@ -60,13 +60,15 @@ std::optional<LightSample> LightSampler::sample(const glm::vec3& position,
 std::optional<LightSample> LightSampler::towards_area(std::uint32_t light,
                                                       const glm::vec3& position,
                                                       const RandomBlock& place) const {
-  const TriangleHit where = areas_[area_of_[light]].sample(place);
-  const SurfacePoint front = surface_point(*scene_, where, scene_->front_side[where.triangle]);
-  const SurfacePoint point = surface_hit(*scene_, where, glm::normalize(front.position - position));
+  SurfacePoint point = areas_[area_of_[light]].sample_front(place);
+  const glm::vec3 direction = glm::normalize(point.position - position);
+  if (glm::dot(point.normal, direction) > 0.0f) {
+    point.side = 1 - point.side;
+    point.normal = -point.normal;
+  }
   if (!emits(*scene_, point)) return std::nullopt;
   const float seen = density(position, point);
   if (!(seen > 0.0f) || !(seen < std::numeric_limits<float>::infinity())) return std::nullopt;
-  const glm::vec3 direction = glm::normalize(point.position - position);
   return LightSample{groups_.group_of[light], direction, point.origin_towards(-direction),
                      radiance_[light] * emission_texel(*scene_, point) / seen, seen};
 }

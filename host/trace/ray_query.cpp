@@ -1,5 +1,7 @@
 #include "trace/ray_query.hpp"
 
+#include <algorithm>
+
 #include "trace/ray_scene_impl.hpp"
 #include "trace/scatter.hpp"
 
@@ -22,6 +24,19 @@ std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& orig
 
 bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {
   return impl_of(rays).occluded(from, to);
+}
+
+void occluded(const RayScene& rays, std::span<const LineOfSight> lines,
+              std::span<std::uint8_t> hidden) {
+  const RayScene::Impl& scene = impl_of(rays);
+  for (std::size_t first = 0; first < lines.size(); first += RayScene::Impl::packet) {
+    const std::size_t count = std::min(RayScene::Impl::packet, lines.size() - first);
+    if (count == 1) {
+      hidden[first] = scene.occluded(lines[first].from, lines[first].to) ? 1 : 0;
+      continue;
+    }
+    scene.occluded(lines.subspan(first, count), hidden.subspan(first, count));
+  }
 }
 
 glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {

@@ -90,6 +90,34 @@ bool RayScene::Impl::occluded(const glm::vec3& from, const glm::vec3& to) const 
   return ray.tfar < 0.0f;
 }
 
+void RayScene::Impl::occluded(std::span<const trace::LineOfSight> lines,
+                              std::span<std::uint8_t> hidden) const {
+  alignas(64) int valid[packet];
+  RTCRay16 rays;
+  for (std::size_t i = 0; i < packet; ++i) {
+    const auto& [from, to] = lines[std::min(i, lines.size() - 1)];
+    const glm::vec3 way = to - from;
+    valid[i] = i < lines.size() && finite(from, way) ? -1 : 0;
+    rays.org_x[i] = from.x;
+    rays.org_y[i] = from.y;
+    rays.org_z[i] = from.z;
+    rays.dir_x[i] = way.x;
+    rays.dir_y[i] = way.y;
+    rays.dir_z[i] = way.z;
+    rays.tnear[i] = 0.0f;
+    rays.tfar[i] = 1.0f;
+    rays.time[i] = 0.0f;
+    rays.mask[i] = ~0u;
+    rays.flags[i] = 0;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid, bvh, &context, &rays);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    hidden[i] = valid[i] != 0 && rays.tfar[i] < 0.0f ? 1 : 0;
+  }
+}
+
 RayScene::RayScene(const Scene& scene) {
   check_scene(scene);
   impl_ = std::make_unique<Impl>(scene);

@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "geometry/box.hpp"
 #include "photile/ray_scene.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/triangle_hit.hpp"
 
 namespace photile {
@@ -27,6 +29,9 @@ struct RayScene::Impl {
   /// Whether anything lies on the straight line between two points. Thread-safe. A line with a NaN
   /// or infinity meets nothing.
   bool occluded(const glm::vec3& from, const glm::vec3& to) const;
+  /// The same of up to `packet` lines at once.
+  void occluded(std::span<const trace::LineOfSight> lines, std::span<std::uint8_t> hidden) const;
+  static constexpr std::size_t packet = 16;
 
   const Scene* scene;
   SceneNeeds needs;
