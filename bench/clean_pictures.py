@@ -5,7 +5,7 @@ docs/light-maps.md.
     bench/clean_pictures.py SCENES [--photile COMMAND]
 
 SCENES holds <scene>/<scene>-diffuse.gltf and references/<scene>-diffuse-256x192.exr, as for
-bench/quality.py. Takes about two minutes. Needs the built command and the Debian packages
+bench/quality.py. Takes about ten minutes. Needs the built command and the Debian packages
 python3-numpy and python3-openimageio.
 """
 
@@ -26,11 +26,9 @@ except ImportError as missing:
              "python3-openimageio, and run it with /usr/bin/python3")
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-ROWS = (("classroom", "--light-maps on --photons 500k -k 100"),
-        ("classroom", "--quality good"),
-        ("classroom", "--quality good --photons 1M --light-map-rays 128"),
-        ("kitchen", "--light-maps on --photons 500k -k 100"),
-        ("kitchen", "--quality good"))
+ROWS = tuple((scene, options) for scene in ("classroom", "kitchen") for options in (
+    "--light-maps on --photons 500k -k 100 --samples 16", "--quality good",
+    "--quality good --photons 1M", "--quality final"))
 
 
 def windows(plane, reach):
@@ -62,7 +60,7 @@ def measured(given, scene, options, folder):
     """A row of the table."""
     before = processor_seconds()
     subprocess.run([given.photile, "render", given.scenes / scene / f"{scene}-diffuse.gltf", "--size",
-                    "256x192", "--samples", "16", "--quota", "power", *options.split(), "--quiet",
+                    "256x192", "--quota", "power", *options.split(), "--quiet",
                     "-o", folder / "picture.exr", "--stats", folder / "stats.json"], check=True)
     seconds = processor_seconds() - before
     picture = picture_error.read_picture(folder / "picture.exr")

@@ -124,11 +124,11 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
     return std::pair(stopwatch.taken(), drawn);
   };
   {
-    LightMapEstimates warm(scene, light_maps, estimators);  // compiles the kernels
+    LightMapEstimates warm(rays, light_maps, estimators);  // compiles the kernels
     LightMapFrames frames(rays, warm.maps(), warm.source());
     draw(frames, scene.cameras.front(), 32, 32, all);
   }
-  LightMapEstimates estimates(scene, light_maps, estimators);
+  LightMapEstimates estimates(rays, light_maps, estimators);
   LightMapFrames frames(rays, estimates.maps(), estimates.source());
   const auto [width, height] = settings.sizes.front();
   const TimeTaken fill = draw(frames, scene.cameras.front(), width, height, all).first;
@@ -166,7 +166,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   look("look back", 0, 180);
 
   // What the window does when somebody turns: frames of a thirtieth of a second.
-  LightMapEstimates fresh(scene, light_maps, estimators);
+  LightMapEstimates fresh(rays, light_maps, estimators);
   LightMapFrames bounded(rays, fresh.maps(), fresh.source());
   draw(bounded, scene.cameras.front(), width, height, all);
   double longest = 0, drawing = 0;

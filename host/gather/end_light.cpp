@@ -44,25 +44,26 @@ EndReflection reflection_of(const trace::EyeRecord& ends, std::size_t end) {
 }  // namespace
 
 IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& progress) {
-  IndirectLight light{.rays = std::move(rays), .own_of = {}, .weight = {}, .own = {}};
+  IndirectLight light{.rays = std::move(rays), .own_of = {}, .nodes = {}, .weight = {}, .own = {}};
   std::vector<std::uint8_t> has_own;
   classify(light, has_own);
   const trace::EyeRecord& ends = light.rays.ends;
+  PrimaryHits served;
+  for (std::size_t end = 0; end < has_own.size(); ++end) {
+    if (has_own[end]) continue;
+    served.position.push_back(ends.hits[end].position);
+    served.sided_triangle.push_back(ends.hits[end].sided_triangle);
+  }
+  if (!maps_) maps_.emplace(rays_, parameters_);
+  maps_->maps.fill(served, *this, progress);
+  find_nodes(light, has_own);
   light.own_of.assign(ends.hits.size(), none);
   std::vector<std::uint32_t> own;
-  PrimaryHits served;
   for (std::uint32_t end = 0; end < has_own.size(); ++end) {
-    if (has_own[end]) {
-      light.own_of[end] = static_cast<std::uint32_t>(own.size());
-      own.push_back(end);
-    } else {
-      served.position.push_back(ends.hits[end].position);
-      served.sided_triangle.push_back(ends.hits[end].sided_triangle);
-      served.pixel.push_back(0);
-    }
+    if (!has_own[end]) continue;
+    light.own_of[end] = static_cast<std::uint32_t>(own.size());
+    own.push_back(end);
   }
-  if (!maps_) maps_.emplace(rays_.scene(), parameters_);
-  maps_->fill(served, *this, progress);
   if (!own.empty()) light.own = estimates_at(ends, own);
   costs_.estimated += own.size();
   costs_.ends += ends.hits.size();
@@ -72,7 +73,7 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
 
 std::uint64_t EndLight::bytes() const {
   if (!maps_) return 0;
-  const LightMapStatistics statistics = maps_->statistics();
+  const LightMapStatistics statistics = maps_->maps.statistics();
   return statistics.value_bytes + statistics.index_bytes;
 }
 
@@ -84,7 +85,7 @@ Estimates EndLight::irradiance(const PrimaryHits& nodes) {
 void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
                          std::uint32_t rays_per_batch, BatchSums& sums) const {
   const std::size_t lights = rays_.needs().light_count;
-  const Estimates& values = maps_->values();
+  const Estimates& values = maps_->maps.values();
   for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
     const trace::EyeHit& hit = light.rays.ends.hits[end];
     const std::uint32_t batch = hit.pixel / rays_per_batch % batches;
@@ -98,9 +99,9 @@ void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uin
           });
       continue;
     }
-    NodeBlend blend;
-    maps_->find(hit.sided_triangle, hit.position, blend);
+    const NodeBlend& blend = light.nodes[end];
     for (std::size_t corner = 0; corner < blend.node.size(); ++corner) {
+      if (blend.weight[corner] == 0.0f) continue;
       const glm::vec3 weight = blend.weight[corner] * light.weight[end];
       for_each_estimate(values, blend.node[corner], lights, [&](std::size_t layer, std::size_t i) {
         sums.add(static_cast<std::uint32_t>(layer), batch, weight * values.irradiance[i]);
@@ -122,6 +123,23 @@ void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own
       light.weight[end] = ends.hits[end].throughput;
       if (reflection.strong_lobe) continue;
       light.weight[end] *= reflection.reflectance * glm::one_over_pi<float>();
+    }
+  });
+}
+
+/// Of ends that have no estimates of their own. Ends that none of their nodes sees get one.
+void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
+  light.nodes.resize(has_own.size());
+  tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
+    const trace::FlushDenormals flush_denormals;
+    for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
+      if (has_own[end]) continue;
+      const trace::EyeHit& hit = light.rays.ends.hits[end];
+      maps_->maps.find(hit.sided_triangle, hit.position, light.nodes[end]);
+      if (maps_->sight.look(hit.sided_triangle, hit.position, light.nodes[end])) continue;
+      has_own[end] = 1;
+      // Estimates of ends are radiance.
+      light.weight[end] = hit.throughput;
     }
   });
 }

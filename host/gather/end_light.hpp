@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gather/batch_sums.hpp"
+#include "light_maps/node_sight.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/primary_hits.hpp"
@@ -28,6 +29,7 @@ struct EndEstimates {
 struct IndirectLight {
   trace::HemisphereRays rays;
   std::vector<std::uint32_t> own_of;  ///< of each end: its own estimate, or none: light maps serve
+  std::vector<NodeBlend> nodes;       ///< of each end that they serve
   std::vector<glm::vec3> weight;      ///< of each end: of irradiance, or of radiance
   EndEstimates own;                   ///< of the run
 };
@@ -64,12 +66,22 @@ class EndLight : private PointSource {
  private:
   Estimates irradiance(const PrimaryHits& nodes) override;
   void classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
+  void find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen);
 
   const RayScene& rays_;
   MapEstimators& photons_;
+  /// What nodes differ by that have something dark between them: looks cost as much as the ray.
+  static constexpr double hidden_contrast = 0.75;
+
+  struct Maps {
+    Maps(const RayScene& rays, const LightMapParameters& parameters)
+        : maps(rays.scene(), parameters), sight(rays, maps, hidden_contrast) {}
+    LightMaps maps;
+    light_maps::NodeSight sight;
+  };
   const LightMapParameters parameters_;
-  std::optional<LightMaps> maps_;  ///< made when the first ray ends
+  std::optional<Maps> maps_;  ///< made when the first ray ends
   Costs costs_;
 };
 

@@ -87,7 +87,7 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 
 GatheredNodesParameters rays_of_nodes(int coarse, double inset) {
   // Shadow borders stand at the finer levels: there looks at lamps matter more than other rays.
-  return {{coarse, 2 * coarse}, {(3 * coarse + 7) / 8, 3 * coarse}, inset};
+  return {{coarse, 2 * coarse}, {(coarse + 3) / 4, (3 * coarse + 1) / 2}, inset};
 }
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return {window, rounds}; }

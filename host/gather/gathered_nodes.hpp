@@ -25,7 +25,8 @@ struct GatheredNodesParameters {
   double inset = 0;
 };
 
-/// So many rays at the coarsest level and fewer at others; twice and three times as many looks.
+/// So many rays at the coarsest level and a quarter at others; twice and one and a half times as
+/// many looks.
 GatheredNodesParameters rays_of_nodes(int coarse, double inset);
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise

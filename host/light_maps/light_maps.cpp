@@ -13,6 +13,7 @@
 
 #include "light_maps/charts.hpp"
 #include "light_maps/node_batch.hpp"
+#include "light_maps/node_points.hpp"
 #include "light_maps/tiles.hpp"
 #include "maps/check_photons.hpp"
 #include "photile/errors.hpp"
@@ -126,7 +127,7 @@ struct LightMaps::Impl {
   void forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
               std::span<const NodePlace> added);
   void value(std::span<const NodePlace> nodes, NodeSource& source, const Progress& progress);
-  void append(Estimates estimates, std::size_t nodes);
+  void append(Estimates estimates, const PrimaryHits& at, std::size_t nodes);
   bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
   bool differ_by_photons(double high, double low) const;
 
@@ -140,6 +141,7 @@ struct LightMaps::Impl {
   Estimates values;                    ///< of nodes
   std::vector<float> together;         ///< per node: luminance of all lights at their powers
   std::vector<float> error, distance;  ///< per node, where the source tells: see NodeValues
+  std::vector<NodePoint> points;       ///< of nodes
   std::uint64_t cells = 0;
   double chart_seconds = 0;
 };
@@ -211,22 +213,23 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
 void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source,
                             const Progress& progress) {
   if (nodes.empty()) return;
-  const auto value_by_source = [&](std::span<const NodePlace> places) {
-    return source.value(
-        light_maps::node_batch(scene, charts, places, levels, needs.glossy, source.surroundings()),
-        progress);
+  const auto batch_of = [&](std::span<const NodePlace> places) {
+    return light_maps::node_batch(scene, charts, places, levels, needs.glossy,
+                                  source.surroundings());
   };
   for (const auto& places : light_maps::unknown_parents(nodes, levels, source)) {
-    if (!places.empty()) value_by_source(places);  // for the source: they have their values here
+    // For the source: they have their values here.
+    if (!places.empty()) source.value(batch_of(places), progress);
   }
-  NodeValues valued = value_by_source(nodes);
-  append(std::move(valued.irradiance), nodes.size());
+  const NodeBatch batch = batch_of(nodes);
+  NodeValues valued = source.value(batch, progress);
+  append(std::move(valued.irradiance), batch.points, nodes.size());
   error.insert(error.end(), valued.error.begin(), valued.error.end());
   distance.insert(distance.end(), valued.distance.begin(), valued.distance.end());
 }
 
-/// The light of the nodes that follow.
-void LightMaps::Impl::append(Estimates estimates, std::size_t nodes) {
+/// The light of the nodes that follow, at the first of these points.
+void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at, std::size_t nodes) {
   estimates.radiance.clear();
   const std::size_t lights = parameters.powers.size();
   for (std::size_t node = 0; node < nodes; ++node) {
@@ -242,6 +245,7 @@ void LightMaps::Impl::append(Estimates estimates, std::size_t nodes) {
       for (std::size_t light = 0; light < lights; ++light) add(light, node * lights + light);
     }
     together.push_back(static_cast<float>(sum));
+    points.push_back({at.position[node], at.sided_triangle[node]});
   }
   values.append(std::move(estimates));
 }
@@ -387,6 +391,7 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
   impl_->values = {};
   if (impl_->needs.many_lights()) impl_->values.first.push_back(0);
   impl_->together.clear();
+  impl_->points.clear();
   impl_->cells = 0;
   restore(std::move(left));
   return former;
@@ -404,7 +409,14 @@ void LightMaps::restore(LightMapContents contents) {
     const auto& [chart, x, y] = contents.nodes[node];
     fit(impl_->node_at.insert({NodePlace{chart, x, y}, node}).second);
   }
-  impl_->append(std::move(contents.values), count);
+  std::vector<NodePlace> places;
+  for (const auto& [chart, x, y] : contents.nodes) {
+    fit(chart < impl_->charts.size());
+    places.push_back({chart, x, y});
+  }
+  const PrimaryHits points =
+      light_maps::node_points(impl_->scene, impl_->charts, places, impl_->levels, false);
+  impl_->append(std::move(contents.values), points, count);
   impl_->error = std::move(contents.error);
   impl_->distance = std::move(contents.distance);
   const auto place_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,
@@ -456,6 +468,20 @@ double LightMaps::relative_error(const NodeBlend& blend) const {
   return light > 0 ? error / light : 0;
 }
 
+bool LightMaps::uneven(const NodeBlend& blend, double contrast) const {
+  const auto light = [&](std::size_t corner) { return impl_->together[blend.node[corner]]; };
+  const auto [least, most] = std::minmax({light(0), light(1), light(2), light(3)});
+  if (most - least > most * contrast || most == 0.0f) return true;
+  if (impl_->distance.empty()) return false;
+  const auto finest = static_cast<float>(std::ldexp(impl_->charts.spacing(), 1 - impl_->levels));
+  return std::any_of(blend.node.begin(), blend.node.end(),
+                     [&](std::uint32_t node) { return impl_->distance[node] < finest; });
+}
+
+const LightMaps::NodePoint& LightMaps::point(std::uint32_t node) const {
+  return impl_->points[node];
+}
+
 const Charts& LightMaps::charts() const { return impl_->charts; }
 const Tiles& LightMaps::tiles() const { return impl_->tiles; }
 
@@ -470,7 +496,8 @@ LightMapStatistics LightMaps::statistics() const {
           .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
                          values.first.size() * sizeof(std::uint64_t) +
                          values.light.size() * sizeof(std::uint16_t) +
-                         (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float),
+                         (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float) +
+                         impl_->points.size() * sizeof(NodePoint),
           .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +
                          impl_->node_at.size() * 2 * sizeof(std::pair<NodePlace, std::uint32_t>),
           .chart_seconds = impl_->chart_seconds};

@@ -1,5 +1,6 @@
 #include "render/light_map_estimates.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 #include "render/reflected_radiance.hpp"
+#include "trace/flush_denormals.hpp"
 
 namespace photile {
 namespace {
@@ -31,9 +33,12 @@ double mean_photon(const Photons& photons, std::span<const double> powers) {
 /// Writes the light of hits one after another, from light maps or from their own estimates.
 class Blend {
  public:
+  ///   place    per hit: that of its own estimate, or none
+  ///   blends   per hit, where it has none
   Blend(const SceneNeeds& needs, const LightMaps& maps, const PrimaryHits& hits,
-        const Estimates& alone, std::span<const std::uint32_t> place)
-      : needs_(needs), maps_(maps), hits_(hits), alone_(alone), place_(place) {}
+        const Estimates& alone, std::span<const std::uint32_t> place,
+        std::span<const NodeBlend> blends)
+      : needs_(needs), maps_(maps), hits_(hits), alone_(alone), place_(place), blends_(blends) {}
 
   /// Of hits [first, last).
   Estimates of(std::size_t first, std::size_t last) const {
@@ -55,9 +60,7 @@ class Blend {
     double sum = 0;
     for (std::size_t hit = first; hit < last; ++hit) {
       if (place_[hit] != none) continue;
-      NodeBlend blend;
-      maps_.find(hits_.sided_triangle[hit], hits_.position[hit], blend);
-      const double error = maps_.relative_error(blend);
+      const double error = maps_.relative_error(blends_[hit]);
       sum += error * error;
     }
     return sum;
@@ -65,11 +68,11 @@ class Blend {
 
  private:
   void add_from_maps(std::size_t hit, estimate::EstimateWriter& writer) const {
-    NodeBlend blend;
-    maps_.find(hits_.sided_triangle[hit], hits_.position[hit], blend);
+    const NodeBlend& blend = blends_[hit];
     const Estimates& values = maps_.values();
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
     for (std::size_t i = 0; i < blend.node.size(); ++i) {
+      if (blend.weight[i] == 0.0f) continue;
       for_each_estimate(values, blend.node[i], needs_.light_count,
                         [&](std::size_t layer, std::size_t value) {
                           const glm::vec3 light = blend.weight[i] * values.irradiance[value];
@@ -92,7 +95,8 @@ class Blend {
   const LightMaps& maps_;
   const PrimaryHits& hits_;
   const Estimates& alone_;
-  std::span<const std::uint32_t> place_;  ///< per hit: that of its own estimate, or none
+  std::span<const std::uint32_t> place_;
+  std::span<const NodeBlend> blends_;
 };
 
 }  // namespace
@@ -120,35 +124,44 @@ LightMapParameters light_map_parameters(const Photons& photons, int neighbours, 
   return parameters;
 }
 
-LightMapEstimates::LightMapEstimates(const Scene& scene, const LightMapParameters& parameters,
+LightMapEstimates::LightMapEstimates(const RayScene& rays, const LightMapParameters& parameters,
                                      MapEstimators& photons, NodeSource* nodes)
-    : scene_(scene),
-      needs_(needs_of(scene)),
+    : scene_(rays.scene()),
+      needs_(rays.needs()),
       photons_(photons),
       source_(nodes ? nodes : this),
-      maps_(scene, parameters) {}
+      maps_(scene_, parameters),
+      sight_(rays, maps_) {}
 
 Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress) {
-  std::vector<std::uint32_t> served, alone, place(hits.size(), none);
+  std::vector<std::uint8_t> is_alone(hits.size(), 0);
+  std::vector<std::uint32_t> served;
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (serves(hits, hit)) {
       served.push_back(hit);
-      continue;
+    } else {
+      is_alone[hit] = 1;
     }
-    place[hit] = static_cast<std::uint32_t>(alone.size());
-    alone.push_back(hit);
   }
   const Stopwatch stopwatch;
-  if (alone.empty()) {
+  if (served.size() == hits.size()) {
     maps_.fill(hits, *source_, progress);
   } else {
     maps_.fill(estimate::reordered(hits, 0, served), *source_, progress);
   }
   fill_time_ += stopwatch.taken();
+  const std::vector<NodeBlend> blends = blends_of(hits, is_alone);
+  std::vector<std::uint32_t> alone, place(hits.size(), none);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
+    if (is_alone[hit] == 0) continue;
+    place[hit] = static_cast<std::uint32_t>(alone.size());
+    alone.push_back(hit);
+  }
   hits_alone_ += alone.size();
+  hits_read_ += hits.size() - alone.size();
   const Estimates own =
       alone.empty() ? Estimates{} : photons_.estimate(estimate::reordered(hits, 0, alone));
-  const Blend blend(needs_, maps_, hits, own, place);
+  const Blend blend(needs_, maps_, hits, own, place, blends);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
   std::vector<double> squared_errors(parts.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
@@ -157,12 +170,30 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
     parts[part] = blend.of(first, last);
     squared_errors[part] = blend.squared_errors(first, last);
   });
-  hits_read_ += served.size();
   for (const double part : squared_errors) squared_errors_ += part;
   Estimates all;
   if (needs_.many_lights()) all.first.push_back(0);
   for (Estimates& part : parts) all.append(std::move(part));
   return all;
+}
+
+std::vector<NodeBlend> LightMapEstimates::blends_of(const PrimaryHits& hits,
+                                                    std::vector<std::uint8_t>& alone) const {
+  std::vector<NodeBlend> blends(hits.size());
+  // Where photons value nodes they would say no more at the hit, and may have to be traced first.
+  const bool gathered = source_ != static_cast<const NodeSource*>(this);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_blend_task),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      const trace::FlushDenormals flush_denormals;
+                      for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
+                        if (alone[hit] != 0) continue;
+                        const std::uint32_t sided = hits.sided_triangle[hit];
+                        maps_.find(sided, hits.position[hit], blends[hit]);
+                        const bool seen = sight_.look(sided, hits.position[hit], blends[hit]);
+                        alone[hit] = gathered && !seen ? 1 : 0;
+                      }
+                    });
+  return blends;
 }
 
 double LightMapEstimates::error() const {

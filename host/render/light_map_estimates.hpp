@@ -1,11 +1,15 @@
 // Estimates read from light maps where those serve a hit, and made at the hit where they do not.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
+#include "light_maps/node_sight.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
 #include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/statistics.hpp"
 #include "render/map_estimators.hpp"
 
@@ -26,7 +30,7 @@ class LightMapEstimates : private PointSource {
   /// References are kept.
   ///   photons   whose estimates of hits do not depend on the hits beside them
   ///   nodes     what values nodes; null: photons do
-  LightMapEstimates(const Scene& scene, const LightMapParameters& parameters,
+  LightMapEstimates(const RayScene& rays, const LightMapParameters& parameters,
                     MapEstimators& photons, NodeSource* nodes = nullptr);
 
   /// Of hits in any order. Those with a specular lobe or a normal map are estimated where they are.
@@ -51,11 +55,15 @@ class LightMapEstimates : private PointSource {
   /// where light comes from.
   bool serves(const PrimaryHits& hits, std::size_t hit) const;
 
+  /// The nodes around hits that are not `alone`. Makes those alone that none of their nodes sees.
+  std::vector<NodeBlend> blends_of(const PrimaryHits& hits, std::vector<std::uint8_t>& alone) const;
+
   const Scene& scene_;
   const SceneNeeds needs_;
   MapEstimators& photons_;
   NodeSource* source_;
   LightMaps maps_;
+  light_maps::NodeSight sight_;
   std::uint64_t hits_alone_ = 0, hits_read_ = 0;
   double squared_errors_ = 0;  ///< relative, of hits read
   TimeTaken fill_time_;

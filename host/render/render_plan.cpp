@@ -132,8 +132,12 @@ LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const P
 LightMapParameters RenderPlan::ends(int pass, double first_radius, const Photons& photons,
                                     std::span<const double> powers) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
-  return light_map_parameters(photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0,
-                              powers);
+  LightMapParameters parameters = light_map_parameters(
+      photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0, powers);
+  // A point sees many ends: what their nodes are wrong by between each other cancels out.
+  parameters.spacing *= 2;
+  parameters.levels = 1;
+  return parameters;
 }
 
 IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {

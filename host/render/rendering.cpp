@@ -347,7 +347,7 @@ LightMapEstimates& Rendering::light_maps() {
                             rays_of_nodes(plan_.used().light_map_rays,
                                           inset_of_spacing * light_map_parameters_.spacing));
   }
-  light_maps_.emplace(scene_, light_map_parameters_, *photons_,
+  light_maps_.emplace(rays_, light_map_parameters_, *photons_,
                       gathered_nodes_ ? &*gathered_nodes_ : nullptr);
   return *light_maps_;
 }

@@ -171,6 +171,17 @@ class LightMaps {
   /// tell it, or without light. Errors of neighbours are taken for the same.
   double relative_error(const NodeBlend& blend) const;
 
+  /// Whether what stands between a place and its nodes matters: they differ by more than this part
+  /// of the brightest, or all are dark, or something is close to one.
+  bool uneven(const NodeBlend& blend, double contrast) const;
+
+  /// The point of the surface that a node stands for.
+  struct NodePoint {
+    glm::vec3 position;  ///< metres
+    std::uint32_t sided_triangle;
+  };
+  const NodePoint& point(std::uint32_t node) const;
+
   /// What nodes hold, in the form of estimates: node n is hit n.
   const Estimates& values() const;
 
