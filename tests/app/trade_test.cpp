@@ -89,6 +89,39 @@ TEST_CASE("a time budget that nothing meets is told, and the fastest settings ar
   CHECK_THAT(outcome.errors, Contains("warning: frames of") && Contains("--samples 1"));
 }
 
+TEST_CASE("pictures are made until one states the wanted error, and are there meanwhile") {
+  const FileFolder folder;
+  const Outcome outcome = run_photile(
+      {"render", write_box(folder), "-o", folder / "box.exr", "--size", "24x18", "--quality",
+       "good", "--light-map-rays", "8", "--target-error", "2%", "--stats", folder / "box.json"});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.errors, Contains("picture 1: ") && Contains("rays a node, standard error"));
+  const auto record = nlohmann::json::parse(text_of(folder / "box.json"));
+  const auto maps = std::find_if(record["stages"].begin(), record["stages"].end(),
+                                 [](const auto& s) { return s["stage"] == "light maps"; });
+  REQUIRE(maps != record["stages"].end());
+  CHECK((*maps)["figures"]["standard error percent"] <= 2.0);
+}
+
+TEST_CASE("pictures are made for a time; that needs nodes that gather") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const Outcome outcome = run_photile({"render", scene, "-o", folder / "box.exr", "--size", "24x18",
+                                       "--quality", "good", "--for", "1ms"});
+  INFO(outcome.errors);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.errors,
+             Contains("picture 1: 125000 photons, 16 rays") && !Contains("picture 2"));
+  CHECK_FALSE(text_of(folder / "box.exr").empty());
+  const std::string refused =
+      only_error(run_photile({"render", scene, "-o", folder / "no.exr", "--for", "1s"}), 2);
+  CHECK_THAT(refused, Contains("--for") && Contains("--quality good"));
+  only_error(run_photile({"render", scene, "-o", folder / "no.exr", "--for", "1s", "--quality",
+                          "good", "--glare", folder / "glare.png"}),
+             2);
+}
+
 TEST_CASE("settings that are chosen cannot be given, too") {
   const FileFolder folder;
   const auto [wish, option] = GENERATE(table<std::string, std::string>({
@@ -96,6 +129,8 @@ TEST_CASE("settings that are chosen cannot be given, too") {
       {"--target-error=2%", "--neighbours=50"},
       {"--time-budget=1s", "--samples=4"},
       {"--time-budget=1s", "--radius=0.1"},
+      {"--time-budget=1s", "--quality=good"},
+      {"--time-budget=1s", "--for=1s"},
   }));
   INFO(wish << " " << option);
   only_error(run_photile({"render", write_box(folder), "-o", folder / "box.exr", wish, option}), 2);

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <string>
 
+#include "photile/errors.hpp"
 #include "render/quality.hpp"
+#include "render/refinement.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/validators.hpp"
 
@@ -71,7 +73,8 @@ void add_quality_options(CLI::App& command, QualityTarget& target) {
   CLI::Option* error =
       command
           .add_option("--target-error", target.relative_error,
-                      "choose photons, k and samples for this root mean square relative error")
+                      "choose photons, k and samples for this root mean square relative error; "
+                      "where nodes of light maps gather, make pictures until one states it")
           ->type_name("PERCENT")
           ->transform(share_up_to(1))
           ->group("Quality");
@@ -82,13 +85,46 @@ void add_quality_options(CLI::App& command, QualityTarget& target) {
                           ->type_name("TIME")
                           ->transform(duration())
                           ->group("Quality");
+  command
+      .add_option("--for", target.run_seconds,
+                  "make better and better pictures for so long, where nodes of light maps gather; "
+                  "depends on the machine")
+      ->type_name("TIME")
+      ->transform(duration())
+      ->excludes(time)
+      ->group("Quality");
   // The model of error and time knows nothing of --final-gather.
-  for (const char* chosen :
-       {"--quality", "--neighbours", "--samples", "--radius", "--final-gather"}) {
+  for (const char* chosen : {"--neighbours", "--samples", "--radius", "--final-gather"}) {
     error->excludes(chosen);
     time->excludes(chosen);
   }
+  time->excludes("--quality");
   error->excludes("--photons");
+}
+
+bool refines(const QualityTarget& target, const RenderParameters& parameters) {
+  const bool gathers = parameters.light_maps != LightMapMode::off && parameters.light_map_rays > 0;
+  if (target.run_seconds > 0 && !gathers) {
+    throw UsageError("--for: pictures are made better where nodes gather; give --quality good");
+  }
+  return gathers && (target.relative_error > 0 || target.run_seconds > 0);
+}
+
+RenderResult render_refined(
+    const QualityTarget& target, const RenderParameters& parameters,
+    const std::function<RenderResult(const RenderParameters&, Progress&)>& make,
+    const std::function<void(const RenderResult&)>& finished,
+    const std::function<double()>& elapsed, Progress& progress) {
+  int pictures = 0;
+  const auto tell = [&](const RenderResult& picture) {
+    finished(picture);
+    progress.note(fmt::format("picture {}: {} photons, {} rays a node, standard error {}, {}",
+                              ++pictures, picture.used.photons.emitted_photons,
+                              picture.used.light_map_rays, percent(standard_error_of(picture)),
+                              format_seconds(elapsed())));
+  };
+  return refine({target.relative_error, target.run_seconds}, parameters, {make, tell, elapsed},
+                progress);
 }
 
 bool is_wanted(const QualityTarget& target) {

@@ -1,6 +1,8 @@
-// `--quality`, `--target-error` and `--time-budget`: settings by name, or chosen for a wanted error
-// or frame time.
+// `--quality`, `--target-error`, `--time-budget` and `--for`: settings by name, or chosen for a
+// wanted error or time.
 #pragma once
+
+#include <functional>
 
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
@@ -16,11 +18,24 @@ namespace photile::app {
 /// given override it, wherever they stand on the line.
 void add_quality_preset(CLI::App& command, RenderParameters& parameters);
 
-/// Adds both options. They exclude the options whose values they choose, which must be there.
+/// Adds the options of a target. They exclude the options whose values they choose, which must be
+/// there.
 void add_quality_options(CLI::App& command, QualityTarget& target);
 
-/// Whether the user asked for either.
+/// Whether settings are to be chosen by the models.
 bool is_wanted(const QualityTarget& target);
+
+/// Whether pictures are made until one is good enough, or the time is over. Errors: UsageError for
+/// a time where nodes of light maps do not gather.
+bool refines(const QualityTarget& target, const RenderParameters& parameters);
+
+/// `refine` by these functions, with a note about each picture.
+///   elapsed   since the process began, seconds
+RenderResult render_refined(
+    const QualityTarget& target, const RenderParameters& parameters,
+    const std::function<RenderResult(const RenderParameters&, Progress&)>& make,
+    const std::function<void(const RenderResult&)>& finished,
+    const std::function<double()>& elapsed, Progress& progress);
 
 /// Measures the models on a view, sets what they choose in `parameters`, and tells the choice and
 /// its reasons. Returns the cost of the measurement, with the expectations as figures.

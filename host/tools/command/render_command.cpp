@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -115,6 +116,41 @@ std::unique_ptr<HitSource> hits_of(const Camera& camera, const RenderOptions& op
       });
 }
 
+/// Takes what was found on the way to a picture.
+void note_result(const RenderResult& result, std::span<const Device> devices, RunRecord& record) {
+  record.used = result.used;
+  record.devices.clear();
+  for (const Device& device : devices) record.devices.push_back(device.info());
+  record.device_shares = result.device_shares;
+  record.stored_photons = result.stored_photons;
+  record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
+}
+
+/// Whether photon maps outlive the picture that they are made for.
+bool keeps_maps(const RenderOptions& options) {
+  return !options.save_maps.empty() || !options.load_maps.empty() || !options.glare.empty();
+}
+
+/// Pictures until one is good enough; `write` writes the last of `record`.
+///   elapsed   since the process began, seconds
+void render_until_good(const Scene& scene, std::span<Device> devices, const RenderOptions& options,
+                       const HitSource& hits, RunRecord& record,
+                       const std::function<void(const LightLayers&)>& write,
+                       const std::function<double()>& elapsed, Progress& progress) {
+  const RunStatistics before = record.stages;
+  render_refined(
+      options.target, options.parameters,
+      [&](const RenderParameters& parameters, Progress& deadline) {
+        return render_hits(scene, hits, parameters.film, devices, parameters, deadline);
+      },
+      [&](const RenderResult& result) {
+        record.stages = before;
+        note_result(result, devices, record);
+        write(result.layers);
+      },
+      elapsed, progress);
+}
+
 /// The layers by photon maps. Fills in what `record` tells of them.
 LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
                               RenderOptions& options, const Views& views, RunRecord& record,
@@ -123,17 +159,12 @@ LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::spa
     record.stages.push_back(choose_quality(options.target, scene, camera, devices.front(),
                                            record.mix, options.parameters, progress));
   }
-  const bool keeps_maps =
-      !options.save_maps.empty() || !options.load_maps.empty() || views.reflections;
-  RenderResult result = keeps_maps ? render_with_kept_maps(scene, camera, views.picture, devices,
-                                                           options, views.reflections, progress)
-                                   : render_hits(scene, views.picture, options.parameters.film,
-                                                 devices, options.parameters, progress);
-  record.used = result.used;
-  for (const Device& device : devices) record.devices.push_back(device.info());
-  record.device_shares = result.device_shares;
-  record.stored_photons = result.stored_photons;
-  record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
+  RenderResult result = keeps_maps(options)
+                            ? render_with_kept_maps(scene, camera, views.picture, devices, options,
+                                                    views.reflections, progress)
+                            : render_hits(scene, views.picture, options.parameters.film, devices,
+                                          options.parameters, progress);
+  note_result(result, devices, record);
   return std::move(result.layers);
 }
 
@@ -178,6 +209,12 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   record.stages.push_back(stage("load libraries", {loading}));
   check_settings(options);
   if (options.integrator == Integrator::path) refuse_photon_map_options(command);
+  const bool refined = refines(options.target, options.parameters);
+  if (refined && keeps_maps(options)) {
+    throw UsageError(
+        "--target-error and --for make pictures of photons of their own where nodes gather; leave "
+        "out --save-maps, --load-maps and --glare");
+  }
   const PictureOutputs outputs = check_outputs_of(options);
 
   const ThreadLimit threads(options.threads);
@@ -205,17 +242,24 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   const std::unique_ptr<HitSource> hits = hits_of(camera, options, record, progress);
   LightLayers reflections;
   const Views views{*hits, options.glare.empty() ? nullptr : &reflections};
-  const LightLayers layers =
-      options.integrator == Integrator::path
-          ? render_by_paths(scene, camera, views, record, progress)
-          : render_by_photons(scene, camera, devices, options, views, record, progress);
-  record.stages.push_back(timed_stage("write pictures", progress, [&] {
-    const std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, record.mix);
-    set_camera_attributes(picture->header(), in_world(scene, camera), layers.width, layers.height);
-    set_run_attributes(picture->header(), record);
-    outputs.write(*picture, progress);
-    if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
-  }));
+  const auto write = [&](const LightLayers& layers) {
+    record.stages.push_back(timed_stage("write pictures", progress, [&] {
+      const std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, record.mix);
+      set_camera_attributes(picture->header(), in_world(scene, camera), layers.width,
+                            layers.height);
+      set_run_attributes(picture->header(), record);
+      outputs.write(*picture, progress);
+      if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
+    }));
+  };
+  if (refined) {
+    const auto elapsed = [&] { return loading.seconds + since_loaded.seconds(); };
+    render_until_good(scene, devices, options, *hits, record, write, elapsed, progress);
+  } else if (options.integrator == Integrator::path) {
+    write(render_by_paths(scene, camera, views, record, progress));
+  } else {
+    write(render_by_photons(scene, camera, devices, options, views, record, progress));
+  }
   record.total = since_loaded.taken();
   record.total += loading;
   if (!options.statistics.empty()) {

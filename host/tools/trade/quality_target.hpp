@@ -43,8 +43,11 @@ struct TimeModel {
 
 /// What the user wants; 0 = does not matter.
 struct QualityTarget {
-  double relative_error = 0;  ///< at most, of the whole picture: PictureError::relative_error
-  double frame_seconds = 0;   ///< at most, of each picture once the photon maps exist
+  /// At most, of the whole picture: PictureError::relative_error; where nodes of light maps gather,
+  /// the standard error that they state.
+  double relative_error = 0;
+  double frame_seconds = 0;  ///< at most, of each picture once the photon maps exist
+  double run_seconds = 0;    ///< of the whole process, where nodes of light maps gather
 };
 
 /// What was chosen, what is expected of it, and whether that is what was wanted.

@@ -1,0 +1,139 @@
+// When pictures are made again, and when not: pictures whose error and time follow formulas.
+#include "render/refinement.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::test {
+namespace {
+
+/// Pictures of relative error `error_of_one` / sqrt(rays) that take time by photons and rays.
+struct Studio {
+  double error_of_one = 0.16;  ///< 2% with 64 rays
+  double seconds_of_good = 10;
+  double clock = 0;
+  std::vector<RenderParameters> made;
+  std::vector<double> finished_at;
+  bool user_stops = false;
+
+  double seconds(const RenderParameters& p) const {
+    return seconds_of_good * std::pow(p.light_map_rays / 64.0, 1.7);
+  }
+  double error(const RenderParameters& p) const {
+    return error_of_one / std::sqrt(p.light_map_rays);
+  }
+
+  RefinementSteps steps() {
+    return {.make =
+                [this](const RenderParameters& p, Progress& progress) {
+                  constexpr int slices = 1000;
+                  for (int i = 0; i < slices; ++i) {
+                    clock += seconds(p) / slices;
+                    progress.throw_if_cancelled();
+                  }
+                  made.push_back(p);
+                  RenderResult result;
+                  result.used = p;
+                  StageStatistics maps;
+                  maps.stage = "light maps";
+                  maps.figures.emplace_back("standard error percent", 100 * error(p));
+                  result.statistics.push_back(maps);
+                  return result;
+                },
+            .finished = [this](const RenderResult&) { finished_at.push_back(clock); },
+            .elapsed = [this] { return clock; }};
+  }
+};
+
+RenderParameters good() {
+  RenderParameters parameters;
+  parameters.photons.emitted_photons = 500'000;
+  parameters.light_map_rays = 64;
+  return parameters;
+}
+
+/// A user who stops after so many seconds.
+class Stopped : public Progress {
+ public:
+  Stopped(const Studio& studio, double seconds) : studio_(studio), seconds_(seconds) {}
+  bool cancelled() const override { return studio_.clock > seconds_; }
+
+ private:
+  const Studio& studio_;
+  double seconds_;
+};
+
+}  // namespace
+
+TEST_CASE("refinement: a picture that is good enough is the only one") {
+  Studio studio;
+  const RenderResult result = refine({.error = 0.025}, good(), studio.steps(), Progress::none());
+  CHECK(studio.made.size() == 1);
+  CHECK(result.used.light_map_rays == 64);
+  CHECK(standard_error_of(result) == Approx(0.02));
+}
+
+TEST_CASE("refinement: an error is reached, by not much more than it takes") {
+  Studio studio;
+  const double wanted = GENERATE(0.015, 0.01, 0.004);
+  const RenderResult result = refine({.error = wanted}, good(), studio.steps(), Progress::none());
+  CHECK(standard_error_of(result) <= wanted);
+  CHECK(standard_error_of(result) > 0.75 * wanted);
+  CHECK(studio.finished_at.size() == studio.made.size());
+  for (std::size_t i = 1; i < studio.made.size(); ++i) {
+    CHECK(studio.made[i].light_map_rays > studio.made[i - 1].light_map_rays);
+    CHECK(studio.made[i].photons.emitted_photons > studio.made[i - 1].photons.emitted_photons);
+  }
+}
+
+TEST_CASE("refinement: a time is kept, and most of it used") {
+  Studio studio;
+  const double seconds = GENERATE(10.0, 30.0, 100.0, 1000.0);
+  const RenderResult result =
+      refine({.seconds = seconds}, good(), studio.steps(), Progress::none());
+  CHECK(studio.clock <= 1.001 * seconds);
+  CHECK(studio.clock > 0.5 * seconds);
+  CHECK(result.used.light_map_rays == studio.made.back().light_map_rays);
+  CHECK(studio.made.front().light_map_rays == 16);
+}
+
+TEST_CASE("refinement: a picture that takes too long is given up, the one before is kept") {
+  Studio studio;
+  RefinementSteps steps = studio.steps();
+  const auto make = steps.make;
+  steps.make = [&](const RenderParameters& p, Progress& progress) {
+    if (!studio.made.empty()) studio.seconds_of_good = 1e6;  // another program takes the machine
+    return make(p, progress);
+  };
+  const RenderResult result = refine({.seconds = 10}, good(), steps, Progress::none());
+  CHECK(studio.made.size() == 1);
+  CHECK(result.used.light_map_rays == 16);
+}
+
+TEST_CASE("refinement: the first picture is finished, however little time there is") {
+  Studio studio;
+  refine({.seconds = 0.001}, good(), studio.steps(), Progress::none());
+  CHECK(studio.made.size() == 1);
+}
+
+TEST_CASE("refinement: a user who stops is heard, and has the pictures so far") {
+  Studio studio;
+  Stopped progress(studio, 5);
+  CHECK_THROWS_AS(refine({.seconds = 1000}, good(), studio.steps(), progress), Interrupted);
+  CHECK(studio.finished_at.size() == 1);
+  CHECK(studio.clock < 5.2);
+}
+
+TEST_CASE("refinement: ends where rays and photons cannot grow") {
+  Studio studio;
+  studio.seconds_of_good = 1e-9;
+  const RenderResult result = refine({.error = 1e-9}, good(), studio.steps(), Progress::none());
+  CHECK(result.used.light_map_rays == limits::max_final_gather_rays);
+  CHECK(result.used.photons.emitted_photons == limits::max_emitted_photons);
+}
+
+}  // namespace photile::test
