@@ -11,10 +11,10 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 
 #include "image/decoder.hpp"
+#include "image/exr_headers.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::image {
@@ -96,52 +96,6 @@ ExrInput::Part part_of(const Imf::Header& header) {
   return part;
 }
 
-/// Before OpenEXR believes them: it reserves what an attribute and a table of the rows are said to
-/// take, and its own limits would hold for the whole process.
-void check_headers(Imf::IStream& stream, std::uint64_t bytes) {
-  const auto number = [&] {
-    std::array<char, 4> text{};
-    stream.read(text.data(), 4);
-    std::uint32_t value = 0;
-    for (int i = 3; i >= 0; --i) value = value << 8 | static_cast<unsigned char>(text[i]);
-    return value;
-  };
-  const auto word = [&] {
-    std::string text;
-    for (char letter = 0; text.size() < 256; text += letter) {
-      stream.read(&letter, 1);
-      if (letter == '\0') return text;
-    }
-    throw DecodeError("the header is damaged");
-  };
-  stream.seekg(4);
-  const bool many = (number() & 0x1000u) != 0;
-  for (bool more = true; more;) {
-    std::size_t attributes = 0;
-    for (std::string name = word(); !name.empty(); name = word(), ++attributes) {
-      word();  // its type
-      const std::uint32_t size = number();
-      const std::uint64_t place = stream.tellg();
-      if (size > bytes - place) throw DecodeError("the header is damaged");
-      if (name == "dataWindow" && size == 16) {
-        const auto left = static_cast<std::int32_t>(number()),
-                   top = static_cast<std::int32_t>(number()),
-                   right = static_cast<std::int32_t>(number()),
-                   bottom = static_cast<std::int32_t>(number());
-        const std::int64_t width = std::int64_t{right} - left, height = std::int64_t{bottom} - top;
-        if (width >= limits::max_image_side || height >= limits::max_image_side) {
-          throw DecodeError(
-              fmt::format("is {} x {} pixels, more than the limit of {} a side; scale it down",
-                          width + 1, height + 1, limits::max_image_side));
-        }
-      }
-      stream.seekg(place + size);
-    }
-    more = many && attributes > 0;
-  }
-  stream.seekg(0);
-}
-
 }  // namespace
 
 void set_up_openexr() {
@@ -171,7 +125,7 @@ ExrInput::~ExrInput() = default;
 
 void ExrInput::find_parts(std::uint64_t bytes) {
   set_up_openexr();
-  check_headers(*stream_, bytes);
+  check_exr_headers(*stream_, bytes);
   file_ = std::make_unique<File>(*stream_);
   for (int part = 0; part < file_->parts(); ++part) parts_.push_back(part_of(file_->header(part)));
 }

@@ -84,6 +84,13 @@ TEST_CASE("a small EXR that announces gigabytes is refused without taking them")
     damaged.push_back(changed("dataWindow\0box2i\0"s, 16, side));                      // bottom
     damaged.push_back(changed("photile.lights\0string\0"s, 0, side));                  // size
   }
+  // OpenEXR reads by the type: what follows would begin where nobody has looked.
+  damaged.push_back(changed("lineOrder\0lineOrder\0"s, 0, 9));
+  damaged.push_back(changed("compression\0compression\0"s, 0, 2));
+  damaged.push_back(changed("channels\0chlist\0"s, 0, 18));
+  // A list of texts, one of which is to have 1.8 GB.
+  damaged.push_back(whole);
+  damaged.back().insert(8, "x\0stringvector\0\x08\0\0\0\0\0\0\x70text"s);
   for (const std::string& bytes : damaged) {
     CAPTURE(&bytes - damaged.data());
     write_bytes(folder / "damaged.exr", bytes);

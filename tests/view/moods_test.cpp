@@ -80,6 +80,7 @@ TEST_CASE("a damaged file of moods is refused with its name and what is wrong") 
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1e39}}}})", "from 0 to 1e+30"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": "5"}}}})", "another type"},
        {R"([])", "another type"},
+       {R"({"photile_moods": 1e10, "moods": {}})", "is not 1"},
        {R"({"photile_moods": 2, "moods": {}})", "is not 1"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": -1}}}})", "mood 'x', light 'a'"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {}}}})", "power"},

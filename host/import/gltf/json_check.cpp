@@ -32,7 +32,7 @@ constexpr std::int64_t most_int = std::numeric_limits<int>::max();
 constexpr std::uint64_t most_size = std::numeric_limits<std::uint64_t>::max();
 
 template <std::size_t count>
-bool contains(const std::array<std::string_view, count>& names, std::string_view name) {
+bool is_one_of(const std::array<std::string_view, count>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -98,12 +98,12 @@ class JsonCheck {
   bool is_whole() const { return !levels_.empty() && levels_.back().whole; }
 
   void set_wanted(Level& level) const {
-    const bool bytes = contains(of_bytes, levels_.front().key);
-    const bool number = bytes && contains(numbers, level.key);
-    const bool size = bytes && contains(sizes, level.key);
+    const bool bytes = is_one_of(of_bytes, levels_.front().key);
+    const bool number = bytes && is_one_of(numbers, level.key);
+    const bool size = bytes && is_one_of(sizes, level.key);
     const bool sparse = member(1) == "sparse" || member(2) == "sparse";
     level.whole = number || size;
-    const bool index = contains(indices, level.key) || member(1) == "attributes";
+    const bool index = is_one_of(indices, level.key) || member(1) == "attributes";
     level.most = number || (size && sparse) || index ? most_int : most_size;
   }
 
@@ -143,7 +143,7 @@ class JsonCheck {
       const Level& around = levels_.back();
       const bool foreign = !around.array && (around.key == "extras" || around.key == "extensions");
       level.free = around.free || foreign;
-      const bool list = array && !level.free && !around.array && contains(lists, around.key);
+      const bool list = array && !level.free && !around.array && is_one_of(lists, around.key);
       if (list) level.most = most_int;
     }
     levels_.push_back(level);

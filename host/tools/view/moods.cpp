@@ -59,7 +59,7 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
   const json document = json::parse(read_own_text(file_), nullptr, /*allow_exceptions=*/false);
   if (document.is_discarded()) refuse("is no JSON");
   try {
-    if (document.at("photile_moods").get<int>() != version) {
+    if (document.at("photile_moods") != version) {
       throw std::invalid_argument(fmt::format("\"photile_moods\" is not {}", version));
     }
     for (const auto& [name, lights] : document.at("moods").items()) {
