@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <cmath>
+
+#include "fuzz_files.hpp"
+#include "import/camera_path.hpp"
+#include "import/photometry/photometric_file.hpp"
+#include "import/resource_error.hpp"
+#include "import/texture_decoder.hpp"
+#include "import/warnings.hpp"
+#include "photile/scene.hpp"
+#include "photile/scene_builder.hpp"
+
+namespace photile::test {
+namespace {
+
+/// As every command that takes a scene: what is loaded has to be one that stages accept.
+bool accepts_scene(const std::filesystem::path& file) {
+  return accepts([&] {
+    const Scene scene = load_scene(file);
+    try {
+      check_scene(scene);
+    } catch (const Error& error) {
+      throw std::logic_error(std::string("loaded, but no scene: ") + error.what());
+    }
+    for (const Camera& camera : scene.cameras) {
+      require(std::isfinite(glm::length(camera.position)), "a camera is nowhere");
+    }
+  });
+}
+
+bool accepts_resource(const auto& read) {
+  try {
+    read();
+    return true;
+  } catch (const scene_io::ResourceError& error) {
+    require(std::string(error.what()).find('\n') == std::string::npos, "two lines");
+    return false;
+  }
+}
+
+bool accepts_photometry(const char* name, Bytes bytes) {
+  return accepts_resource([&] {
+    scene_io::Warnings warnings;
+    const IntensityDistribution lamp = scene_io::read_photometry(name, bytes, warnings);
+    require(std::isfinite(lamp.flux()) && lamp.flux() >= 0, "a lamp without a flux");
+  });
+}
+
+}  // namespace
+
+bool fuzz_gltf(Bytes bytes) { return accepts_scene(file_of("scene.gltf", bytes)); }
+
+bool fuzz_glb(Bytes bytes) { return accepts_scene(file_of("scene.glb", bytes)); }
+
+bool fuzz_obj(Bytes bytes) {
+  const auto end = std::find(bytes.begin(), bytes.end(), 0);
+  const auto obj = static_cast<std::size_t>(end - bytes.begin());
+  file_of("scene.mtl", bytes.subspan(std::min(obj + 1, bytes.size())));
+  return accepts_scene(file_of("scene.obj", bytes.first(obj)));
+}
+
+bool fuzz_ies(Bytes bytes) { return accepts_photometry("lamp.ies", bytes); }
+bool fuzz_ldt(Bytes bytes) { return accepts_photometry("lamp.ldt", bytes); }
+
+bool fuzz_texture(Bytes bytes) {
+  return accepts_resource([&] {
+    const Texture texture = scene_io::decode_texture("picture", bytes);
+    require(texture.width() > 0 && texture.height() > 0, "a texture without texels");
+  });
+}
+
+bool fuzz_radiance(Bytes bytes) {
+  return accepts_resource([&] {
+    const auto picture = scene_io::decode_radiance("picture", bytes);
+    require(picture.texels.size() ==
+                static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height),
+            "texels that lack");
+  });
+}
+
+bool fuzz_camera_path(Bytes bytes) {
+  return accepts([&] {
+    const walk::CameraMotion motion = walk::read_camera_path(file_of("path.json", bytes), Camera{});
+    for (int step = 0; step <= 4; ++step) {
+      const Camera camera = motion.at(motion.begin + step * (motion.end - motion.begin) / 4);
+      require(std::isfinite(glm::length(camera.position) + glm::length(camera.forward)),
+              "a camera is nowhere");
+    }
+  });
+}
+
+}  // namespace photile::test
