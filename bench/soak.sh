@@ -19,7 +19,7 @@ hours=$1
 shift
 targets=("$@")
 if [[ ${#targets[@]} -eq 0 ]]; then
-  [[ -x build/release/tests/property/photile_tests_property ]] && targets=(commands)
+  targets=(commands)
   for folder in tests/fuzz/corpus/*/; do targets+=("$(basename "$folder")"); done
 fi
 seconds=$(awk "BEGIN { print int($hours * 3600 / ${#targets[@]}) }")

@@ -1,0 +1,239 @@
+// Whatever is asked for on whatever scene: one of the exit codes, one line that says what is wrong,
+// whole files of finite numbers, inputs as they were, and the same bits on a second run.
+//
+// PHOTILE_PROPERTIES is how many commands are tried, PHOTILE_PROPERTIES_SEED the first; a failure
+// tells its command and its number, by which it can be tried alone.
+#include <algorithm>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "command_run.hpp"
+#include "photile/image.hpp"
+#include "photile/light_mix.hpp"
+#include "random_command.hpp"
+#include "temporary_folder.hpp"
+
+namespace photile::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int quick_commands = 100;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::map<fs::path, std::string> contents(const std::vector<fs::path>& files) {
+  std::map<fs::path, std::string> result;
+  for (const fs::path& file : files) result[file] = bytes_of(file);
+  return result;
+}
+
+std::string text_of(const std::vector<std::string>& arguments) {
+  std::string text = "photile";
+  for (const std::string& argument : arguments) text += " '" + argument + "'";
+  return text;
+}
+
+/// What is wrong with a picture, or "". Each pixel of the root is the float sum of the layers.
+std::string problem_of_picture(const fs::path& file) {
+  const Image image = read_image(file);
+  for (const std::vector<float>& plane : image.channels) {
+    if (!std::all_of(plane.begin(), plane.end(), [](float v) { return std::isfinite(v); })) {
+      return "a pixel is not finite";
+    }
+  }
+  for (const char* component : {"R", "G", "B"}) {
+    const std::vector<float>* root = image.find(component);
+    if (root == nullptr) return std::string("lacks ") + component;
+    std::vector<float> sums(image.pixels());
+    bool layers = false;
+    for (std::size_t i = 0; i < image.channels.size(); ++i) {
+      const std::string& name = image.channel_names[i];
+      if (!name.starts_with("Combined_") || !name.ends_with(std::string(".") + component)) continue;
+      layers = true;
+      for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += image.channels[i][p];
+    }
+    if (!layers) continue;
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+      const float sum = std::min(sums[p], std::numeric_limits<float>::max());
+      if (std::bit_cast<std::uint32_t>((*root)[p]) != std::bit_cast<std::uint32_t>(sum)) {
+        return "the root is not the sum of the layers";
+      }
+      if (sum < 0) return "a pixel is negative";
+    }
+  }
+  return {};
+}
+
+bool has_null(const nlohmann::json& value) {
+  if (value.is_structured()) return std::any_of(value.begin(), value.end(), has_null);
+  return value.is_null();
+}
+
+/// What is wrong with a file that a command has written, or "".
+std::string problem_of(const fs::path& file) {
+  const std::string ending = file.extension().string();
+  if (ending == ".exr") return problem_of_picture(file);
+  if (ending == ".png") {
+    check_pixels(file);
+    return {};
+  }
+  const std::string bytes = bytes_of(file);
+  if (bytes.empty()) return "is empty";
+  if (ending == ".json") {
+    const auto json = nlohmann::json::parse(bytes, nullptr, false);
+    if (json.is_discarded()) return "is no JSON";
+    // A signal-to-noise ratio of equal pictures is none.
+    return has_null(json) && file.filename() != "errors.json" ? "holds a number that is none" : "";
+  }
+  if (ending == ".csv" || ending == ".svg" || ending == ".html") {
+    for (const char* none : {"nan", "inf"}) {
+      const std::size_t place = bytes.find(none);
+      if (place != std::string::npos &&
+          !std::isalpha(static_cast<unsigned char>(place == 0 ? ' ' : bytes[place - 1])) &&
+          !std::isalpha(static_cast<unsigned char>(bytes[place + 3]))) {
+        return std::string("holds ") + none;
+      }
+    }
+  }
+  return {};
+}
+
+/// What of a file has to be the same on a second run: EXRs and records tell times, too.
+std::string result_in(const fs::path& file) {
+  if (file.extension() == ".exr") {
+    std::string bits;
+    for (const std::vector<float>& plane : read_image(file).channels) {
+      bits.append(reinterpret_cast<const char*>(plane.data()), plane.size() * sizeof plane[0]);
+    }
+    return bits;
+  }
+  return file.filename() == "stats.json" ? std::string() : bytes_of(file);
+}
+
+/// Of one command. Errors are told by Catch.
+class Trial {
+ public:
+  explicit Trial(const RandomCommand& command)
+      : command_(command), before_(contents(command.inputs)) {}
+
+  void check(const CommandRun& run) const {
+    CAPTURE(run.errors);
+    CHECK((run.exit_code >= 0 && run.exit_code <= 4));
+    CHECK(contents(command_.inputs) == before_);
+    check_lines(run);
+    for (const fs::path& output : command_.outputs) {
+      CAPTURE(output);
+      if (run.exit_code == 0) CHECK(fs::exists(output));
+      if (fs::exists(output)) CHECK(problem_of(output) == "");
+    }
+  }
+
+ private:
+  static void check_lines(const CommandRun& run) {
+    const std::string prefix = "photile: error: ";
+    const std::vector<std::string> lines = run.error_lines();
+    const auto errors = std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
+      return line.starts_with(prefix);
+    });
+    CHECK(errors == (run.exit_code == 0 ? 0 : 1));
+    if (run.exit_code != 0 && !lines.empty()) {
+      CHECK(lines.back().starts_with(prefix));
+      CHECK(lines.back().size() < 1'000);
+      for (const char* inner : {"internal error", "exception", "std::", "terminate"}) {
+        CHECK(lines.back().find(inner) == std::string::npos);
+      }
+    }
+    for (const std::string& line : lines) {
+      CHECK(line.find(" nan") == std::string::npos);
+      CHECK(line.find(" inf ") == std::string::npos);
+    }
+  }
+
+  const RandomCommand& command_;
+  const std::map<fs::path, std::string> before_;
+};
+
+std::uint64_t number_from(const char* variable, std::uint64_t otherwise) {
+  const char* const value = std::getenv(variable);
+  return value == nullptr ? otherwise : std::strtoull(value, nullptr, 10);
+}
+
+/// A picture of two layers, to relight and compare.
+void write_layers(const fs::path& file) {
+  const TemporaryFolder folder;
+  Image image;
+  image.width = 6;
+  image.height = 5;
+  float value = 0;
+  for (const char* light : {"lamp 0", "lamp 1"}) {
+    for (const char* component : {".R", ".G", ".B"}) {
+      for (float& pixel : image.add("Combined_" + std::string(light) + component)) {
+        pixel = value += 0.25f;
+      }
+    }
+  }
+  for (const char* component : {"R", "G", "B"}) image.add(component);
+  write_exr(folder.path / "layers.exr", image);
+  write_exr(file, relight(read_image(folder.path / "layers.exr"), {}));
+}
+
+}  // namespace
+
+TEST_CASE("commands at random keep what every command promises") {
+  const std::uint64_t count = number_from("PHOTILE_PROPERTIES", quick_commands),
+                      first = number_from("PHOTILE_PROPERTIES_SEED", 1);
+  std::map<int, std::uint64_t> codes;
+  std::map<std::string, std::uint64_t> successes;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    Dice dice(seed);
+    const TemporaryFolder inputs, outputs, again;
+    Workplace place{write_random_scene(inputs.path, dice), outputs.path, inputs.path / "layers.exr",
+                    count > quick_commands};
+    write_layers(place.picture);
+    Dice same = dice;
+    const RandomCommand command = random_command(place, dice);
+    CAPTURE(seed, text_of(command.arguments));
+    const Trial trial(command);
+    const CommandRun run = run_command(command.arguments);
+    trial.check(run);
+    // Files that it makes beside those named are those of bake.
+    std::set<fs::path> named(command.outputs.begin(), command.outputs.end());
+    named.insert(command.inputs.begin(), command.inputs.end());
+    for (const auto& entry : fs::directory_iterator(outputs.path)) {
+      CAPTURE(entry.path());
+      CHECK((named.contains(entry.path()) || command.arguments[0] == "bake"));
+      CHECK(entry.path().filename().string()[0] != '.');
+    }
+    ++codes[run.exit_code];
+    if (run.exit_code != 0 || command.outputs.empty()) continue;
+    ++successes[command.arguments[0]];
+    place.folder = again.path;
+    const RandomCommand second = random_command(place, same);
+    CHECK(run_command(second.arguments).exit_code == 0);
+    for (std::size_t i = 0; i < command.outputs.size(); ++i) {
+      CAPTURE(command.outputs[i]);
+      CHECK(result_in(command.outputs[i]) == result_in(second.outputs[i]));
+    }
+  }
+  if (count < quick_commands) return;
+  // Neither all refused nor none.
+  CHECK(4 * codes[0] > count);
+  CHECK(codes[2] > 0);
+  CHECK(codes[3] > 0);
+  for (const char* command : {"render", "relight", "measure", "walk", "compare"}) {
+    CAPTURE(command);
+    CHECK(successes[command] > 0);
+  }
+}
+
+}  // namespace photile::test
