@@ -1,13 +1,16 @@
 #!/usr/bin/python3
 """What a first picture costs, from the start of the process to its end; writes docs/startup.md.
 
-    bench/first_picture.py [SCENES] [--repeats N] [--results FOLDER]
+    bench/first_picture.py [SCENES] [--repeats N] [--results FOLDER] [--redraw]
 
 Renders three scenes at 256x192, 4 samples a pixel: with an empty cache of kernels (the very first
-run), with a full one, and from photons that --save-maps kept. Every figure is a median of processes
-of their own. Beside Mitsuba's first picture with a denoiser: bench/quality.py.
+run), with a full one (every later run), and from photons that --save-maps kept. Every figure is a
+median of processes of their own. Beside them stands Mitsuba's first picture with a denoiser, where
+the interpreter finds the packages mitsuba and pyoidn (docs/quality.md tells how); what is not there
+becomes a row that says so.
 """
 
+import importlib.util
 import json
 import os
 import pathlib
@@ -19,12 +22,20 @@ import time
 import scene_arguments
 
 ROOT = scene_arguments.ROOT
+SIZE, SAMPLES = "256x192", "4"
 CASES = (  # name, scene, paths
     ("classroom, 62,500 paths", "classroom/classroom-diffuse.gltf", 62_500),
     ("classroom, 1M paths", "classroom/classroom-diffuse.gltf", 1_000_000),
+    ("kitchen, 1M paths", "kitchen/kitchen-diffuse.gltf", 1_000_000),
     ("living room, 2M paths", None, 2_000_000),
 )
 STATES = ("empty cache", "full cache", "saved maps")
+STAGES_OF = ("empty cache", "full cache")  # the states whose stages are told
+# Mitsuba's script knows diffuse surfaces alone.
+RIVALS = (("classroom", "classroom/classroom-diffuse.gltf"),
+          ("kitchen", "kitchen/kitchen-diffuse.gltf"))
+RIVAL_STATES = STATES[:2]
+RIVAL_PACKAGES = ("mitsuba", "pyoidn")
 
 
 def arguments():
@@ -32,23 +43,31 @@ def arguments():
     parser.add_argument("--repeats", type=int, default=3, help="default: %(default)s")
     parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs",
                         help="where startup.json and startup.md go; default: %(default)s")
+    parser.add_argument("--redraw", action="store_true",
+                        help="write the page from startup.json instead of measuring")
     return parser.parse_args()
 
 
+def cost_of(command, variables):
+    """Runs it: wall-clock and processor seconds of the process, most memory in bytes."""
+    begin = time.monotonic()
+    process = subprocess.Popen(command, env={**os.environ, **variables}, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    seconds = time.monotonic() - begin
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise OSError(f"{' '.join(map(str, command))}: ended with {process.returncode}")
+    return {"seconds": seconds, "processor": usage.ru_utime + usage.ru_stime,
+            "bytes": usage.ru_maxrss * 1024}
+
+
 def measured(command, cache):
-    """Runs it: wall-clock and processor seconds of the process, most memory in bytes, stages."""
+    """A run of photile with its stages, and how many photons it stored."""
     with tempfile.TemporaryDirectory() as folder:
         stats = pathlib.Path(folder) / "stats.json"
-        begin = time.monotonic()
-        process = subprocess.Popen([*command, "--stats", stats, "--quiet"],
-                                   env={**os.environ, "XDG_CACHE_HOME": str(cache)})
-        _, status, usage = os.wait4(process.pid, 0)
-        seconds = time.monotonic() - begin
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode != 0:
-            raise OSError(f"{' '.join(map(str, command))}: ended with {process.returncode}")
-        return {"seconds": seconds, "processor": usage.ru_utime + usage.ru_stime,
-                "bytes": usage.ru_maxrss * 1024, "stages": json.loads(stats.read_text())["stages"]}
+        cost = cost_of([*command, "--stats", stats, "--quiet"], {"XDG_CACHE_HOME": str(cache)})
+        record = json.loads(stats.read_text())
+    return {**cost, "stages": record["stages"], "photons": record["photons_stored"]}
 
 
 def median_of(runs):
@@ -63,7 +82,7 @@ def measure(photile, scene, paths, repeats):
     for _ in range(repeats):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            picture = [photile, "render", scene, "--size", "256x192", "--samples", "4",
+            picture = [photile, "render", scene, "--size", SIZE, "--samples", SAMPLES,
                        "--photons", str(paths), "-o", folder / "picture.exr"]
             cache, maps = folder / "cache", folder / "kept.maps"
             cache.mkdir()
@@ -74,37 +93,108 @@ def measure(photile, scene, paths, repeats):
     return {state: median_of(of_state) for state, of_state in runs.items()}
 
 
+def missing_packages():
+    return [name for name in RIVAL_PACKAGES if importlib.util.find_spec(name) is None]
+
+
+def measure_rival(scene, repeats):
+    """Per state of RIVAL_STATES: a run; its compiled kernels are kept below HOME."""
+    runs = {state: [] for state in RIVAL_STATES}
+    for _ in range(repeats):
+        with tempfile.TemporaryDirectory() as home:
+            for state in RIVAL_STATES:
+                command = [sys.executable, ROOT / "bench/quality_mitsuba.py", scene, "--size", SIZE,
+                           "--samples", SAMPLES, "--denoise", "--begin", str(time.monotonic()),
+                           "-o", pathlib.Path(home) / "picture.npy"]
+                runs[state].append(cost_of(command, {"HOME": home}))
+    return {state: median_of(of_state) for state, of_state in runs.items()}
+
+
+def rivals(options):
+    """Per scene: a run for each state, or why there is none."""
+    if missing := missing_packages():
+        return {name: f"not installed: {', '.join(missing)}" for name, _ in RIVALS}
+    results = {}
+    for name, scene in RIVALS:
+        try:
+            results[name] = measure_rival(options.scenes / scene, options.repeats)
+        except OSError:
+            results[name] = "did not run: DRJIT_LIBLLVM_PATH should name LLVM 19"
+    return results
+
+
 def table(header, rows):
     lines = [header, ["---"] + ["--:"] * (len(header) - 1), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
+def cost_row(name, run):
+    photons = run.get("photons")
+    return [name, f"{run['processor']:.2f} ({run['least']:.2f}-{run['most']:.2f})",
+            f"{run['seconds']:.2f}", f"{run['bytes'] / 1e6:.0f}",
+            f"{run['bytes'] / photons:.0f}" if photons else "-", told(run)]
+
+
+def told(run):
+    """Which part of the process's time its own stages tell of."""
+    if "stages" not in run:
+        return "-"
+    return f"{100 * sum(stage['seconds'] for stage in run['stages']) / run['seconds']:.1f}%"
+
+
+def rival_rows(results):
+    rows = []
+    for name, of_scene in results.items():
+        tool = f"Mitsuba, {SAMPLES} samples, denoised: {name}"
+        if isinstance(of_scene, str):
+            rows.append([tool, of_scene, "-", "-", "-", "-"])
+        else:
+            rows += [cost_row(f"{tool}, {state}", run) for state, run in of_scene.items()]
+    return rows
+
+
+def stage_table(results, state):
+    """Processor seconds and wall-clock seconds of each stage, for all cases."""
+    runs = {case: {stage["stage"]: stage for stage in states[state]["stages"]}
+            for case, states in results.items()}
+    names = list(dict.fromkeys(name for stages in runs.values() for name in stages))
+
+    def cell(stages, name):
+        if name not in stages:
+            return "-"
+        return f"{stages[name]['processor_seconds']:.2f} / {stages[name]['seconds']:.2f}"
+
+    return table(["stage", *runs],
+                 [[name, *(cell(stages, name) for stages in runs.values())] for name in names])
+
+
 def page(results):
     """The page, from what was measured."""
-    costs = [[f"{case}, {state}", f"{run['processor']:.2f} ({run['least']:.2f}-{run['most']:.2f})",
-              f"{run['seconds']:.2f}", f"{run['bytes'] / 1e6:.0f}"]
-             for case, states in results.items() for state, run in states.items()]
-    warm = {case: {stage["stage"]: stage for stage in states["full cache"]["stages"]}
-            for case, states in results.items()}
-    names = list(dict.fromkeys(name for stages in warm.values() for name in stages))
-    stages = [[name, *(f"{of_case[name]['processor_seconds']:.2f}" if name in of_case else "-"
-                       for of_case in warm.values())] for name in names]
+    cases = results["photile"]
+    rows = [cost_row(f"{case}, {state}", run)
+            for case, states in cases.items() for state, run in states.items()]
     return (ROOT / "bench/startup_notes.md").read_text().format(
-        costs=table(["run", "processor seconds", "seconds", "MB at most"], costs),
-        stages=table(["stage", *warm], stages))
+        costs=table(["run", "processor seconds", "seconds", "MB at most",
+                     "bytes a stored photon", "told by the stages"],
+                    rows + rival_rows(results["rivals"])),
+        empty=stage_table(cases, STAGES_OF[0]), full=stage_table(cases, STAGES_OF[1]))
 
 
 def main():
     options = arguments()
-    results = {}
-    for case, scene, paths in CASES:
-        file = options.scenes / scene if scene else ROOT / "scenes/living-room/living-room.gltf"
-        if not file.exists():
-            print(f"first_picture.py: {file}: not there; left out", file=sys.stderr)
-            continue
-        results[case] = measure(options.photile, file, paths, options.repeats)
-    (options.results / "startup.json").write_text(json.dumps(results, indent=1) + "\n")
-    (options.results / "startup.md").write_text(page(results))
+    file = options.results / "startup.json"
+    if not options.redraw:
+        results = {"photile": {}}
+        for case, scene, paths in CASES:
+            path = (options.scenes / scene if scene
+                    else ROOT / "scenes/living-room/living-room.gltf")
+            if not path.exists():
+                print(f"first_picture.py: {path}: not there; left out", file=sys.stderr)
+                continue
+            results["photile"][case] = measure(options.photile, path, paths, options.repeats)
+        results["rivals"] = rivals(options)
+        file.write_text(json.dumps(results, indent=1) + "\n")
+    (options.results / "startup.md").write_text(page(json.loads(file.read_text())))
 
 
 if __name__ == "__main__":

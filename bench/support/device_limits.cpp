@@ -62,7 +62,7 @@ DeviceLimits measure_limits(Device& device, const Repeats& repeats, std::size_t 
     set_arguments(launch);
     return measure_returned(
                repeats,
-               [&] { return kernel_seconds_of(device, [&] { launch.run(size, group_size); }); })
+               [&] { return kernel_seconds_of(device, [&] { launch.run_no_more(size, group_size); }); })
         .median();
   };
   // Work-items in whole groups: these kernels do not check their index.

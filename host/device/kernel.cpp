@@ -16,6 +16,10 @@ namespace {
 /// one step must not wrap.
 constexpr std::size_t max_work_items = std::size_t{1} << 31;
 
+/// Below so many work-items PoCL 3.1 compiles a version of the kernel for small grids alone, and
+/// again for a larger one: work-items that have nothing to do cost microseconds, a version 60 ms.
+constexpr std::size_t least_unspecialised = std::size_t{1} << 16;
+
 /// Held while PoCL compiles for one of several devices: two threads of a process that compile the
 /// same kernel at the same time crash PoCL 3.1 once in a while.
 std::unique_lock<std::mutex> lock_compilation(bool is_pocl) {
@@ -106,6 +110,17 @@ Launch& Launch::set_bytes(std::string_view name, const void* value, std::size_t 
 }
 
 void Launch::run(std::size_t global_size, std::size_t local_size) {
+  const DeviceInfo& info = context_.info();
+  const bool specialises = info.is_pocl && info.type == DeviceType::cpu && local_size > 0;
+  if (global_size > 0 && specialises) global_size = std::max(global_size, least_unspecialised);
+  enqueue(global_size, local_size);
+}
+
+void Launch::run_no_more(std::size_t global_size, std::size_t local_size) {
+  enqueue(global_size, local_size);
+}
+
+void Launch::enqueue(std::size_t global_size, std::size_t local_size) {
   auto& impl = kernel_.impl();
   auto& context = *context_.impl_;
   const auto unset = std::find(is_set_.begin(), is_set_.end(), false);

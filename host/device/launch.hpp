@@ -31,12 +31,18 @@ class Launch {
     return set_bytes(name, &value, sizeof(T));
   }
 
-  /// Enqueues the kernel over `global_size` work-items (rounded up to a multiple of `local_size`;
-  /// kernels check their index). `local_size` 0 lets the device choose. Nothing is enqueued for
-  /// global_size 0. Errors: DeviceError, also where an argument was not set.
+  /// Enqueues the kernel over at least `global_size` work-items, in groups of `local_size`: kernels
+  /// check their index. `local_size` 0 lets the device choose, and PoCL compile for each size that
+  /// it chooses. Nothing is enqueued for global_size 0. Errors: DeviceError, also where an argument
+  /// was not set.
   void run(std::size_t global_size, std::size_t local_size);
 
+  /// The same for kernels that have memory for each work-item: over `global_size` of them, rounded
+  /// up to a multiple of `local_size`.
+  void run_no_more(std::size_t global_size, std::size_t local_size);
+
  private:
+  void enqueue(std::size_t global_size, std::size_t local_size);
   Launch& set_bytes(std::string_view name, const void* value, std::size_t bytes);
 
   Context& context_;

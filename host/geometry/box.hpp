@@ -33,11 +33,20 @@ using Box = BoxOf<float>;
 /// Square of the distance between two boxes; infinite if one is empty.
 inline float squared_distance(const Box& a, const Box& b) {
   const auto squared_gap = [&](int axis) {
-    const float gap =
-        std::max(0.0f, std::max(a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis]));
-    return gap * gap;
+    const float gap = std::max(a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis]);
+    return gap * std::max(0.0f, gap);  // a square of which compilers make no branch
   };
   return squared_gap(0) + squared_gap(1) + squared_gap(2);
+}
+
+/// Whether they share a point. Without branches: most boxes are apart, along which axis nobody
+/// knows.
+inline bool overlap(const Box& a, const Box& b) {
+  const auto overlap_along = [&](int axis) {
+    return static_cast<int>(a.lower[axis] <= b.upper[axis]) &
+           static_cast<int>(b.lower[axis] <= a.upper[axis]);
+  };
+  return (overlap_along(0) & overlap_along(1) & overlap_along(2)) != 0;
 }
 
 }  // namespace photile::geometry

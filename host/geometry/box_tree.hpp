@@ -52,6 +52,29 @@ class BoxTree {
     }
   }
 
+  /// Calls visit(index of a box) for all boxes that overlap `box`.
+  ///   boxes   those that the tree was built of
+  template <class Visit>
+  void visit_overlapping(std::span<const Box> boxes, const Box& box, Visit&& visit) const {
+    if (nodes_.empty()) return;
+    std::array<std::uint32_t, 64> stack;
+    std::size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth != 0) {
+      const Node& here = nodes_[stack[--depth]];
+      if (here.count != 0) {
+        for (std::uint32_t i = here.first; i < here.first + here.count; ++i) {
+          if (overlap(boxes[order_[i]], box)) visit(order_[i]);
+        }
+        continue;
+      }
+      for (const std::uint32_t child : {here.first, here.first + 1}) {
+        stack[depth] = child;
+        depth += overlap(nodes_[child].box, box) ? 1 : 0;
+      }
+    }
+  }
+
  private:
   struct Node {
     Box box;

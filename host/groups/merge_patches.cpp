@@ -1,12 +1,14 @@
 // Patches that hold mostly the same photons become one: the inner side of a thin plate joins the
 // outer side of its other face, and small parts of a curved body join their neighbours.
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
-#include "geometry/radix_sort.hpp"
 #include "groups/patch_shape.hpp"
 #include "groups/patch_union.hpp"
 #include "groups/photon_sample.hpp"
@@ -103,45 +105,45 @@ bool holds_more_in_vain(double most, const Sharing& sharing, const PatchShape& s
   return count > most;
 }
 
-/// What patches share with those that hold more, in the order of their numbers.
-///   held   per patch: photons of the sample
-std::vector<Sharing> find_sharings(const PhotonSample& sample,
-                                   std::span<const std::uint32_t> held) {
-  // A pair of patches is one number, and an entry of the list below for each photon they share.
-  const int patch_bits = std::bit_width(held.size());
-  const auto is_larger = [&](std::uint32_t other, std::uint32_t patch) {
-    return held[patch] < held[other] || (held[patch] == held[other] && patch > other);
-  };
-  constexpr std::size_t photons_per_task = 1024;
-  const std::size_t task_count = (sample.size() + photons_per_task - 1) / photons_per_task;
-  std::vector<std::vector<std::uint64_t>> of_task(task_count);
-  tbb::parallel_for(std::size_t{0}, task_count, [&](std::size_t task) {
-    const std::size_t last = std::min(sample.size(), (task + 1) * photons_per_task);
-    for (std::size_t photon = task * photons_per_task; photon < last; ++photon) {
-      for (const std::uint32_t map : sample.maps_of(photon)) {
-        for (const std::uint32_t other : sample.maps_of(photon)) {
-          if (map / 2 == other / 2 || !is_larger(other / 2, map / 2)) continue;
-          const std::uint64_t pair = std::uint64_t{map / 2} << patch_bits | other / 2;
-          of_task[task].push_back(pair << 1 | ((map ^ other) & 1));
+/// What a patch shares with those that hold more, where that is enough to join one; the fullest
+/// share first.
+class SharingCounter {
+ public:
+  SharingCounter(const PhotonSample& sample, const HeldPhotons& held, std::size_t patch_count)
+      : sample_(sample), held_(held), counts_(2 * patch_count, 0) {}
+
+  std::vector<Sharing> of(std::uint32_t patch) {
+    for (const std::uint32_t map : {2 * patch, 2 * patch + 1}) {
+      for (const std::uint32_t photon : held_.of(map)) {
+        for (const std::uint32_t other : sample_.maps_of(photon)) {
+          const std::uint32_t sharing =
+              other ^ (map & 1);  // of that patch, its side relative to ours
+          if (counts_[sharing]++ == 0) met_.push_back(sharing);
         }
       }
     }
-  });
-  std::vector<std::uint64_t> shared;
-  for (const auto& pairs : of_task) shared.insert(shared.end(), pairs.begin(), pairs.end());
-  geometry::radix_sort(shared, 2 * patch_bits + 1, [](std::uint64_t pair) { return pair; });
-
-  std::vector<Sharing> sharings;
-  const std::uint64_t patch_mask = (std::uint64_t{1} << patch_bits) - 1;
-  for (std::size_t first = 0, last = 0; first < shared.size(); first = last) {
-    while (last < shared.size() && shared[last] == shared[first]) ++last;
-    sharings.push_back({static_cast<std::uint32_t>(shared[first] >> (patch_bits + 1)),
-                        static_cast<std::uint32_t>(shared[first] >> 1 & patch_mask),
-                        static_cast<std::uint32_t>(shared[first] & 1),
-                        static_cast<std::uint32_t>(last - first)});
+    const std::uint32_t own = held_.of_patch(patch);
+    std::vector<Sharing> enough;
+    for (const std::uint32_t sharing : met_) {
+      const std::uint32_t other = sharing / 2, photons = std::exchange(counts_[sharing], 0);
+      const std::uint32_t others = held_.of_patch(other);
+      const bool holds_more = own < others || (own == others && patch > other);
+      if (other == patch || !holds_more || photons < least_shared * own) continue;
+      enough.push_back({patch, other, sharing & 1, photons});
+    }
+    met_.clear();
+    std::sort(enough.begin(), enough.end(), [](const Sharing& a, const Sharing& b) {
+      return std::tuple(b.photons, a.other, a.turned) < std::tuple(a.photons, b.other, b.turned);
+    });
+    return enough;
   }
-  return sharings;
-}
+
+ private:
+  const PhotonSample& sample_;
+  const HeldPhotons& held_;
+  std::vector<std::uint32_t> counts_;  ///< per map of another patch; 0 between two patches
+  std::vector<std::uint32_t> met_;     ///< whose counts are not 0
+};
 
 /// For each patch that has one, the partner that holds most of its photons, if they are enough; the
 /// fullest share first.
@@ -149,38 +151,30 @@ std::vector<Sharing> find_partners(const PhotonSample& sample, const PatchFacts&
                                    double radius) {
   const std::vector<NormalSpread>& spreads = facts.spreads;
   const std::size_t patch_count = spreads.size();
-  const HeldPhotons lists(sample, 2 * patch_count);
-  std::vector<std::uint32_t> held(patch_count);
-  for (std::uint32_t patch = 0; patch < patch_count; ++patch) held[patch] = lists.of_patch(patch);
-  std::vector<Sharing> candidates = find_sharings(sample, held);
-  std::erase_if(candidates, [&](const Sharing& sharing) {
-    return sharing.photons < least_shared * held[sharing.patch];
-  });
-  std::vector<std::size_t> first_of;  // candidates of one patch
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (i == 0 || candidates[i].patch != candidates[i - 1].patch) first_of.push_back(i);
-  }
-  first_of.push_back(candidates.size());
-
+  const HeldPhotons held(sample, 2 * patch_count);
   const auto joins = [&](const Sharing& found) {
     const NormalSpread& other = spreads[found.other];
     const bool bends = other.flat() && !other.joined(spreads[found.patch], found.turned).flat();
-    if (bends && found.photons < least_saved_by_bending * held[found.other]) return false;
-    const double most_in_vain = found.photons / least_shared_around - held[found.patch];
-    return !holds_more_in_vain(most_in_vain, found, facts.shapes[found.patch], sample, lists,
+    if (bends && found.photons < least_saved_by_bending * held.of_patch(found.other)) return false;
+    const double most_in_vain = found.photons / least_shared_around - held.of_patch(found.patch);
+    return !holds_more_in_vain(most_in_vain, found, facts.shapes[found.patch], sample, held,
                                radius);
   };
-  std::vector<Sharing> best(first_of.size() - 1, Sharing{none, none, 0, 0});
-  tbb::parallel_for(std::size_t{0}, best.size(), [&](std::size_t i) {
-    const std::span own = std::span(candidates).subspan(first_of[i], first_of[i + 1] - first_of[i]);
-    std::stable_sort(own.begin(), own.end(),
-                     [](const Sharing& a, const Sharing& b) { return a.photons > b.photons; });
-    const auto found = std::find_if(own.begin(), own.end(), joins);
-    if (found != own.end()) best[i] = *found;
-  });
+  std::vector<Sharing> best(patch_count, Sharing{none, none, 0, 0});
+  tbb::enumerable_thread_specific<SharingCounter> counter(sample, held, patch_count);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(patch_count)),
+                    [&](const tbb::blocked_range<std::uint32_t>& patches) {
+                      SharingCounter& counts = counter.local();
+                      for (std::uint32_t patch = patches.begin(); patch != patches.end(); ++patch) {
+                        const std::vector<Sharing> sharings = counts.of(patch);
+                        const auto found = std::find_if(sharings.begin(), sharings.end(), joins);
+                        if (found != sharings.end()) best[patch] = *found;
+                      }
+                    });
   std::erase_if(best, [](const Sharing& sharing) { return sharing.patch == none; });
   std::stable_sort(best.begin(), best.end(), [&](const Sharing& a, const Sharing& b) {
-    return std::uint64_t{a.photons} * held[b.patch] > std::uint64_t{b.photons} * held[a.patch];
+    return std::uint64_t{a.photons} * held.of_patch(b.patch) >
+           std::uint64_t{b.photons} * held.of_patch(a.patch);
   });
   return best;
 }

@@ -55,17 +55,6 @@ TriangleFacts::TriangleFacts(const Scene& scene)
   });
 }
 
-std::array<glm::dvec3, 3> local_corners(const Scene& scene, const PatchShape& shape,
-                                        std::uint32_t triangle) {
-  std::array<glm::dvec3, 3> local;
-  const auto corners = scene.corners(triangle);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 p(corners[i]);
-    local[i] = {glm::dot(p, shape.u_axis), glm::dot(p, shape.v_axis), glm::dot(p, shape.axis)};
-  }
-  return local;
-}
-
 PatchShape shape_of(const Scene& scene, const TriangleFacts& facts,
                     std::span<const std::uint32_t> triangles) {
   const std::uint32_t largest = *std::max_element(

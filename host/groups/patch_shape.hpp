@@ -45,7 +45,15 @@ double covered_part(const Scene& scene, const PatchShape& shape,
                     std::span<const std::uint32_t> triangles, double cell_size);
 
 /// Corners of a triangle along the axes of a shape.
-std::array<glm::dvec3, 3> local_corners(const Scene& scene, const PatchShape& shape,
-                                        std::uint32_t triangle);
+inline std::array<glm::dvec3, 3> local_corners(const Scene& scene, const PatchShape& shape,
+                                               std::uint32_t triangle) {
+  std::array<glm::dvec3, 3> local;
+  const auto corners = scene.corners(triangle);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 p(corners[i]);
+    local[i] = {glm::dot(p, shape.u_axis), glm::dot(p, shape.v_axis), glm::dot(p, shape.axis)};
+  }
+  return local;
+}
 
 }  // namespace photile::groups

@@ -32,6 +32,8 @@ constexpr int most_gap_steps = 1024;
 
 constexpr std::size_t most_judged = 1024;  ///< triangles by which a split is judged
 
+bool is_judged_whole(const PatchPart& part) { return part.triangles.size() < most_judged; }
+
 double angle_excess(double cosine) {
   return std::max(0.0, std::acos(std::min(1.0, cosine)) / std::acos(least_cosine) - 1.0);
 }
@@ -88,15 +90,20 @@ bool PatchSplitter::serves_as_patch(const PatchPart& part) const {
 
 /// The area of references that a part will need: its own, more of it the farther the part is from
 /// serving as a patch, and a border as wide as the radius. A sample of many triangles says enough
-/// to choose between splits.
-double PatchSplitter::cost(const PatchPart& part) const {
-  const std::size_t step = part.triangles.size() / most_judged + 1;
-  std::vector<std::uint32_t> sample;
-  for (std::size_t i = 0; i < part.triangles.size(); i += step) {
-    sample.push_back(part.triangles[i]);
+/// to choose between splits; where all are judged, their shape is the part's.
+double PatchSplitter::cost(PatchPart& part) const {
+  PatchShape shape;
+  if (is_judged_whole(part)) {
+    shape = part.shape = shape_of(scene_, facts_, part.triangles);
+  } else {
+    const std::size_t step = part.triangles.size() / most_judged + 1;
+    std::vector<std::uint32_t> sample;
+    for (std::size_t i = 0; i < part.triangles.size(); i += step) {
+      sample.push_back(part.triangles[i]);
+    }
+    shape = shape_of(scene_, facts_, sample);
+    shape.area *= static_cast<double>(part.triangles.size()) / static_cast<double>(sample.size());
   }
-  PatchShape shape = shape_of(scene_, facts_, sample);
-  shape.area *= static_cast<double>(part.triangles.size()) / static_cast<double>(sample.size());
   const double height_excess = std::max(0.0, shape.thickness() / (most_thickness * radius_) - 1.0);
   return shape.area * (height_excess + angle_excess(shape.least_cosine)) +
          2 * radius_ * (shape.width(0) + shape.width(1));
@@ -192,12 +199,14 @@ PatchSplitter::Halves PatchSplitter::best_split(const PatchPart& part) const {
     splits.push_back({{{begin, middle}, {}}, {{middle, end}, {}}});
   }
   Halves best = std::move(splits.front());
-  if (splits.size() > 1) best.cost = cost(best.first) + cost(best.second);
+  const bool several = splits.size() > 1;
+  if (several) best.cost = cost(best.first) + cost(best.second);
   for (Halves& halves : std::span(splits).subspan(1)) {
     halves.cost = cost(halves.first) + cost(halves.second);
     if (halves.cost < best.cost) best = std::move(halves);
   }
   for (PatchPart* half : {&best.first, &best.second}) {
+    if (several && is_judged_whole(*half)) continue;  // its cost told its shape
     half->shape = shape_of(scene_, facts_, half->triangles);
   }
   return best;

@@ -39,7 +39,7 @@ class PatchSplitter {
 
   void split(PatchPart part, tbb::task_group& tasks);
   bool serves_as_patch(const PatchPart& part) const;
-  double cost(const PatchPart& part) const;
+  double cost(PatchPart& part) const;
   Halves by_normal(const PatchPart& part) const;
   Halves along(const PatchPart& part, int axis) const;
   Halves best_split(const PatchPart& part) const;

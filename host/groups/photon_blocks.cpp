@@ -82,7 +82,7 @@ float PhotonBlocks::squared_distance(std::size_t i, std::size_t m,
   for (std::size_t first = 0; first < blocks; first += boxes_at_a_time) {
     std::array<float, boxes_at_a_time> gaps;
     const std::size_t count = std::min(boxes_at_a_time, blocks - first);
-    for (std::size_t j = 0; j < count; ++j) gaps[j] = squared_gap(query, first + j);
+    find_squared_gaps(query, first, std::span(gaps).first(count));
     for (std::size_t j = 0; j < count; ++j) {
       if (!(gaps[j] <= bound)) continue;
       append_distances(query, (first + j) * block_size, end_of(first + j), scratch);
@@ -91,14 +91,17 @@ float PhotonBlocks::squared_distance(std::size_t i, std::size_t m,
   return smallest(scratch, m);
 }
 
-float PhotonBlocks::squared_gap(const glm::vec3& query, std::size_t block) const {
-  float squared = 0;
+void PhotonBlocks::find_squared_gaps(const glm::vec3& query, std::size_t first,
+                                     std::span<float> gaps) const {
+  std::fill(gaps.begin(), gaps.end(), 0.0f);
   for (int axis = 0; axis < 3; ++axis) {
-    const float gap =
-        std::max(std::max(low_[axis][block] - query[axis], query[axis] - high_[axis][block]), 0.0f);
-    squared += gap * gap;
+    const float *low = low_[axis].data() + first, *high = high_[axis].data() + first;
+    const float place = query[axis];
+    for (std::size_t j = 0; j < gaps.size(); ++j) {
+      const float gap = std::max(low[j] - place, place - high[j]);
+      gaps[j] += gap * std::max(0.0f, gap);
+    }
   }
-  return squared;
 }
 
 void PhotonBlocks::append_distances(const glm::vec3& query, std::size_t first, std::size_t last,

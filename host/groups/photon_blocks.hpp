@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace photile::groups {
@@ -33,7 +34,8 @@ class PhotonBlocks {
   static constexpr std::size_t block_size = 32;
 
   std::size_t end_of(std::size_t block) const { return std::min((block + 1) * block_size, size()); }
-  float squared_gap(const glm::vec3& query, std::size_t block) const;
+  /// From the query to blocks `first` and those after it.
+  void find_squared_gaps(const glm::vec3& query, std::size_t first, std::span<float> gaps) const;
   void append_distances(const glm::vec3& query, std::size_t first, std::size_t last,
                         std::vector<float>& distances) const;
 

@@ -74,7 +74,7 @@ class TreeQuery : public Query {
     if (list_entry_.size() > 0) {
       launch.set("list_distance", list_distance_).set("list_entry", list_entry_);
     }
-    launch.run(std::min<std::size_t>(hits.count, work_items_), maps::work_group_size);
+    launch.run_no_more(std::min<std::size_t>(hits.count, work_items_), maps::work_group_size);
   }
 
   const maps::MapStore& store_;

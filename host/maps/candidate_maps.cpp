@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 
+#include "common/touched_memory.hpp"
 #include "geometry/box.hpp"
 
 namespace photile::maps {
@@ -118,7 +119,7 @@ CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
   });
 
   CandidateMaps result;
-  result.list_of_photon.resize(photons.size());
+  result.list_of_photon = touched_vector<std::uint32_t>(photons.size());
   result.first_list_of.reserve(triangle_total + 1);
   result.first_list_of.push_back(0);
   result.offsets.push_back(0);
@@ -132,7 +133,7 @@ CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
       result.offsets.push_back(result.offsets.back() + size);
     }
   }
-  result.members.resize(result.offsets.back());
+  result.members = touched_vector<std::uint32_t>(result.offsets.back());
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
     std::copy(chunks[c].members.begin(), chunks[c].members.end(),
               result.members.begin() + static_cast<std::ptrdiff_t>(first_member_of[c]));

@@ -1,13 +1,29 @@
 #include "maps/check_photons.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <cmath>
 
 namespace photile::maps {
 namespace {
 
+/// Whether `holds(first, last)` for all parts of [0, count), which threads share.
+template <class Holds>
+bool all_parts(std::size_t count, std::size_t part, const Holds& holds) {
+  using Range = tbb::blocked_range<std::size_t>;
+  return tbb::parallel_reduce(
+      Range(0, count, part), true,
+      [&](const Range& range, bool held) { return held && holds(range.begin(), range.end()); },
+      [](bool a, bool b) { return a && b; });
+}
+
 bool all_finite(const std::vector<glm::vec3>& values) {
-  return std::all_of(values.begin(), values.end(), [](const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  return all_parts(values.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
+    return std::all_of(values.begin() + static_cast<std::ptrdiff_t>(first),
+                       values.begin() + static_cast<std::ptrdiff_t>(last), [](const glm::vec3& v) {
+                         return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+                       });
   });
 }
 
@@ -20,12 +36,14 @@ bool has_all_arrays(const Photons& photons, const SceneNeeds& needs) {
 
 /// Whether photons lie in the rows of their sided triangles.
 bool are_in_their_rows(const Photons& photons) {
-  for (std::size_t sided = 0; sided + 1 < photons.first_of.size(); ++sided) {
-    for (std::uint32_t i = photons.first_of[sided]; i < photons.first_of[sided + 1]; ++i) {
-      if (photons.sided_triangle[i] != sided) return false;
+  return all_parts(photons.first_of.size() - 1, 1 << 8, [&](std::size_t first, std::size_t last) {
+    for (std::size_t sided = first; sided < last; ++sided) {
+      for (std::uint32_t i = photons.first_of[sided]; i < photons.first_of[sided + 1]; ++i) {
+        if (photons.sided_triangle[i] != sided) return false;
+      }
     }
-  }
-  return true;
+    return true;
+  });
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ void exclusive_prefix_sum(const device::KernelSet& kernels,
         .set("block_size", block_size)
         .set("block_count", blocks)
         .set("block_sum", block_sum)
-        .run(blocks, 0);
+        .run(blocks, work_group_size);
     exclusive_prefix_sum(kernels, block_sum, block_sum);
   }
   kernels.launch("scan_blocks")
@@ -36,7 +36,7 @@ void exclusive_prefix_sum(const device::KernelSet& kernels,
       .set("block_count", blocks)
       .set("block_start", block_sum)
       .set("scanned", scanned)
-      .run(blocks, 0);
+      .run(blocks, work_group_size);
 }
 
 void exclusive_prefix_sum(const device::KernelSet& kernels, device::Buffer<std::uint32_t>& values) {

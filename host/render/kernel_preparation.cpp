@@ -1,6 +1,7 @@
 #include "render/kernel_preparation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -42,16 +43,16 @@ glm::vec3 folded(const glm::vec3& point) {
           std::sqrt(2.0f) * across * std::sin(angle)};
 }
 
-estimate::TuningSample sample_of(const Scene& scene, const RenderParameters& parameters) {
+///   mixed   some map holds photons of different normals that agree
+estimate::TuningSample sample_of(const SceneNeeds& needs, bool mixed, int neighbours) {
   constexpr estimate::TuningSampleSize size{.photons = 1000, .hits_per_side = 16};
-  estimate::TuningSample sample =
-      estimate::make_tuning_sample(needs_of(scene), parameters.neighbours, size);
+  estimate::TuningSample sample = estimate::make_tuning_sample(needs, neighbours, size);
   sample.radius = 2;  // the square is one patch
-  if (needs_of(scene).normal_maps) {
+  if (needs.normal_maps) {
     for (Material& material : sample.scene.materials) material.normal_texture = 0;
     for (HitLobe& lobe : sample.hits.lobe) lobe.smooth_normal = lobe.normal;
   }
-  if (!may_mix_normals(scene, parameters.angle_degrees)) return sample;
+  if (!mixed) return sample;
   for (auto* points : {&sample.scene.vertices, &sample.photons.position, &sample.hits.position}) {
     std::transform(points->begin(), points->end(), points->begin(), folded);
   }
@@ -85,11 +86,27 @@ KernelPreparation::KernelPreparation(const Scene& scene, std::span<Device> devic
                                      const RenderParameters& parameters) {
   if (std::none_of(devices.begin(), devices.end(), is_fresh)) return;
   done_ = std::async(std::launch::async, [&scene, devices, &parameters] {
-    const estimate::TuningSample sample = sample_of(scene, parameters);
+    const estimate::TuningSample sample = sample_of(
+        needs_of(scene), may_mix_normals(scene, parameters.angle_degrees), parameters.neighbours);
     for (Device& device : devices) {
       if (is_fresh(device)) prepare(device, sample, parameters);
     }
   });
+}
+
+void compile_usual_kernels(Device& device, Progress& progress) {
+  const std::array<SceneNeeds, 3> surfaces{
+      SceneNeeds{}, {.glossy = true}, {.glossy = true, .normal_maps = true}};
+  const RenderParameters parameters;
+  progress.begin("compile kernels", surfaces.size() * max_dense_lights, "kinds of scenes");
+  for (SceneNeeds needs : surfaces) {
+    for (needs.light_count = 1; needs.light_count <= max_dense_lights; ++needs.light_count) {
+      progress.throw_if_cancelled();
+      prepare(device, sample_of(needs, true, parameters.neighbours), parameters);
+      progress.advance(1);
+    }
+  }
+  progress.end();
 }
 
 void KernelPreparation::wait() {

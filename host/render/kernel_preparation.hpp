@@ -5,6 +5,7 @@
 #include <span>
 
 #include "photile/device.hpp"
+#include "photile/progress.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 
@@ -27,5 +28,10 @@ class KernelPreparation {
  private:
   std::future<void> done_;
 };
+
+/// Has the kernels compiled that scenes of many triangles want with the default settings: of matt
+/// and glossy surfaces, with and without normal maps, and of up to max_dense_lights layers. Where
+/// kernels are kept between runs, they are there from now on.
+void compile_usual_kernels(Device& device, Progress& progress);
 
 }  // namespace photile

@@ -22,6 +22,14 @@ StageStatistics stage(const char* name, const StageCost& cost,
           std::move(figures)};
 }
 
+void add_time(RunStatistics& stages, const char* name, const TimeTaken& time) {
+  auto row = std::find_if(stages.begin(), stages.end(),
+                          [&](const StageStatistics& one) { return one.stage == name; });
+  if (row == stages.end()) row = stages.insert(row, stage(name, {}));
+  row->seconds += time.seconds;
+  row->processor_seconds += time.processor_seconds;
+}
+
 void StageCost::add(const TimeTaken& more_time, std::uint64_t more_host_bytes,
                     std::uint64_t more_device_bytes) {
   time += more_time;

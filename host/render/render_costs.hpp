@@ -23,6 +23,9 @@ struct StageCost {
 StageStatistics stage(const char* name, const StageCost& cost,
                       std::vector<std::pair<std::string, double>> figures = {});
 
+/// Adds time to the row of a stage; to a new one at the end where there is none.
+void add_time(RunStatistics& stages, const char* name, const TimeTaken& time);
+
 /// Counts add up over passes.
 struct RenderCosts {
   StageCost structure, trace, radius, group, surface, build, estimators, hits, gather, light_maps,

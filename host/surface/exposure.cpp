@@ -21,13 +21,18 @@ constexpr int samples = 64;
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// Point i of `samples` of a triangle, evenly spread: Roberts, "The Unreasonable Effectiveness of
-/// Quasirandom Sequences" (2018), folded into the triangle.
-glm::dvec3 sample_point(const Corners& corners, int i) {
-  double u = std::fmod(0.5 + 0.7548776662466927 * i, 1.0);
-  double v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0);
-  if (u + v > 1) u = 1 - u, v = 1 - v;
-  return (1 - u - v) * corners[0] + u * corners[1] + v * corners[2];
+/// Weights of the second and third corner in points that are evenly spread over a triangle:
+/// Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences" (2018), folded into the
+/// triangle.
+std::array<glm::dvec2, samples> sample_weights() {
+  std::array<glm::dvec2, samples> weights;
+  for (int i = 0; i < samples; ++i) {
+    double u = std::fmod(0.5 + 0.7548776662466927 * i, 1.0);
+    double v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0);
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    weights[i] = {u, v};
+  }
+  return weights;
 }
 
 /// Holds a triangle moved from `low` to `high`; rounded outwards.
@@ -103,8 +108,9 @@ class ExposureFinder {
     const std::vector<Projection> covers = covers_near(own, corners, normal);
     if (covers.empty()) return 1;
     int open = 0;
-    for (int i = 0; i < samples; ++i) {
-      const glm::dvec3 point = sample_point(corners, i);
+    for (const glm::dvec2& weight : weights_) {
+      const glm::dvec3 point =
+          (1 - weight.x - weight.y) * corners[0] + weight.x * corners[1] + weight.y * corners[2];
       if (open >= least_open * samples) return 1;
       open += std::none_of(covers.begin(), covers.end(),
                            [&](const Projection& cover) { return cover.holds(point); });
@@ -140,24 +146,21 @@ class ExposureFinder {
     const geometry::Box prism =
         box_of_prism(own_corners, -coincident * radius_ * normal, reach * radius_ * normal);
     const std::uint32_t own_plane = facets_.plane[triangle_of(own)];
-    dark_tree_.visit_within(prism, 0, [&](std::uint32_t i) {
-      constexpr bool enough = false;  // all of them are wanted
+    dark_tree_.visit_overlapping(dark_boxes_, prism, [&](std::uint32_t i) {
       const std::uint32_t triangle = dark_[i];
-      if (geometry::squared_distance(dark_boxes_[i], prism) > 0) return enough;
-      if (facets_.plane[triangle] == own_plane) return enough;
-      if (!faces_in_the_dark(triangle, normal)) return enough;
+      if (facets_.plane[triangle] == own_plane) return;
+      if (!faces_in_the_dark(triangle, normal)) return;
       const Corners corners = corners_of(triangle);
-      if (outline.is_apart_from(corners)) return enough;
+      if (outline.is_apart_from(corners)) return;
       double lowest = reach * radius_, highest = 0;
       for (const glm::dvec3& corner : corners) {
         const double height = glm::dot(corner - own_corners[0], normal);
         lowest = std::min(lowest, height);
         highest = std::max(highest, height);
       }
-      if (lowest < -coincident * radius_ || highest >= reach * radius_) return enough;
+      if (lowest < -coincident * radius_ || highest >= reach * radius_) return;
       const Projection cover(corners, normal);
       if (!cover.is_apart_from(own_corners)) covers.push_back(cover);
-      return enough;
     });
     return covers;
   }
@@ -167,6 +170,7 @@ class ExposureFinder {
   const Sheets& sheets_;
   const std::vector<std::uint8_t>& lit_;
   double radius_, cos_angle_;
+  const std::array<glm::dvec2, samples> weights_ = sample_weights();
   std::vector<std::uint32_t> dark_;  ///< triangles with a side that no light reaches
   std::vector<geometry::Box> dark_boxes_;
   geometry::BoxTree dark_tree_;

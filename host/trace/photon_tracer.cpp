@@ -14,6 +14,7 @@
 #include "photile/statistics.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/photon_path.hpp"
+#include "trace/sorted_photons.hpp"
 
 namespace photile {
 
@@ -93,35 +94,17 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
   return records;
 }
 
-/// One array of a run of all records, in chunk order. The records' own are freed on the way.
-template <class T>
-std::vector<T> concatenate(std::vector<PathRecord>& records, PhotonRun PathRecord::*run,
-                           std::vector<T> PhotonRun::*array) {
-  std::vector<std::size_t> first(records.size() + 1, 0);
-  for (std::size_t r = 0; r < records.size(); ++r)
-    first[r + 1] = first[r] + (records[r].*run.*array).size();
-  std::vector<T> all(first.back());
-  tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t r) {
-    const std::vector<T> part = std::move(records[r].*run.*array);
-    std::copy(part.begin(), part.end(), all.begin() + static_cast<std::ptrdiff_t>(first[r]));
-  });
-  return all;
-}
-
-/// The photons of a run of all records. The records' own are freed on the way.
+/// The photons of a run of all records.
 ///   groups   null where photons do not tell lights apart
 Photons photons_of(std::vector<PathRecord>& records, PhotonRun PathRecord::*run,
                    const std::vector<Chunk>& chunks, const LightGroups* groups,
                    std::size_t sided_triangle_count) {
-  Photons photons;
-  for (std::size_t c = 0; c < chunks.size() && groups != nullptr; ++c)
-    photons.light.insert(photons.light.end(), (records[c].*run).size(),
-                         static_cast<std::uint16_t>(groups->group_of[chunks[c].light]));
-  photons.position = concatenate(records, run, &PhotonRun::position);
-  photons.flux = concatenate(records, run, &PhotonRun::flux);
-  photons.incoming = concatenate(records, run, &PhotonRun::incoming);
-  photons.sided_triangle = concatenate(records, run, &PhotonRun::sided_triangle);
-  return sort_by_sided_triangle(std::move(photons), sided_triangle_count);
+  std::vector<trace::LayerRun> runs;
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    const std::uint32_t layer = groups == nullptr ? 0 : groups->group_of[chunks[c].light];
+    runs.push_back({&(records[c].*run), static_cast<std::uint16_t>(layer)});
+  }
+  return trace::sorted_photons(runs, groups != nullptr, sided_triangle_count);
 }
 
 }  // namespace

@@ -59,6 +59,7 @@ inline constexpr int pilot_height = 96;  ///< pixels
 // The walkthrough: what is aimed at while moving, and how far a picture is refined at rest
 inline constexpr double view_frames_per_second = 30;
 inline constexpr int view_samples_per_pixel = 16;
+inline constexpr std::uint64_t view_first_photons = 8192;  ///< paths of the first picture
 
 // Validation: readings whose noise leaves room for the tolerance of 1%
 inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 16 seeds

@@ -7,6 +7,7 @@
 #include "child_process.hpp"
 #include "estimate/tuning_store.hpp"
 #include "file_folder.hpp"
+#include "source_folder.hpp"
 
 namespace photile::test {
 namespace {
@@ -72,6 +73,31 @@ TEST_CASE("a tuning as JSON, a k without a tuning and a k of zero are refused") 
              Contains("--json") && Contains("--tune"));
   CHECK_THAT(only_error(run_photile({"devices", "-k", "20"}), usage), Contains("--tune"));
   CHECK_THAT(only_error(run_photile({"devices", "--tune", "-k", "0"}), usage), Contains("0"));
+}
+
+TEST_CASE("compiling with a tuning or as JSON is refused") {
+  CHECK_THAT(only_error(run_photile({"devices", "--compile", "--json"}), usage),
+             Contains("--json") && Contains("--compile"));
+  CHECK_THAT(only_error(run_photile({"devices", "--compile", "--tune"}), usage),
+             Contains("--tune") && Contains("--compile"));
+}
+
+TEST_CASE("after devices --compile the first picture of an interior compiles nothing", "[slow]") {
+  const FileFolder folder;
+  std::filesystem::create_directory(folder / "cache");
+  Run run;
+  run.environment["XDG_CACHE_HOME"] = folder / "cache";
+  run.arguments = {"devices", "--compile"};
+  const Outcome compiled = run_photile(run);
+  INFO(compiled.errors);
+  REQUIRE(compiled.exit_code == 0);
+  CHECK_THAT(compiled.errors, Contains(" compiled, ") && !Contains(": 0 compiled"));
+  const std::string room = source_folder() / "scenes/living-room/living-room.gltf";
+  run.arguments = {"render",    room,   "-o",     folder / "out.png",
+                   "--photons", "200k", "--size", "16x12"};
+  const Outcome rendered = run_photile(run);
+  REQUIRE(rendered.exit_code == 0);
+  CHECK_THAT(rendered.errors, Contains(": 0 compiled"));
 }
 
 TEST_CASE("without a stored tuning --tuned says so and renders what is rendered without it") {

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "render/render_costs.hpp"
+#include "tools/command/run_record.hpp"
 
 namespace photile::test {
 namespace {
@@ -28,6 +30,27 @@ double mean(const Image& picture, const std::string& channel) {
   double sum = 0;
   for (const float value : *plane) sum += static_cast<double>(value);
   return sum / static_cast<double>(plane->size());
+}
+
+/// The names of a record's stages, whose times add up to those of the process.
+std::vector<std::string> checked_stages(const nlohmann::json& record) {
+  double seconds = 0, processor_seconds = 0;
+  std::vector<std::string> names;
+  for (const auto& stage : record["stages"]) {
+    INFO(stage["stage"]);
+    names.push_back(stage["stage"]);
+    seconds += stage["seconds"].get<double>();
+    processor_seconds += stage["processor_seconds"].get<double>();
+    // What two rows counted would be missing from the last, "everything else".
+    constexpr double rounding = 1e-6;
+    CHECK(stage["seconds"] >= -rounding);
+    CHECK(stage["processor_seconds"] >= -rounding);
+  }
+  CHECK(names.back() == "everything else");
+  CHECK(std::set<std::string>(names.begin(), names.end()).size() == names.size());
+  CHECK(seconds == Approx(record["total_seconds"].get<double>()));
+  CHECK(processor_seconds == Approx(record["total_processor_seconds"].get<double>()));
+  return names;
 }
 
 }  // namespace
@@ -132,14 +155,7 @@ TEST_CASE("the statistics are JSON with every stage, the parameters and the ligh
   CHECK(statistics["parameters"]["photons_emitted"] == 100'000);
   CHECK(statistics["lights"].size() == 2);
   CHECK(statistics["photons_stored"] > 0);
-  double seconds = 0;
-  std::vector<std::string> names;
-  for (const auto& stage : statistics["stages"]) {
-    names.push_back(stage["stage"]);
-    seconds += stage["seconds"].get<double>();
-    CHECK(stage["seconds"] >= 0);
-    CHECK(stage["processor_seconds"] >= 0);
-  }
+  const std::vector<std::string> names = checked_stages(statistics);
   CHECK_THAT(names, Catch::VectorContains(std::string("load libraries")));
   CHECK_THAT(names, Catch::VectorContains(std::string("open devices")));
   CHECK_THAT(names, Catch::VectorContains(std::string("load scene")));
@@ -147,7 +163,29 @@ TEST_CASE("the statistics are JSON with every stage, the parameters and the ligh
   CHECK_THAT(names, Catch::VectorContains(std::string("release memory")));
   CHECK_THAT(names, Catch::VectorContains(std::string("write pictures")));
   CHECK(names.size() >= 6);  // and trace, group, build, estimate between them
-  CHECK(seconds <= statistics["total_seconds"].get<double>());
+}
+
+TEST_CASE("the stages add up with maps that are kept, with reflections and by paths") {
+  const FileFolder folder;
+  const auto names_with = [&](std::vector<std::string> options) {
+    options.insert(options.end(),
+                   {"--size", "16x12", "-o", folder / "a.png", "--stats", folder / "a.json"});
+    render(folder, options);
+    return checked_stages(nlohmann::json::parse(folder.read("a.json")));
+  };
+  using Catch::VectorContains;
+  CHECK_THAT(
+      names_with({"--save-maps", folder / "a.maps", "--glare", folder / "glare.png"}),
+      VectorContains(std::string("save photons")) && VectorContains(std::string("reflections")));
+  CHECK_THAT(names_with({"--load-maps", folder / "a.maps"}),
+             VectorContains(std::string("load photons")));
+  const FileFolder by_paths;
+  const Outcome outcome =
+      run_photile({"render", write_box(by_paths), "--integrator", "path", "--size", "16x12", "-o",
+                   by_paths / "a.png", "--stats", by_paths / "a.json"});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  checked_stages(nlohmann::json::parse(by_paths.read("a.json")));
 }
 
 TEST_CASE("naive maps are darker than those of neighbour groups at borders, hence in the mean") {
@@ -164,6 +202,21 @@ TEST_CASE("a profiled render lists the time of each kernel") {
                                        "16x12", "-o", folder / "a.png", "--profile"});
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors, Contains("\nkernel ") && Contains("launches"));
+}
+
+TEST_CASE("the last row is what no other one has taken") {
+  app::RunRecord record;
+  add_time(record.stages, "load scene", {.seconds = 1, .processor_seconds = 2});
+  add_time(record.stages, "release memory", {.seconds = 0.5, .processor_seconds = 0.25});
+  add_time(record.stages, "release memory", {.seconds = 0.5, .processor_seconds = 0.25});
+  close(record, {.seconds = 5, .processor_seconds = 8});
+  REQUIRE(record.stages.size() == 3);
+  CHECK(record.stages[1].stage == "release memory");
+  CHECK(record.stages[1].seconds == 1);
+  CHECK(record.stages[2].stage == "everything else");
+  CHECK(record.stages[2].seconds == 3);
+  CHECK(record.stages[2].processor_seconds == 5.5);
+  CHECK(record.total.seconds == 5);
 }
 
 TEST_CASE("microseconds per hit leave out what compiling kernels took") {

@@ -82,7 +82,7 @@ kernel void reverse(global int* values, local int* shared) {
   Launch(context, context.kernel("test/local.cl", "reverse", {}))
       .set("values", buffer)
       .set("shared", LocalMemory{32 * sizeof(int)})
-      .run(64, 32);
+      .run_no_more(64, 32);
   std::vector<int> back(64);
   context.read<int>(buffer, back);
   for (int i = 0; i < 64; ++i) REQUIRE(back[i] == (i / 32) * 32 + 31 - i % 32);

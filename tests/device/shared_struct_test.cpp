@@ -59,7 +59,7 @@ TEST_CASE(
   auto out = context.allocate<unsigned>(numbers.size(), "layout");
   photile::device::Launch(context, context.kernel("test/layout.cl", "layout", {}))
       .set("out", out)
-      .run(1, 1);
+      .run_no_more(1, 1);
   std::vector<unsigned> on_device(numbers.size());
   context.read<unsigned>(out, on_device);
   for (std::size_t i = 0; i < numbers.size(); ++i) {

@@ -11,6 +11,7 @@
 #include "photile/device.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "render/kernel_preparation.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/signals.hpp"
@@ -27,6 +28,7 @@ struct DevicesOptions {
   std::string selector;
   bool json = false;
   bool tune = false;
+  bool compile = false;
   int neighbours = defaults::neighbours;
 };
 
@@ -77,8 +79,19 @@ void run_tuning(const DevicesOptions& options) {
   tune_device(device, options.neighbours, progress);
 }
 
+void run_compilation(const DevicesOptions& options) {
+  handle_signals();
+  TerminalProgress progress(false);
+  for (Device& device : open_devices({.selector = options.selector})) {
+    compile_usual_kernels(device, progress);
+    progress.note(fmt::format("kernels of {}: {} compiled, {} were there", device.info().id,
+                              device.programs_built(), device.programs_from_cache()));
+  }
+}
+
 void run_devices(const DevicesOptions& options) {
   if (options.tune) return run_tuning(options);
+  if (options.compile) return run_compilation(options);
   // Opening the device asks the very code that `render` asks; without any device it says so.
   std::set<std::string> selected;
   for (const Device& device : open_devices({.selector = options.selector})) {
@@ -109,13 +122,21 @@ void add_devices_command(CLI::App& photile) {
   CLI::Option* json = command->add_flag("--json", options->json, "as JSON");
   command
       ->add_option("--device", options->selector,
-                   "mark those, or tune the one, that this selector chooses, as in photile render")
+                   "mark those, compile for those, or tune the one, that this selector chooses, as "
+                   "in photile "
+                   "render")
       ->type_name("SELECTOR");
   CLI::Option* tune =
       command
           ->add_flag("--tune", options->tune,
                      "find and store the fastest kernels of the device, for photile render --tuned")
           ->excludes(json);
+  command
+      ->add_flag("--compile", options->compile,
+                 "compile the kernels of usual scenes ahead, so that the first picture of each is "
+                 "as quick as later ones")
+      ->excludes(json)
+      ->excludes(tune);
   command->add_option("-k,--neighbours", options->neighbours, "photons of an estimate to tune for")
       ->type_name("N")
       ->transform(count_between(1, limits::max_neighbours))

@@ -201,12 +201,11 @@ void write_glare(const RenderOptions& options, const LightLayers& layers,
   for (const std::string& line : image::glare_lines(glare, unit)) progress.note(line);
 }
 
-void run_render(const CLI::App& command, RenderOptions& options) {
-  handle_signals();
-  RunRecord record;
-  const TimeTaken loading = time_of_loading();
-  const Stopwatch since_loaded;
-  record.stages.push_back(stage("load libraries", {loading}));
+/// Renders and writes the pictures. Returns a watch that was started when they were written: what
+/// the rendering held is released before the caller gets it.
+///   elapsed   seconds of the process so far
+Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRecord& record,
+                          const std::function<double()>& elapsed, Progress& progress) {
   check_settings(options);
   if (options.integrator == Integrator::path) refuse_photon_map_options(command);
   const bool refined = refines(options.target, options.parameters);
@@ -218,7 +217,6 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   const PictureOutputs outputs = check_outputs_of(options);
 
   const ThreadLimit threads(options.threads);
-  TerminalProgress progress(options.quiet);
   const Stopwatch device_watch;
   std::vector<Device> devices = devices_for(options, progress);
   record.stages.push_back(stage("open devices", {device_watch.taken()}));
@@ -253,22 +251,34 @@ void run_render(const CLI::App& command, RenderOptions& options) {
     }));
   };
   if (refined) {
-    const auto elapsed = [&] { return loading.seconds + since_loaded.seconds(); };
     render_until_good(scene, devices, options, *hits, record, write, elapsed, progress);
   } else if (options.integrator == Integrator::path) {
     write(render_by_paths(scene, camera, views, record, progress));
   } else {
     write(render_by_photons(scene, camera, devices, options, views, record, progress));
   }
-  record.total = since_loaded.taken();
-  record.total += loading;
+  for (Device& device : devices) tell_kernels(device, options.device.profile, progress);
+  return {};
+}
+
+void run_render(const CLI::App& command, RenderOptions& options) {
+  handle_signals();
+  const TimeTaken loading = time_of_loading();
+  const Stopwatch since_loaded;
+  RunRecord record;
+  record.stages.push_back(stage("load libraries", {loading}));
+  TerminalProgress progress(options.quiet);
+  const auto elapsed = [&] { return loading.seconds + since_loaded.seconds(); };
+  const Stopwatch since_written = render_to_files(command, options, record, elapsed, progress);
+  add_time(record.stages, "release memory", since_written.taken());
+  TimeTaken total = since_loaded.taken();
+  close(record, total += loading);
   if (!options.statistics.empty()) {
     write_file(
         options.statistics,
         run_json(record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }
   for (const auto& line : summary_table(record)) progress.note(line);
-  for (Device& device : devices) tell_kernels(device, options.device.profile, progress);
 }
 
 }  // namespace

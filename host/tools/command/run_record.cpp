@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "render/render_costs.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/setting_options.hpp"
 #include "tools/command/version.hpp"
@@ -64,6 +65,15 @@ json parameters_json(const RunRecord& record) {
 }
 
 }  // namespace
+
+void close(RunRecord& record, const TimeTaken& total) {
+  record.total = total;
+  TimeTaken rest = total;
+  for (const StageStatistics& stage : record.stages) {
+    rest = rest - TimeTaken{stage.seconds, stage.processor_seconds};
+  }
+  add_time(record.stages, "everything else", rest);
+}
 
 void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
   auto& attributes = picture.attributes;

@@ -30,6 +30,9 @@ struct RunRecord {
   TimeTaken total;  ///< of the process
 };
 
+/// Sets what the process has taken, and adds a row of what no stage has: the rows add up to it.
+void close(RunRecord& record, const TimeTaken& total);
+
 /// Sets the string attributes `photile.*` of a picture.
 void set_run_attributes(PictureHeader& picture, const RunRecord& record);
 

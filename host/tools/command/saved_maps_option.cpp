@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "render/kept_maps.hpp"
+#include "render/render_costs.hpp"
 #include "render/setting.hpp"
 #include "saved_maps/saved_maps.hpp"
 #include "tools/command/version.hpp"
@@ -16,6 +18,18 @@ namespace {
 
 std::string settings_of(const RenderOptions& options) {
   return fmt::format("photile {}, {}", version_number(), photon_settings(options.parameters));
+}
+
+/// Adds to `time` what `work` takes, and returns what it does.
+template <class Work>
+auto timed(TimeTaken& time, const Work& work) {
+  struct Clock {
+    ~Clock() { time += stopwatch.taken(); }
+    TimeTaken& time;
+    Stopwatch stopwatch;
+  };
+  const Clock clock{time, {}};
+  return work();
 }
 
 }  // namespace
@@ -50,14 +64,30 @@ void keep_light_maps(const std::optional<LightMapContents>& light_maps,
 RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, const HitSource& hits,
                                    std::span<Device> devices, const RenderOptions& options,
                                    LightLayers* reflections, Progress& progress) {
-  std::optional<PreparedPhotons> prepared = load_maps(scene, options, progress);
-  KeptMaps maps(scene, devices, options.parameters, prepared ? &*prepared : nullptr,
-                keep_maps(scene, options, progress), progress);
-  RenderResult result = maps.render(hits, options.parameters.film, progress);
-  keep_light_maps(maps.light_map_contents(), options, progress);
-  if (!reflections) return result;
-  RenderResult reflected = maps.render(ReflectedHits(camera), options.parameters.film, progress);
-  *reflections = std::move(reflected.layers);
+  TimeTaken loading, keeping, reflecting;
+  std::optional<PreparedPhotons> prepared =
+      timed(loading, [&] { return load_maps(scene, options, progress); });
+  KeepPhotons keep = keep_maps(scene, options, progress);
+  if (keep) {
+    keep = [&keeping, save = std::move(keep)](const PreparedPhotons& photons) {
+      timed(keeping, [&] { save(photons); });
+    };
+  }
+  auto maps = std::make_unique<KeptMaps>(scene, devices, options.parameters,
+                                         prepared ? &*prepared : nullptr, keep, progress);
+  RenderResult result = maps->render(hits, options.parameters.film, progress);
+  timed(keeping, [&] { keep_light_maps(maps->light_map_contents(), options, progress); });
+  if (reflections) {
+    timed(reflecting, [&] {
+      *reflections = maps->render(ReflectedHits(camera), options.parameters.film, progress).layers;
+    });
+  }
+  TimeTaken releasing;
+  timed(releasing, [&] { maps.reset(); });
+  if (!options.load_maps.empty()) add_time(result.statistics, "load photons", loading);
+  if (!options.save_maps.empty()) add_time(result.statistics, "save photons", keeping);
+  if (reflections) add_time(result.statistics, "reflections", reflecting);
+  add_time(result.statistics, "release memory", releasing);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -46,6 +47,9 @@ std::vector<std::uint64_t> generations_to(std::uint64_t total) {
   for (std::uint64_t fewer = total / 4; paths.size() < 3 && fewer >= limits::min_photons;
        fewer /= 4) {
     paths.push_back(fewer);
+  }
+  if (paths.back() > 4 * defaults::view_first_photons) {
+    paths.push_back(defaults::view_first_photons);
   }
   std::reverse(paths.begin(), paths.end());
   return paths;

@@ -33,8 +33,8 @@ struct WorkProgress {
   double share = 0;   ///< of the stage, in [0, 1]; 0 where it is not known
 };
 
-/// Traces photons and builds maps on a thread of its own: first with a small part of the paths, so
-/// that there is something to see, then with four times as many, until all are there. The last maps
+/// Traces photons and builds maps on a thread of its own: first with few paths, so that there is
+/// something to see at once, then with a sixteenth of all, a quarter, and all. The last maps
 /// are those that `render` builds from the same parameters.
 class PhotonWorker {
  public:
@@ -70,7 +70,8 @@ class PhotonWorker {
   std::jthread thread_;  // last: it uses all of the above
 };
 
-/// The numbers of paths of the generations that lead to `total`, ascending, `total` the last.
+/// The numbers of paths of the generations that lead to `total`, ascending, `total` the last: where
+/// those are many, the first are so few that the set-up alone takes time.
 std::vector<std::uint64_t> generations_to(std::uint64_t total);
 
 }  // namespace photile::view
