@@ -60,9 +60,11 @@ DeviceLimits measure_limits(Device& device, const Repeats& repeats, std::size_t 
   const auto median = [&](const char* name, std::size_t size, const auto& set_arguments) {
     device::Launch launch(context, context.kernel(file, name, {}));
     set_arguments(launch);
-    return measure_returned(
-               repeats,
-               [&] { return kernel_seconds_of(device, [&] { launch.run_no_more(size, group_size); }); })
+    return measure_returned(repeats,
+                            [&] {
+                              return kernel_seconds_of(
+                                  device, [&] { launch.run_no_more(size, group_size); });
+                            })
         .median();
   };
   // Work-items in whole groups: these kernels do not check their index.

@@ -44,6 +44,31 @@ TEST_CASE("a tree visits every box within the distance, each once") {
   }
 }
 
+TEST_CASE("a tree visits the boxes that overlap one, each once, and no others") {
+  const std::size_t count = GENERATE(0u, 1u, 5u, 20'000u);
+  test::Uniform uniform(count);
+  const std::vector<geometry::Box> boxes = random_boxes(count, uniform);
+  const geometry::BoxTree tree(boxes);
+  std::vector<geometry::Box> queries = random_boxes(50, uniform);
+  if (count > 0) queries.push_back(boxes.front());
+  std::size_t wrong = 0, met = 0;
+  for (const geometry::Box& query : queries) {
+    std::vector<int> visits(count, 0);
+    tree.visit_overlapping(boxes, query, [&](std::uint32_t box) { ++visits[box]; });
+    for (std::size_t i = 0; i < count; ++i) {
+      bool apart = false;
+      for (int axis = 0; axis < 3; ++axis) {
+        apart = apart || boxes[i].upper[axis] < query.lower[axis] ||
+                query.upper[axis] < boxes[i].lower[axis];
+      }
+      if (visits[i] != (apart ? 0 : 1)) ++wrong;
+      if (!apart) ++met;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK((met > 0) == (count > 0));
+}
+
 TEST_CASE("a tree without boxes visits none, and a visit that returns true is the last") {
   int visits = 0;
   const auto stop = [&](std::uint32_t) { return ++visits > 0; };

@@ -1,9 +1,12 @@
 // The order and the size of stored photons.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <random>
+#include <type_traits>
 
 #include "photile/photons.hpp"
+#include "trace/sorted_photons.hpp"
 
 namespace photile::test {
 namespace {
@@ -48,6 +51,41 @@ TEST_CASE("Photons sorted by sided triangle agree with std::stable_sort in every
               sorted.incoming[i] == given.incoming[from] && sorted.light[i] == given.light[from];
       }
       CHECK(same);
+    }
+}
+
+TEST_CASE("Photons of runs are those of all runs in a row, sorted, and the runs are emptied") {
+  for (const std::size_t count : {0, 1, 1000, 300'000})
+    for (const bool full : {false, true}) {
+      // Many sided triangles: too many for a table of counts for each thread.
+      const std::uint32_t sided_triangles = count == 1000 ? 4000 : 501;
+      Photons given = random_photons(count, sided_triangles, full);
+      constexpr std::size_t run_size = 333;
+      std::vector<trace::PhotonRun> parts(count / run_size + 2);  // the last is empty
+      std::vector<trace::LayerRun> runs;
+      given.light.clear();
+      for (std::size_t r = 0; r < parts.size(); ++r) {
+        const std::size_t first = std::min(count, r * run_size);
+        const std::size_t last = std::min(count, first + run_size);
+        const auto part_of = [&](const auto& all) {
+          const auto begin = all.begin();
+          return all.empty() ? all : std::decay_t<decltype(all)>(begin + first, begin + last);
+        };
+        parts[r] = {part_of(given.position), part_of(given.flux), part_of(given.incoming),
+                    part_of(given.sided_triangle)};
+        runs.push_back({&parts[r], static_cast<std::uint16_t>(r % 5)});
+        if (full) given.light.insert(given.light.end(), last - first, runs.back().layer);
+      }
+      const Photons expected = sort_by_sided_triangle(given, sided_triangles);
+      const Photons sorted = trace::sorted_photons(runs, full, sided_triangles);
+      CHECK(sorted.position == expected.position);
+      CHECK(sorted.flux == expected.flux);
+      CHECK(sorted.incoming == expected.incoming);
+      CHECK(sorted.light == expected.light);
+      CHECK(sorted.sided_triangle == expected.sided_triangle);
+      CHECK(sorted.first_of == expected.first_of);
+      for (const trace::PhotonRun& run : parts)
+        CHECK((run.size() == 0 && run.sided_triangle.empty()));
     }
 }
 
