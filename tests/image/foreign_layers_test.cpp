@@ -6,7 +6,7 @@
 namespace photile::test {
 namespace {
 
-constexpr int width = 4, height = 3, pixels = width * height;
+constexpr int columns = 4, rows = 3, pixels = columns * rows;
 
 struct Part {
   std::string name;
@@ -19,7 +19,7 @@ float value_at(int channel, int pixel) { return static_cast<float>(100 * channel
 void write_parts(const std::filesystem::path& file, const std::vector<Part>& parts) {
   std::vector<OIIO::ImageSpec> specs;
   for (const Part& part : parts) {
-    OIIO::ImageSpec spec(width, height, static_cast<int>(part.channels.size()),
+    OIIO::ImageSpec spec(columns, rows, static_cast<int>(part.channels.size()),
                          OIIO::TypeDesc::FLOAT);
     spec.channelnames = part.channels;
     if (!part.name.empty()) spec.attribute("oiio:subimagename", part.name);

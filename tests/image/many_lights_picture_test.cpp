@@ -222,12 +222,12 @@ TEST_CASE(
 
 TEST_CASE("the picture of 256 lights is never whole in memory, neither written nor relit") {
   const TemporaryFolder folder;
-  constexpr int width = 96, height = 768;
+  constexpr int width = 96, height = 384;
   constexpr std::size_t lights = 256;
   const LightLayers layers = local_layers(width, height, lights, 2);
   const LightMix mix = mix_of(layers);
   constexpr std::size_t dense = lights * 16 * width * height;
-  // Each thread compresses or decodes two rows of every part; a quarter leaves room for 96 threads.
+  // Each thread compresses or decodes two rows of every part; a quarter leaves room for 48 threads.
   constexpr std::size_t bound = dense / 4;
   {
     const MemoryMeter meter;

@@ -46,7 +46,7 @@ std::vector<ValidationRow> rows_of(const std::string& name,
 TEST_CASE("paths read what closed forms say, in every analytic case", "[slow]") {
   ValidationParameters parameters;
   parameters.by_photons = false;
-  parameters.paths = 150'000;
+  parameters.paths = 200'000;
   for (const AnalyticCase& analytic : analytic_cases()) {
     for (const ValidationRow& row : validate(analytic, {}, parameters, Progress::none())) {
       REQUIRE(row.paths);

@@ -11,10 +11,10 @@ namespace photile::scene_io {
 /// Of the extras `photile_group`, `photile_lumens` and `photile_kelvin`, which Blender exports as
 /// custom properties.
 struct LightTraits {
-  std::string group;  ///< "" = none
-  double lumens = 0;  ///< of the node's lights together; 0 = not given
-  double kelvin = 0;  ///< 0 = not given
-  std::string lamp;   ///< as LightSource::lamp
+  std::string group;      ///< "" = none
+  double lumens = 0;      ///< of the node's lights together; 0 = not given
+  double kelvin = 0;      ///< 0 = not given
+  std::string lamp = {};  ///< as LightSource::lamp
 };
 
 /// Traits of the node `name`. Numbers that are none, or out of range, are ignored with a warning.
