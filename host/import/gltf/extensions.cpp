@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,13 +47,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 7> remedies{
     {"KHR_texture_basisu", "save its textures as PNG or JPEG"},
 }};
 
-template <std::size_t count>
-bool contains(const std::array<std::string_view, count>& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 bool is_understood(std::string_view extension) {
-  return contains(understood_extensions, extension) || contains(harmless_extensions, extension);
+  const auto among = [&](std::span<const std::string_view> names) {
+    return std::ranges::find(names, extension) != names.end();
+  };
+  return among(understood_extensions) || among(harmless_extensions);
 }
 
 std::string remedy_for(std::string_view extension, std::string_view otherwise) {
