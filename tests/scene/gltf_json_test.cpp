@@ -21,7 +21,7 @@ json sparse_document() {
   return document;
 }
 
-std::string refusal_of(const std::string& text) {
+std::string refusal_of_text(const std::string& text) {
   const SceneFolderOnDisk folder;
   folder.write("square.bin", square_buffer());
   const std::string error = input_error_of([&] { load_scene(folder.write("scene.gltf", text)); });
@@ -36,7 +36,7 @@ std::string refusal_with(const std::string& place, const std::string& value) {
   document[json::json_pointer(place)] = "@";
   std::string text = document.dump();
   text.replace(text.find("\"@\""), 3, value);
-  return refusal_of(text);
+  return refusal_of_text(text);
 }
 
 }  // namespace
@@ -83,15 +83,15 @@ TEST_CASE("numbers of extras and extensions are whatever their authors want") {
   json document = sparse_document();
   document["extras"] = {{"count", -1.5}, {"mesh", "front"}, {"list", {{{"nodes", {-1, "a"}}}}}};
   document["nodes"][0]["extensions"]["VENDOR_x"] = {{"source", -1}, {"attributes", {{"A", 0.5}}}};
-  CHECK(refusal_of(document.dump()).empty());
+  CHECK(refusal_of_text(document.dump()).empty());
 }
 
 TEST_CASE("what is no JSON is refused by its place, in no parser's words") {
-  CHECK_THAT(refusal_of("{\"asset\": }"),
+  CHECK_THAT(refusal_of_text("{\"asset\": }"),
              Contains("malformed glTF") && Contains("byte 11 is no JSON"));
-  CHECK_THAT(refusal_of("{\"asset\": 1e999}"), Contains("too large a number"));
+  CHECK_THAT(refusal_of_text("{\"asset\": 1e999}"), Contains("too large a number"));
   std::string text = sparse_document().dump();
-  CHECK_THAT(refusal_of(text.insert(text.find("glow"), "\xff")), Contains("no JSON"));
+  CHECK_THAT(refusal_of_text(text.insert(text.find("glow"), "\xff")), Contains("no JSON"));
 }
 
 TEST_CASE("a value of another type than the format has is refused in no parser's words") {
@@ -109,7 +109,7 @@ TEST_CASE("more nodes or materials than the limit are refused while they are rea
        {std::pair{"nodes", limits::max_nodes}, std::pair{"materials", limits::max_materials}}) {
     std::string text = fmt::format(R"({{"asset": {{"version": "2.0"}}, "{}": [{{}})", array);
     for (std::uint64_t i = 0; i < most; ++i) text += ",{}";
-    CHECK_THAT(refusal_of(text + "]}"), Contains(array) && Contains("limit"));
+    CHECK_THAT(refusal_of_text(text + "]}"), Contains(array) && Contains("limit"));
   }
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("a graph of nodes of 2^22 paths is refused before it is walked") {
   document["nodes"] = json::array();
   for (int i = 0; i < levels; ++i) document["nodes"].push_back({{"children", {i + 1, i + 1}}});
   document["nodes"].push_back({{"mesh", 0}});
-  CHECK_THAT(refusal_of(document.dump()), Contains("23 nodes") && Contains("places"));
+  CHECK_THAT(refusal_of_text(document.dump()), Contains("23 nodes") && Contains("places"));
 }
 
 }  // namespace photile::test
