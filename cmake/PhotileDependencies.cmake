@@ -3,7 +3,11 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(TBB REQUIRED)
 find_package(embree 3.13 REQUIRED)
+# Debian's Imath has a target for Python whose library is another package's: a long status message that
+# reads like an error.
+set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 find_package(OpenEXR 3.1 REQUIRED)
+unset(CMAKE_MESSAGE_LOG_LEVEL)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(TIFF REQUIRED)
