@@ -1,0 +1,49 @@
+#!/bin/bash
+# Everything that is too long for every change, and a page of what came out: build/nightly/page.md.
+#
+#   cmake/nightly.sh [HOURS OF SOAK] [DRAWN MUTANTS]      1 and 30 if not given
+#
+# A step that fails is told, and the next one runs. The exit code is 1 where one did.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+hours=${1:-1} mutants=${2:-30}
+folder=build/nightly
+mkdir -p "$folder"
+page=$folder/page.md
+jobs=$(nproc)
+failed=0
+
+# step NAME COMMAND...: a row of the page, with the last line that it printed.
+step() {
+  local name=$1 log start=$SECONDS verdict=passed
+  shift
+  log=$folder/${name// /-}.log
+  if ! "$@" > "$log" 2>&1; then
+    verdict="**failed**"
+    failed=1
+  fi
+  local last
+  last=$(grep -v '^[[:space:]]*$' "$log" | tail -n 1 | tr '|' '/' | cut -c 1-160)
+  printf '| %s | %s | %d min | %s |\n' "$name" "$verdict" $(((SECONDS - start + 59) / 60)) "$last" \
+    >> "$page"
+}
+
+{
+  printf '# Nightly, %s\n\n' "$(date -u '+%Y-%m-%d %H:%M UTC')"
+  printf 'Commit %s on %s, %d cores.\n\n' "$(git rev-parse --short HEAD)" "$(uname -n)" "$jobs"
+  printf '| step | verdict | time | last line |\n|---|---|--:|---|\n'
+} > "$page"
+
+readers=(scene image measuring saved_maps fuzz)
+step "build" cmake/build.sh release
+step "quick tests" ctest --preset release --parallel "$jobs"
+step "slow tests" ctest --preset slow --parallel "$jobs"
+step "build sanitizers" cmake/build.sh sanitizers "${readers[@]/#/photile_tests_}"
+step "sanitizers" ctest --preset sanitizers -R "^($(IFS='|'; echo "${readers[*]}"))/"
+step "build fuzzers" cmake/build.sh fuzzers photile_fuzz
+step "soak" bench/soak.sh "$hours"
+step "drawn mutants" bench/drawn_mutants.py --count "$mutants" --seed "$(date -u +%Y%m%d)"
+step "quick benches" ctest --test-dir build/release -L bench
+
+cat "$page"
+exit $failed

@@ -1,0 +1,105 @@
+// Small files that ask for much: refused, and in little memory. (Time is no matter of assertions;
+// each of these takes less than a second.)
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "box_scene.hpp"
+#include "child_process.hpp"
+#include "file_folder.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::test {
+namespace {
+
+constexpr long most_kilobytes = 256 << 10;  ///< beside the file itself
+
+struct Taken {
+  int exit_code;
+  long kilobytes;  ///< resident, at most
+};
+
+Taken measured_run(const std::vector<std::string>& arguments) {
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    if (std::freopen("/dev/null", "w", stderr) == nullptr) ::_exit(126);
+    std::vector<char*> pointers{const_cast<char*>("photile")};
+    for (const std::string& argument : arguments) {
+      pointers.push_back(const_cast<char*>(argument.c_str()));
+    }
+    pointers.push_back(nullptr);
+    ::execv(PHOTILE_COMMAND, pointers.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  rusage usage{};
+  REQUIRE(::wait4(child, &status, 0, &usage) == child);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), usage.ru_maxrss};
+}
+
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  for (std::size_t i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+/// A glTF text with more members.
+std::string gltf(const std::string& members) {
+  return R"({"asset": {"version": "2.0"}, )" + members + "}";
+}
+
+std::string square(const std::string& more) {
+  return gltf(R"("scenes": [{"nodes": [0]}], "materials": [{"emissiveFactor": [1, 1, 1]}], )" +
+              more);
+}
+
+}  // namespace
+
+TEST_CASE("scenes that ask for more than they hold are refused in little memory") {
+  const FileFolder folder;
+  std::string graph = R"("nodes": [)";
+  for (int i = 0; i < 22; ++i) {
+    graph += R"({"children": [)" + std::to_string(i + 1) + ", " + std::to_string(i + 1) + "]}, ";
+  }
+  const auto [name, text] = GENERATE_COPY(table<std::string, std::string>({
+      {"graph.gltf", square(graph + R"({"mesh": 0}], "meshes": [{"primitives": []}])")},
+      {"nodes.gltf", gltf(R"("nodes": [{})" + repeated(",{}", limits::max_nodes) + "]")},
+      {"deep.gltf", gltf(R"("extras": )" + std::string(1'000'000, '['))},
+      {"accessor.gltf", square(R"("nodes": [{"mesh": 0}],
+         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+         "accessors": [{"componentType": 5126, "count": 1000000000, "type": "VEC3", "sparse":
+           {"count": 1, "indices": {"bufferView": 0, "componentType": 5121},
+            "values": {"bufferView": 0}}}],
+         "bufferViews": [{"buffer": 0, "byteLength": 12}],
+         "buffers": [{"byteLength": 12, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAA"}])")},
+      {"primitives.gltf", square(R"("nodes": [{"mesh": 0}], "meshes": [{"primitives": [)" +
+                                 repeated(R"({"attributes": {"POSITION": 0}},)", 9'999) +
+                                 R"({"attributes": {"POSITION": 0}}]}],
+         "accessors": [{"componentType": 5126, "count": 900000, "type": "VEC3", "sparse":
+           {"count": 1, "indices": {"bufferView": 0, "componentType": 5121},
+            "values": {"bufferView": 0}}}],
+         "bufferViews": [{"buffer": 0, "byteLength": 12}],
+         "buffers": [{"byteLength": 12, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAA"}])")},
+  }));
+  CAPTURE(name);
+  const Taken taken = measured_run({"info", folder.write(name, text)});
+  CHECK(taken.exit_code == bad_input);
+  CHECK(taken.kilobytes < most_kilobytes + 2 * static_cast<long>(text.size() >> 10));
+}
+
+TEST_CASE("a PNG of a kilobyte that says that it is huge is refused in little memory") {
+  using namespace std::string_literals;
+  const FileFolder folder;
+  // A header of 20,000 x 20,000 pixels of four words, with its checksum, and nothing after it.
+  const std::string png =
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x4e\x20\0\0\x4e\x20\x10\x06\0\0\0"s + "\xb3\xe0\x9a\x7a"s;
+  const Taken taken = measured_run({"compare", folder.write("a.png", png), folder / "a.png"});
+  CHECK(taken.exit_code == bad_input);
+  CHECK(taken.kilobytes < most_kilobytes);
+}
+
+}  // namespace photile::test
