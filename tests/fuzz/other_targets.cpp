@@ -47,7 +47,7 @@ void parse_option(unsigned char option, const std::string& text) {
       break;
     case 6: {
       LightMix mix;
-      mix.lights.push_back({.name = "lamp", .power = 1, .members = {}});
+      mix.lights.push_back({.name = "lamp", .members = {}, .power = 1});
       change_lights(mix, {LightChange::parse(text)});
       finite(mix.lights[0].power);
       finite(static_cast<double>(mix.lights[0].tint.x));
@@ -88,7 +88,7 @@ bool fuzz_planes(Bytes bytes) {
 bool fuzz_moods(Bytes bytes) {
   const auto file = file_of("room.moods.json", bytes);
   return accepts([&] {
-    view::LightBoard board(LightMix{{{.name = "ceiling", .power = 1, .members = {}}}});
+    view::LightBoard board(LightMix{{{.name = "ceiling", .members = {}, .power = 1}}});
     const view::Moods moods(file);
     for (const std::string& name : moods.names()) {
       moods.apply(name, board);
