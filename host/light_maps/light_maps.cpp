@@ -1,21 +1,12 @@
-#include "photile/light_maps.hpp"
-
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tsl/robin_map.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
 
-#include "light_maps/charts.hpp"
-#include "light_maps/node_batch.hpp"
-#include "light_maps/node_points.hpp"
-#include "light_maps/tiles.hpp"
-#include "maps/check_photons.hpp"
+#include "light_maps/light_maps_impl.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
@@ -59,34 +50,6 @@ void check(const LightMapParameters& parameters, std::size_t layers) {
 }  // namespace
 }  // namespace light_maps
 
-namespace {
-
-/// Whether these are the light of so many nodes, as files may not have it.
-bool are_values_of(const Estimates& values, std::size_t nodes, const SceneNeeds& needs) {
-  if (!values.radiance.empty()) return false;
-  for (const glm::vec3& light : values.irradiance) {
-    if (!std::isfinite(light.x + light.y + light.z)) return false;
-  }
-  if (!needs.many_lights()) {
-    return values.first.empty() && values.light.empty() &&
-           values.irradiance.size() == nodes * needs.light_count;
-  }
-  return values.light.size() == values.irradiance.size() &&
-         maps::are_rows(values.first, nodes, values.light.size()) &&
-         maps::all_below(values.light, needs.light_count);
-}
-
-/// Whether these are errors and distances of so many nodes, or none.
-bool are_errors_of(const std::vector<float>& error, const std::vector<float>& distance,
-                   std::size_t nodes) {
-  const auto sensible = [](float value) { return value >= 0; };  // infinite: nothing is near
-  return (error.empty() || error.size() == nodes) && distance.size() == error.size() &&
-         std::all_of(error.begin(), error.end(), sensible) &&
-         std::all_of(distance.begin(), distance.end(), sensible);
-}
-
-}  // namespace
-
 std::string_view name_of(LightMapMode mode) {
   switch (mode) {
     case LightMapMode::off:
@@ -101,50 +64,31 @@ std::string_view name_of(LightMapMode mode) {
 
 using light_maps::Charts;
 using light_maps::MissingCell;
-using light_maps::NodeIndex;
 using light_maps::NodePlace;
 using light_maps::Tile;
 using light_maps::Tiles;
 
-struct LightMaps::Impl {
-  Impl(const Scene& from, const LightMapParameters& given)
-      : scene(from),
-        needs(needs_of(from)),
-        parameters(given),
-        charts(scene, parameters.spacing, parameters.angle_degrees),
-        levels(light_maps::levels_that_fit(charts, parameters.levels)),
-        tiles(charts) {
-    if (needs.many_lights()) values.first.push_back(0);
-  }
+LightMaps::Impl::Impl(const Scene& from, const LightMapParameters& given)
+    : scene(from),
+      needs(needs_of(from)),
+      parameters(given),
+      charts(scene, parameters.spacing, parameters.angle_degrees),
+      levels(light_maps::levels_that_fit(charts, parameters.levels)),
+      tiles(charts) {
+  clear();
+}
 
-  /// Cells that the hits need next, each once, ascending; leaves those hits in `pending`.
-  std::vector<MissingCell> missing_cells(const PrimaryHits& hits,
-                                         std::vector<std::uint32_t>& pending) const;
-  /// Numbers of the nodes at the corners of cells; new ones are appended to `added`.
-  void number_corners(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
-                      std::vector<NodePlace>& added);
-  /// Takes numbers back.
-  void forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
-              std::span<const NodePlace> added);
-  void value(std::span<const NodePlace> nodes, NodeSource& source, const Progress& progress);
-  void append(Estimates estimates, const PrimaryHits& at, std::size_t nodes);
-  bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
-  bool differ_by_photons(double high, double low) const;
-
-  const Scene& scene;
-  const SceneNeeds needs;
-  const LightMapParameters parameters;
-  Charts charts;
-  const int levels;
-  Tiles tiles;
-  NodeIndex node_at;
-  Estimates values;                    ///< of nodes
-  std::vector<float> together;         ///< per node: luminance of all lights at their powers
-  std::vector<float> error, distance;  ///< per node, where the source tells: see NodeValues
-  std::vector<NodePoint> points;       ///< of nodes
-  std::uint64_t cells = 0;
-  double chart_seconds = 0;
-};
+void LightMaps::Impl::clear() {
+  tiles.clear();
+  node_at.clear();
+  values = {};
+  if (needs.many_lights()) values.first.push_back(0);
+  together.clear();
+  error.clear();
+  distance.clear();
+  points.clear();
+  cells = 0;
+}
 
 std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
                                                         std::vector<std::uint32_t>& pending) const {
@@ -303,11 +247,9 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     }
     for (const auto& [tile, cell] : cells) {
       tiles[tile].known |= std::uint64_t{1} << cell;
-      const std::uint32_t first = (cell >> 3) * 9 + (cell & 7);
-      const auto& node = tiles[tile].node;
       if (static_cast<int>(tiles[tile].level) + 1 < impl_->levels &&
           impl_->differ(
-              {node[first], node[first + 1], node[first + 9], node[first + 10]},
+              tiles[tile].corners(cell),
               std::ldexp(impl_->charts.spacing(), -static_cast<int>(tiles[tile].level)))) {
         tiles.split(tile, cell);
       }
@@ -319,143 +261,6 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
 bool LightMaps::find(std::uint32_t sided_triangle, const glm::vec3& position,
                      NodeBlend& blend) const {
   return !impl_->tiles.find(impl_->charts.chart_of()[sided_triangle], position, blend);
-}
-
-LightMapContents LightMaps::contents() const {
-  LightMapContents contents;
-  contents.nodes.resize(impl_->together.size());
-  for (const auto& [place, node] : impl_->node_at) {
-    contents.nodes[node] = {place.chart, place.x, place.y};
-  }
-  contents.values = impl_->values;
-  contents.error = impl_->error;
-  contents.distance = impl_->distance;
-  for (std::uint32_t i = 0; i < impl_->tiles.size(); ++i) {
-    const Tile& tile = impl_->tiles[i];
-    contents.tiles.push_back({tile.known, tile.split, tile.chart, tile.level, tile.x, tile.y});
-  }
-  return contents;
-}
-
-std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep) {
-  const Tiles& tiles = impl_->tiles;
-  std::vector<std::uint64_t> kept(tiles.size(), 0);
-  std::vector<std::uint8_t> wanted(keep.size(), 0);
-  for (auto index = static_cast<std::uint32_t>(tiles.size()); index-- > 0;) {  // the finest first
-    const Tile& tile = tiles[index];
-    for (std::uint32_t cell = 0; cell < 64; ++cell) {
-      if ((tile.known >> cell & 1) == 0) continue;
-      const std::uint32_t x = cell & 7, y = cell >> 3, first = y * 9 + x;
-      bool stays = keep[tile.node[first]] != 0;
-      if ((tile.split >> cell & 1) != 0) {
-        const std::uint64_t quarter = std::uint64_t{0b11'0000'0011} << ((y & 3) * 16 + (x & 3) * 2);
-        stays = stays || (kept[tile.child[(y >> 2) * 2 + (x >> 2)]] & quarter) != 0;
-      }
-      if (!stays) continue;
-      kept[index] |= std::uint64_t{1} << cell;
-      for (const std::uint32_t corner : {first, first + 1, first + 9, first + 10}) {
-        wanted[tile.node[corner]] = 1;
-      }
-    }
-  }
-  const LightMapContents all = contents();
-  LightMapContents left;
-  std::vector<std::uint32_t> former;
-  const std::size_t lights = impl_->parameters.powers.size();
-  const Estimates& values = all.values;
-  if (impl_->needs.many_lights()) left.values.first.push_back(0);
-  for (std::uint32_t node = 0; node < wanted.size(); ++node) {
-    if (wanted[node] == 0) continue;
-    former.push_back(node);
-    left.nodes.push_back(all.nodes[node]);
-    const bool many = impl_->needs.many_lights();
-    const std::size_t first = many ? values.first[node] : node * lights;
-    const std::size_t last = many ? values.first[node + 1] : first + lights;
-    for (std::size_t i = first; i < last; ++i) {
-      left.values.irradiance.push_back(values.irradiance[i]);
-      if (many) left.values.light.push_back(values.light[i]);
-    }
-    if (many) left.values.first.push_back(left.values.light.size());
-    if (all.error.empty()) continue;
-    left.error.push_back(all.error[node]);
-    left.distance.push_back(all.distance[node]);
-  }
-  for (std::uint32_t index = 0; index < kept.size(); ++index) {
-    if (kept[index] == 0) continue;
-    left.tiles.push_back(all.tiles[index]);
-    left.tiles.back().known = kept[index];
-    left.tiles.back().split &= kept[index];
-  }
-  impl_->tiles.clear();
-  impl_->node_at.clear();
-  impl_->values = {};
-  if (impl_->needs.many_lights()) impl_->values.first.push_back(0);
-  impl_->together.clear();
-  impl_->points.clear();
-  impl_->cells = 0;
-  restore(std::move(left));
-  return former;
-}
-
-void LightMaps::restore(LightMapContents contents) {
-  const auto fit = [](bool fits) {
-    if (!fits) throw InputError("saved light maps do not fit the scene; save them again");
-  };
-  Tiles& tiles = impl_->tiles;
-  const std::size_t count = contents.nodes.size();
-  fit(are_values_of(contents.values, count, impl_->needs));
-  fit(are_errors_of(contents.error, contents.distance, count));
-  for (std::uint32_t node = 0; node < count; ++node) {
-    const auto& [chart, x, y] = contents.nodes[node];
-    fit(impl_->node_at.insert({NodePlace{chart, x, y}, node}).second);
-  }
-  std::vector<NodePlace> places;
-  for (const auto& [chart, x, y] : contents.nodes) {
-    fit(chart < impl_->charts.size());
-    places.push_back({chart, x, y});
-  }
-  const PrimaryHits points =
-      light_maps::node_points(impl_->scene, impl_->charts, places, impl_->levels, false);
-  impl_->append(std::move(contents.values), points, count);
-  impl_->error = std::move(contents.error);
-  impl_->distance = std::move(contents.distance);
-  const auto place_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,
-                           std::uint32_t y) {
-    return std::array{chart, level, x, y};
-  };
-  std::map<std::array<std::uint32_t, 4>, std::uint32_t> tile_at;
-  for (const LightMapContents::Tile& saved : contents.tiles) {
-    const auto& [known, split, chart, level, x, y] = saved;
-    fit(chart < impl_->charts.size() && static_cast<int>(level) < impl_->levels && (x & 7) == 0 &&
-        (y & 7) == 0 && (split & ~known) == 0);
-    std::uint32_t index = none;
-    if (level == 0) {
-      const light_maps::Chart& lattice = impl_->charts[chart];
-      fit(x / 8 < lattice.root_columns() && y / 8 < lattice.root_rows());
-      index =
-          tiles.tile_of({lattice.first_root + y / 8 * lattice.root_columns() + x / 8, 0, false});
-    } else {
-      const auto parent = tile_at.find(place_of(chart, level - 1, x / 16 * 8, y / 16 * 8));
-      fit(parent != tile_at.end());
-      index = tiles[parent->second].child[(y / 8 & 1) * 2 + (x / 8 & 1)];
-      fit(index != none);
-    }
-    fit(tile_at.emplace(place_of(chart, level, x, y), index).second);
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
-    for (std::uint32_t cell = 0; cell < 64; ++cell) {
-      if ((known >> cell & 1) != 0) cells.emplace_back(index, cell);
-    }
-    std::vector<NodePlace> added;
-    impl_->number_corners(cells, added);
-    fit(added.empty());
-    tiles[index].known = known;
-    impl_->cells += cells.size();
-    for (std::uint32_t cell = 0; cell < 64; ++cell) {
-      if ((split >> cell & 1) == 0) continue;
-      fit(static_cast<int>(level) + 1 < impl_->levels);
-      tiles.split(index, cell);
-    }
-  }
 }
 
 double LightMaps::relative_error(const NodeBlend& blend) const {

@@ -22,6 +22,12 @@ struct Tile {
   std::uint32_t x = 0, y = 0;  ///< the tile's first cell, in cells of its level
   std::uint32_t level = 0;
   std::array<std::uint32_t, 81> node;
+
+  /// Nodes of cell y * 8 + x: the first is that of least column and row.
+  std::array<std::uint32_t, 4> corners(std::uint32_t cell) const {
+    const std::uint32_t first = (cell >> 3) * 9 + (cell & 7);
+    return {node[first], node[first + 1], node[first + 9], node[first + 10]};
+  }
 };
 
 /// A cell that nobody compared yet.
@@ -96,9 +102,7 @@ class Tiles {
  private:
   static void blend_of(const Tile& tile, std::uint32_t x, std::uint32_t y, const glm::vec2& within,
                        NodeBlend& blend) {
-    const std::uint32_t first = y * 9 + x;
-    blend.node = {tile.node[first], tile.node[first + 1], tile.node[first + 9],
-                  tile.node[first + 10]};
+    blend.node = tile.corners(y * 8 + x);
     blend.weight = {(1 - within.x) * (1 - within.y), within.x * (1 - within.y),
                     (1 - within.x) * within.y, within.x * within.y};
   }
