@@ -144,15 +144,15 @@ Scene gltf_room(const glm::dvec3& offset) {
   return load_scene(folder.write("room.gltf", document.dump()));
 }
 
-/// With light maps a photon more or less changes all pixels beside a node: more photons, and more
-/// to an estimate, make one weigh less.
+/// With light maps a photon more or less changes all pixels beside a node. Of 1,600 to an estimate
+/// one weighs less than the 1e-3 by which pixels count as apart.
 LightLayers picture_of(const Scene& scene, const glm::dvec3& offset, LightMapMode light_maps) {
   RenderParameters parameters = one_pass_picture();
   parameters.film.samples_per_pixel = 8;  // rounding moves single samples across edges
   parameters.light_maps = light_maps;
   if (light_maps == LightMapMode::on) {
-    parameters.photons.emitted_photons *= 4;
-    parameters.neighbours *= 4;
+    parameters.photons.emitted_photons *= 8;
+    parameters.neighbours *= 32;
   }
   return render(scene, camera_at(scene, offset), test::device(), parameters).layers;
 }
@@ -178,7 +178,7 @@ TEST_CASE("extremes: a thousand kilometres off, files give the picture of a scen
   const Difference step = difference_at({1.3, -2.1, 0.7});
   REQUIRE(step.mean < 1e-4);
   // Else the comparison could not see a picture that went wrong.
-  REQUIRE(step.apart < (light_maps == LightMapMode::on ? 0.2 : 0.1));
+  REQUIRE(step.apart < 0.1);
   for (const glm::dvec3& offset :
        {glm::dvec3(1e6, -1e6, 123'456.7), glm::dvec3(691'607.3, 519.1, -5'334'760.7)}) {
     const Difference difference = difference_at(offset);
@@ -216,9 +216,16 @@ TEST_CASE("extremes: a room a million times larger or smaller gives the same pic
   for (const float factor : {0x1p-20f, 1e-6f, 1e6f, 0x1p20f}) {
     check(LightMapMode::off, factor, at_hits);
   }
-  // Nodes lie in steps of two of 4 cm apart: other factors have other nodes.
   const RenderResult between_nodes = scaled_room(1.0f, LightMapMode::on);
   for (const float factor : {0x1p-20f, 0x1p20f}) check(LightMapMode::on, factor, between_nodes);
+  // Nodes lie in steps of two of 4 cm apart: with other factors the same photons are read at other
+  // nodes, and only the picture's light stays.
+  for (const float factor : {1e-6f, 1e6f}) {
+    const RenderResult result = scaled_room(factor, LightMapMode::on);
+    CAPTURE(factor);
+    CHECK(result.used.radius == Approx(between_nodes.used.radius).epsilon(1e-4));
+    CHECK(compare(result.layers, between_nodes.layers).mean < 1e-3);
+  }
 }
 
 TEST_CASE("extremes: a lamp of a millimetre in a hall of 1e5 m lights it as theory says") {
