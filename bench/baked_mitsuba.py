@@ -128,7 +128,8 @@ def row(given, name, folder):
     baked, own = folder / f"{name}.gltf", folder / f"{name}.exr"
     subprocess.run([given.photile, "bake", scene, "-o", baked, *LIGHT, "--quiet"], check=True)
     subprocess.run([given.photile, "render", scene, "-o", own, "--size", f"{WIDTH}x{HEIGHT}",
-                    "--samples", str(SAMPLES), "--light-maps", "on", *LIGHT, "--quiet"], check=True)
+                    "--quality", "draft", "--samples", str(SAMPLES), "--light-maps", "on", *LIGHT,
+                    "--quiet"], check=True)
     pictures = {"Mitsuba": shown(baked, scene), "photile": picture_error.read_picture(own)}
     reference = picture_error.read_picture(
         given.scenes / "references" / f"{name}-diffuse-{WIDTH}x{HEIGHT}.exr")

@@ -27,7 +27,7 @@ except ImportError as missing:
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ROWS = tuple((scene, options) for scene in ("classroom", "kitchen") for options in (
-    "--light-maps on --photons 500k -k 100 --samples 16", "--quality good",
+    "--quality draft --photons 500k -k 100 --samples 16", "--quality good",
     "--quality good --photons 1M", "--quality final"))
 
 

@@ -37,7 +37,7 @@ def rows(given, name, folder):
     text = ""
     for area, kernel, k in CASES:
         subprocess.run([given.photile, "render", scene, "--size", SIZE, "--area", area,
-                        "--kernel", kernel, "-k", str(k), "--light-maps", "off", "-q",
+                        "--kernel", kernel, "-k", str(k), "--quality", "draft", "--light-maps", "off", "-q",
                         "-o", picture], check=True)
         error = picture_error.measure(picture_error.read_picture(picture), reference)
         text += (f"| {name} | {area} | {kernel} | {k} | {error['mean_ratio']:.3f} "

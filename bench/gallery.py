@@ -27,7 +27,7 @@ except ImportError as missing:
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SIZE, REFERENCE_SAMPLES = "240x180", 256
-PHOTONS = ["--photons", "1M", "-k", "80", "--samples", "16"]
+PHOTONS = ["--quality", "draft", "--photons", "1M", "-k", "80", "--samples", "16"]
 
 
 @dataclasses.dataclass
@@ -74,7 +74,7 @@ def render(given, subject, options, picture):
 def measure(given, subject, folder):
     """Renders a scene both ways, writes the two side by side, and returns the figures."""
     size = "32x24" if given.quick else SIZE
-    photons = ["--photons", "20k", "-k", "20"] if given.quick else PHOTONS
+    photons = ["--quality", "draft", "--photons", "20k", "-k", "20"] if given.quick else PHOTONS
     samples = "4" if given.quick else str(REFERENCE_SAMPLES)
     own = render(given, subject, [*photons, *subject.estimate, "--size", size],
                  folder / "photons.exr")

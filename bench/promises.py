@@ -80,8 +80,8 @@ def keep(photile, scene, size, reference, promise, folder):
     expected, parameters = chosen["figures"], record["parameters"]
     photons, k, samples = (parameters[key] for key in
                            ("photons_emitted", "neighbours", "samples_per_pixel"))
-    again = render([*command, "--photons", str(photons), "-k", str(k), "--samples", str(samples)],
-                   picture, stats)
+    again = render([*command, "--quality", "draft", "--photons", str(photons), "-k", str(k),
+                    "--samples", str(samples)], picture, stats)
     return {"photons": photons, "k": k, "samples": samples,
             "expected_error": expected["expected relative error"],
             "expected_frame": expected["expected frame seconds"],
@@ -91,7 +91,7 @@ def keep(photile, scene, size, reference, promise, folder):
 def promises(quick):
     """Key of what is promised, wanted, as options."""
     for error in ERRORS[:1] if quick else ERRORS:
-        yield "error", error, ["--target-error", f"{100 * error:g}%"]
+        yield "error", error, ["--quality", "draft", "--target-error", f"{100 * error:g}%"]
     for budget in BUDGETS[:1] if quick else BUDGETS:
         yield "frame", budget, ["--time-budget", f"{1000 * budget:g}ms"]
 

@@ -101,7 +101,7 @@ def compile_kernels(command, scene, folder, options):
     """Fills the cache with the kernels of these options, which depend on k."""
     neighbours_used = options[options.index("-k") + 1]
     subprocess.run([command, "render", scene, "--size", "8x8", "--photons", "10k", "--quiet",
-                    "-o", folder / "compiled.exr", "-k", neighbours_used,
+                    "--quality", "draft", "-o", folder / "compiled.exr", "-k", neighbours_used,
                     "--least-neighbours", LEAST_NEIGHBOURS], check=True)
 
 
@@ -110,8 +110,8 @@ def photile(command, scene, size, folder, options):
     compile_kernels(command, scene, folder, options)
     picture, stats = folder / "photile.exr", folder / "photile.json"
     first, frame_processor = run_photile(
-        [command, "render", scene, "--size", size, "--quota", "power", "-o", picture,
-         "--stats", stats, *options])
+        [command, "render", scene, "--size", size, "--quality", "draft", "--quota", "power",
+         "-o", picture, "--stats", stats, *options])
     stages = {stage["stage"]: stage["seconds"] for stage in json.loads(stats.read_text())["stages"]}
     costs = {"first": first}
     if frame_processor is not None:

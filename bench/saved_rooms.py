@@ -32,9 +32,9 @@ except ImportError as missing:
              "python3-openimageio, and run it with /usr/bin/python3")
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-ROWS = (("classroom", "--photons 1M -k 250"),
+ROWS = (("classroom", "--quality draft --photons 1M -k 250"),
         ("classroom", "--photons 500k -k 100 --light-map-rays 32"),
-        ("kitchen", "--photons 1M -k 250"),
+        ("kitchen", "--quality draft --photons 1M -k 250"),
         ("kitchen", "--photons 500k -k 100 --light-map-rays 32"))
 FRAMES = 24
 REPEATS = 5

@@ -8,13 +8,13 @@ photile=build/release/photile
 pictures=docs/pictures
 mkdir -p "$pictures"
 
-"$photile" render scenes/living-room/living-room.gltf --size 960x640 --quality good \
+"$photile" render scenes/living-room/living-room.gltf --size 960x640 \
   -o "$pictures/living-room.png"
 
-# Few photons for so many neighbours make the dark edges wide, many neighbours make the rest calm.
+# The photon estimate alone: few photons for so many neighbours make the dark edges wide, many neighbours make the rest calm.
 for maps in naive triangle; do
-  "$photile" render scenes/cornell-box/cornell-box.gltf --maps "$maps" --size 400x400 --samples 16 \
-    --photons 200k --neighbours 1000 --quiet -o "$pictures/$maps.png"
+  "$photile" render scenes/cornell-box/cornell-box.gltf --quality draft --maps "$maps" \
+    --size 400x400 --samples 16 --photons 200k --neighbours 1000 --quiet -o "$pictures/$maps.png"
 done
 
 # The window, on a screen in memory: a click reads the light on the table, another shows illuminance.

@@ -10,6 +10,7 @@
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
+#include "render/quality.hpp"
 
 namespace photile {
 namespace {
@@ -97,7 +98,8 @@ KernelPreparation::KernelPreparation(const Scene& scene, std::span<Device> devic
 void compile_usual_kernels(Device& device, Progress& progress) {
   const std::array<SceneNeeds, 3> surfaces{
       SceneNeeds{}, {.glossy = true}, {.glossy = true, .normal_maps = true}};
-  const RenderParameters parameters;
+  RenderParameters parameters;
+  set_quality(parameters, Quality::good);
   progress.begin("compile kernels", surfaces.size() * max_dense_lights, "kinds of scenes");
   for (SceneNeeds needs : surfaces) {
     for (needs.light_count = 1; needs.light_count <= max_dense_lights; ++needs.light_count) {

@@ -4,11 +4,11 @@ namespace photile {
 namespace {
 
 void set(RenderParameters& parameters, std::uint64_t photons, int neighbours, int samples,
-         LightMapMode light_maps, int rays) {
+         int rays) {
   parameters.photons.emitted_photons = photons;
   parameters.neighbours = neighbours;
   parameters.film.samples_per_pixel = samples;
-  parameters.light_maps = light_maps;
+  parameters.light_maps = LightMapMode::automatic;
   parameters.light_map_rays = rays;
 }
 
@@ -30,11 +30,11 @@ void set_quality(RenderParameters& parameters, Quality quality) {
   switch (quality) {
     case Quality::draft:
       return set(parameters, defaults::emitted_photons, defaults::neighbours,
-                 defaults::samples_per_pixel, LightMapMode::automatic, 0);
+                 defaults::samples_per_pixel, 0);
     case Quality::good:
-      return set(parameters, 500'000, 100, 16, LightMapMode::on, 64);
+      return set(parameters, 500'000, 100, 16, 64);
     case Quality::best:
-      return set(parameters, 2'000'000, 100, 64, LightMapMode::on, 256);
+      return set(parameters, 2'000'000, 100, 64, 256);
   }
 }
 

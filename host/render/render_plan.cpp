@@ -41,6 +41,13 @@ std::string_view name_of(GlossMode mode) {
   return "unknown";
 }
 
+bool nodes_gather(const RenderParameters& asked) {
+  const bool shows_other_light = asked.final_gather_rays > 0 || asked.maps == MapMode::naive;
+  const bool read = asked.light_maps == LightMapMode::on ||
+                    (asked.light_maps == LightMapMode::automatic && !shows_other_light);
+  return asked.light_map_rays > 0 && asked.direct_rays == 0 && read;
+}
+
 PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
   return {.width = parameters.film.width,
           .height = parameters.film.height,
@@ -55,13 +62,14 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
       scene_(rays.scene().source.filename().string()) {
   check(asked);
   if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
+  if (!nodes_gather(asked)) used_.light_map_rays = 0;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
   if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
   if (asked.light_maps == LightMapMode::automatic) {
-    const bool at_hits = gathers() || asked.maps == MapMode::naive || passes() > 1;
+    const bool at_hits =
+        gathers() || asked.maps == MapMode::naive || (passes() > 1 && !gathers_at_nodes());
     used_.light_maps = at_hits ? LightMapMode::off : LightMapMode::on;
   }
-  if (!reads_light_maps()) used_.light_map_rays = 0;
   if (asked.gloss == GlossMode::automatic) {
     used_.gloss = reads_light_maps() && !gathers() ? GlossMode::rays : GlossMode::photons;
   }

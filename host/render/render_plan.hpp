@@ -18,6 +18,10 @@
 
 namespace photile {
 
+/// Whether nodes of light maps gather light for what is asked: with rays of theirs, and unless the
+/// light is not that of nodes, or looks at lamps from the hits replace a part of it.
+bool nodes_gather(const RenderParameters& asked);
+
 class RenderPlan {
  public:
   /// Traces a few paths where the number of passes follows from the memory. Errors: those of

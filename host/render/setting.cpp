@@ -197,7 +197,8 @@ std::vector<Setting> estimate_rows() {
                      not_kept),
       row<&P::light_maps>("light_maps", "light-maps", "light maps", words_of(all_light_map_modes),
                           "matt surfaces are read between nodes; auto: but where rays gather, with "
-                          "naive maps and several passes; off: an estimate at each hit",
+                          "naive maps and, unless nodes gather, several passes; off: an estimate "
+                          "at each hit",
                           not_kept),
       row<&P::light_map_rays>("light_map_rays", "light-map-rays", "light maps",
                               WholeNumbers{1, limits::max_final_gather_rays},
@@ -269,9 +270,6 @@ void check(const RenderParameters& parameters) {
         parameters.final_gather_rays > 0) {
       throw SettingError(setting,
                          "light maps hold the photon estimate, which rays that gather replace");
-    }
-    if (setting.name == "light_map_rays" && parameters.direct_rays > 0) {
-      throw SettingError(setting, "light maps hold direct light, which rays at hits replace");
     }
     if (setting.name == "gloss" && parameters.gloss == GlossMode::rays &&
         parameters.final_gather_rays > 0) {

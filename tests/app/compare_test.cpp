@@ -17,7 +17,7 @@ std::string render_box(const FileFolder& folder, const std::string& name,
                        const std::vector<std::string>& options = {},
                        const std::string& size = "32x32") {
   std::vector<std::string> arguments{"render", write_box(folder), "-o", folder / name, "--photons",
-                                     "20k",    "--size",          size};
+                                     "20k",    "--size",          size, "--quality",   "draft"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const Outcome outcome = run_photile(arguments);
   INFO(outcome.errors);

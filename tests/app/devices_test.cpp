@@ -105,8 +105,9 @@ TEST_CASE("without a stored tuning --tuned says so and renders what is rendered 
   std::filesystem::create_directory(folder / "cache");
   Run run;
   run.environment["XDG_CACHE_HOME"] = folder / "cache";
-  run.arguments = {"render", write_box(folder), "-o",    folder / "out.png", "--photons",
-                   "2k",     "--size",          "16x12", "--samples",        "1"};
+  run.arguments = {
+      "render", write_box(folder), "-o", folder / "out.png", "--photons", "2k", "--size",
+      "16x12",  "--samples",       "1",  "--quality",        "draft"};
   REQUIRE(run_photile(run).exit_code == 0);
   const std::string plain = folder.read("out.png");
   run.arguments.emplace_back("--tuned");
@@ -131,6 +132,8 @@ TEST_CASE("the option --tuned uses the stored tuning and its cell size, unless a
                    "--tuned",
                    "--stats",
                    folder / "stats.json",
+                   "--quality",
+                   "draft",
                    "--photons",
                    "2k",
                    "--size",
@@ -149,8 +152,8 @@ TEST_CASE("the option --tuned uses the stored tuning and its cell size, unless a
 TEST_CASE("two halves of a device render the file of the whole, and the record names both") {
   const FileFolder folder;
   Run run;
-  run.arguments = {"render", write_box(folder), "-o",   folder / "whole.png", "--photons",
-                   "5k",     "--size",          "64x48"};
+  run.arguments = {"render", write_box(folder), "-o",    folder / "whole.png", "--photons",
+                   "5k",     "--size",          "64x48", "--quality",          "draft"};
   REQUIRE(run_photile(run).exit_code == 0);
   run.arguments[3] = folder / "halves.png";
   run.arguments.insert(run.arguments.end(), {"--stats", folder / "stats.json"});

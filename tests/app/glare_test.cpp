@@ -12,7 +12,8 @@ namespace {
 using Catch::Contains;
 
 std::vector<std::string> render(const std::string& scene, std::vector<std::string> more) {
-  std::vector<std::string> arguments{"render", scene, "--size", "40x30", "--samples", "1"};
+  std::vector<std::string> arguments{"render",    scene, "--size",    "40x30",
+                                     "--samples", "1",   "--quality", "draft"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }

@@ -58,8 +58,9 @@ TEST_CASE("killed a hundred times at any moment, a render leaves the old picture
           "[slow]") {
   const FileFolder folder;
   const std::vector<std::string> arguments{
-      "render",           write_box(folder), "-o",  folder / "out.exr", "--png",
-      folder / "out.png", "--photons",       "20k", "--size",           "200x150"};
+      "render", write_box(folder),  "-o",        folder / "out.exr",
+      "--png",  folder / "out.png", "--photons", "20k",
+      "--size", "200x150",          "--quality", "draft"};
   const auto begin = Clock::now();
   REQUIRE(run_photile(arguments).exit_code == 0);
   const auto whole = std::chrono::duration<double>(Clock::now() - begin);
@@ -100,17 +101,19 @@ TEST_CASE("on a disk of 64 KB every kind of output fails by its name and leaves 
     return;
   }
   REQUIRE(run_photile({"render", folder / "box.obj", "-o", folder / "large.exr", "--photons", "5k",
-                       "--size", "200x150"})
+                       "--size", "200x150", "--quality", "draft"})
               .exit_code == 0);
   std::string points;
   for (int i = 0; i < 3'000; ++i) points += "0.1 -0.9 0.1 0 1 0\n";
   folder.write("many.pts", points);
   const std::string disk = folder / "disk", large = folder / "large.exr",
-                    many = folder / "many.pts", few = " --photons 5k -q ";
+                    many = folder / "many.pts", few = " --photons 5k -q ",
+                    draft = " --quality draft";
   const auto [command, name] = GENERATE_COPY(table<std::string, std::string>({
-      {"render " + scene + few + "--size 200x150 -o '" + disk + "/a.exr'", "a.exr"},
-      {"render " + scene + few + "--size 400x300 -o '" + disk + "/a.png'", "a.png"},
-      {"render " + scene + few + "--size 4x4 --save-maps '" + disk + "/a.maps' -o /dev/shm/a.exr",
+      {"render " + scene + draft + few + "--size 200x150 -o '" + disk + "/a.exr'", "a.exr"},
+      {"render " + scene + draft + few + "--size 400x300 -o '" + disk + "/a.png'", "a.png"},
+      {"render " + scene + draft + few + "--size 4x4 --save-maps '" + disk +
+           "/a.maps' -o /dev/shm/a.exr",
        "a.maps"},
       {"relight '" + large + "' -o '" + disk + "/a.exr'", "a.exr"},
       {"measure " + scene + few + "--rays 1 --repeats 2 --points '" + many + "' -o '" + disk +

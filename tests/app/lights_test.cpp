@@ -42,7 +42,7 @@ TEST_CASE("both integrators render a floor under a sky, as a layer that can be r
   const std::string picture = folder / "floor.exr";
   const Outcome outcome =
       run_photile({"render", write_floor(folder), "-o", picture, "--size", "64x48", "--samples",
-                   "4", "--integrator", integrator, "--sky", "uniform=6830"});
+                   "4", "--integrator", integrator, "--quality", "draft", "--sky", "uniform=6830"});
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   const Image image = read_image(picture);

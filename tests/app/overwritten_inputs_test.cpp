@@ -256,7 +256,7 @@ TEST_CASE("a folder without kernels is refused, for its kernels would not be use
   const FileFolder folder;
   Run run;
   run.arguments = {"render", write_box(folder), "-o", folder / "out.png", "--size",
-                   "8x8",    "--photons",       "1k"};
+                   "8x8",    "--photons",       "1k", "--quality",        "draft"};
   for (const std::string& kernels : {folder / "missing", folder.path.string()}) {
     run.environment["PHOTILE_KERNEL_DIR"] = kernels;
     CHECK_THAT(last_error(run_photile(run), usage), Contains(kernels) && Contains("no kernel"));

@@ -95,7 +95,7 @@ def main():
             photons = [] if "path" in extra else ["--photons", "50k"]
             subprocess.run([photile, "render", SCENE, "-o", picture, "--size", "80x60", "--samples",
                             "2", "--quiet", "--light", "lamp=x2", "--preview", tev.address,
-                            *photons, *extra], check=True)
+                            "--quality", "draft", *photons, *extra], check=True)
             tev.thread.join(60)
             if tev.thread.is_alive():
                 fail("the connection was not closed")

@@ -16,8 +16,8 @@ using Catch::Contains;
 
 Run small_render(const FileFolder& folder) {
   Run run;
-  run.arguments = {"render", write_box(folder), "-o",   folder / "out.png", "--photons",
-                   "20k",    "--size",          "16x12"};
+  run.arguments = {"render", write_box(folder), "-o",    folder / "out.png", "--photons",
+                   "20k",    "--size",          "16x12", "--quality",        "draft"};
   return run;
 }
 

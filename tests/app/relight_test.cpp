@@ -16,7 +16,8 @@ using Catch::Contains;
 std::string render(const FileFolder& folder, const std::string& name,
                    const std::vector<std::string>& options = {}) {
   std::vector<std::string> arguments{
-      "render", write_box(folder), "-o", folder / name, "--photons", "50k", "--size", "24x16"};
+      "render", write_box(folder), "-o",    folder / name, "--photons",
+      "50k",    "--size",          "24x16", "--quality",   "draft"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const Outcome outcome = run_photile(arguments);
   INFO(outcome.errors);

@@ -17,7 +17,8 @@ namespace {
 using Catch::Contains;
 
 void render(const FileFolder& folder, const std::vector<std::string>& options) {
-  std::vector<std::string> arguments{"render", write_box(folder), "--photons", "100k"};
+  std::vector<std::string> arguments{"render", write_box(folder), "--photons",
+                                     "100k",   "--quality",       "draft"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const Outcome outcome = run_photile(arguments);
   INFO(outcome.errors);
@@ -198,8 +199,9 @@ TEST_CASE("naive maps are darker than those of neighbour groups at borders, henc
 
 TEST_CASE("a profiled render lists the time of each kernel") {
   const FileFolder folder;
-  const Outcome outcome = run_photile({"render", write_box(folder), "--photons", "10k", "--size",
-                                       "16x12", "-o", folder / "a.png", "--profile"});
+  const Outcome outcome =
+      run_photile({"render", write_box(folder), "--photons", "10k", "--size", "16x12", "-o",
+                   folder / "a.png", "--quality", "draft", "--profile"});
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors, Contains("\nkernel ") && Contains("launches"));
 }

@@ -14,9 +14,9 @@ using Catch::Contains;
 
 std::vector<std::string> arguments_of(const FileFolder& folder, const std::string& name,
                                       const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"render",      write_box(folder), "-o",
-                                     folder / name, "--photons",       "20k",
-                                     "--size",      "24x16",           "--quiet"};
+  std::vector<std::string> arguments{
+      "render", write_box(folder), "-o",      folder / name, "--photons", "20k",
+      "--size", "24x16",           "--quiet", "--quality",   "draft"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }

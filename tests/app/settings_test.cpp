@@ -48,9 +48,11 @@ TEST_CASE("every setting is an option of render, and in its help") {
 
 TEST_CASE("a picture and its statistics tell every setting that it was made with") {
   const FileFolder folder;
-  REQUIRE(run_photile({"render", write_box(folder), "-o", folder / "a.exr", "--size", "16x12",
-                       "--photons", "5k", "--quota", "equal", "--structure", "kdtree-2d",
-                       "--photons-per-cell", "0.1", "--passes", "3", "--stats", folder / "a.json"})
+  REQUIRE(run_photile(
+              {"render",  write_box(folder), "-o",          folder / "a.exr", "--size",
+               "16x12",   "--photons",       "5k",          "--quality",      "draft",
+               "--quota", "equal",           "--structure", "kdtree-2d",      "--photons-per-cell",
+               "0.1",     "--passes",        "3",           "--stats",        folder / "a.json"})
               .exit_code == 0);
   const Image picture = read_image(folder / "a.exr");
   const auto recorded = nlohmann::json::parse(folder.read("a.json"))["parameters"];
@@ -80,18 +82,35 @@ TEST_CASE("--quality sets settings that go together, and those given beside it c
     return nlohmann::json::parse(folder.read("a.json"))["parameters"];
   };
   const nlohmann::json draft = made_with({"--quality", "draft"});
-  CHECK(draft == made_with({}));
   // Photons come before the quality on the line, samples after it.
   const nlohmann::json good = made_with({"--quality", "good", "--samples", "2"});
   CHECK(good["photons_emitted"] == 5000);
   CHECK(good["samples_per_pixel"] == 2);
   CHECK(good["light_maps"] == "on");
+  CHECK(good == made_with({"--samples", "2"}));  // the usual quality
   CHECK(good["neighbours"] > draft["neighbours"]);
   CHECK(good["light_map_rays"] > 0);
   CHECK_THAT(only_error(run_photile({"render", write_box(folder), "-o", folder / "b.exr",
                                      "--quality", "best"}),
                         usage),
              Contains("draft, good, final"));
+}
+
+TEST_CASE("nodes gather in pictures unless another method is asked for") {
+  const FileFolder folder;
+  const auto [option, value, gather] =
+      GENERATE(table<std::string, std::string, bool>({{"--final-gather", "2", false},
+                                                      {"--direct", "rays", false},
+                                                      {"--maps", "naive", false},
+                                                      {"--light-maps", "off", false},
+                                                      {"--passes", "2", true}}));
+  CAPTURE(option);
+  REQUIRE(run_photile({"render", write_box(folder), "-o", folder / "a.exr", "--size", "8x6",
+                       "--photons", "5k", "-k", "50", "--samples", "2", option, value, "--stats",
+                       folder / "a.json"})
+              .exit_code == 0);
+  const auto used = nlohmann::json::parse(folder.read("a.json"))["parameters"];
+  CHECK((used["light_map_rays"] > 0) == gather);
 }
 
 TEST_CASE("settings that go with no other are refused by the names of their options") {

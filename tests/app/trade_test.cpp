@@ -70,7 +70,7 @@ TEST_CASE("a render for a wanted error tells its choice and what it expects") {
   const FileFolder folder;
   const Outcome outcome =
       run_photile({"render", write_box(folder), "-o", folder / "box.exr", "--size", "48x36",
-                   "--target-error", "20%", "--stats", folder / "box.json"});
+                   "--quality", "draft", "--target-error", "20%", "--stats", folder / "box.json"});
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors, Contains("chosen: --photons") && Contains("expected: error"));
@@ -91,9 +91,9 @@ TEST_CASE("a time budget that nothing meets is told, and the fastest settings ar
 
 TEST_CASE("pictures are made until one states the wanted error, and are there meanwhile") {
   const FileFolder folder;
-  const Outcome outcome = run_photile(
-      {"render", write_box(folder), "-o", folder / "box.exr", "--size", "24x18", "--quality",
-       "good", "--light-map-rays", "8", "--target-error", "2%", "--stats", folder / "box.json"});
+  const Outcome outcome = run_photile({"render", write_box(folder), "-o", folder / "box.exr",
+                                       "--size", "24x18", "--light-map-rays", "8", "--target-error",
+                                       "2%", "--stats", folder / "box.json"});
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors, Contains("picture 1: ") && Contains("rays a node, standard error"));
@@ -107,18 +107,19 @@ TEST_CASE("pictures are made until one states the wanted error, and are there me
 TEST_CASE("pictures are made for a time; that needs nodes that gather") {
   const FileFolder folder;
   const std::string scene = write_box(folder);
-  const Outcome outcome = run_photile({"render", scene, "-o", folder / "box.exr", "--size", "24x18",
-                                       "--quality", "good", "--for", "1ms"});
+  const Outcome outcome =
+      run_photile({"render", scene, "-o", folder / "box.exr", "--size", "24x18", "--for", "1ms"});
   INFO(outcome.errors);
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors,
              Contains("picture 1: 125000 photons, 16 rays") && !Contains("picture 2"));
   CHECK_FALSE(text_of(folder / "box.exr").empty());
-  const std::string refused =
-      only_error(run_photile({"render", scene, "-o", folder / "no.exr", "--for", "1s"}), 2);
+  const std::string refused = only_error(
+      run_photile({"render", scene, "-o", folder / "no.exr", "--for", "1s", "--light-maps", "off"}),
+      2);
   CHECK_THAT(refused, Contains("--for") && Contains("--quality good"));
-  only_error(run_photile({"render", scene, "-o", folder / "no.exr", "--for", "1s", "--quality",
-                          "good", "--glare", folder / "glare.png"}),
+  only_error(run_photile({"render", scene, "-o", folder / "no.exr", "--for", "1s", "--glare",
+                          folder / "glare.png"}),
              2);
 }
 

@@ -4,7 +4,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
-#include "photile/defaults.hpp"
+#include "render/quality.hpp"
 
 namespace photile::test {
 namespace {
@@ -119,8 +119,8 @@ TEST_CASE("a scene that stores no photons is named, with the option that helps")
   const std::string scene = folder.write(
       "lamp.obj", "mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lamp\nusemtl lamp\nf 1 2 3\n");
   folder.write("lamp.mtl", "newmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
-  const Outcome outcome =
-      run_photile({"render", scene, "-o", folder / "out.exr", "--photons", "100", "--size", "4x4"});
+  const Outcome outcome = run_photile({"render", scene, "-o", folder / "out.exr", "--photons",
+                                       "100", "--size", "4x4", "--quality", "draft"});
   CHECK_THAT(last_error(outcome, usage), Contains("--radius: lamp.obj: automatic radius"));
 }
 
@@ -151,11 +151,16 @@ TEST_CASE("the version names photile and what it was built with") {
                                  Contains("OpenCL headers"));
 }
 
-TEST_CASE("the help of render shows the defaults of defaults.hpp") {
-  const Outcome outcome = run_photile({"render", "--help"});
+TEST_CASE("the help of a command shows the settings of its usual quality") {
+  const auto [command, usual] =
+      GENERATE(table<std::string, Quality>({{"render", Quality::good}, {"view", Quality::draft}}));
+  RenderParameters parameters;
+  set_quality(parameters, usual);
+  const Outcome outcome = run_photile({command, "--help"});
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.output, Contains("N=" + std::to_string(defaults::emitted_photons)) &&
-                                 Contains("N=" + std::to_string(defaults::neighbours)));
+  const auto shows = [&](auto number) { return Contains("N=" + std::to_string(number)); };
+  CHECK_THAT(outcome.output,
+             shows(parameters.photons.emitted_photons) && shows(parameters.neighbours));
 }
 
 TEST_CASE("a full disk behind standard output is a failure") {

@@ -27,6 +27,8 @@ std::vector<std::string> walk(const FileFolder& folder, const std::vector<std::s
                                      folder / "f.##.exr",
                                      "--fps",
                                      frames_per_second,
+                                     "--quality",
+                                     "draft",
                                      "--photons",
                                      "20k",
                                      "--size",

@@ -25,8 +25,8 @@ struct Failure {
 Run small_render(const FileFolder& folder, std::map<std::string, std::string> layer,
                  const std::vector<std::string>& options = {}) {
   Run run;
-  run.arguments = {"render", write_box(folder), "--photons", "2000",
-                   "--size", "16x12",           "-o",        folder / "out.exr"};
+  run.arguments = {"render", write_box(folder),  "--photons", "2000", "--size", "16x12",
+                   "-o",     folder / "out.exr", "--quality", "draft"};
   run.arguments.insert(run.arguments.end(), options.begin(), options.end());
   run.environment = std::move(layer);
   run.environment["OPENCL_LAYERS"] = PHOTILE_FAILING_LAYER;

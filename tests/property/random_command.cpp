@@ -145,7 +145,7 @@ class Generator {
                        : fmt::format("{}x{}", dice_.whole(1, 9), dice_.whole(1, 9))});
     maybe(0.03, {"--camera", dice_.one_of({"0", "1", "default", "nobody"})});
     maybe(0.04, {"--direct", dice_.one_of({"rays", "photons"})});
-    maybe(0.03, {"--quality", "draft"});
+    add({"--quality", "draft"});  // nodes that gather come with --light-map-rays
   }
 
   void false_colour() {

@@ -21,7 +21,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENES = SOURCE / "scenes/cornell-box"
 NAME = "cornell-box"
 MOOD = {"photile_moods": 1, "moods": {"dim": {"lamp": {"power": 7, "unit": "lm", "kelvin": 3000}}}}
-SETTINGS = ["--photons", "100k", "--size", "480x360", "--samples", "4", "--quiet"]
+SETTINGS = ["--quality", "draft", "--photons", "100k", "--size", "480x360", "--samples", "4", "--quiet"]
 PATIENCE = 120
 # Buttons under "Display", with one lamp, one mood and a line of news.
 PICTURE, ILLUMINANCE = (28, 326), (107, 326)

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "photile/errors.hpp"
-#include "render/quality.hpp"
 #include "render/refinement.hpp"
+#include "render/render_plan.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/validators.hpp"
 
@@ -51,7 +51,7 @@ void tell(const QualityTarget& target, const QualityModels& models, const Qualit
 
 }  // namespace
 
-void add_quality_preset(CLI::App& command, RenderParameters& parameters) {
+void add_quality_preset(CLI::App& command, RenderParameters& parameters, Quality usual) {
   Words names;
   for (const Quality quality : all_qualities) names.words.push_back(name_of(quality));
   command
@@ -65,26 +65,35 @@ void add_quality_preset(CLI::App& command, RenderParameters& parameters) {
           "photons, k, samples and light maps together; options given beside it count")
       ->type_name("draft|good|final")
       ->transform(within(names))
-      ->default_str("draft")
+      ->default_str(std::string(name_of(usual)))
       ->group("Picture");
+}
+
+void add_time_budget(CLI::App& command, QualityTarget& target, RenderParameters& parameters) {
+  command
+      .add_option_function<double>(
+          "--time-budget",
+          [&target, &parameters](double seconds) {
+            target.frame_seconds = seconds;
+            set_quality(parameters, Quality::draft);
+          },
+          "choose k and samples for pictures of this time, once the photon maps are there; "
+          "otherwise as --quality draft")
+      ->type_name("TIME")
+      ->transform(duration())
+      ->group("Quality");
 }
 
 void add_quality_options(CLI::App& command, QualityTarget& target) {
   CLI::Option* error =
       command
           .add_option("--target-error", target.relative_error,
-                      "choose photons, k and samples for this root mean square relative error; "
-                      "where nodes of light maps gather, make pictures until one states it")
+                      "make pictures until one states this root mean square relative error; where "
+                      "nodes of light maps do not gather, choose photons, k and samples for it")
           ->type_name("PERCENT")
           ->transform(share_up_to(1))
           ->group("Quality");
-  CLI::Option* time = command
-                          .add_option("--time-budget", target.frame_seconds,
-                                      "choose k and samples for pictures of this time, once the "
-                                      "photon maps are there")
-                          ->type_name("TIME")
-                          ->transform(duration())
-                          ->group("Quality");
+  CLI::Option* time = command.get_option("--time-budget");
   command
       .add_option("--for", target.run_seconds,
                   "make better and better pictures for so long, where nodes of light maps gather; "
@@ -103,9 +112,9 @@ void add_quality_options(CLI::App& command, QualityTarget& target) {
 }
 
 bool refines(const QualityTarget& target, const RenderParameters& parameters) {
-  const bool gathers = parameters.light_maps != LightMapMode::off && parameters.light_map_rays > 0;
+  const bool gathers = nodes_gather(parameters);
   if (target.run_seconds > 0 && !gathers) {
-    throw UsageError("--for: pictures are made better where nodes gather; give --quality good");
+    throw UsageError("--for: pictures are made better where nodes gather, as with --quality good");
   }
   return gathers && (target.relative_error > 0 || target.run_seconds > 0);
 }

@@ -6,6 +6,7 @@
 
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
+#include "render/quality.hpp"
 #include "tools/trade/quality_target.hpp"
 
 namespace CLI {
@@ -14,12 +15,16 @@ class App;
 
 namespace photile::app {
 
-/// Adds --quality, which sets several settings at once. To be added before theirs: options that are
-/// given override it, wherever they stand on the line.
-void add_quality_preset(CLI::App& command, RenderParameters& parameters);
+/// Adds --quality, which sets several settings at once; `usual` is what the parameters have without
+/// it. To be added before theirs: options that are given override it, wherever they stand.
+void add_quality_preset(CLI::App& command, RenderParameters& parameters, Quality usual);
 
-/// Adds the options of a target. They exclude the options whose values they choose, which must be
-/// there.
+/// Adds --time-budget, whose models know the quality draft alone. To be added before the settings,
+/// too.
+void add_time_budget(CLI::App& command, QualityTarget& target, RenderParameters& parameters);
+
+/// Adds the other options of a target. All exclude the options whose values they choose, which must
+/// be there.
 void add_quality_options(CLI::App& command, QualityTarget& target);
 
 /// Whether settings are to be chosen by the models.

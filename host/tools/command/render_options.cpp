@@ -95,9 +95,9 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
   add_run_group(command, options);
 }
 
-void add_picture_settings(CLI::App& command, RenderOptions& options,
+void add_picture_settings(CLI::App& command, RenderOptions& options, Quality usual,
                           std::initializer_list<std::string_view> without) {
-  add_quality_preset(command, options.parameters);  // before the settings that override it
+  add_quality_preset(command, options.parameters, usual);  // before the settings that override it
   add_setting_options(command, options, without);
   add_view_group(command, options);
   command
@@ -125,7 +125,9 @@ void add_integrator_option(CLI::App& command, RenderOptions& options) {
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
   add_picture_options(command, options.pictures);
-  add_picture_settings(command, options);
+  add_time_budget(command, options.target, options.parameters);
+  set_quality(options.parameters, Quality::good);
+  add_picture_settings(command, options, Quality::good);
   add_integrator_option(command, options);
   command
       .add_flag("--tuned", options.tuned,

@@ -12,6 +12,7 @@
 #include "photile/light_mix.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
+#include "render/quality.hpp"
 #include "tools/command/picture_outputs.hpp"
 #include "tools/trade/quality_target.hpp"
 
@@ -57,7 +58,8 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
                          std::initializer_list<std::string_view> without = {});
 
 /// Adds these and those that say what a camera makes of it, but not what becomes of the picture.
-void add_picture_settings(CLI::App& command, RenderOptions& options,
+///   usual   the quality that `options` have
+void add_picture_settings(CLI::App& command, RenderOptions& options, Quality usual,
                           std::initializer_list<std::string_view> without = {});
 
 /// Adds --save-maps and --load-maps.

@@ -359,7 +359,8 @@ void add_walk_command(CLI::App& photile) {
       ->transform(count_between(0, limits::max_frames))
       ->capture_default_str()
       ->group("Motion");
-  add_picture_settings(*command, options->render);
+  set_quality(options->render.parameters, Quality::good);
+  add_picture_settings(*command, options->render, Quality::good);
   add_saved_maps_options(*command, options->render);
   command->callback([options, command] {
     const bool given = command->count("--light-maps") > 0;
