@@ -1,6 +1,7 @@
 #include "estimate/tuning_sample.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <random>
@@ -14,6 +15,9 @@ namespace {
 /// Uniform in [0, 1). Not std::uniform_real_distribution, which differs between libraries.
 float uniform(std::mt19937_64& random) { return static_cast<float>(random() >> 40) * 0x1p-24f; }
 
+/// A picture of one normal, that of the surface.
+Texture flat_normal_map() { return Texture("flat", 1, 1, {{128, 128, 255, 255}}); }
+
 /// The unit square as two triangles, with a material and lights as needed.
 Scene unit_square(const SceneNeeds& needs) {
   SceneBuilder builder("tuning sample");
@@ -23,11 +27,16 @@ Scene unit_square(const SceneNeeds& needs) {
     material.specular = glm::vec3(0.04f);
     material.roughness = 0.3f;
   }
+  if (needs.normal_maps) material.normal_texture = builder.add(flat_normal_map());
   Light light;
   light.kind = LightKind::point;
   light.power = 1;
   for (std::uint32_t i = 0; i < needs.light_count; ++i) builder.add(light);
-  builder.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, builder.add(material));
+  constexpr std::array<glm::vec3, 4> vertices{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+  constexpr std::array<glm::uvec3, 2> triangles{{{0, 1, 2}, {0, 2, 3}}};
+  constexpr std::array<glm::vec2, 4> uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  builder.add(MeshArrays{
+      .vertices = vertices, .triangles = triangles, .uv = uv, .material = builder.add(material)});
   return std::move(builder).build();
 }
 
@@ -61,7 +70,8 @@ std::uint32_t every_second_bit(std::uint32_t code) {
   return bits;
 }
 
-PrimaryHits grid_of_hits(const Scene& scene, bool glossy, int per_side, std::mt19937_64& random) {
+PrimaryHits grid_of_hits(const Scene& scene, const SceneNeeds& needs, int per_side,
+                         std::mt19937_64& random) {
   PrimaryHits hits;
   const auto side = static_cast<std::uint32_t>(per_side);
   std::uint32_t padded = 1;
@@ -81,9 +91,10 @@ PrimaryHits grid_of_hits(const Scene& scene, bool glossy, int per_side, std::mt1
     hits.pixel.push_back(0);
     hits.throughput.emplace_back(1.0f);
     hits.diffuse_albedo.push_back(material.diffuse);
-    if (!glossy) continue;
+    if (!needs.glossy) continue;
     hits.outgoing.emplace_back(0.6f, 0.0f, 0.8f);
     hits.lobe.push_back({material.specular, material.roughness, {0, 0, 1}});
+    if (needs.normal_maps) hits.lobe.back().smooth_normal = {0, 0, 1};
   }
   return hits;
 }
@@ -96,7 +107,7 @@ TuningSample make_tuning_sample(const SceneNeeds& needs, int neighbours,
   TuningSample sample;
   sample.scene = unit_square(needs);
   sample.photons = random_photons(needs, size.photons, random);
-  sample.hits = grid_of_hits(sample.scene, needs.glossy, size.hits_per_side, random);
+  sample.hits = grid_of_hits(sample.scene, needs, size.hits_per_side, random);
   sample.radius =
       2 * std::sqrt(neighbours / (glm::pi<double>() * static_cast<double>(size.photons)));
   return sample;

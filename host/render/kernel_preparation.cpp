@@ -49,10 +49,6 @@ estimate::TuningSample sample_of(const SceneNeeds& needs, bool mixed, int neighb
   constexpr estimate::TuningSampleSize size{.photons = 1000, .hits_per_side = 16};
   estimate::TuningSample sample = estimate::make_tuning_sample(needs, neighbours, size);
   sample.radius = 2;  // the square is one patch
-  if (needs.normal_maps) {
-    for (Material& material : sample.scene.materials) material.normal_texture = 0;
-    for (HitLobe& lobe : sample.hits.lobe) lobe.smooth_normal = lobe.normal;
-  }
   if (!mixed) return sample;
   for (auto* points : {&sample.scene.vertices, &sample.photons.position, &sample.hits.position}) {
     std::transform(points->begin(), points->end(), points->begin(), folded);

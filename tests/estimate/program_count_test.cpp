@@ -1,6 +1,7 @@
 // A start is paid per program: what is built for maps and an estimate.
 #include <catch2/catch.hpp>
 
+#include "estimate/tuning_sample.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "render/kernel_preparation.hpp"
@@ -35,6 +36,21 @@ TEST_CASE("no kernel is left to compile once those of a scene are prepared") {
   CHECK(maps.statistics().mixed_maps > 0);
   Estimator(maps, scene, {.neighbours = 20}).estimate(test::uniform_hits(scene, 93, 92));
   CHECK(device.programs_built() + device.programs_from_cache() == prepared);
+}
+
+TEST_CASE("kernels are prepared for whatever materials and lights a scene has") {
+  const SceneNeeds needs =
+      GENERATE(SceneNeeds{.light_count = 1}, SceneNeeds{.glossy = true, .light_count = 3},
+               SceneNeeds{.glossy = true, .normal_maps = true, .light_count = 1});
+  const Scene scene = estimate::make_tuning_sample(needs, 20, {1000, 4}).scene;
+  CHECK(needs_of(scene).glossy == needs.glossy);
+  CHECK(needs_of(scene).normal_maps == needs.normal_maps);
+  CHECK(needs_of(scene).light_count == needs.light_count);
+  Device device;
+  RenderParameters parameters;
+  parameters.neighbours = 20;
+  CHECK_NOTHROW(KernelPreparation(scene, std::span(&device, 1), parameters).wait());
+  CHECK(device.programs_built() + device.programs_from_cache() == 2);
 }
 
 }  // namespace photile::test
