@@ -1,13 +1,14 @@
 // Buffers: allocation, transfers, fills.
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "device/context_impl.hpp"
-#include "device/huge_pages.hpp"
 
 namespace photile::device {
 namespace {
@@ -20,6 +21,27 @@ void check_range(const RawBuffer& buffer, std::size_t bytes, std::size_t offset,
                                   offset, buffer.bytes()),
                       CL_INVALID_VALUE);
   }
+}
+
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+constexpr std::size_t least_bytes = 4 * huge_page;
+
+/// Asks the operating system to back a new buffer of a CPU device with large pages: a query reads
+/// short ranges all over a map, and with pages of 4 KiB waits for the translation of their
+/// addresses. For large buffers; a wish that may go unheard. Call it before the buffer is
+/// first written.
+void prefer_huge_pages(cl_command_queue queue, cl_mem memory, std::size_t bytes) {
+  if (bytes < least_bytes) return;
+  // On a CPU a mapped buffer is the buffer itself; where it is a copy, the advice is merely
+  // useless.
+  void* const mapped = clEnqueueMapBuffer(queue, memory, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0,
+                                          bytes, 0, nullptr, nullptr, nullptr);
+  if (mapped == nullptr) return;
+  const auto begin = reinterpret_cast<std::uintptr_t>(mapped);
+  const std::uintptr_t first = (begin + huge_page - 1) / huge_page * huge_page;
+  const std::uintptr_t last = (begin + bytes) / huge_page * huge_page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+  clEnqueueUnmapMemObject(queue, memory, mapped, 0, nullptr, nullptr);
 }
 
 }  // namespace

@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
 
 namespace photile::device {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,6 +60,12 @@ std::optional<fs::path> persistent_cache_folder() {
     }
   }
   return std::nullopt;
+}
+
+void warn(const std::string& line) {
+  // One call, so that the lines of several processes do not mix.
+  const std::string text = "photile: warning: " + line + "\n";
+  std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 }  // namespace photile::device

@@ -1,4 +1,5 @@
-// Where photile may keep files between runs, and where it may keep them during one.
+// Where photile may keep files between runs, and where it may keep them during one; warnings of
+// trouble there, which never stops a run.
 #pragma once
 
 #include <cstdint>
@@ -18,5 +19,8 @@ std::optional<std::filesystem::path> persistent_cache_folder();
 /// "" where compiled code can be kept in and loaded from `folder`, which is created if need be;
 /// else what is wrong.
 std::string folder_problem(const std::filesystem::path& folder);
+
+/// Writes "photile: warning: <line>" to the standard error stream.
+void warn(const std::string& line);
 
 }  // namespace photile::device

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "device/context_impl.hpp"
+#include "device/device_list.hpp"
 #include "device/device_selection.hpp"
-#include "device/sub_devices.hpp"
 
 namespace photile::device {
 namespace {

@@ -13,7 +13,6 @@
 #include "device/kernel_times.hpp"
 #include "device/opencl.hpp"
 #include "device/program_library.hpp"
-#include "device/status_names.hpp"
 
 namespace photile::device {
 

@@ -1,6 +1,8 @@
-// The OpenCL devices of this machine, with their handles.
+// The OpenCL devices of this machine, with their handles, and parts of them.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,5 +27,11 @@ struct DeviceList {
 /// Asks every platform. Prepares PoCL's cache first, because PoCL reads its folder on the first
 /// call. Errors: DeviceError when the loader itself fails.
 DeviceList enumerate_devices();
+
+/// Sub-devices: splits `whole` by clCreateSubDevices into parts of `compute_units` each. A part's
+/// id is the whole's with ".0", ".1", ... ; its memory is an equal share of the whole's, since all
+/// parts fill the same. Errors: DeviceError when the device cannot be split like that.
+std::vector<ListedDevice> make_sub_devices(const ListedDevice& whole,
+                                           std::span<const std::uint32_t> compute_units);
 
 }  // namespace photile::device

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/letter_case.hpp"
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::device {

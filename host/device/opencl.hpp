@@ -12,6 +12,13 @@
 
 namespace photile::device {
 
+/// "CL_OUT_OF_RESOURCES (-5)"; "unknown status (-12345)" for a code that OpenCL 1.2 does not
+/// define.
+std::string status_name(int status);
+
+/// True for the codes by which a runtime says that memory ran out or a buffer is too large.
+bool is_out_of_memory(int status);
+
 /// Throws DeviceError "<call> failed: <status by name>; <detail>".
 [[noreturn]] void throw_status(cl_int status, std::string_view call, std::string_view detail = {});
 

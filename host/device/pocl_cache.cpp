@@ -7,8 +7,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "device/cache_folder.hpp"
 #include "device/checked_file.hpp"
-#include "device/warning.hpp"
 
 namespace photile::device {
 

@@ -11,7 +11,6 @@
 #include <system_error>
 
 #include "device/cache_folder.hpp"
-#include "device/warning.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::device {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "device/status_names.hpp"
+#include "device/opencl.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::device {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "device/cache_folder.hpp"
 #include "device/checked_file.hpp"
-#include "device/warning.hpp"
 
 namespace photile::device {
 

@@ -5,7 +5,6 @@
 #include "device/cache_folder.hpp"
 #include "device/pocl_work_folder.hpp"
 #include "device/program_source.hpp"
-#include "device/warning.hpp"
 #include "photile/statistics.hpp"
 
 namespace photile::device {

@@ -11,8 +11,8 @@
 #include "common/output_file.hpp"
 #include "export/light_setting.hpp"
 #include "import/photometry/photometric_text.hpp"
-#include "import/resource_error.hpp"
 #include "import/scene_folder.hpp"
+#include "import/warnings.hpp"
 
 namespace photile::scene_io {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "common/letter_case.hpp"
+#include "common/ascii_text.hpp"
 #include "image/formats/formats.hpp"
 
 namespace photile::image {

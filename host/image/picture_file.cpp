@@ -11,7 +11,7 @@
 #include <fstream>
 #include <limits>
 
-#include "common/regular_file.hpp"
+#include "common/input_file.hpp"
 #include "image/decoder.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"

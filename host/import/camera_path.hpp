@@ -1,11 +1,18 @@
-// Camera paths described in a file.
+// How a camera moves, and files that say so.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
-#include "scene/camera_motion.hpp"
+#include "photile/camera.hpp"
 
 namespace photile::walk {
+
+/// A camera at any time in [begin, end], seconds; in the scene file's world.
+struct CameraMotion {
+  double begin = 0, end = 0;
+  std::function<Camera(double time)> at;
+};
 
 /// Reads a JSON list of keyframes, or an object {"keyframes": [...], "interpolation":
 /// "smooth"|"linear"}. A keyframe has "time" (seconds, ascending), "position", "look_at" (a point)

@@ -1,4 +1,4 @@
-// What the importers share while they fill a scene.
+// The importers, and what they share while they fill a scene.
 #pragma once
 
 #include <algorithm>
@@ -35,5 +35,11 @@ inline bool has_emission_texture(const ImportContext& context) {
   return std::any_of(context.emission.begin(), context.emission.end(),
                      [](const Emission& emission) { return emission.texture != none; });
 }
+
+/// Fills the context's scene from its .gltf or .glb file. Errors: InputError.
+void import_gltf(ImportContext& context);
+
+/// Fills the context's scene from its OBJ file. Errors: InputError.
+void import_obj(ImportContext& context);
 
 }  // namespace photile::scene_io

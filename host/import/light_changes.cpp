@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "import/photometry/photometric_file.hpp"
-#include "import/resource_error.hpp"
 #include "import/scene_folder.hpp"
+#include "import/warnings.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/color_temperature.hpp"

@@ -6,11 +6,10 @@
 #include <new>
 #include <utility>
 
-#include "common/letter_case.hpp"
+#include "common/ascii_text.hpp"
 #include "import/area_lights.hpp"
 #include "import/finishing.hpp"
 #include "import/import_context.hpp"
-#include "import/importers.hpp"
 #include "import/lamp_instances.hpp"
 #include "import/light_changes.hpp"
 #include "import/light_source.hpp"

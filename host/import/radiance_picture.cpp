@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "import/resource_error.hpp"
 #include "import/scene_folder.hpp"
 #include "import/texture_decoder.hpp"
+#include "import/warnings.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

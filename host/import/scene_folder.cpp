@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "common/run_files.hpp"
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

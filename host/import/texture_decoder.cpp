@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "image/decoder.hpp"
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {

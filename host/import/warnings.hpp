@@ -1,15 +1,23 @@
-// Warnings of an import, gathered so that a hundred materials with one trouble give one line.
+// What an import finds wrong and goes on with, or leaves to the importer.
 #pragma once
 
 #include <cstddef>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace photile::scene_io {
 
+/// A texture, buffer or material library cannot be used. `what()` names the file and the reason;
+/// the importer decides whether to go on with a warning or to fail.
+struct ResourceError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Gathered so that a hundred materials with one trouble give one line.
 class Warnings {
  public:
   /// A warning about the whole file.

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "light_maps/light_maps_impl.hpp"
-#include "light_maps/node_points.hpp"
+#include "light_maps/node_batch.hpp"
 #include "maps/check_photons.hpp"
 #include "photile/errors.hpp"
 

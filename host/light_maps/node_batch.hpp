@@ -9,8 +9,14 @@
 
 #include "light_maps/charts.hpp"
 #include "photile/light_maps.hpp"
+#include "photile/primary_hits.hpp"
 
 namespace photile::light_maps {
+
+/// Point i is that which owns node i, seen from straight above, matt.
+///   glossy   whether hits of the scene have lobes
+PrimaryHits node_points(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
+                        int levels, bool glossy);
 
 struct NodePlaceHash {
   std::size_t operator()(const NodePlace& node) const;

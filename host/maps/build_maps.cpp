@@ -13,11 +13,9 @@
 #include <utility>
 
 #include "kdtree/kdtree_builder.hpp"
-#include "maps/build_kernels.hpp"
 #include "maps/build_steps.hpp"
 #include "maps/candidate_maps.hpp"
 #include "maps/entry_defines.hpp"
-#include "maps/gather_entries.hpp"
 #include "maps/map_numbers.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"

@@ -16,6 +16,13 @@
 
 namespace photile::maps {
 
+/// The kernels that build the maps of `store`, specialised by what its scene needs and by whether
+/// its maps serve several triangles (`patches`).
+device::KernelSet build_kernels(const MapStore& store, bool patches);
+
+/// Those that pages need which hold a tile of a map.
+device::KernelSet tile_kernels(const MapStore& store);
+
 /// Per map: how many photons it holds, and whether their normals may disagree with its triangles'.
 struct MapCounts {
   device::Buffer<std::uint32_t> photons, mixed;  ///< `mixed` only with patches
@@ -61,5 +68,13 @@ void place_grids(const Build& build, MapPage& page);
 /// References to the photons of the page's cells: cell_start, entry_count and entry_photon.
 /// `tile`: cells that the page holds, where it holds a tile; else nothing.
 void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile);
+
+/// `build`: see build_kernels. Before: page.entry_count and page.entry_photon are set. After: the
+/// other entry buffers that the scene needs are filled.
+///   normals   3 floats per sided triangle, where the entries keep normals; else null
+///   gaps      whether there are entries without a photon, as in tiles
+void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
+                    PhotonPages& photon_pages, const device::Buffer<float>* normals, bool gaps,
+                    MapPage& page);
 
 }  // namespace photile::maps

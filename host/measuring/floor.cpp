@@ -126,17 +126,6 @@ std::vector<Level> levels_of(const std::vector<Piece>& pieces, const RoomOf& roo
 
 }  // namespace
 
-PlanAxes PlanAxes::of(int axis) {
-  switch (axis) {
-    case 0:
-      return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-    case 1:
-      return {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
-    default:
-      return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  }
-}
-
 Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room) {
   std::vector<Piece> pieces = horizontal_pieces(rays.scene(), axes);
   if (room) {

@@ -5,7 +5,6 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "measuring/plan_axes.hpp"
 #include "measuring/room.hpp"
 #include "photile/scene.hpp"
 

@@ -47,6 +47,17 @@ std::optional<Headroom> headroom_at(const RayScene& rays, const PlanAxes& axes,
 
 }  // namespace
 
+PlanAxes PlanAxes::of(int axis) {
+  switch (axis) {
+    case 0:
+      return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+    case 1:
+      return {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+    default:
+      return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  }
+}
+
 Room::Room(const RayScene& rays, const PlanAxes& axes, const glm::dvec3& seed, double cell)
     : rays_(&rays),
       axes_(axes),

@@ -1,4 +1,4 @@
-// The room around a point, as far as a plan of its floor needs it.
+// The axes of a plan, and the room around a point as far as a plan of its floor needs it.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,21 @@
 #include <unordered_set>
 #include <vector>
 
-#include "measuring/plan_axes.hpp"
 #include "photile/camera.hpp"
 #include "photile/ray_scene.hpp"
 
 namespace photile::measuring {
+
+/// `right` x `ahead` = `up`, unit.
+struct PlanAxes {
+  glm::dvec3 right, ahead, up;
+
+  /// As a map is drawn where `axis` (0, 1, 2) points up; for 1, as in glTF, -z is at its top.
+  static PlanAxes of(int axis);
+  glm::dvec2 plan(const glm::dvec3& point) const {
+    return {glm::dot(point, right), glm::dot(point, ahead)};
+  }
+};
 
 /// What can be reached from a point below its ceiling without a wall between, in a horizontal cut
 /// not far below that ceiling: walls reach up there above doors and windows, and furniture seldom

@@ -1,13 +1,131 @@
 #include "render/film.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <span>
+#include <vector>
+
 #include "render/reflected_radiance.hpp"
-#include "render/sparse_film.hpp"
 
 namespace photile {
 namespace {
+
+/// Which elements belong to each of a range of pixels, in their order.
+struct ByPixel {
+  std::vector<std::uint32_t> first, index;
+
+  template <class PixelOf>
+  ByPixel(std::size_t elements, std::size_t first_pixel, std::size_t pixels, PixelOf pixel_of)
+      : first(pixels + 1), index(elements) {
+    for (std::size_t i = 0; i < elements; ++i) ++first[pixel_of(i) - first_pixel + 1];
+    for (std::size_t p = 0; p < pixels; ++p) first[p + 1] += first[p];
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (std::size_t i = 0; i < elements; ++i) {
+      index[next[pixel_of(i) - first_pixel]++] = static_cast<std::uint32_t>(i);
+    }
+  }
+
+  std::span<const std::uint32_t> of(std::size_t pixel) const {
+    return std::span(index).subspan(first[pixel], first[pixel + 1] - first[pixel]);
+  }
+};
+
+/// The sums of one pixel, with room for every light.
+class PixelSums {
+ public:
+  explicit PixelSums(std::size_t lights)
+      : radiance_(lights, glm::vec3(0.0f)), illuminance_(lights), is_lit_(lights) {}
+
+  void add(std::uint32_t light, const glm::vec3& radiance, float illuminance) {
+    if (!is_lit_[light]) {
+      is_lit_[light] = 1;
+      lit_.push_back(static_cast<std::uint16_t>(light));
+    }
+    radiance_[light] += radiance;
+    illuminance_[light] += illuminance;
+  }
+
+  /// Appends the lights that were added to a row, and forgets them.
+  void move_to(LightLayers::Row& row) {
+    std::sort(lit_.begin(), lit_.end());
+    for (const std::uint16_t light : lit_) {
+      row.light.push_back(light);
+      row.radiance.push_back(radiance_[light]);
+      row.illuminance.push_back(illuminance_[light]);
+      radiance_[light] = glm::vec3(0.0f);
+      illuminance_[light] = 0.0f;
+      is_lit_[light] = 0;
+    }
+    lit_.clear();
+    row.first.push_back(static_cast<std::uint32_t>(row.light.size()));
+  }
+
+ private:
+  std::vector<glm::vec3> radiance_;
+  std::vector<float> illuminance_;
+  std::vector<std::uint8_t> is_lit_;
+  std::vector<std::uint16_t> lit_;
+};
+
+void add_row(const LightLayers::Row& row, std::size_t x, PixelSums& sums) {
+  for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
+    sums.add(row.light[i], row.radiance[i], row.illuminance[i]);
+  }
+}
+
+void add_hit(const PrimaryHits& hits, std::size_t hit, const Estimates& estimates,
+             float sample_weight, PixelSums& sums) {
+  for (std::uint64_t i = estimates.first[hit]; i < estimates.first[hit + 1]; ++i) {
+    sums.add(estimates.light[i], hits.throughput[hit] * reflected_radiance(hits, hit, estimates, i),
+             sample_weight * static_cast<float>(luminance(estimates.irradiance[i])));
+  }
+}
+
+/// For layers and estimates of many lights: work is shared by rows.
+void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
+                        const Estimates& estimates, float sample_weight) {
+  std::uint32_t lowest = none, highest = 0;
+  const auto widen = [&](std::uint32_t pixel) {
+    lowest = std::min(lowest, pixel);
+    highest = std::max(highest, pixel);
+  };
+  for (const std::uint32_t pixel : batch.hits.pixel) widen(pixel);
+  for (const SeenEmission& seen : batch.emission) widen(seen.pixel);
+  if (lowest > highest) return;
+
+  const auto width = static_cast<std::size_t>(layers.width);
+  const std::size_t first_row = lowest / width, end_row = highest / width + 1;
+  const std::size_t first_pixel = first_row * width, pixels = (end_row - first_row) * width;
+  const ByPixel hits(batch.hits.size(), first_pixel, pixels,
+                     [&](std::size_t i) { return batch.hits.pixel[i]; });
+  const ByPixel emission(batch.emission.size(), first_pixel, pixels,
+                         [&](std::size_t i) { return batch.emission[i].pixel; });
+  tbb::enumerable_thread_specific<PixelSums> sums_of_threads(layers.layers.size());
+  tbb::parallel_for(first_row, end_row, [&](std::size_t y) {
+    PixelSums& sums = sums_of_threads.local();
+    LightLayers::Row row;
+    row.first.push_back(0);
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::size_t pixel = (y - first_row) * width + x;
+      add_row(layers.rows[y], x, sums);
+      for (const std::uint32_t hit : hits.of(pixel)) {
+        add_hit(batch.hits, hit, estimates, sample_weight, sums);
+      }
+      for (const std::uint32_t i : emission.of(pixel)) {
+        const SeenEmission& seen = batch.emission[i];
+        sums.add(seen.light, seen.radiance, seen.illuminance);
+      }
+      sums.move_to(row);
+    }
+    row.light.shrink_to_fit();
+    row.radiance.shrink_to_fit();
+    row.illuminance.shrink_to_fit();
+    layers.rows[y] = std::move(row);
+  });
+}
 
 /// Adds the hits whose pixel lies in [first, last), each with all of its lights, in their order.
 void add_hits(LightLayers& layers, std::size_t first, std::size_t last, const PrimaryHits& hits,

@@ -9,6 +9,10 @@
 
 namespace photile {
 
+/// Bytes installed, or the limit of the process's control group where that is less: the same on
+/// every run, whatever else is running. The largest number where nothing is known.
+std::uint64_t installed_host_bytes();
+
 /// Host memory that one stored photon takes at most at a time: while it is traced and sorted, or
 /// while its maps are built, a few references each. An estimate: references depend on the mesh.
 std::uint64_t bytes_per_stored_photon(const SceneNeeds& needs);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "trace/holes.hpp"
+#include "trace/largest.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
@@ -12,6 +13,7 @@
 namespace photile::reference {
 namespace {
 
+using trace::largest;
 using trace::LightWeights;
 using trace::OpaqueBsdf;
 using trace::power_heuristic;
@@ -22,8 +24,6 @@ using trace::SurfacePoint;
 
 /// Paths between perfect mirrors end as well.
 constexpr float largest_survival = 0.99f;
-
-float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
 class SurfacePath {
  public:

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "common/content_hash.hpp"
+#include "common/input_file.hpp"
 #include "common/output_file.hpp"
-#include "common/regular_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "saved_maps/check_photons.hpp"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "device/context.hpp"
-#include "device/status_names.hpp"
+#include "device/opencl.hpp"
 
 namespace photile::test {
 

@@ -4,8 +4,7 @@
 #include <string>
 
 #include "fuzz_files.hpp"
-#include "measuring/plane_file.hpp"
-#include "measuring/points_file.hpp"
+#include "measuring/sensor_files.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/light_options.hpp"
 #include "tools/command/validators.hpp"

@@ -4,7 +4,6 @@
 #include "fuzz_files.hpp"
 #include "import/camera_path.hpp"
 #include "import/photometry/photometric_file.hpp"
-#include "import/resource_error.hpp"
 #include "import/texture_decoder.hpp"
 #include "import/warnings.hpp"
 #include "photile/scene.hpp"

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tools/report/radiance_palettes.hpp"
+#include "tools/report/palette_colours.hpp"
 
 namespace photile::test {
 

@@ -7,8 +7,7 @@
 #include <random>
 #include <string_view>
 
-#include "measuring/plane_file.hpp"
-#include "measuring/points_file.hpp"
+#include "measuring/sensor_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "temporary_folder.hpp"

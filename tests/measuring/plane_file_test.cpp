@@ -1,9 +1,8 @@
 // Planes of sensors described as JSON.
-#include "measuring/plane_file.hpp"
-
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "measuring/sensor_files.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 

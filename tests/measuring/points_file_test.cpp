@@ -1,9 +1,8 @@
 // Files of sensor points as Radiance and Honeybee write them.
-#include "measuring/points_file.hpp"
-
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "measuring/sensor_files.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 

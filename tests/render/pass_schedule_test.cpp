@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "photile/limits.hpp"
-#include "render/host_memory.hpp"
 #include "render/pass_count.hpp"
 
 namespace photile::test {

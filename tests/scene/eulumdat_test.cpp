@@ -5,7 +5,7 @@
 #include <random>
 
 #include "import/photometry/eulumdat_reader.hpp"
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 #include "photometric_texts.hpp"
 
 namespace photile::test {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <iterator>
 
-#include "import/resource_error.hpp"
 #include "import/texture_decoder.hpp"
+#include "import/warnings.hpp"
 #include "scene_files.hpp"
 #include "srgb_oracle.hpp"
 

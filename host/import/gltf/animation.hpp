@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "import/camera_path.hpp"
 #include "photile/scene.hpp"
-#include "scene/camera_motion.hpp"
 
 namespace photile::scene_io {
 

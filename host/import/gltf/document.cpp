@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "import/gltf/json_check.hpp"
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 
 namespace photile::scene_io {
 namespace {

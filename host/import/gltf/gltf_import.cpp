@@ -5,7 +5,7 @@
 #include "import/gltf/meshes.hpp"
 #include "import/gltf/nodes.hpp"
 #include "import/gltf/steps.hpp"
-#include "import/importers.hpp"
+#include "import/import_context.hpp"
 
 namespace photile::scene_io {
 

@@ -9,8 +9,8 @@
 #include "import/gltf/document.hpp"
 #include "import/gltf/pictures.hpp"
 #include "import/gltf/texture_reference.hpp"
-#include "import/resource_error.hpp"
 #include "import/texture_store.hpp"
+#include "import/warnings.hpp"
 #include "photile/limits.hpp"
 #include "scene/surface_models.hpp"
 

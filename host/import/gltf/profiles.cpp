@@ -6,7 +6,7 @@
 
 #include "import/gltf/document.hpp"
 #include "import/photometry/photometric_file.hpp"
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 
 namespace photile::scene_io {
 namespace {

@@ -11,7 +11,7 @@
 #include "import/gltf/nodes.hpp"
 #include "import/gltf/pictures.hpp"
 #include "import/gltf/steps.hpp"
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_emission.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 #include "photile/limits.hpp"
 #include "scene/surface_models.hpp"
 

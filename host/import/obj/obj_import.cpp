@@ -5,15 +5,15 @@
 #include <limits>
 #include <map>
 
-#include "import/importers.hpp"
+#include "import/import_context.hpp"
 #include "import/obj/mtl_materials.hpp"
 #include "import/obj/obj_libraries.hpp"
 #include "import/obj/obj_reader.hpp"
 #include "import/obj/obj_text.hpp"
 #include "import/plain_material.hpp"
 #include "import/polygon_triangulator.hpp"
-#include "import/resource_error.hpp"
 #include "import/scene_origin.hpp"
+#include "import/warnings.hpp"
 #include "photile/limits.hpp"
 #include "scene/coordinate_limit.hpp"
 #include "scene/material_needs.hpp"

@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "import/resource_error.hpp"
-#include "import/trimmed.hpp"
+#include "common/ascii_text.hpp"
+#include "import/warnings.hpp"
 
 namespace photile::scene_io {
 namespace {

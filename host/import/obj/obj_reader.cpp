@@ -6,7 +6,7 @@
 #include <map>
 #include <streambuf>
 
-#include "import/trimmed.hpp"
+#include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {

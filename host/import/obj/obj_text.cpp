@@ -6,8 +6,8 @@
 #include <array>
 #include <string_view>
 
-#include "import/resource_error.hpp"
-#include "import/trimmed.hpp"
+#include "common/ascii_text.hpp"
+#include "import/warnings.hpp"
 
 namespace photile::scene_io {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "import/photometry/photometric_planes.hpp"
 #include "import/photometry/photometric_text.hpp"
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {

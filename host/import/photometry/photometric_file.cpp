@@ -4,10 +4,10 @@
 
 #include <string_view>
 
-#include "common/letter_case.hpp"
+#include "common/ascii_text.hpp"
 #include "import/photometry/eulumdat_reader.hpp"
 #include "import/photometry/ies_reader.hpp"
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {

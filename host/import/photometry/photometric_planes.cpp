@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 
 namespace photile::scene_io {
 namespace {

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "import/resource_error.hpp"
+#include "import/warnings.hpp"
 
 namespace photile::scene_io {
 namespace {

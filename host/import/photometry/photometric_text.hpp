@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "import/trimmed.hpp"
+#include "common/ascii_text.hpp"
 
 namespace photile::scene_io {
 

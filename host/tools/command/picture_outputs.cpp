@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/letter_case.hpp"
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"

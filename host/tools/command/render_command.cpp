@@ -22,7 +22,6 @@
 #include "tools/command/commands.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
-#include "tools/command/process_time.hpp"
 #include "tools/command/quality_options.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"

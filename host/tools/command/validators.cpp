@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-#include "common/letter_case.hpp"
+#include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::app {

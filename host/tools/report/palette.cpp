@@ -7,8 +7,7 @@
 
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
-#include "tools/report/colour_knots.hpp"
-#include "tools/report/radiance_palettes.hpp"
+#include "tools/report/palette_colours.hpp"
 
 namespace photile::image {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "common/input_text.hpp"
+#include "common/input_file.hpp"
 #include "common/output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"

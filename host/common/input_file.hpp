@@ -1,10 +1,14 @@
-// Text files that say where to measure or to look from.
+// Files that a run reads: whether they can be read, and the content of texts.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 namespace photile {
+
+/// What keeps it from being one, with the remedy: "no such file; check the path", "is not a regular
+/// file; name one". "" where nothing does.
+std::string why_no_regular_file(const std::filesystem::path& file);
 
 /// The whole content. Errors: InputError naming the file where it is missing, unreadable, no
 /// regular file or larger than limits::max_input_text_bytes; those of note_input.

@@ -1,4 +1,4 @@
-// Planes of sensors, described in a file.
+// Sensors that a file describes: planes of them, or points.
 #pragma once
 
 #include <filesystem>
@@ -13,5 +13,11 @@ namespace photile::measuring {
 /// scene file's world, which faces u x v. Without a spacing it is that of EN 12464-1. Errors:
 /// InputError naming the file, the plane and the key.
 std::vector<SensorGrid> read_planes(const std::filesystem::path& file);
+
+/// Reads lines of six numbers: x y z of a point in metres and the direction that it faces, of any
+/// length, separated by blanks, tabs or commas. Empty lines and those that start with # say
+/// nothing. The grid bears the file's name without extension. Errors: InputError naming the file
+/// and the line.
+SensorGrid read_points(const std::filesystem::path& file);
 
 }  // namespace photile::measuring

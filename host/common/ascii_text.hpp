@@ -1,4 +1,4 @@
-// Text whose case does not matter: endings of file names, names of devices.
+// Text of ASCII letters: its case, and the blanks around it.
 #pragma once
 
 #include <string>
@@ -11,5 +11,8 @@ std::string lower(std::string_view text);
 
 /// Whether a text ends in `ending`, whatever the case of both.
 bool ends_in(std::string_view text, std::string_view ending);
+
+/// Without blanks, carriage returns and the Ctrl-Z of old files at either end.
+std::string_view trimmed(std::string_view text);
 
 }  // namespace photile
