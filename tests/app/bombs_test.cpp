@@ -1,11 +1,6 @@
 // Small files that ask for much: refused, and in little memory. (Time is no matter of assertions;
 // each of these takes less than a second.)
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
-#include <cstdlib>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
@@ -16,30 +11,6 @@ namespace photile::test {
 namespace {
 
 constexpr long most_kilobytes = 256 << 10;  ///< beside the file itself
-
-struct Taken {
-  int exit_code;
-  long kilobytes;  ///< resident, at most
-};
-
-Taken measured_run(const std::vector<std::string>& arguments) {
-  const pid_t child = ::fork();
-  REQUIRE(child >= 0);
-  if (child == 0) {
-    if (std::freopen("/dev/null", "w", stderr) == nullptr) ::_exit(126);
-    std::vector<char*> pointers{const_cast<char*>("photile")};
-    for (const std::string& argument : arguments) {
-      pointers.push_back(const_cast<char*>(argument.c_str()));
-    }
-    pointers.push_back(nullptr);
-    ::execv(PHOTILE_COMMAND, pointers.data());
-    ::_exit(127);
-  }
-  int status = 0;
-  rusage usage{};
-  REQUIRE(::wait4(child, &status, 0, &usage) == child);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), usage.ru_maxrss};
-}
 
 std::string repeated(const std::string& text, std::size_t times) {
   std::string all;
@@ -86,7 +57,7 @@ TEST_CASE("scenes that ask for more than they hold are refused in little memory"
          "buffers": [{"byteLength": 12, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAA"}])")},
   }));
   CAPTURE(name);
-  const Taken taken = measured_run({"info", folder.write(name, text)});
+  const Outcome taken = run_photile({"info", folder.write(name, text)});
   CHECK(taken.exit_code == bad_input);
   CHECK(taken.kilobytes < most_kilobytes + 2 * static_cast<long>(text.size() >> 10));
 }
@@ -97,7 +68,7 @@ TEST_CASE("a PNG of a kilobyte that says that it is huge is refused in little me
   // A header of 20,000 x 20,000 pixels of four words, with its checksum, and nothing after it.
   const std::string png =
       "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x4e\x20\0\0\x4e\x20\x10\x06\0\0\0"s + "\xb3\xe0\x9a\x7a"s;
-  const Taken taken = measured_run({"compare", folder.write("a.png", png), folder / "a.png"});
+  const Outcome taken = run_photile({"compare", folder.write("a.png", png), folder / "a.png"});
   CHECK(taken.exit_code == bad_input);
   CHECK(taken.kilobytes < most_kilobytes);
 }

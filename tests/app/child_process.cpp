@@ -61,6 +61,15 @@ Channel open_terminal() {
   _exit(127);
 }
 
+pid_t start(const Run& run, const Channel& output, const Channel& errors) {
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) become_photile(run, output, errors);
+  close(output.write_end);
+  if (errors.write_end != output.write_end) close(errors.write_end);
+  return child;
+}
+
 /// Appends what can be read now; false at the end of the stream.
 bool read_some(int descriptor, std::string& text) {
   std::array<char, 4096> bytes{};
@@ -103,18 +112,16 @@ std::vector<std::string> Outcome::error_lines() const {
 Outcome run_photile(const Run& run) {
   const Channel output = open_pipe();
   const Channel errors = run.terminal ? open_terminal() : open_pipe();
-  const pid_t child = fork();
-  REQUIRE(child >= 0);
-  if (child == 0) become_photile(run, output, errors);
-  close(output.write_end);
-  close(errors.write_end);
+  const pid_t child = start(run, output, errors);
   Outcome outcome;
   read_until_closed(run, child, output.read_end, errors.read_end, outcome);
   close(output.read_end);
   close(errors.read_end);
   int status = 0;
-  REQUIRE(waitpid(child, &status, 0) == child);
+  rusage usage{};
+  REQUIRE(wait4(child, &status, 0, &usage) == child);
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.kilobytes = usage.ru_maxrss;
   return outcome;
 }
 
@@ -122,6 +129,13 @@ Outcome run_photile(const std::vector<std::string>& arguments) {
   Run run;
   run.arguments = arguments;
   return run_photile(run);
+}
+
+pid_t start_photile(const std::vector<std::string>& arguments) {
+  Run run;
+  run.arguments = arguments;
+  const Channel nowhere{-1, open("/dev/null", O_WRONLY | O_CLOEXEC)};
+  return start(run, nowhere, nowhere);
 }
 
 std::string only_error(const Outcome& outcome, int exit_code) {

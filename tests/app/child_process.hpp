@@ -1,6 +1,8 @@
 // Runs the command `photile` as a child process and keeps what it printed.
 #pragma once
 
+#include <sys/types.h>
+
 #include <csignal>
 #include <cstdint>
 #include <map>
@@ -27,6 +29,7 @@ struct Outcome {
   int exit_code = -1;  ///< 128 + signal where a signal ended it
   std::string output;  ///< standard output
   std::string errors;  ///< standard error
+  long kilobytes = 0;  ///< resident, at most
 
   /// Lines of standard error.
   std::vector<std::string> error_lines() const;
@@ -35,6 +38,9 @@ struct Outcome {
 /// Runs photile to its end. Ends it after two minutes, so that a hang fails and does not block.
 Outcome run_photile(const Run& run);
 Outcome run_photile(const std::vector<std::string>& arguments);
+
+/// Starts photile, which prints nowhere, for a test that waits for it or ends it itself.
+pid_t start_photile(const std::vector<std::string>& arguments);
 
 /// The one line that a failed command prints: fails the test unless standard error is exactly one
 /// line "photile: error: ..." and the exit code is `exit_code`.

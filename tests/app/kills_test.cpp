@@ -1,6 +1,5 @@
 // Killed at any moment, and on a disk that is full: old files or whole new ones, and nothing else.
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -17,26 +16,6 @@ namespace photile::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Starts photile; it prints nowhere.
-pid_t start(const std::vector<std::string>& arguments) {
-  const pid_t child = ::fork();
-  REQUIRE(child >= 0);
-  if (child > 0) return child;
-  for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
-    if (std::freopen("/dev/null", "w", stream == STDOUT_FILENO ? stdout : stderr) == nullptr) {
-      ::_exit(126);
-    }
-  }
-  ::setenv("XDG_CACHE_HOME", PHOTILE_TEST_CACHE, 1);
-  std::vector<char*> pointers{const_cast<char*>("photile")};
-  for (const std::string& argument : arguments) {
-    pointers.push_back(const_cast<char*>(argument.c_str()));
-  }
-  pointers.push_back(nullptr);
-  ::execv(PHOTILE_COMMAND, pointers.data());
-  ::_exit(127);
-}
 
 /// Runs photile in a folder of a disk of 64 KB, which no other process sees; tells what is left
 /// there.
@@ -72,7 +51,7 @@ TEST_CASE("killed a hundred times at any moment, a render leaves the old picture
     const std::string before = "old";
     folder.write("out.exr", before);
     folder.write("out.png", before);
-    const pid_t child = start(arguments);
+    const pid_t child = start_photile(arguments);
     std::this_thread::sleep_for(whole * std::uniform_real_distribution<double>(0.2, 1.1)(random));
     ::kill(child, SIGKILL);
     int status = 0;
