@@ -12,16 +12,15 @@ import json
 import subprocess
 import sys
 
+import packages
 import scene_arguments
 
-try:
-    import numpy as np
+packages.require("matplotlib", "numpy", "OpenImageIO")
 
-    import picture_error
-    import report_plots
-except ImportError as missing:
-    sys.exit(f"accuracy.py: error: {missing}; install the Debian packages python3-matplotlib, "
-             "python3-numpy and python3-openimageio, and run it with /usr/bin/python3")
+import numpy as np
+
+import picture_error
+import report_plots
 
 ROOT = scene_arguments.ROOT
 RESULTS = ROOT / "docs/accuracy"

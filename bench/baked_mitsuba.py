@@ -2,7 +2,7 @@
 """Shows a baked room in Mitsuba 3, beside photile's own picture of it: the table in
 docs/light-maps.md.
 
-    bench/baked_mitsuba.py SCENES [--photile COMMAND] [--pictures FOLDER]
+    bench/baked_mitsuba.py [SCENES] [--photile COMMAND] [--pictures FOLDER]
 
 SCENES holds <scene>/<scene>-diffuse.gltf and references/<scene>-diffuse-256x192.exr, as for
 bench/quality.py. `photile bake` writes the room; Mitsuba reads its triangles, TEXCOORD_1, base colours
@@ -11,7 +11,6 @@ of it looks for light. Pixels that see a lamp, or nothing, are left out: these a
 packages mitsuba, for which DRJIT_LIBLLVM_PATH names LLVM, python3-numpy and python3-openimageio.
 """
 
-import argparse
 import json
 import math
 import pathlib
@@ -28,10 +27,10 @@ try:
 except ImportError as missing:
     sys.exit(f"baked_mitsuba.py: error: {missing}; see the top of this file")
 
+import scene_arguments
 from gltf_meshes import read_accessor, read_gltf
-from quality_mitsuba import mitsuba_scene
+from quality_mitsuba import mitsuba_scene, seen_scene
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 WIDTH, HEIGHT, SAMPLES = 256, 192, 16
 APART = 5e-5  # metres
 LIGHT = ("--photons", "1M", "-k", "250", "--quota", "power")
@@ -91,16 +90,8 @@ def shown(baked, scene):
     binary = (baked.parent / file["buffers"][0]["uri"]).read_bytes()
     _, view = read_gltf(scene)
     view.to_world[:3, 3] -= file["nodes"][0].get("translation", (0, 0, 0))
-    flip = np.diag([-1.0, 1.0, -1.0, 1.0])  # Mitsuba's cameras look along +z, with x to the left
-    camera = {"type": "perspective", "fov_axis": "y",
-              "fov": math.degrees(view.vertical_field_of_view),
-              "to_world": mitsuba.ScalarTransform4f(view.to_world @ flip),
-              "film": {"type": "hdrfilm", "width": WIDTH, "height": HEIGHT,
-                       "rfilter": {"type": "box"}, "pixel_format": "rgb"},
-              "sampler": {"type": "independent"}}
     meshes = [baked_mesh(file, binary, primitive) for primitive in file["meshes"][0]["primitives"]]
-    room = mitsuba.load_dict({"type": "scene", "sensor": camera,
-                              **{f"mesh_{i}": mesh for i, mesh in enumerate(meshes)}})
+    room = seen_scene(meshes, view, WIDTH, HEIGHT)
     integrator = LightMapIntegrator(mitsuba.Properties())
     integrator.light = light_of(baked.parent, file)
     return np.array(integrator.render(room, spp=4 * SAMPLES), dtype=np.float64)
@@ -124,15 +115,14 @@ def sees_surface(scene):
 
 def row(given, name, folder):
     """A row of the table."""
-    scene = given.scenes / name / f"{name}-diffuse.gltf"
+    scene, reference = scene_arguments.interior(given.scenes, name, f"{WIDTH}x{HEIGHT}")
     baked, own = folder / f"{name}.gltf", folder / f"{name}.exr"
     subprocess.run([given.photile, "bake", scene, "-o", baked, *LIGHT, "--quiet"], check=True)
     subprocess.run([given.photile, "render", scene, "-o", own, "--size", f"{WIDTH}x{HEIGHT}",
                     "--quality", "draft", "--samples", str(SAMPLES), "--light-maps", "on", *LIGHT,
                     "--quiet"], check=True)
     pictures = {"Mitsuba": shown(baked, scene), "photile": picture_error.read_picture(own)}
-    reference = picture_error.read_picture(
-        given.scenes / "references" / f"{name}-diffuse-{WIDTH}x{HEIGHT}.exr")
+    reference = picture_error.read_picture(reference)
     if given.pictures:
         scale = 0.18 / np.median(reference @ picture_error.LUMINANCE)
         both = np.concatenate(list(pictures.values()), axis=1)
@@ -143,16 +133,14 @@ def row(given, name, folder):
                                    pictures["photile"][surface][None])
     errors = [picture_error.measure(pictures[key][surface][None], reference[surface][None])
               for key in ("Mitsuba", "photile")]
-    return (f"| {name} | {beside['rel_mse']:.4f} ({beside['rel_mse_without_worst']:.4f}) | "
+    return (f"| {name} | {picture_error.rel_mse_text(beside)} | "
             f"{beside['mean_ratio']:.3f} | "
-            + " | ".join(f"{error['rel_mse']:.4f} ({error['rel_mse_without_worst']:.4f}) | "
-                         f"{error['mean_ratio']:.3f}" for error in errors) + " |")
+            + " | ".join(f"{picture_error.rel_mse_text(error)} | {error['mean_ratio']:.3f}"
+                         for error in errors) + " |")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", type=pathlib.Path, metavar="SCENES")
-    parser.add_argument("--photile", type=pathlib.Path, default=ROOT / "build/release/photile")
+    parser = scene_arguments.parser(__doc__.splitlines()[0])
     parser.add_argument("--pictures", type=pathlib.Path, help="folder of both pictures, as PNG")
     given = parser.parse_args()
     print("| | Mitsuba's picture beside photile's: relMSE | mean | Mitsuba's beside the reference | "

@@ -2,30 +2,28 @@
 """What gathering at the nodes of light maps makes of pictures, and what it costs: the table in
 docs/light-maps.md.
 
-    bench/clean_pictures.py SCENES [--photile COMMAND]
+    bench/clean_pictures.py [SCENES] [--photile COMMAND]
 
 SCENES holds <scene>/<scene>-diffuse.gltf and references/<scene>-diffuse-256x192.exr, as for
 bench/quality.py. Takes about ten minutes. Needs the built command and the Debian packages
 python3-numpy and python3-openimageio.
 """
 
-import argparse
 import json
 import pathlib
-import resource
-import subprocess
-import sys
 import tempfile
 
-try:
-    import numpy as np
+import packages
+import scene_arguments
+from processes import timed
 
-    import picture_error
-except ImportError as missing:
-    sys.exit(f"clean_pictures.py: error: {missing}; install the Debian packages python3-numpy and "
-             "python3-openimageio, and run it with /usr/bin/python3")
+packages.require("numpy", "OpenImageIO")
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+import numpy as np
+
+import picture_error
+
+SIZE = "256x192"
 ROWS = tuple((scene, options) for scene in ("classroom", "kitchen") for options in (
     "--quality draft --photons 500k -k 100 --samples 16", "--quality good",
     "--quality good --photons 1M", "--quality final"))
@@ -50,37 +48,26 @@ def mottle(picture, reference):
     return float(np.sqrt((error[smooth] ** 2).mean()))
 
 
-def processor_seconds():
-    """Of all processes that ended so far."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def measured(given, scene, options, folder):
     """A row of the table."""
-    before = processor_seconds()
-    subprocess.run([given.photile, "render", given.scenes / scene / f"{scene}-diffuse.gltf", "--size",
-                    "256x192", "--quota", "power", *options.split(), "--quiet",
-                    "-o", folder / "picture.exr", "--stats", folder / "stats.json"], check=True)
-    seconds = processor_seconds() - before
+    file, reference_file = scene_arguments.interior(given.scenes, scene, SIZE)
+    _, seconds, _ = timed([given.photile, "render", file, "--size", SIZE, "--quota", "power",
+                           *options.split(), "--quiet", "-o", folder / "picture.exr",
+                           "--stats", folder / "stats.json"])
     picture = picture_error.read_picture(folder / "picture.exr")
-    reference = picture_error.read_picture(
-        given.scenes / "references" / f"{scene}-diffuse-256x192.exr")
+    reference = picture_error.read_picture(reference_file)
     figures = picture_error.measure(picture, reference)
     stages = json.loads((folder / "stats.json").read_text())["stages"]
     maps = next(stage["figures"] for stage in stages if stage["stage"] == "light maps")
     stated = maps.get("standard error percent")
-    return (f"| {scene} | `{options}` | {figures['rel_mse']:.4f} "
-            f"({figures['rel_mse_without_worst']:.4f}) | {100 * mottle(picture, reference):.1f}% | "
+    return (f"| {scene} | `{options}` | {picture_error.rel_mse_text(figures)} | "
+            f"{100 * mottle(picture, reference):.1f}% | "
             f"{figures['mean_ratio']:.3f} | {f'{stated:.1f}%' if stated else ''} | "
             f"{maps['new nodes']:,.0f} | {seconds:.1f} |")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", type=pathlib.Path, metavar="SCENES")
-    parser.add_argument("--photile", type=pathlib.Path, default=ROOT / "build/release/photile")
-    given = parser.parse_args()
+    given = scene_arguments.parser(__doc__.splitlines()[0]).parse_args()
     print("| | settings | relMSE | mottle | mean | stated error | nodes | processor s |")
     print("|---|---|--:|--:|--:|--:|--:|--:|")
     with tempfile.TemporaryDirectory() as name:

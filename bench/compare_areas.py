@@ -13,14 +13,13 @@ import subprocess
 import sys
 import tempfile
 
+import packages
 import scene_arguments
 from report_section import replace_section
 
-try:
-    import picture_error
-except ImportError as missing:
-    sys.exit(f"compare_areas.py: error: {missing}; install the Debian packages python3-numpy and "
-             "python3-openimageio, and run it with /usr/bin/python3")
+packages.require("numpy", "OpenImageIO")
+
+import picture_error
 
 SIZE = "512x384"
 # Area, kernel and k; the last two k have the noise of 50 with the constant kernel.
@@ -30,9 +29,8 @@ CASES = (("disc", "constant", 50), ("clipped", "constant", 50), ("clipped", "con
 
 def rows(given, name, folder):
     """The rows of one scene."""
-    scene = given.scenes / name / f"{name}-diffuse.gltf"
-    reference = picture_error.read_picture(
-        given.scenes / "references" / f"{name}-diffuse-{SIZE}.exr")
+    scene, reference_file = scene_arguments.interior(given.scenes, name, SIZE)
+    reference = picture_error.read_picture(reference_file)
     picture = pathlib.Path(folder) / "picture.exr"
     text = ""
     for area, kernel, k in CASES:

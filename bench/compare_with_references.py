@@ -10,21 +10,20 @@ the Debian packages python3-numpy and python3-openimageio.
 import json
 import os
 import pathlib
-import resource
 import subprocess
 import sys
 
+import packages
 import scene_arguments
+from processes import processor_seconds
 
-try:
-    import picture_error
-except ImportError as missing:
-    sys.exit(f"compare_with_references.py: error: {missing}; install the Debian packages "
-             "python3-numpy and python3-openimageio, and run it with /usr/bin/python3")
+packages.require("numpy", "OpenImageIO")
+
+import picture_error
 
 ROOT = scene_arguments.ROOT
 SCENES = ("kitchen", "classroom")
-WIDTH, HEIGHT = 512, 384
+SIZE = "512x384"
 SETTINGS = ("--photons", "1M", "--neighbours", "50", "--quota", "power", "--samples", "16",
             "--light-maps", "off")
 
@@ -36,21 +35,13 @@ def arguments():
     return parser.parse_args()
 
 
-def paths(scenes, name):
-    """The scene file and the reference of an interior."""
-    return (scenes / name / f"{name}-diffuse.gltf",
-            scenes / "references" / f"{name}-diffuse-{WIDTH}x{HEIGHT}.exr")
-
-
 def render(photile, scene, picture, stats):
     """Renders a scene. Adds the processor seconds of all threads to the statistics."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([photile, "render", scene, "--size", f"{WIDTH}x{HEIGHT}", *SETTINGS,
+    before = processor_seconds()
+    subprocess.run([photile, "render", scene, "--size", SIZE, *SETTINGS,
                     "-o", picture, "--stats", stats], check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     record = json.loads(stats.read_text())
-    record["processor_seconds"] = (after.ru_utime + after.ru_stime
-                                   - before.ru_utime - before.ru_stime)
+    record["processor_seconds"] = processor_seconds() - before
     record["load_average"] = os.getloadavg()[0]
     stats.write_text(json.dumps(record, indent=1))
 
@@ -166,7 +157,7 @@ def draw(name, picture, reference, folder):
 
 def main():
     options = arguments()
-    for path in [path for name in SCENES for path in paths(options.scenes, name)]:
+    for path in [path for name in SCENES for path in scene_arguments.interior(options.scenes, name, SIZE)]:
         if not path.is_file():
             sys.exit(f"compare_with_references.py: error: {path} is missing; "
                      "name the folder of the scenes as argument or in PHOTILE_SHARED_SCENES")
@@ -178,7 +169,7 @@ def main():
     pictures.mkdir(parents=True, exist_ok=True)
     records, figures = {}, {}
     for name in SCENES:
-        scene, reference_path = paths(options.scenes, name)
+        scene, reference_path = scene_arguments.interior(options.scenes, name, SIZE)
         picture_path, stats = out / f"{name}.exr", out / f"{name}.json"
         if not options.redraw:
             render(options.photile, scene, picture_path, stats)

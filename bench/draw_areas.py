@@ -14,13 +14,12 @@ import subprocess
 import sys
 import tempfile
 
+import packages
 import scene_arguments
 
-try:
-    import picture_error
-except ImportError as missing:
-    sys.exit(f"draw_areas.py: error: {missing}; install the Debian packages python3-numpy and "
-             "python3-openimageio, and run it with /usr/bin/python3")
+packages.require("numpy", "OpenImageIO")
+
+import picture_error
 
 ROOT = scene_arguments.ROOT
 AREAS = ("disc", "clipped")

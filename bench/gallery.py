@@ -12,18 +12,16 @@ import dataclasses
 import json
 import pathlib
 import subprocess
-import sys
 import tempfile
 
+import packages
 from report_section import replace_section
 
-try:
-    import numpy as np
+packages.require("numpy", "OpenImageIO")
 
-    import picture_error
-except ImportError as missing:
-    sys.exit(f"gallery.py: error: {missing}; install the Debian packages python3-numpy and "
-             "python3-openimageio, and run it with /usr/bin/python3")
+import numpy as np
+
+import picture_error
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SIZE, REFERENCE_SAMPLES = "240x180", 256

@@ -42,6 +42,11 @@ def without_lamps(reference):
     return luminance <= LAMP_LEVEL * np.median(luminance)
 
 
+def rel_mse_text(figures):
+    """Of `measure`: relMSE, and that without the worst pixels."""
+    return f"{figures['rel_mse']:.4f} ({figures['rel_mse_without_worst']:.4f})"
+
+
 def measure(picture, reference):
     """Mean ratio, relMSE, relMSE without the worst pixels, and the share of pixels left out.
 

@@ -16,16 +16,15 @@ import subprocess
 import sys
 import tempfile
 
+import packages
 import scene_arguments
 from report_section import replace_section
 
-try:
-    import numpy as np
+packages.require("numpy", "OpenImageIO")
 
-    import picture_error
-except ImportError as missing:
-    sys.exit(f"promises.py: error: {missing}; install the Debian packages python3-numpy and "
-             "python3-openimageio, and run it with /usr/bin/python3")
+import numpy as np
+
+import picture_error
 
 ROOT = scene_arguments.ROOT
 RESULTS = ROOT / "docs/trade/promises.json"

@@ -22,16 +22,15 @@ import sys
 import tempfile
 import time
 
+import packages
 import scene_arguments
 
-try:
-    import numpy as np
+packages.require("matplotlib", "numpy", "OpenImageIO")
 
-    import picture_error
-    import quality_report
-except ImportError as missing:
-    sys.exit(f"quality.py: error: {missing}; install the Debian packages python3-matplotlib, "
-             "python3-numpy and python3-openimageio, and run it with Debian's Python")
+import numpy as np
+
+import picture_error
+import quality_report
 
 ROOT = scene_arguments.ROOT
 INTERIORS = ("kitchen", "classroom")

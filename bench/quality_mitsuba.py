@@ -57,8 +57,8 @@ def mitsuba_mesh(mesh):
     return made
 
 
-def mitsuba_scene(path, width, height):
-    meshes, view = read_gltf(path)
+def seen_scene(meshes, view, width, height):
+    """Meshes of Mitsuba's as the camera of a file sees them."""
     flip = np.diag([-1.0, 1.0, -1.0, 1.0])  # Mitsuba's cameras look along +z, with x to the left
     camera = {"type": "perspective", "fov_axis": "y",
               "fov": math.degrees(view.vertical_field_of_view),
@@ -67,7 +67,12 @@ def mitsuba_scene(path, width, height):
                        "rfilter": {"type": "box"}, "pixel_format": "rgb"},
               "sampler": {"type": "independent"}}
     return mitsuba.load_dict({"type": "scene", "sensor": camera,
-                              **{f"mesh_{i}": mitsuba_mesh(mesh) for i, mesh in enumerate(meshes)}})
+                              **{f"mesh_{i}": mesh for i, mesh in enumerate(meshes)}})
+
+
+def mitsuba_scene(path, width, height):
+    meshes, view = read_gltf(path)
+    return seen_scene([mitsuba_mesh(mesh) for mesh in meshes], view, width, height)
 
 
 def integrator(denoise):

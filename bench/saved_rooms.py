@@ -2,7 +2,7 @@
 """What it takes to open a room whose photons and light maps were saved: the table in
 docs/light-maps.md.
 
-    bench/saved_rooms.py SCENES [--photile COMMAND]
+    bench/saved_rooms.py [SCENES] [--photile COMMAND]
 
 SCENES holds <scene>/<scene>-diffuse.gltf and references/<scene>-diffuse-256x192.exr, as for
 bench/quality.py. `photile walk --quick` turns once round
@@ -13,25 +13,23 @@ first, and the error of the first. Needs the built command and the Debian packag
 python3-openimageio.
 """
 
-import argparse
 import json
 import math
 import pathlib
 import re
-import resource
-import subprocess
 import sys
 import tempfile
-import time
 
-try:
-    import picture_error
-    from gltf_meshes import read_gltf
-except ImportError as missing:
-    sys.exit(f"saved_rooms.py: error: {missing}; install the Debian packages python3-numpy and "
-             "python3-openimageio, and run it with /usr/bin/python3")
+import packages
+import scene_arguments
+from processes import timed
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+packages.require("numpy", "OpenImageIO")
+
+import picture_error
+from gltf_meshes import read_gltf
+
+SIZE = "256x192"
 ROWS = (("classroom", "--quality draft --photons 1M -k 250"),
         ("classroom", "--photons 500k -k 100 --light-map-rays 32"),
         ("kitchen", "--quality draft --photons 1M -k 250"),
@@ -55,17 +53,9 @@ def turn(scene, file, degrees, time_of_turn=1.0):
     file.write_text(json.dumps({"interpolation": "linear", "keyframes": keys}))
 
 
-def seconds(command):
-    """Wall-clock and processor seconds of a process, and what it wrote to stderr."""
-    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return (time.monotonic() - begin,
-            after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, done.stderr)
-
-
 def row(given, name, options, folder):
-    scene, maps = given.scenes / name / f"{name}-diffuse.gltf", folder / "room.maps"
+    scene, reference = scene_arguments.interior(given.scenes, name, SIZE)
+    maps = folder / "room.maps"
     paths = {name: folder / f"{name}.json" for name in ("round", "still", "one")}
     turn(scene, paths["round"], 360)
     turn(scene, paths["still"], 0)
@@ -74,9 +64,9 @@ def row(given, name, options, folder):
     def walk(path, frames, size, samples, *more):
         for frame in folder.glob("frame.*"):
             frame.unlink()
-        return seconds([given.photile, "walk", scene, "-o", folder / frames, "--quick", "--size", size,
-                        "--samples", str(samples), "--quota", "power", "--fps", str(FRAMES),
-                        "--camera-path", paths[path], *options.split(), *more])
+        return timed([given.photile, "walk", scene, "-o", folder / frames, "--quick", "--size", size,
+                      "--samples", str(samples), "--quota", "power", "--fps", str(FRAMES),
+                      "--camera-path", paths[path], *options.split(), *more])
 
     def without_photons(*arguments):
         taken = walk(*arguments, "--load-maps", maps)
@@ -84,7 +74,7 @@ def row(given, name, options, folder):
             sys.exit(f"saved_rooms.py: error: {name} asked for photons: {taken[2]}")
         return taken
 
-    window, small = ("frame.###.png", "512x512", 1), ("frame.###.exr", "256x192", 16)
+    window, small = ("frame.###.png", "512x512", 1), ("frame.###.exr", SIZE, 16)
     saved = walk("round", *window, "--save-maps", maps)
     first = min(without_photons("one", *window) for _ in range(REPEATS))
     whole = without_photons("round", *window)
@@ -93,19 +83,15 @@ def row(given, name, options, folder):
     one = min(without_photons("one", *small)[1] for _ in range(REPEATS))
     still = min(without_photons("still", *small)[1] for _ in range(REPEATS))
     picture = picture_error.read_picture(folder / "frame.001.exr")
-    error = picture_error.measure(picture, picture_error.read_picture(
-        given.scenes / "references" / f"{name}-diffuse-256x192.exr"))
+    error = picture_error.measure(picture, picture_error.read_picture(reference))
     return (f"| {name} | `{options}` | {saved[1]:.1f} | {size / 1e6:.0f} | "
             f"{first[0]:.2f} ({first[1]:.2f}) | {whole[0]:.2f} ({whole[1]:.2f}) | "
-            f"{1000 * (still - one) / FRAMES:.0f} | {error['rel_mse']:.4f} "
-            f"({error['rel_mse_without_worst']:.4f}) |")
+            f"{1000 * (still - one) / FRAMES:.0f} | "
+            f"{picture_error.rel_mse_text(error)} |")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", type=pathlib.Path, metavar="SCENES")
-    parser.add_argument("--photile", type=pathlib.Path, default=ROOT / "build/release/photile")
-    given = parser.parse_args()
+    given = scene_arguments.parser(__doc__.splitlines()[0]).parse_args()
     print("| | | look round and save, processor s | file, MB | first frame from the file, s "
           f"(processor s) | {FRAMES + 1} frames round, s (processor s) | each further frame of 256x192, "
           "16 samples, processor ms | its relMSE |")

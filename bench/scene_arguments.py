@@ -17,3 +17,9 @@ def parser(description):
                       default=ROOT / "build/release/photile",
                       help="the command; default: %(default)s")
     return made
+
+
+def interior(scenes, name, size):
+    """The scene file of an interior and its reference."""
+    return (scenes / name / f"{name}-diffuse.gltf",
+            scenes / "references" / f"{name}-diffuse-{size}.exr")
