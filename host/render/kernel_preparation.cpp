@@ -10,6 +10,7 @@
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
+#include "render/map_estimators.hpp"
 #include "render/quality.hpp"
 
 namespace photile {
@@ -67,12 +68,12 @@ void prepare(Device& device, const estimate::TuningSample& sample,
                                                    {sample.radius, parameters.angle_degrees});
     const PhotonMaps maps(device, sample.scene, sample.photons, groups,
                           {sample.radius, parameters.photons_per_cell, parameters.structure});
-    Estimator(maps, sample.scene,
-              {.neighbours = parameters.neighbours,
-               .tuning = parameters.tuning,
-               .area = parameters.area,
-               .kernel = parameters.kernel})
-        .estimate(sample.hits);
+    EstimateParameters estimate{.neighbours = parameters.neighbours,
+                                .tuning = parameters.tuning,
+                                .area = parameters.area,
+                                .kernel = parameters.kernel};
+    if (parameters.light_maps != LightMapMode::off) estimate_each_alone({&estimate, 1}, device);
+    Estimator(maps, sample.scene, estimate).estimate(sample.hits);
   } catch (const DeviceMemoryError&) {
   }
 }
