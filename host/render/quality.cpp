@@ -1,18 +1,8 @@
 #include "render/quality.hpp"
 
+#include "render/setting.hpp"
+
 namespace photile {
-namespace {
-
-void set(RenderParameters& parameters, std::uint64_t photons, int neighbours, int samples,
-         int rays) {
-  parameters.photons.emitted_photons = photons;
-  parameters.neighbours = neighbours;
-  parameters.film.samples_per_pixel = samples;
-  parameters.light_maps = LightMapMode::automatic;
-  parameters.light_map_rays = rays;
-}
-
-}  // namespace
 
 std::string_view name_of(Quality quality) {
   switch (quality) {
@@ -26,15 +16,21 @@ std::string_view name_of(Quality quality) {
   return "unknown";
 }
 
-void set_quality(RenderParameters& parameters, Quality quality) {
+std::string_view description_of(Quality quality) {
   switch (quality) {
     case Quality::draft:
-      return set(parameters, defaults::emitted_photons, defaults::neighbours,
-                 defaults::samples_per_pixel, 0);
+      return "quick, and mottled by the noise of photons";
     case Quality::good:
-      return set(parameters, 500'000, 100, 16, 64);
+      return "clean to the eye";
     case Quality::best:
-      return set(parameters, 2'000'000, 100, 64, 256);
+      return "more of everything, for stills";
+  }
+  return "unknown";
+}
+
+void set_quality(RenderParameters& parameters, Quality quality) {
+  for (const Setting& setting : settings()) {
+    if (setting.is_of_quality()) setting.set(parameters, setting.by_quality[index_of(quality)]);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 
 #include "photile/renderer.hpp"
@@ -18,8 +19,13 @@ enum class Quality {
 std::string_view name_of(Quality quality);
 inline constexpr std::array all_qualities = {Quality::draft, Quality::good, Quality::best};
 
-/// Sets what the quality is made of and leaves all other settings: photons, neighbours, samples of
-/// a pixel, light maps and the rays of their nodes.
+/// Its place in all_qualities.
+constexpr std::size_t index_of(Quality quality) { return static_cast<std::size_t>(quality); }
+
+/// What its pictures are like.
+std::string_view description_of(Quality quality);
+
+/// Sets what the table of settings (render/setting.hpp) has for the quality, and leaves all others.
 void set_quality(RenderParameters& parameters, Quality quality);
 
 }  // namespace photile

@@ -82,6 +82,12 @@ Setting row(std::string_view name, std::string_view option, std::string_view rea
                     const SettingValue& value) { assign(field<members...>(parameters), value); }};
 }
 
+/// A row that qualities set: good and final to these values, draft to the default.
+Setting by_quality(Setting setting, std::uint64_t good, std::uint64_t best) {
+  setting.by_quality = {setting.value(P{}), good, best};
+  return setting;
+}
+
 constexpr Kept not_kept = nullptr;
 
 std::string kept_as_it_is(const Setting& setting, const RenderParameters& parameters) {
@@ -119,9 +125,11 @@ std::vector<Setting> picture_rows() {
                                   "of the picture", not_kept, "", "pixels"),
       row<&P::film, &Film::height>("height", "", hits, WholeNumbers{1, limits::max_image_side},
                                    "of the picture", not_kept, "", "pixels"),
-      row<&P::film, &Film::samples_per_pixel>(
-          "samples_per_pixel", "samples", hits, WholeNumbers{1, limits::max_samples_per_pixel},
-          "primary rays per pixel, over all passes; at least one in each", not_kept),
+      by_quality(
+          row<&P::film, &Film::samples_per_pixel>(
+              "samples_per_pixel", "samples", hits, WholeNumbers{1, limits::max_samples_per_pixel},
+              "primary rays per pixel, over all passes; at least one in each", not_kept),
+          16, 64),
       row<&P::seed>("seed", "seed", "all", WholeNumbers{0, most_seed},
                     "the same seed gives the same picture", kept_as_it_is),
       row<&P::max_specular_depth>("max_specular_depth", "", hits,
@@ -133,10 +141,11 @@ std::vector<Setting> picture_rows() {
 std::vector<Setting> photon_rows() {
   constexpr std::string_view paths = "trace photons";
   return {
-      row<&P::photons, &PhotonPaths::emitted_photons>(
-          "photons_emitted", "photons", paths,
-          WholeNumbers{limits::min_photons, limits::max_emitted_photons}, "paths over all lights",
-          kept_as_it_is),
+      by_quality(row<&P::photons, &PhotonPaths::emitted_photons>(
+                     "photons_emitted", "photons", paths,
+                     WholeNumbers{limits::min_photons, limits::max_emitted_photons},
+                     "paths over all lights", kept_as_it_is),
+                 500'000, 2'000'000),
       row<&P::photons, &PhotonPaths::quota>(
           "quota", "quota", paths, words_of(all_photon_quotas),
           "how the lights share the paths: by power, equally, or half by each", kept_as_it_is),
@@ -156,9 +165,10 @@ std::vector<Setting> estimate_rows() {
   constexpr std::string_view estimate = "radiance estimate", groups = "neighbour groups",
                              build = "build photon maps";
   return {
-      row<&P::neighbours>("neighbours", "k,neighbours", estimate,
-                          WholeNumbers{1, limits::max_neighbours}, "photons of an estimate",
-                          kept_for_radius),
+      by_quality(row<&P::neighbours>("neighbours", "k,neighbours", estimate,
+                                     WholeNumbers{1, limits::max_neighbours},
+                                     "photons of an estimate", kept_for_radius),
+                 100, 100),
       row<&P::least_neighbours>(
           "least_neighbours", "least-neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
           "each hit has its own number of neighbours, from this one up, as its bias allows",
@@ -200,10 +210,12 @@ std::vector<Setting> estimate_rows() {
                           "naive maps and, unless nodes gather, several passes; off: an estimate "
                           "at each hit",
                           not_kept),
-      row<&P::light_map_rays>("light_map_rays", "light-map-rays", "light maps",
-                              WholeNumbers{1, limits::max_final_gather_rays},
-                              "rays, and looks at lamps, by which nodes of light maps gather light",
-                              not_kept, "the photon estimate values nodes"),
+      by_quality(row<&P::light_map_rays>(
+                     "light_map_rays", "light-map-rays", "light maps",
+                     WholeNumbers{1, limits::max_final_gather_rays},
+                     "rays, and looks at lamps, by which nodes of light maps gather light",
+                     not_kept, "the photon estimate values nodes"),
+                 64, 256),
       row<&P::light_map_detail>("light_map_detail", "light-map-detail", "light maps",
                                 PositiveNumbers{},
                                 "between the finest nodes of light maps, at most", not_kept,

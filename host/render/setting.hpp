@@ -1,10 +1,11 @@
 // The table of settings: each parameter of a rendering once, for everything that lists them:
-// checks, options of the command, records of a run, saved maps, the documentation.
+// checks, options of the command, qualities, records of a run, saved maps, the documentation.
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/value_range.hpp"
 #include "photile/errors.hpp"
@@ -23,12 +24,15 @@ struct Setting {
   /// What holds where it is not given: then it is 0. "" = it always has a value in its range.
   std::string_view otherwise = {};
   ValueRange range = {};
+  /// For each of all_qualities, where they set it; draft has the default of the library.
+  std::vector<SettingValue> by_quality = {};
   /// What photons and their groups depend on, in words; "" = not on this. Null: they never do.
   std::string (*kept)(const Setting& setting, const RenderParameters& parameters) = nullptr;
 
   SettingValue (*value)(const RenderParameters& parameters) = nullptr;
   void (*set)(RenderParameters& parameters, const SettingValue& value) = nullptr;
 
+  bool is_of_quality() const { return !by_quality.empty(); }
   bool is_given(const RenderParameters& parameters) const;
 };
 

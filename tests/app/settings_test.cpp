@@ -62,6 +62,7 @@ TEST_CASE("a picture and its statistics tell every setting that it was made with
     CHECK(recorded.contains(name));
     CHECK(picture.attributes.count("photile." + name) == 1);
   }
+  CHECK(picture.attributes.at("photile.quality") == "draft");
   CHECK(picture.attributes.at("photile.quota") == "equal");
   CHECK(picture.attributes.at("photile.structure") == "kdtree-2d");
   CHECK(picture.attributes.at("photile.photons_per_cell") == "0.1");
@@ -79,7 +80,9 @@ TEST_CASE("--quality sets settings that go together, and those given beside it c
         "8x6",    "--photons",       "5k", "--stats",        folder / "a.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     REQUIRE(run_photile(arguments).exit_code == 0);
-    return nlohmann::json::parse(folder.read("a.json"))["parameters"];
+    const auto record = nlohmann::json::parse(folder.read("a.json"));
+    CHECK(record["asked"]["quality"] == (more.front() == "--quality" ? more[1] : "good"));
+    return record["parameters"];
   };
   const nlohmann::json draft = made_with({"--quality", "draft"});
   // Photons come before the quality on the line, samples after it.

@@ -102,6 +102,7 @@ TEST_CASE("pictures are made until one states the wanted error, and are there me
                                  [](const auto& s) { return s["stage"] == "light maps"; });
   REQUIRE(maps != record["stages"].end());
   CHECK((*maps)["figures"]["standard error percent"] <= 2.0);
+  CHECK(record["asked"]["target_error"] == 0.02);
 }
 
 TEST_CASE("pictures are made for a time; that needs nodes that gather") {

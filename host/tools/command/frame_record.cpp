@@ -22,9 +22,9 @@ std::string digest_of(const Scene& scene) {
 std::string frame_settings(const std::string& scene_digest, const RunRecord& record,
                            const Camera& camera) {
   nlohmann::json settings = run_json(record);
-  for (const char* cost :
-       {"devices", "stages", "total_seconds", "total_processor_seconds", "peak_host_bytes"}) {
-    settings.erase(cost);
+  for (const char* other : {"asked", "devices", "stages", "total_seconds",
+                            "total_processor_seconds", "peak_host_bytes"}) {
+    settings.erase(other);
   }
   ContentHash hash;
   hash.add(scene_digest);

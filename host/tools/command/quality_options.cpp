@@ -1,8 +1,10 @@
 #include "tools/command/quality_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -51,63 +53,73 @@ void tell(const QualityTarget& target, const QualityModels& models, const Qualit
 
 }  // namespace
 
-void add_quality_preset(CLI::App& command, RenderParameters& parameters, Quality usual) {
+std::span<const QualityWish> quality_wishes() {
+  static constexpr std::array<QualityWish, 3> wishes{{
+      {"target_error", "target-error", "PERCENT",
+       "make pictures until one states this root mean square relative error; where nodes of light "
+       "maps do not gather, choose photons, k and samples for it by a model",
+       &QualityTarget::relative_error},
+      {"for", "for", "TIME",
+       "make better and better pictures for so long, where nodes of light maps gather; depends on "
+       "the machine",
+       &QualityTarget::run_seconds},
+      {"time_budget", "time-budget", "TIME",
+       "choose k and samples for pictures of this time, once the photon maps are there, by a "
+       "model; otherwise as --quality draft",
+       &QualityTarget::frame_seconds},
+  }};
+  return wishes;
+}
+
+void set_quality(const QualityOptions& options, Quality quality) {
+  options.quality = quality;
+  photile::set_quality(options.parameters, quality);
+}
+
+void add_quality_preset(CLI::App& command, const QualityOptions& options) {
   Words names;
   for (const Quality quality : all_qualities) names.words.push_back(name_of(quality));
   command
       .add_option_function<std::string>(
           "--quality",
-          [&parameters](const std::string& word) {
+          [options](const std::string& word) {
             for (const Quality quality : all_qualities) {
-              if (name_of(quality) == word) set_quality(parameters, quality);
+              if (name_of(quality) == word) set_quality(options, quality);
             }
           },
-          "photons, k, samples and light maps together; options given beside it count")
-      ->type_name("draft|good|final")
+          std::string(quality_help))
+      ->type_name(fmt::format("{}", fmt::join(names.words, "|")))
       ->transform(within(names))
-      ->default_str(std::string(name_of(usual)))
+      ->default_str(std::string(name_of(options.quality)))
       ->group("Picture");
 }
 
-void add_time_budget(CLI::App& command, QualityTarget& target, RenderParameters& parameters) {
-  command
-      .add_option_function<double>(
-          "--time-budget",
-          [&target, &parameters](double seconds) {
-            target.frame_seconds = seconds;
-            set_quality(parameters, Quality::draft);
-          },
-          "choose k and samples for pictures of this time, once the photon maps are there; "
-          "otherwise as --quality draft")
-      ->type_name("TIME")
-      ->transform(duration())
-      ->group("Quality");
+void add_quality_wishes(CLI::App& command, const QualityOptions& options) {
+  for (const QualityWish& wish : quality_wishes()) {
+    command
+        .add_option_function<double>(
+            fmt::format("--{}", wish.option),
+            [options, &wish](double value) {
+              options.target.*wish.value = value;
+              if (options.target.frame_seconds > 0) set_quality(options, Quality::draft);
+            },
+            std::string(wish.help))
+        ->type_name(std::string(wish.type))
+        ->transform(wish.type == "TIME" ? duration() : share_up_to(1))
+        ->group("Quality");
+  }
 }
 
-void add_quality_options(CLI::App& command, QualityTarget& target) {
-  CLI::Option* error =
-      command
-          .add_option("--target-error", target.relative_error,
-                      "make pictures until one states this root mean square relative error; where "
-                      "nodes of light maps do not gather, choose photons, k and samples for it")
-          ->type_name("PERCENT")
-          ->transform(share_up_to(1))
-          ->group("Quality");
+void exclude_chosen(CLI::App& command) {
+  CLI::Option* error = command.get_option("--target-error");
   CLI::Option* time = command.get_option("--time-budget");
-  command
-      .add_option("--for", target.run_seconds,
-                  "make better and better pictures for so long, where nodes of light maps gather; "
-                  "depends on the machine")
-      ->type_name("TIME")
-      ->transform(duration())
-      ->excludes(time)
-      ->group("Quality");
   // The model of error and time knows nothing of --final-gather.
   for (const char* chosen : {"--neighbours", "--samples", "--radius", "--final-gather"}) {
     error->excludes(chosen);
     time->excludes(chosen);
   }
   time->excludes("--quality");
+  time->excludes("--for");
   error->excludes("--photons");
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <span>
+#include <string_view>
 
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
@@ -15,17 +17,40 @@ class App;
 
 namespace photile::app {
 
-/// Adds --quality, which sets several settings at once; `usual` is what the parameters have without
-/// it. To be added before theirs: options that are given override it, wherever they stand.
-void add_quality_preset(CLI::App& command, RenderParameters& parameters, Quality usual);
+/// What is asked for of quality, and the settings that follow.
+struct QualityOptions {
+  Quality& quality;
+  QualityTarget& target;
+  RenderParameters& parameters;
+};
 
-/// Adds --time-budget, whose models know the quality draft alone. To be added before the settings,
-/// too.
-void add_time_budget(CLI::App& command, QualityTarget& target, RenderParameters& parameters);
+/// A row of what can be asked for beside the settings: an option that is no setting, because
+/// settings are chosen for it.
+struct QualityWish {
+  std::string_view name;    ///< in records, "target_error"
+  std::string_view option;  ///< "target-error"
+  std::string_view type;    ///< "PERCENT" or "TIME"
+  std::string_view help;
+  double QualityTarget::*value;  ///< a share, or seconds; 0 = not asked for
+};
+std::span<const QualityWish> quality_wishes();
 
-/// Adds the other options of a target. All exclude the options whose values they choose, which must
-/// be there.
-void add_quality_options(CLI::App& command, QualityTarget& target);
+inline constexpr std::string_view quality_help =
+    "photons, k, samples and rays of nodes together; options given beside it count";
+
+/// Sets a quality and what it is made of.
+void set_quality(const QualityOptions& options, Quality quality);
+
+/// Adds --quality, which sets several settings at once. To be added before theirs: options that are
+/// given override it, wherever they stand.
+void add_quality_preset(CLI::App& command, const QualityOptions& options);
+
+/// Adds the wishes. To be added before the settings, too: --time-budget stands for the quality
+/// draft, which its model knows alone.
+void add_quality_wishes(CLI::App& command, const QualityOptions& options);
+
+/// Has the wishes exclude the options whose values they choose, which must be there.
+void exclude_chosen(CLI::App& command);
 
 /// Whether settings are to be chosen by the models.
 bool is_wanted(const QualityTarget& target);

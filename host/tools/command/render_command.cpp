@@ -230,6 +230,8 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   record.scene = scene.source.filename().string();
   record.camera = camera.name;
   record.integrator = name_of(options.integrator);
+  record.quality = options.quality;
+  record.target = options.target;
   record.used = options.parameters;
 
   if (options.tuned) {

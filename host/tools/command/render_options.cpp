@@ -11,7 +11,6 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "tools/command/quality_options.hpp"
 #include "tools/command/scene_options.hpp"
 #include "tools/command/setting_options.hpp"
 #include "tools/command/validators.hpp"
@@ -95,9 +94,9 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
   add_run_group(command, options);
 }
 
-void add_picture_settings(CLI::App& command, RenderOptions& options, Quality usual,
+void add_picture_settings(CLI::App& command, RenderOptions& options,
                           std::initializer_list<std::string_view> without) {
-  add_quality_preset(command, options.parameters, usual);  // before the settings that override it
+  add_quality_preset(command, options.quality_options());  // before the settings that override it
   add_setting_options(command, options, without);
   add_view_group(command, options);
   command
@@ -125,9 +124,9 @@ void add_integrator_option(CLI::App& command, RenderOptions& options) {
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
   add_picture_options(command, options.pictures);
-  add_time_budget(command, options.target, options.parameters);
-  set_quality(options.parameters, Quality::good);
-  add_picture_settings(command, options, Quality::good);
+  set_quality(options.quality_options(), Quality::good);
+  add_quality_wishes(command, options.quality_options());
+  add_picture_settings(command, options);
   add_integrator_option(command, options);
   command
       .add_flag("--tuned", options.tuned,
@@ -139,7 +138,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE")
       ->group("Run");
   add_saved_maps_options(command, options);
-  add_quality_options(command, options.target);
+  exclude_chosen(command);
   add_preview_option(command, options, "Output");
   command
       .add_option("--glare", options.glare,

@@ -12,8 +12,8 @@
 #include "photile/light_mix.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
-#include "render/quality.hpp"
 #include "tools/command/picture_outputs.hpp"
+#include "tools/command/quality_options.hpp"
 #include "tools/trade/quality_target.hpp"
 
 namespace CLI {
@@ -27,13 +27,16 @@ enum class Integrator { photon_map, path };
 
 /// As typed; each value is within its range.
 struct RenderOptions {
+  QualityOptions quality_options() { return {quality, target, parameters}; }
+
   std::string scene;
   PictureOptions pictures;
   RenderParameters parameters;
   Integrator integrator = Integrator::photon_map;
-  std::string direct;    ///< "photons" or "rays" bring the light straight from lamps; "" = any
-  QualityTarget target;  ///< settings are chosen to meet it
-  bool tuned = false;    ///< use the tuning that `photile devices --tune` stored
+  std::string direct;  ///< "photons" or "rays" bring the light straight from lamps; "" = any
+  Quality quality = Quality::draft;  ///< the settings are its own but for those given
+  QualityTarget target;              ///< settings are chosen to meet it
+  bool tuned = false;                ///< use the tuning that `photile devices --tune` stored
   std::string camera;
   std::string size;                 ///< "" = by the camera
   std::vector<LightChange> lights;  ///< what --light asks for
@@ -58,8 +61,7 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
                          std::initializer_list<std::string_view> without = {});
 
 /// Adds these and those that say what a camera makes of it, but not what becomes of the picture.
-///   usual   the quality that `options` have
-void add_picture_settings(CLI::App& command, RenderOptions& options, Quality usual,
+void add_picture_settings(CLI::App& command, RenderOptions& options,
                           std::initializer_list<std::string_view> without = {});
 
 /// Adds --save-maps and --load-maps.

@@ -8,6 +8,7 @@
 
 #include "render/render_costs.hpp"
 #include "tools/command/number_format.hpp"
+#include "tools/command/quality_options.hpp"
 #include "tools/command/setting_options.hpp"
 #include "tools/command/version.hpp"
 
@@ -58,6 +59,15 @@ std::string devices_text(std::span<const DeviceInfo> devices) {
   return text;
 }
 
+/// What was asked for by name; the parameters are what followed.
+json asked_json(const RunRecord& record) {
+  json asked{{"quality", name_of(record.quality)}};
+  for (const QualityWish& wish : quality_wishes()) {
+    if (record.target.*wish.value > 0) asked[std::string(wish.name)] = record.target.*wish.value;
+  }
+  return asked;
+}
+
 json parameters_json(const RunRecord& record) {
   json result = settings_json(record.used, record.has_photons());
   result["integrator"] = record.integrator;
@@ -81,6 +91,12 @@ void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
   attributes["photile.scene"] = record.scene;
   attributes["photile.camera"] = record.camera;
   attributes["photile.integrator"] = record.integrator;
+  attributes["photile.quality"] = name_of(record.quality);
+  for (const QualityWish& wish : quality_wishes()) {
+    if (record.target.*wish.value == 0) continue;
+    attributes["photile." + std::string(wish.name)] =
+        fmt::format("{}{}", record.target.*wish.value, wish.type == "TIME" ? " seconds" : "");
+  }
   attributes["photile.times"] = times_text(record.stages);
   for (const Setting& setting : settings()) {
     if (!record.has_photons() && !is_of_any_integrator(setting)) continue;
@@ -96,6 +112,7 @@ json run_json(const RunRecord& record) {
               {"scene", record.scene},
               {"camera", record.camera},
               {"devices", devices_json(record)},
+              {"asked", asked_json(record)},
               {"parameters", parameters_json(record)},
               {"lumen_per_watt", record.mix.lumen_per_watt},
               {"lights", json::array()},

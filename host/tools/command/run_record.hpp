@@ -12,6 +12,8 @@
 #include "photile/light_mix.hpp"
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
+#include "render/quality.hpp"
+#include "tools/trade/quality_target.hpp"
 
 namespace photile::app {
 
@@ -21,7 +23,9 @@ struct RunRecord {
   std::string scene;  ///< the file's name, without folders: a picture should not tell them
   std::string camera;
   std::string integrator;  ///< "photon-map" or "path", which has no devices, maps and photons
-  RenderParameters used;   ///< RenderResult::used, or what paths were asked for
+  Quality quality = Quality::draft;  ///< whose settings are used but for those given
+  QualityTarget target;              ///< that settings were chosen for
+  RenderParameters used;             ///< RenderResult::used, or what paths were asked for
   std::vector<DeviceInfo> devices;
   std::vector<double> device_shares;  ///< of the hits, per device
   LightMix mix;

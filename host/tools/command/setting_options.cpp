@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "tools/command/quality_options.hpp"
 #include "tools/command/validators.hpp"
 
 namespace photile::app {
@@ -54,6 +55,7 @@ void add(CLI::App& command, RenderParameters& parameters, const Setting& setting
 }
 
 std::string default_text(const Setting& setting) {
+  if (setting.is_of_quality()) return "by [quality](#quality)";
   return setting.otherwise.empty() ? text_of(setting.value(RenderParameters{}))
                                    : std::string(setting.otherwise);
 }
@@ -64,6 +66,33 @@ std::string table_row(const Setting& setting) {
   return fmt::format("| `{}` | {} | {}{} | {} | {} |\n", fmt::join(option_names(setting), "`, `"),
                      setting.help, text_of(setting.range), unit, default_text(setting),
                      setting.reader);
+}
+
+std::vector<std::string_view> quality_names() {
+  std::vector<std::string_view> names;
+  for (const Quality quality : all_qualities) names.push_back(name_of(quality));
+  return names;
+}
+
+/// What each sets, a row for each.
+std::string quality_table() {
+  std::string text = "| `--quality` |", rule = "|---|";
+  for (const Setting& setting : settings()) {
+    if (!setting.is_of_quality()) continue;
+    text += fmt::format(" `{}` |", option_names(setting).front());
+    rule += "--:|";
+  }
+  text += " the picture |\n" + rule + "---|\n";
+  for (const Quality quality : all_qualities) {
+    text += fmt::format("| `{}` |", name_of(quality));
+    for (const Setting& setting : settings()) {
+      if (!setting.is_of_quality()) continue;
+      const std::string value = text_of(setting.by_quality[index_of(quality)]);
+      text += value == "0" ? " |" : fmt::format(" {} |", value);
+    }
+    text += fmt::format(" {} |\n", description_of(quality));
+  }
+  return text;
 }
 
 }  // namespace
@@ -121,7 +150,13 @@ std::string settings_table() {
     group = setting.group;
     text += table_row(setting);
   }
-  return text;
+  text += fmt::format("| **Quality** | | | | |\n| `--quality` | {} | one of {} | good | all |\n",
+                      quality_help, fmt::join(quality_names(), ", "));
+  for (const QualityWish& wish : quality_wishes()) {
+    text += fmt::format("| `--{}` | {} | {} | | all |\n", wish.option, wish.help,
+                        wish.type == "TIME" ? "such as `33ms`, `10s`, `2min`" : "such as `1.5%`");
+  }
+  return text + "\n### Quality\n\n" + quality_table();
 }
 
 }  // namespace photile::app

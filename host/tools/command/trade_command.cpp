@@ -179,7 +179,7 @@ void add_trade_command(CLI::App& photile) {
       ->transform(count_between(2, limits::max_samples_per_pixel))
       ->capture_default_str()
       ->excludes(reference);
-  add_picture_settings(*command, options->render, Quality::draft);
+  add_picture_settings(*command, options->render);
   command->callback([options] { run_trade(*options); });
 }
 

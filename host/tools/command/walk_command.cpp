@@ -146,6 +146,7 @@ class Walk {
     record.scene = scene_.source.filename().string();
     record.camera = camera.name;
     record.integrator = "photon-map";
+    record.quality = options_.render.quality;
     record.used = options_.render.parameters;
     record.mix = mix_;
     for (const Device& device : devices_) record.devices.push_back(device.info());
@@ -359,8 +360,8 @@ void add_walk_command(CLI::App& photile) {
       ->transform(count_between(0, limits::max_frames))
       ->capture_default_str()
       ->group("Motion");
-  set_quality(options->render.parameters, Quality::good);
-  add_picture_settings(*command, options->render, Quality::good);
+  set_quality(options->render.quality_options(), Quality::good);
+  add_picture_settings(*command, options->render);
   add_saved_maps_options(*command, options->render);
   command->callback([options, command] {
     const bool given = command->count("--light-maps") > 0;
