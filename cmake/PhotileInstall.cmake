@@ -9,3 +9,17 @@ configure_package_config_file(cmake/photileConfig.cmake.in photileConfig.cmake
 write_basic_package_version_file(photileConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/photileConfig.cmake ${PROJECT_BINARY_DIR}/photileConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/photile)
+
+# Kernels compiled for the devices of this machine, for all of its users:
+#   cmake --install BUILD --component kernels
+install(CODE "
+  set(scratch \"${PROJECT_BINARY_DIR}/installed-kernels\")
+  file(REMOVE_RECURSE \"\${scratch}\")
+  file(MAKE_DIRECTORY \"\${scratch}\")
+  execute_process(
+    COMMAND \"\${CMAKE_COMMAND}\" -E env \"XDG_CACHE_HOME=\${scratch}\" XDG_DATA_DIRS=
+      \"${PROJECT_BINARY_DIR}/photile\" devices --compile
+    COMMAND_ERROR_IS_FATAL ANY)
+  file(INSTALL \"\${scratch}/photile/kernels\"
+    DESTINATION \"\${CMAKE_INSTALL_PREFIX}/share/photile\")"
+  COMPONENT kernels EXCLUDE_FROM_ALL)

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <system_error>
 
 namespace photile::device {
@@ -60,6 +61,19 @@ std::optional<fs::path> persistent_cache_folder() {
     }
   }
   return std::nullopt;
+}
+
+std::vector<fs::path> installed_kernel_folders() {
+  const char* const value = std::getenv("XDG_DATA_DIRS");
+  std::istringstream list(value == nullptr || *value == '\0' ? "/usr/local/share:/usr/share"
+                                                             : value);
+  std::vector<fs::path> folders;
+  for (std::string base; std::getline(list, base, ':');) {
+    const fs::path folder = fs::path(base) / "photile" / "kernels";
+    std::error_code ignored;  // a folder that cannot be read holds nothing
+    if (folder.is_absolute() && fs::is_directory(folder, ignored)) folders.push_back(folder);
+  }
+  return folders;
 }
 
 void warn(const std::string& line) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace photile::device {
 
@@ -15,6 +16,10 @@ inline constexpr std::uint64_t min_free_cache_bytes = 64ull << 20;
 /// photile's own cache folder, created if need be: $XDG_CACHE_HOME/photile, else
 /// $HOME/.cache/photile. None where neither can be written or has room.
 std::optional<std::filesystem::path> persistent_cache_folder();
+
+/// The folders of kernels that were compiled when photile was installed, which are read alone:
+/// photile/kernels below each of $XDG_DATA_DIRS, else below /usr/local/share and /usr/share.
+std::vector<std::filesystem::path> installed_kernel_folders();
 
 /// "" where compiled code can be kept in and loaded from `folder`, which is created if need be;
 /// else what is wrong.

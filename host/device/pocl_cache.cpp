@@ -5,38 +5,28 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
-#include <stdexcept>
+#include <optional>
+#include <utility>
 
 #include "device/cache_folder.hpp"
-#include "device/checked_file.hpp"
 
 namespace photile::device {
 
 namespace fs = std::filesystem;
 
-PoclCache::PoclCache(fs::path work, fs::path store)
-    : work_(std::move(work)), store_(std::move(store)) {
-  std::error_code ignored;  // publishing will say so
-  fs::create_directories(store_, ignored);
-}
-
-fs::path PoclCache::pack_file(const CacheKey& key) const { return store_ / (key.hex() + ".pack"); }
+PoclCache::PoclCache(fs::path work, KernelStore store)
+    : work_(std::move(work)), store_(std::move(store)) {}
 
 PoclCache::Program PoclCache::restored(const CacheKey& key) const {
-  const auto file = pack_file(key);
-  const auto read = read_checked_file(file, key);
-  if (!read.payload) {
-    if (!read.problem.empty()) {
-      warn(fmt::format("compiled kernels '{}': {}; compiling again", file.string(), read.problem));
-    }
-    return {key, {}, 0};
-  }
+  const std::optional<std::string> packed = store_.load(key);
+  if (!packed) return {key, {}, 0};
   try {
-    const auto files = unpack(*read.payload);
+    const auto files = unpack(*packed);
     restore_files(work_, files);
     return {key, program_folders(files), files.size()};
   } catch (const std::exception& error) {
-    warn(fmt::format("compiled kernels '{}' cannot be restored: {}", file.string(), error.what()));
+    warn(fmt::format("compiled kernels '{}' cannot be restored: {}", store_.file(key).string(),
+                     error.what()));
     return {key, {}, 0};
   }
 }
@@ -64,12 +54,11 @@ void PoclCache::publish() noexcept {
     for (auto& [name, program] : programs_) {
       const auto files = collect_files(work_, program.folders);
       if (files.size() == program.stored_files) continue;
-      const auto problem = write_checked_file(pack_file(program.key), program.key, pack(files));
-      if (!problem.empty()) throw std::runtime_error(problem);
+      if (!store_.store(program.key, pack(files))) return;
       program.stored_files = files.size();
     }
   } catch (const std::exception& error) {
-    warn(fmt::format("compiled kernels are not kept in '{}': {}", store_.string(), error.what()));
+    warn(fmt::format("compiled kernels are not kept: {}", error.what()));
   }
 }
 

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "device/cache_key.hpp"
+#include "device/kernel_store.hpp"
 #include "device/pocl_pack.hpp"
 
 namespace photile::device {
@@ -21,8 +22,8 @@ namespace photile::device {
 /// One per work folder, shared by the contexts of a process. Thread-safe.
 class PoclCache {
  public:
-  /// `work` is PoCL's folder, `store` where the packs live (created if need be).
-  PoclCache(std::filesystem::path work, std::filesystem::path store);
+  /// `work` is PoCL's folder, `store` where the packs live.
+  PoclCache(std::filesystem::path work, KernelStore store);
 
   /// Restores the program's files if they are stored and sound, then calls `build`, which builds
   /// it. Returns true where PoCL found the program compiled. A damaged pack is a warning.
@@ -30,9 +31,6 @@ class PoclCache {
 
   /// Stores every program that has files which its pack lacks. What goes wrong is a warning.
   void publish() noexcept;
-
-  /// The file that holds a program.
-  std::filesystem::path pack_file(const CacheKey& key) const;
 
  private:
   struct Program {
@@ -43,7 +41,8 @@ class PoclCache {
 
   Program restored(const CacheKey& key) const;
 
-  std::filesystem::path work_, store_;
+  std::filesystem::path work_;
+  KernelStore store_;
   std::map<std::string, Program> programs_;  ///< by hexadecimal key
   std::mutex mutex_;
 };

@@ -10,15 +10,21 @@
 namespace photile::device {
 namespace {
 
+/// Where compiled kernels are kept between runs; none where nothing can be.
+std::optional<KernelStore> kernel_store(const char* ending) {
+  const auto folder = persistent_cache_folder();
+  if (!folder) return std::nullopt;
+  return KernelStore(*folder / "kernels", installed_kernel_folders(), ending);
+}
+
 /// The cache over this process's work folder; null where PoCL keeps its files elsewhere or nothing
 /// can be kept.
 PoclCache* shared_pocl_cache() {
   static const auto cache = []() -> std::unique_ptr<PoclCache> {
     const auto work = pocl_work_folder();
     if (!work) return nullptr;
-    const auto folder = persistent_cache_folder();
-    if (!folder) return nullptr;
-    return std::make_unique<PoclCache>(*work, *folder / "kernels");
+    auto store = kernel_store(".pack");
+    return store ? std::make_unique<PoclCache>(*work, std::move(*store)) : nullptr;
   }();
   return cache.get();
 }
@@ -30,8 +36,8 @@ ProgramLibrary::ProgramLibrary(const BuildTarget& target, bool use_cache)
   if (!use_cache) return;
   if (target.info->is_pocl) {
     pocl_cache_ = shared_pocl_cache();
-  } else if (const auto folder = persistent_cache_folder()) {
-    cache_.emplace(*folder / "kernels");
+  } else {
+    cache_ = kernel_store(".program");
   }
 }
 

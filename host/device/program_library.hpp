@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "device/context.hpp"
+#include "device/kernel_store.hpp"
 #include "device/pocl_cache.hpp"
 #include "device/program.hpp"
-#include "device/program_cache.hpp"
 
 namespace photile::device {
 
@@ -40,8 +40,8 @@ class ProgramLibrary {
 
   BuildTarget target_;
   std::string base_options_;
-  PoclCache* pocl_cache_ = nullptr;    ///< on PoCL, unless switched off
-  std::optional<ProgramCache> cache_;  ///< on others, unless switched off
+  PoclCache* pocl_cache_ = nullptr;   ///< on PoCL, unless switched off
+  std::optional<KernelStore> cache_;  ///< on others, unless switched off
   std::map<std::pair<std::string, std::string>, ProgramHandle> programs_;  ///< by file, defines
   std::vector<ProgramTime> times_;
   std::uint64_t built_ = 0, from_cache_ = 0;

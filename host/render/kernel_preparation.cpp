@@ -95,14 +95,18 @@ KernelPreparation::KernelPreparation(const Scene& scene, std::span<Device> devic
 void compile_usual_kernels(Device& device, Progress& progress) {
   const std::array<SceneNeeds, 3> surfaces{
       SceneNeeds{}, {.glossy = true}, {.glossy = true, .normal_maps = true}};
-  RenderParameters parameters;
-  set_quality(parameters, Quality::good);
-  progress.begin("compile kernels", surfaces.size() * max_dense_lights, "kinds of scenes");
-  for (SceneNeeds needs : surfaces) {
-    for (needs.light_count = 1; needs.light_count <= max_dense_lights; ++needs.light_count) {
-      progress.throw_if_cancelled();
-      prepare(device, sample_of(needs, true, parameters.neighbours), parameters);
-      progress.advance(1);
+  const std::array qualities{Quality::draft, Quality::good};
+  progress.begin("compile kernels", qualities.size() * surfaces.size() * max_dense_lights,
+                 "kinds of scenes");
+  for (const Quality quality : qualities) {
+    RenderParameters parameters;
+    set_quality(parameters, quality);
+    for (SceneNeeds needs : surfaces) {
+      for (needs.light_count = 1; needs.light_count <= max_dense_lights; ++needs.light_count) {
+        progress.throw_if_cancelled();
+        prepare(device, sample_of(needs, true, parameters.neighbours), parameters);
+        progress.advance(1);
+      }
     }
   }
   progress.end();

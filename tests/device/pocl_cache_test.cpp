@@ -60,6 +60,20 @@ TEST_CASE("PoCL's kernels are compiled once and restored by the next process") {
   CHECK(second.errors.empty());
 }
 
+TEST_CASE("PoCL's kernels that were compiled at the installation are not compiled for a user") {
+  const TemporaryFolder installed, cache;
+  probe(installed.path);
+  const fs::path share = installed.path / "share";
+  fs::create_directories(share / "photile");
+  fs::rename(installed.path / "photile" / "kernels", share / "photile" / "kernels");
+  auto environment = cache_in(cache.path);
+  environment["XDG_DATA_DIRS"] = share.string();
+  const auto result = run_child({PHOTILE_DEVICE_PROBE, "run"}, environment);
+  INFO(result.errors);
+  CHECK(result.output == restored);
+  CHECK(packs(cache.path).empty());
+}
+
 TEST_CASE("a pack holds what PoCL needs: without recompiling nothing is published again") {
   const TemporaryFolder cache;
   probe(cache.path);

@@ -5,6 +5,7 @@
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "render/kernel_preparation.hpp"
+#include "render/map_estimators.hpp"
 
 namespace photile::test {
 
@@ -28,13 +29,18 @@ TEST_CASE("no kernel is left to compile once those of a scene are prepared") {
   Device device;
   RenderParameters parameters;
   parameters.neighbours = 20;
+  parameters.light_maps = GENERATE(LightMapMode::off, LightMapMode::on);
   KernelPreparation(scene, std::span(&device, 1), parameters).wait();
   const std::uint64_t prepared = device.programs_built() + device.programs_from_cache();
   CHECK(prepared == 2);
   const PhotonMaps maps(device, scene, photons,
                         find_map_groups(scene, photons, parameters.maps, {0.2}), {.radius = 0.2});
   CHECK(maps.statistics().mixed_maps > 0);
-  Estimator(maps, scene, {.neighbours = 20}).estimate(test::uniform_hits(scene, 93, 92));
+  EstimateParameters estimate{.neighbours = 20};
+  if (parameters.light_maps == LightMapMode::on) {
+    estimate_each_alone(std::span(&estimate, 1), device);
+  }
+  Estimator(maps, scene, estimate).estimate(test::uniform_hits(scene, 93, 92));
   CHECK(device.programs_built() + device.programs_from_cache() == prepared);
 }
 
