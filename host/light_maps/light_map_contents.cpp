@@ -77,9 +77,8 @@ std::vector<std::uint8_t> corners_of(const Tiles& tiles, std::span<const std::ui
 
 LightMapContents LightMaps::contents() const {
   LightMapContents contents;
-  contents.nodes.resize(impl_->together.size());
-  for (const auto& [place, node] : impl_->node_at) {
-    contents.nodes[node] = {place.chart, place.x, place.y};
+  for (const NodePlace& place : impl_->places) {
+    contents.nodes.push_back({place.chart, place.x, place.y});
   }
   contents.values = impl_->values;
   contents.error = impl_->error;
@@ -120,8 +119,18 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
     left.tiles.back().known = kept[index];
     left.tiles.back().split &= kept[index];
   }
+  // By the first pass, whose values are gone.
+  std::vector<float> together;
+  for (const std::uint32_t node : former) together.push_back(impl_->together[node]);
+  std::vector<std::size_t> refined;
+  for (const std::size_t nodes : impl_->refined) {
+    refined.push_back(static_cast<std::size_t>(
+        std::lower_bound(former.begin(), former.end(), nodes) - former.begin()));
+  }
   impl_->clear();
   restore(std::move(left));
+  impl_->together = std::move(together);
+  impl_->refined = std::move(refined);
   return former;
 }
 
@@ -144,7 +153,7 @@ void LightMaps::restore(LightMapContents contents) {
   }
   const PrimaryHits points =
       light_maps::node_points(impl_->scene, impl_->charts, places, impl_->levels, false);
-  impl_->append(std::move(contents.values), points, count);
+  impl_->append(std::move(contents.values), points, places);
   impl_->error = std::move(contents.error);
   impl_->distance = std::move(contents.distance);
   const auto place_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,

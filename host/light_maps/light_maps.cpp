@@ -87,6 +87,8 @@ void LightMaps::Impl::clear() {
   error.clear();
   distance.clear();
   points.clear();
+  places.clear();
+  refined.clear();
   cells = 0;
 }
 
@@ -154,9 +156,9 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
   }
 }
 
-void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source,
-                            const Progress& progress) {
-  if (nodes.empty()) return;
+std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(std::span<const NodePlace> nodes,
+                                                              NodeSource& source,
+                                                              const Progress& progress) {
   const auto batch_of = [&](std::span<const NodePlace> places) {
     return light_maps::node_batch(scene, charts, places, levels, needs.glossy,
                                   source.surroundings());
@@ -165,18 +167,17 @@ void LightMaps::Impl::value(std::span<const NodePlace> nodes, NodeSource& source
     // For the source: they have their values here.
     if (!places.empty()) source.value(batch_of(places), progress);
   }
-  const NodeBatch batch = batch_of(nodes);
-  NodeValues valued = source.value(batch, progress);
-  append(std::move(valued.irradiance), batch.points, nodes.size());
-  error.insert(error.end(), valued.error.begin(), valued.error.end());
-  distance.insert(distance.end(), valued.distance.begin(), valued.distance.end());
+  NodeBatch batch = batch_of(nodes);
+  NodeValues values = source.value(batch, progress);
+  return {std::move(values), std::move(batch.points)};
 }
 
 /// The light of the nodes that follow, at the first of these points.
-void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at, std::size_t nodes) {
+void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at,
+                             std::span<const NodePlace> nodes) {
   estimates.radiance.clear();
   const std::size_t lights = parameters.powers.size();
-  for (std::size_t node = 0; node < nodes; ++node) {
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
     double sum = 0;
     const auto add = [&](std::size_t light, std::size_t i) {
       sum += parameters.powers[light] * luminance(glm::dvec3(estimates.irradiance[i]));
@@ -192,6 +193,7 @@ void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at, std::si
     points.push_back({at.position[node], at.sided_triangle[node]});
   }
   values.append(std::move(estimates));
+  places.insert(places.end(), nodes.begin(), nodes.end());
 }
 
 /// By more than contrast and noise allow.
@@ -240,7 +242,13 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     std::vector<NodePlace> added;
     impl_->number_corners(cells, added);
     try {
-      impl_->value(added, source, progress);
+      if (!added.empty()) {
+        auto [values, points] = impl_->values_of(added, source, progress);
+        impl_->append(std::move(values.irradiance), points, added);
+        impl_->error.insert(impl_->error.end(), values.error.begin(), values.error.end());
+        impl_->distance.insert(impl_->distance.end(), values.distance.begin(),
+                               values.distance.end());
+      }
     } catch (...) {
       impl_->forget(cells, added);
       throw;
@@ -270,7 +278,8 @@ double LightMaps::relative_error(const NodeBlend& blend) const {
     error += double{blend.weight[i]} * impl_->error[blend.node[i]];
     light += double{blend.weight[i]} * impl_->together[blend.node[i]];
   }
-  return light > 0 ? error / light : 0;
+  const auto passes = static_cast<double>(1 + impl_->refined.size());
+  return light > 0 ? error / light / std::sqrt(passes) : 0;
 }
 
 bool LightMaps::uneven(const NodeBlend& blend, double contrast) const {
@@ -297,12 +306,13 @@ LightMapStatistics LightMaps::statistics() const {
   return {.nodes = impl_->together.size(),
           .tiles = impl_->tiles.size(),
           .cells = impl_->cells,
+          .refinements = impl_->refinements,
           .charts = impl_->charts.size(),
           .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
                          values.first.size() * sizeof(std::uint64_t) +
                          values.light.size() * sizeof(std::uint16_t) +
                          (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float) +
-                         impl_->points.size() * sizeof(NodePoint),
+                         impl_->points.size() * (sizeof(NodePoint) + sizeof(NodePlace)),
           .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +
                          impl_->node_at.size() * 2 * sizeof(std::pair<NodePlace, std::uint32_t>),
           .chart_seconds = impl_->chart_seconds};

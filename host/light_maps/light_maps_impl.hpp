@@ -27,9 +27,14 @@ struct LightMaps::Impl {
               std::span<const light_maps::NodePlace> added);
   /// Lets go of all nodes.
   void clear();
-  void value(std::span<const light_maps::NodePlace> nodes, NodeSource& source,
-             const Progress& progress);
-  void append(Estimates estimates, const PrimaryHits& at, std::size_t nodes);
+  /// What the source says of nodes, and where they are.
+  std::pair<NodeValues, PrimaryHits> values_of(std::span<const light_maps::NodePlace> nodes,
+                                               NodeSource& source, const Progress& progress);
+  void append(Estimates estimates, const PrimaryHits& at,
+              std::span<const light_maps::NodePlace> nodes);
+  /// Makes nodes [first, last), which hold the mean of so many passes, hold that of one more.
+  void add_pass(std::uint32_t passes, NodeSource& source, std::size_t first, std::size_t last,
+                const Progress& progress);
   bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
   bool differ_by_photons(double high, double low) const;
 
@@ -40,10 +45,14 @@ struct LightMaps::Impl {
   const int levels;
   light_maps::Tiles tiles;
   light_maps::NodeIndex node_at;
-  Estimates values;                    ///< of nodes
-  std::vector<float> together;         ///< per node: luminance of all lights at their powers
+  std::vector<light_maps::NodePlace> places;  ///< of nodes
+  Estimates values;                           ///< of nodes
+  /// Per node: luminance of all lights at their powers, by the first pass.
+  std::vector<float> together;
   std::vector<float> error, distance;  ///< per node, where the source tells: see NodeValues
   std::vector<NodePoint> points;       ///< of nodes
+  std::vector<std::size_t> refined;    ///< per further pass: the first nodes, which hold it
+  std::uint64_t refinements = 0;
   std::uint64_t cells = 0;
   double chart_seconds = 0;
 };

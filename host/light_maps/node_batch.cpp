@@ -166,6 +166,10 @@ std::size_t NodePlaceHash::operator()(const NodePlace& node) const {
   return static_cast<std::size_t>(hash_of(node));
 }
 
+int level_of(const NodePlace& node, int levels) {
+  return levels - 1 - std::countr_zero(step_of(node, levels));
+}
+
 std::vector<std::vector<NodePlace>> unknown_parents(std::span<const NodePlace> nodes, int levels,
                                                     const NodeSource& source) {
   std::vector<std::vector<NodePlace>> by_level(static_cast<std::size_t>(levels));
@@ -177,8 +181,7 @@ std::vector<std::vector<NodePlace>> unknown_parents(std::span<const NodePlace> n
     if (!parents) continue;
     for (const NodePlace& parent : *parents) {
       if (source.knows(number_of(parent)) || !found.insert({parent, 0}).second) continue;
-      const int level = levels - 1 - std::countr_zero(step_of(parent, levels));
-      by_level[static_cast<std::size_t>(level)].push_back(parent);
+      by_level[static_cast<std::size_t>(level_of(parent, levels))].push_back(parent);
       open.push_back(parent);
     }
   }

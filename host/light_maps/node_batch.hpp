@@ -32,6 +32,9 @@ using NodeIndex = tsl::robin_map<NodePlace, std::uint32_t, NodePlaceHash>;
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
                      int levels, bool glossy, const NodeSource::Surroundings& surroundings);
 
+/// The coarsest level of so many that has a node.
+int level_of(const NodePlace& node, int levels);
+
 /// The places between which nodes lie, and those between which these do, as far as a source does
 /// not know them: by level, the coarsest first.
 std::vector<std::vector<NodePlace>> unknown_parents(std::span<const NodePlace> nodes, int levels,

@@ -10,7 +10,10 @@ namespace photile {
 KeptMaps::KeptMaps(const Scene& scene, std::span<Device> devices,
                    const RenderParameters& parameters, PreparedPhotons* prepared,
                    const KeepPhotons& keep, Progress& progress)
-    : scene_(scene), rendering_(scene_, devices, parameters, progress) {
+    : scene_(scene),
+      devices_(devices),
+      parameters_(parameters),
+      rendering_(scene_, devices, parameters, progress) {
   const RenderPlan& plan = rendering_.plan();
   if (prepared && !prepared->caustics && plan.keeps_caustics()) {
     throw SettingError(
@@ -18,33 +21,69 @@ KeptMaps::KeptMaps(const Scene& scene, std::span<Device> devices,
         "rays that gather take caustics from photons of their own, which these saved maps lack; "
         "save them again with rays that gather");
   }
-  if (const int passes = plan.passes(); passes > 1) {
+  if (!plan.may_keep_passes()) {
     throw SettingError(
         setting_named("passes"),
-        fmt::format("{} photon passes: walks, views, saved maps and glare need all photons in "
-                    "memory at once; take fewer photons, or one pass where more memory may be had",
-                    passes));
+        fmt::format(
+            "{} photon passes: walks, views, saved maps and glare need all "
+            "photons in memory at once; take fewer photons, or give a number of passes where "
+            "more memory may be had",
+            plan.passes()));
   }
   rendering_.prepare(0, prepared, keep ? &keep : nullptr);
 }
 
+KeptMaps::Pass KeptMaps::prepare_pass(int pass, std::vector<Device> devices,
+                                      Progress& progress) const {
+  Pass made{std::move(devices), nullptr};
+  const std::span<Device> used = made.devices.empty() ? devices_ : std::span(made.devices);
+  made.rendering = std::make_unique<Rendering>(scene_, used, parameters_, progress);
+  made.rendering->follow(rendering_, pass);
+  made.rendering->report_to(Progress::none());
+  return made;
+}
+
+void KeptMaps::add(Pass pass) {
+  further_.push_back(std::move(pass));
+  rendering_.add(*further_.back().rendering);
+}
+
+void KeptMaps::add_passes(Progress& progress) {
+  for (int pass = rendering_.passes_kept(); pass < rendering_.plan().passes(); ++pass) {
+    add(prepare_pass(pass, {}, progress));
+  }
+}
+
 RenderResult KeptMaps::render(const HitSource& hits, const Film& film, Progress& progress) {
   rendering_.report_to(progress);
-  rendering_.start(film);
-  rendering_.add_pass(hits);
+  rendering_.start(film, rendering_.passes_kept());
+  for (int pass = 0; pass < rendering_.passes_kept(); ++pass) {
+    rendering_.add_pass(hits, static_cast<std::size_t>(pass));
+  }
   return rendering_.finish();
 }
 
 struct SceneRenderer::Impl : KeptMaps {
   using KeptMaps::KeptMaps;
 };
+struct SceneRenderer::Pass : KeptMaps::Pass {};
 
 SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
                              const RenderParameters& parameters, PreparedPhotons* prepared,
-                             const KeepPhotons& keep, Progress& progress)
-    : impl_(std::make_unique<Impl>(scene, devices, parameters, prepared, keep, progress)) {}
+                             const KeepPhotons& keep, Progress& progress, Passes passes)
+    : impl_(std::make_unique<Impl>(scene, devices, parameters, prepared, keep, progress)) {
+  if (passes == Passes::all) impl_->add_passes(progress);
+}
 
 SceneRenderer::~SceneRenderer() = default;
+
+std::shared_ptr<SceneRenderer::Pass> SceneRenderer::prepare_pass(int pass,
+                                                                 std::vector<Device> devices,
+                                                                 Progress& progress) const {
+  return std::make_shared<Pass>(Pass{impl_->prepare_pass(pass, std::move(devices), progress)});
+}
+
+void SceneRenderer::add(Pass& pass) { impl_->add(std::move(pass)); }
 
 RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progress& progress) {
   return impl_->render(CameraHits(camera), film, progress);

@@ -1,15 +1,28 @@
 // Photon maps that are kept for many pictures: what SceneRenderer offers, of any hits.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "render/rendering.hpp"
 
 namespace photile {
 
 class KeptMaps {
  public:
-  /// As SceneRenderer.
+  /// As SceneRenderer, but that of several passes only the first is prepared.
   KeptMaps(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
            PreparedPhotons* prepared, const KeepPhotons& keep, Progress& progress);
+
+  /// As SceneRenderer.
+  struct Pass {
+    std::vector<Device> devices;  ///< its own, if any
+    std::unique_ptr<Rendering> rendering;
+  };
+  Pass prepare_pass(int pass, std::vector<Device> devices, Progress& progress) const;
+  void add(Pass pass);
+  /// All that are not added yet.
+  void add_passes(Progress& progress);
 
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress);
 
@@ -29,7 +42,10 @@ class KeptMaps {
 
  private:
   const PreparedScene scene_;
+  std::span<Device> devices_;
+  const RenderParameters parameters_;
   Rendering rendering_;
+  std::vector<Pass> further_;
 };
 
 }  // namespace photile

@@ -128,12 +128,30 @@ LightMapEstimates::LightMapEstimates(const RayScene& rays, const LightMapParamet
                                      MapEstimators& photons, NodeSource* nodes)
     : scene_(rays.scene()),
       needs_(rays.needs()),
-      photons_(photons),
-      source_(nodes ? nodes : this),
+      gathered_(nodes != nullptr),
       maps_(scene_, parameters),
-      sight_(rays, maps_) {}
+      sight_(rays, maps_) {
+  add_pass(photons, nodes);
+}
 
-Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress) {
+void LightMapEstimates::add_pass(MapEstimators& photons, NodeSource* nodes) {
+  photons_.push_back(&photons);
+  source_.add(nodes ? *nodes : photon_nodes_.emplace_back(photons));
+}
+
+std::uint64_t LightMapEstimates::Passes::bytes() const {
+  std::uint64_t sum = first_->bytes();
+  for (const NodeSource* source : further_) sum += source->bytes();
+  return sum;
+}
+
+void LightMapEstimates::Passes::forget() {
+  first_->forget();
+  for (NodeSource* source : further_) source->forget();
+}
+
+Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress,
+                                      std::size_t pass) {
   std::vector<std::uint8_t> is_alone(hits.size(), 0);
   std::vector<std::uint32_t> served;
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
@@ -145,10 +163,11 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   }
   const Stopwatch stopwatch;
   if (served.size() == hits.size()) {
-    maps_.fill(hits, *source_, progress);
+    maps_.fill(hits, source_, progress);
   } else {
-    maps_.fill(estimate::reordered(hits, 0, served), *source_, progress);
+    maps_.fill(estimate::reordered(hits, 0, served), source_, progress);
   }
+  maps_.refine(source_, progress);
   fill_time_ += stopwatch.taken();
   const std::vector<NodeBlend> blends = blends_of(hits, is_alone);
   std::vector<std::uint32_t> alone, place(hits.size(), none);
@@ -160,7 +179,7 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   hits_alone_ += alone.size();
   hits_read_ += hits.size() - alone.size();
   const Estimates own =
-      alone.empty() ? Estimates{} : photons_.estimate(estimate::reordered(hits, 0, alone));
+      alone.empty() ? Estimates{} : photons_[pass]->estimate(estimate::reordered(hits, 0, alone));
   const Blend blend(needs_, maps_, hits, own, place, blends);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
   std::vector<double> squared_errors(parts.size(), 0.0);
@@ -180,8 +199,6 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
 std::vector<NodeBlend> LightMapEstimates::blends_of(const PrimaryHits& hits,
                                                     std::vector<std::uint8_t>& alone) const {
   std::vector<NodeBlend> blends(hits.size());
-  // Where photons value nodes they would say no more at the hit, and may have to be traced first.
-  const bool gathered = source_ != static_cast<const NodeSource*>(this);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_blend_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
@@ -190,7 +207,9 @@ std::vector<NodeBlend> LightMapEstimates::blends_of(const PrimaryHits& hits,
                         const std::uint32_t sided = hits.sided_triangle[hit];
                         maps_.find(sided, hits.position[hit], blends[hit]);
                         const bool seen = sight_.look(sided, hits.position[hit], blends[hit]);
-                        alone[hit] = gathered && !seen ? 1 : 0;
+                        // Where photons value nodes they would say no more at the hit, and may
+                        // have to be traced first.
+                        alone[hit] = gathered_ && !seen ? 1 : 0;
                       }
                     });
   return blends;

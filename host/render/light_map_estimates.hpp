@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -25,7 +26,7 @@ LightMapParameters light_map_parameters(const Photons& photons, int neighbours, 
                                         double angle_degrees, double detail,
                                         std::span<const double> powers);
 
-class LightMapEstimates : private PointSource {
+class LightMapEstimates {
  public:
   /// References are kept.
   ///   photons   whose estimates of hits do not depend on the hits beside them
@@ -33,13 +34,17 @@ class LightMapEstimates : private PointSource {
   LightMapEstimates(const RayScene& rays, const LightMapParameters& parameters,
                     MapEstimators& photons, NodeSource* nodes = nullptr);
 
+  /// A further photon pass: from now on nodes hold the mean of all. As the constructor.
+  void add_pass(MapEstimators& photons, NodeSource* nodes);
+
   /// Of hits in any order. Those with a specular lobe or a normal map are estimated where they are.
+  ///   pass   whose photons do that
   /// Errors: as DeviceEstimators; Interrupted.
-  Estimates estimate(const PrimaryHits& hits, const Progress& progress);
+  Estimates estimate(const PrimaryHits& hits, const Progress& progress, std::size_t pass = 0);
 
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
-  NodeSource& source() { return *source_; }
+  NodeSource& source() { return source_; }
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
@@ -49,7 +54,33 @@ class LightMapEstimates : private PointSource {
   TimeTaken fill_time() const { return fill_time_; }
 
  private:
-  Estimates irradiance(const PrimaryHits& nodes) override { return photons_.estimate(nodes); }
+  /// Nodes that photons value.
+  class PhotonNodes : public PointSource {
+   public:
+    explicit PhotonNodes(MapEstimators& photons) : photons_(photons) {}
+    Estimates irradiance(const PrimaryHits& nodes) override { return photons_.estimate(nodes); }
+
+   private:
+    MapEstimators& photons_;
+  };
+
+  /// The sources of all passes as one.
+  class Passes : public NodeSource {
+   public:
+    void add(NodeSource& source) { (first_ ? further_.emplace_back() : first_) = &source; }
+    Surroundings surroundings() const override { return first_->surroundings(); }
+    NodeValues value(const NodeBatch& batch, const Progress& progress) override {
+      return first_->value(batch, progress);
+    }
+    std::span<NodeSource* const> further() const override { return further_; }
+    bool knows(std::uint64_t number) const override { return first_->knows(number); }
+    std::uint64_t bytes() const override;
+    void forget() override;
+
+   private:
+    NodeSource* first_ = nullptr;
+    std::vector<NodeSource*> further_;
+  };
 
   /// Whether the light of a hit can be read: it has no specular lobe and no normal map, which ask
   /// where light comes from.
@@ -60,8 +91,10 @@ class LightMapEstimates : private PointSource {
 
   const Scene& scene_;
   const SceneNeeds needs_;
-  MapEstimators& photons_;
-  NodeSource* source_;
+  const bool gathered_;                   ///< rays value nodes, not photons
+  std::vector<MapEstimators*> photons_;   ///< of each pass
+  std::deque<PhotonNodes> photon_nodes_;  ///< where photons value nodes
+  Passes source_;
   LightMaps maps_;
   light_maps::NodeSight sight_;
   std::uint64_t hits_alone_ = 0, hits_read_ = 0;

@@ -1,4 +1,5 @@
 #include "render/hit_source.hpp"
+#include "render/kept_maps.hpp"
 #include "render/rendering.hpp"
 
 namespace photile {
@@ -6,6 +7,13 @@ namespace photile {
 RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& film,
                          std::span<Device> devices, const RenderParameters& parameters,
                          Progress& progress) {
+  const bool reads_nodes = parameters.light_maps == LightMapMode::on || nodes_gather(parameters);
+  if (parameters.passes > 1 && reads_nodes) {
+    KeptMaps maps(scene, devices, parameters, nullptr, {},
+                  progress);  // nodes hold the mean of all passes
+    maps.add_passes(progress);
+    return maps.render(hits, film, progress);
+  }
   const PreparedScene prepared(scene);
   Rendering rendering(prepared, devices, parameters, progress);
   rendering.start(film);

@@ -37,6 +37,19 @@ void StageCost::add(const TimeTaken& more_time, std::uint64_t more_host_bytes,
   device_bytes = std::max(device_bytes, more_device_bytes);
 }
 
+void RenderCosts::add_pass(const RenderCosts& further) {
+  trace.add(further.trace.time, further.trace.host_bytes);
+  build.add(further.build.time, further.build.host_bytes);
+  build.device_bytes += further.build.device_bytes;
+  estimators.add(further.estimators.time);
+  release.add(further.release.time);
+  emitted_photons += further.emitted_photons;
+  stored_photons += further.stored_photons;
+  caustic_photons += further.caustic_photons;
+  references += further.references;
+  largest_map = std::max(largest_map, further.largest_map);
+}
+
 void RenderCosts::start_picture() {
   hits = gather = light_maps = estimate = film = {};
   rays = gather_rays = light_map_nodes = hit_count = 0;

@@ -42,6 +42,9 @@ struct RenderCosts {
   double estimate_compile_seconds = 0;                 ///< of them, within `estimate`
   std::vector<std::pair<std::string, double>> shares;  ///< of several devices
 
+  /// Adds what the maps of a further pass have cost.
+  void add_pass(const RenderCosts& further);
+
   /// Forgets what the picture before has cost, and not the maps.
   void start_picture();
 

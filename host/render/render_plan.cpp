@@ -59,6 +59,7 @@ PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
 RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Progress& progress)
     : used_(asked),
       asked_light_maps_(asked.light_maps),
+      asked_passes_(asked.passes),
       scene_(rays.scene().source.filename().string()) {
   check(asked);
   if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
@@ -156,13 +157,12 @@ IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_rad
           .max_specular_depth = used_.max_specular_depth};
 }
 
-PrimaryHitParameters RenderPlan::hits(const Film& film, int pass) const {
+PrimaryHitParameters RenderPlan::hits(const Film& film, int passes) const {
   RenderParameters parameters = used_;
   parameters.film = film;
   PrimaryHitParameters hits = eye_rays(parameters);
-  hits.samples_per_pixel = passes() * ((film.samples_per_pixel - 1) / passes() + 1);
-  hits.pass = pass;
-  hits.passes = passes();
+  hits.samples_per_pixel = passes * ((film.samples_per_pixel - 1) / passes + 1);
+  hits.passes = passes;
   hits.direct_rays = used_.direct_rays;  // as the photons are traced
   hits.lobe_rays = used_.gloss == GlossMode::rays;
   return hits;

@@ -33,6 +33,9 @@ class RenderPlan {
   const RenderParameters& used() const { return used_; }
 
   int passes() const { return used_.passes; }
+  /// Whether the photons of all passes may be kept at once: their number was asked for, and does not
+  /// follow from the memory.
+  bool may_keep_passes() const { return passes() == 1 || asked_passes_ > 0; }
   bool gathers() const { return used_.final_gather_rays > 0; }
   bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
   /// Whether light maps are to be read by any hits, even if few share nodes.
@@ -74,13 +77,14 @@ class RenderPlan {
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.
-  PrimaryHitParameters hits(const Film& film, int pass) const;
+  PrimaryHitParameters hits(const Film& film, int passes) const;
 
   trace::FinalGatherParameters gathering() const;
 
  private:
   RenderParameters used_;
   LightMapMode asked_light_maps_;
+  int asked_passes_;
   std::string scene_;  ///< for messages
 };
 

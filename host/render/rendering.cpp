@@ -58,8 +58,8 @@ Rendering::Rendering(const PreparedScene& scene, std::span<Device> devices,
   costs_.structure = scene.cost;
 }
 
-void Rendering::start(const Film& film) {
-  film_ = plan_.hits(film, 0);
+void Rendering::start(const Film& film, int passes) {
+  film_ = plan_.hits(film, passes > 0 ? passes : plan_.passes());
   layers_ = LightLayers(film_.width, film_.height, scene_);
   shares_.assign(devices_.size(), 0.0);
   costs_.start_picture();
@@ -73,6 +73,7 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   photons_.reset();
   caustics_.reset();
   late_maps_.reset();
+  further_.clear();
   pass_ = pass;
   if (prepared && reads_light_maps_of(*prepared)) {
     wait_with(*prepared, keep);
@@ -87,6 +88,26 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   photons_.emplace(estimators_of(maps.photons));
   if (!maps.caustics.empty()) caustics_.emplace(estimators_of(maps.caustics));
   costs_.estimators.add(stopwatch.taken());
+}
+
+void Rendering::follow(const Rendering& first, int pass) {
+  radius_ = first.radius_;
+  groups_ = first.groups_;
+  surface_ = first.surface_;
+  paths_before_.assign(paths_before_.size(), 0);
+  for (int before = 0; before < pass; ++before) {
+    const PhotonTracerParameters traced = plan_.tracing(before, {});
+    const auto paths = photons_per_light(scene_, traced.emitted_photons, traced.quota);
+    for (std::size_t light = 0; light < paths.size(); ++light) paths_before_[light] += paths[light];
+  }
+  prepare(pass, nullptr, nullptr);
+  groups_ = {};
+}
+
+void Rendering::add(Rendering& further) {
+  further_.push_back(&further);
+  costs_.add_pass(further.costs_);
+  if (light_maps_) light_maps_->add_pass(*further.photons_, further.node_source());
 }
 
 MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps) const {
@@ -130,14 +151,15 @@ void Rendering::choose_light_maps(int pass, const Photons& photons) {
 }
 
 std::optional<LightMapContents> Rendering::light_map_contents() const {
-  if (!light_maps_) return std::nullopt;
+  if (!light_maps_ || !further_.empty()) return std::nullopt;
   LightMapContents contents = light_maps_->maps().contents();
   contents.settings = light_map_settings(plan_.used(), devices_);
   return contents;
 }
 
-void Rendering::add_pass(const HitSource& source) {
-  film_.pass = pass_;
+void Rendering::add_pass(const HitSource& source, std::size_t after) {
+  at_hand_ = after;
+  film_.pass = pass_ + static_cast<int>(after);
   const int rows = rows_per_batch(source);
   progress_->begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
   for (int first = 0; first < film_.height; first += rows) {
@@ -148,8 +170,8 @@ void Rendering::add_pass(const HitSource& source) {
     progress_->advance(static_cast<std::uint64_t>(last - first));
   }
   progress_->end();
-  const std::vector<double> shares = photons_->shares();
-  for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / plan_.passes();
+  const std::vector<double> shares = at_hand().photons_->shares();
+  for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / film_.passes;
 }
 
 /// Devices compile at the same time.
@@ -161,6 +183,7 @@ double Rendering::compile_seconds() const {
 
 void Rendering::release() {
   const Stopwatch stopwatch;
+  further_.clear();
   frames_.reset();
   light_maps_.reset();
   gathered_nodes_.reset();
@@ -297,7 +320,7 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
   const Stopwatch hit_watch;
   // Light maps ask for no order, and those of a file for no photons.
   const auto map_of =
-      reads_light_maps(source) ? std::span<const std::uint32_t>() : photons_->map_of();
+      reads_light_maps(source) ? std::span<const std::uint32_t>() : at_hand().photons_->map_of();
   PrimaryHitBatch batch = source.trace(rays_, film_, first, last, map_of);
   costs_.hits.add(hit_watch.taken());
   costs_.rays += batch.rays;
@@ -319,14 +342,16 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
 Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_row) {
   const Stopwatch stopwatch;
   const double compiled = compile_seconds();
+  Rendering& pass = at_hand();
   if (!plan_.gathers()) {
-    Estimates estimates = photons_->estimate(hits);
+    Estimates estimates = pass.photons_->estimate(hits);
     costs_.estimate.add(stopwatch.taken());
     costs_.estimate_compile_seconds += compile_seconds() - compiled;
     costs_.hit_count += hits.size();
     return estimates;
   }
-  FinalGather gather(rays_, *photons_, caustics_ ? &*caustics_ : nullptr, plan_.gathering());
+  FinalGather gather(rays_, *pass.photons_, pass.caustics_ ? &*pass.caustics_ : nullptr,
+                     plan_.gathering());
   Estimates estimates = gather.estimate(hits, path_numbers(hits, film_, first_row, last_row),
                                         hits_per_batch(plan_.used().neighbours), *progress_);
   costs_.gather.add(gather.costs().rays_time);
@@ -339,7 +364,16 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
 
 LightMapEstimates& Rendering::light_maps() {
   if (light_maps_) return *light_maps_;
-  if (plan_.gathers_at_nodes()) {
+  light_maps_.emplace(rays_, light_map_parameters_, *photons_, node_source());
+  for (Rendering* further : further_) {
+    light_maps_->add_pass(*further->photons_, further->node_source());
+  }
+  return *light_maps_;
+}
+
+NodeSource* Rendering::node_source() {
+  if (!plan_.gathers_at_nodes()) return nullptr;
+  if (!gathered_nodes_) {
     node_gather_.emplace(rays_, *photons_, end_parameters_, caustics_ ? &*caustics_ : nullptr,
                          plan_.node_gathering(pass_, radius_));
     constexpr double inset_of_spacing = 1.0 / 512;
@@ -347,9 +381,7 @@ LightMapEstimates& Rendering::light_maps() {
                             rays_of_nodes(plan_.used().light_map_rays,
                                           inset_of_spacing * light_map_parameters_.spacing));
   }
-  light_maps_.emplace(rays_, light_map_parameters_, *photons_,
-                      gathered_nodes_ ? &*gathered_nodes_ : nullptr);
-  return *light_maps_;
+  return &*gathered_nodes_;
 }
 
 LightMapFrames& Rendering::frames() {
@@ -363,7 +395,7 @@ Estimates Rendering::read_light_maps(const PrimaryHits& hits) {
   const std::uint64_t alone_before = light_maps.hits_alone();
   const std::uint64_t nodes_before = light_maps.maps().statistics().nodes;
   const TimeTaken filled_before = light_maps.fill_time();
-  Estimates estimates = light_maps.estimate(hits, *progress_);
+  Estimates estimates = light_maps.estimate(hits, *progress_, at_hand_);
   const LightMapStatistics maps = light_maps.maps().statistics();
   const TimeTaken filling = light_maps.fill_time() - filled_before;
   costs_.light_maps.add(filling, maps.value_bytes + maps.index_bytes);

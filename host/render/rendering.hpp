@@ -42,24 +42,34 @@ class Rendering {
   /// From now on.
   void report_to(Progress& progress) { progress_ = &progress; }
 
-  /// Begins a picture.
-  void start(const Film& film);
+  /// Begins a picture of so many passes; 0: of all there will be.
+  void start(const Film& film, int passes = 0);
 
   /// Traces the photons of a pass and builds their maps. Those of the pass before are gone.
   ///   prepared   photons and groups in place of traced ones, or null; taken
   ///   keep       is given those of the first pass, or null
   void prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
 
-  /// Adds what is seen by the photons of the prepared pass.
-  void add_pass(const HitSource& source);
+  /// Prepares a pass after the first, which `first` has prepared and keeps; any thread may.
+  void follow(const Rendering& first, int pass);
 
-  /// Of the prepared pass; the plan reads light maps.
+  /// From now on nodes of light maps hold the mean of the prepared passes and this next one.
+  /// `further` follows this rendering, and is kept as a reference.
+  void add(Rendering& further);
+
+  /// The prepared one and those added.
+  int passes_kept() const { return 1 + static_cast<int>(further_.size()); }
+
+  /// Adds what is seen by the photons of the prepared pass, or of the one added after so many.
+  void add_pass(const HitSource& source, std::size_t after = 0);
+
+  /// Of the prepared pass, and those added; the plan reads light maps.
   LightMapEstimates& light_maps();
 
-  /// Quick pictures from the light maps of the prepared pass; the plan reads light maps.
+  /// Quick pictures from these light maps; the plan reads light maps.
   LightMapFrames& frames();
 
-  /// What these light maps hold; none before they are read.
+  /// What these light maps hold; none before they are read, or of several passes.
   std::optional<LightMapContents> light_map_contents() const;
 
   /// Lets go of the maps, once all that was wanted is in the picture.
@@ -74,6 +84,11 @@ class Rendering {
     std::vector<PhotonMaps> photons;
     std::vector<PhotonMaps> caustics;  ///< for rays that gather, where there are any
   };
+
+  /// Whose photons are at hand.
+  Rendering& at_hand() { return at_hand_ == 0 ? *this : *further_[at_hand_ - 1]; }
+  /// What values nodes by the prepared pass; null: its photons alone do.
+  NodeSource* node_source();
 
   /// Whether light maps that are kept with the photons are those of this rendering.
   bool reads_light_maps_of(const PreparedPhotons& prepared);
@@ -118,6 +133,8 @@ class Rendering {
   std::optional<LightMapEstimates> light_maps_;  ///< of the pass, made when they are first read
   std::optional<LightMapFrames> frames_;         ///< of these light maps
   int pass_ = 0;
+  std::vector<Rendering*> further_;  ///< passes that are kept beside the prepared one
+  std::size_t at_hand_ = 0;          ///< 0: the prepared pass; else one of those
   std::vector<double> shares_;
   RenderCosts costs_;
 };

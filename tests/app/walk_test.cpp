@@ -129,11 +129,12 @@ TEST_CASE("a walk that is killed keeps its whole frames, and loses the one in pr
   CHECK(read_image(file(frames)).width == 16);
 }
 
-TEST_CASE("photons of a walk need one pass, and the refusal says so") {
+TEST_CASE("saved photons are those of one pass, and the refusal says so") {
   const FileFolder folder;
-  const std::string error = last_error(run_photile(walk(folder, {"--passes", "2"})), 2);
-  CHECK_THAT(error,
-             Contains("2 photon passes") && Contains("--passes") && Contains("fewer photons"));
+  const std::vector<std::string> more{"--passes", "2", "--save-maps", folder / "room.maps"};
+  const std::string error = last_error(run_photile(walk(folder, more)), 2);
+  CHECK_THAT(error, Contains("photons of one pass") && Contains("--passes"));
+  CHECK_FALSE(std::filesystem::exists(folder / "room.maps"));
 }
 
 TEST_CASE("frames of other settings are not taken for finished") {

@@ -35,11 +35,22 @@ TEST_CASE("each picture is the one that render gives, bit for bit") {
   }
 }
 
-TEST_CASE("maps that need several passes cannot be kept") {
+TEST_CASE("pictures of several kept passes are those of render, bit for bit") {
   const Scene scene = test::furnished_room();
   RenderParameters parameters = small();
-  parameters.passes = 2;
-  CHECK_THROWS_AS(SceneRenderer(scene, std::span(&test::device(), 1), parameters), UsageError);
+  parameters.passes = 3;
+  std::span<Device> devices(&test::device(), 1);
+  for (const LightMapMode mode : {LightMapMode::off, LightMapMode::on}) {
+    parameters.light_maps = mode;
+    SceneRenderer renderer(scene, devices, parameters);
+    for (const double x : {0.5, 2.0, 0.5}) {
+      const Camera camera = Camera::look_at({x, 0.3, 1.5}, {2, 2, 0.5}, {0, 0, 1}, 1.0);
+      const RenderResult kept = renderer.render(camera, parameters.film);
+      const RenderResult once = render(scene, camera, devices, parameters);
+      CHECK(test::same_bits(kept.layers, once.layers));
+      CHECK(kept.stored_photons == once.stored_photons);
+    }
+  }
 }
 
 }  // namespace photile::test

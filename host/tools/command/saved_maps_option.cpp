@@ -36,6 +36,10 @@ auto timed(TimeTaken& time, const Work& work) {
 
 std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions& options,
                                          Progress& progress) {
+  if (options.parameters.passes > 1 && !(options.load_maps.empty() && options.save_maps.empty())) {
+    throw SettingError(setting_named("passes"),
+                       "saved maps hold the photons of one pass; leave out --passes");
+  }
   if (options.load_maps.empty()) return std::nullopt;
   progress.begin("load photons", 0, "");
   PreparedPhotons prepared = saved_maps::load(options.load_maps, scene, settings_of(options));
@@ -75,6 +79,7 @@ RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, con
   }
   auto maps = std::make_unique<KeptMaps>(scene, devices, options.parameters,
                                          prepared ? &*prepared : nullptr, keep, progress);
+  maps->add_passes(progress);
   RenderResult result = maps->render(hits, options.parameters.film, progress);
   timed(keeping, [&] { keep_light_maps(maps->light_map_contents(), options, progress); });
   if (reflections) {

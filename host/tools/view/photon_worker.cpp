@@ -42,6 +42,20 @@ class PhotonWorker::Listener : public Progress {
   std::atomic<bool> stopped_{false};
 };
 
+void MapGeneration::hand_over(std::shared_ptr<SceneRenderer::Pass> pass, std::uint64_t paths) {
+  const std::lock_guard lock(mutex_);
+  handed_over_.emplace_back(std::move(pass), paths);
+}
+
+void MapGeneration::add_passes() {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [pass, paths] : handed_over_) {
+    renderer->add(*pass);
+    emitted_photons += paths;
+  }
+  handed_over_.clear();
+}
+
 std::vector<std::uint64_t> generations_to(std::uint64_t total) {
   std::vector<std::uint64_t> paths{total};
   for (std::uint64_t fewer = total / 4; paths.size() < 3 && fewer >= limits::min_photons;
@@ -78,12 +92,18 @@ std::exception_ptr PhotonWorker::take_error() {
 
 void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
   try {
-    if (prepared) {
-      deliver_(build(parameters_.photons.emitted_photons, &*prepared));
-      return;
+    const int passes = std::max(1, parameters_.passes);
+    const std::uint64_t paths = parameters_.photons.emitted_photons / passes;
+    if (!prepared) {
+      std::vector<std::uint64_t> before = generations_to(paths);
+      before.pop_back();
+      for (const std::uint64_t fewer : before) deliver_(build(fewer, false, nullptr));
     }
-    for (const std::uint64_t paths : generations_to(parameters_.photons.emitted_photons)) {
-      deliver_(build(paths, nullptr));
+    const auto maps = build(paths, true, prepared ? &*prepared : nullptr);
+    deliver_(maps);
+    for (int pass = 1; pass < passes; ++pass) {
+      maps->hand_over(maps->renderer->prepare_pass(pass, open_devices_(), *listener_), paths);
+      deliver_(maps);
     }
   } catch (const Interrupted&) {
     // The window was closed, or other parameters were asked for.
@@ -93,19 +113,23 @@ void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
   }
 }
 
-std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, PreparedPhotons* prepared) {
+std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, bool last,
+                                                   PreparedPhotons* prepared) {
   listener_->throw_if_cancelled();
   RenderParameters parameters = parameters_;
-  parameters.photons.emitted_photons = paths;
+  if (!last) {
+    parameters.photons.emitted_photons = paths;
+    parameters.passes = 1;
+  }
   auto generation = std::make_shared<MapGeneration>();
   generation->devices = open_devices_();
-  const bool last = paths == parameters_.photons.emitted_photons;
   const KeepPhotons keep = [&](const PreparedPhotons& photons) {
     generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
     if (last && keep_) keep_(photons);
   };
-  generation->renderer = std::make_unique<SceneRenderer>(scene_, generation->devices, parameters,
-                                                         prepared, keep, *listener_);
+  generation->renderer =
+      std::make_unique<SceneRenderer>(scene_, generation->devices, parameters, prepared, keep,
+                                      *listener_, SceneRenderer::Passes::first);
   generation->emitted_photons = paths;
   generation->noise = EstimateNoise::of(scene_, parameters);
   return generation;

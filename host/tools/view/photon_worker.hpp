@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "photile/scene_renderer.hpp"
@@ -22,9 +23,18 @@ namespace photile::view {
 struct MapGeneration {
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
-  std::uint64_t emitted_photons = 0;
+  std::uint64_t emitted_photons = 0;  ///< of the passes that are added
   EstimateNoise noise;
-  std::shared_ptr<const InspectablePhotons> photons;
+  std::shared_ptr<const InspectablePhotons> photons;  ///< of the first pass
+
+  /// A further pass of so many paths, from whoever built it.
+  void hand_over(std::shared_ptr<SceneRenderer::Pass> pass, std::uint64_t paths);
+  /// Adds those that were handed over: for whoever renders, between pictures.
+  void add_passes();
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::pair<std::shared_ptr<SceneRenderer::Pass>, std::uint64_t>> handed_over_;
 };
 
 /// How far the work in the background is.
@@ -35,7 +45,8 @@ struct WorkProgress {
 
 /// Traces photons and builds maps on a thread of its own: first with few paths, so that there is
 /// something to see at once, then with a sixteenth of all, a quarter, and all. The last maps
-/// are those that `render` builds from the same parameters.
+/// are those that `render` builds from the same parameters. Of several passes that is the first;
+/// the others are handed over to it one after another.
 class PhotonWorker {
  public:
   using OpenDevices = std::function<std::vector<Device>()>;
@@ -43,7 +54,8 @@ class PhotonWorker {
 
   ///   prepared   photons of an earlier run, in place of all tracing, or none
   ///   keep       is given the photons of the last maps; may be empty
-  ///   deliver    is called on the worker's thread with each set of maps
+  ///   deliver    is called on the worker's thread with each set of maps, and with the last again
+  ///              whenever a pass was handed over
   PhotonWorker(const Scene& scene, OpenDevices open_devices, const RenderParameters& parameters,
                std::optional<PreparedPhotons> prepared, KeepPhotons keep, Deliver deliver);
   ~PhotonWorker();
@@ -57,7 +69,7 @@ class PhotonWorker {
   class Listener;
 
   void work(std::optional<PreparedPhotons> prepared);
-  std::shared_ptr<MapGeneration> build(std::uint64_t paths, PreparedPhotons* prepared);
+  std::shared_ptr<MapGeneration> build(std::uint64_t paths, bool last, PreparedPhotons* prepared);
 
   const Scene& scene_;
   const OpenDevices open_devices_;

@@ -97,11 +97,16 @@ class Viewer {
  private:
   void build_maps(std::optional<PreparedPhotons> prepared, KeepPhotons keep) {
     photons_.reset();  // ends what it is at
-    photons_.emplace(scene_, open_devices_, parameters_.render, std::move(prepared),
-                     std::move(keep), [this](std::shared_ptr<MapGeneration> maps) {
-                       maps->renderer->bound_light_maps(parameters_.light_map_bytes);
-                       frames_.use(std::move(maps));
-                     });
+    photons_.emplace(
+        scene_, open_devices_, parameters_.render, std::move(prepared), std::move(keep),
+        [this,
+         bounded = std::shared_ptr<MapGeneration>()](std::shared_ptr<MapGeneration> maps) mutable {
+          if (maps != bounded) {  // else frames are drawn from it by now
+            maps->renderer->bound_light_maps(parameters_.light_map_bytes);
+          }
+          bounded = maps;
+          frames_.use(std::move(maps));
+        });
   }
 
   void take_keys() {
