@@ -58,4 +58,11 @@ bool NodeSight::look(std::uint32_t sided_triangle, const glm::vec3& position,
   return true;
 }
 
+bool NodeSight::sees(std::uint32_t sided_triangle, const glm::vec3& from,
+                     const glm::vec3& to) const {
+  const Scene& scene = rays_.scene();
+  return see_each_other(rays_, place_of(scene, sided_triangle, from),
+                        place_of(scene, sided_triangle, to));
+}
+
 }  // namespace photile::light_maps

@@ -28,6 +28,9 @@ class NodeSight {
   ///   blend      of LightMaps::find, which found all nodes
   bool look(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
 
+  /// Whether nothing stands between two places, metres, on the plane of a triangle's side.
+  bool sees(std::uint32_t sided_triangle, const glm::vec3& from, const glm::vec3& to) const;
+
  private:
   const RayScene& rays_;
   const LightMaps& maps_;

@@ -45,6 +45,7 @@ class LightMapEstimates {
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
   NodeSource& source() { return source_; }
+  const light_maps::NodeSight& sight() const { return sight_; }
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }

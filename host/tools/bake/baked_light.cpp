@@ -8,6 +8,7 @@
 
 #include "light_maps/charts.hpp"
 #include "photile/errors.hpp"
+#include "trace/flush_denormals.hpp"
 
 namespace photile::bake {
 namespace {
@@ -37,6 +38,15 @@ glm::vec3 value_of(const Estimates& values, std::uint32_t node, std::size_t laye
   return light;
 }
 
+/// Of a node: what it holds of any layer.
+std::span<const glm::vec3> light_of(const Estimates& values, std::uint32_t node,
+                                    std::size_t nodes) {
+  const std::size_t lights = values.irradiance.size() / nodes;
+  const std::size_t first = values.first.empty() ? node * lights : values.first[node];
+  const std::size_t last = values.first.empty() ? first + lights : values.first[node + 1];
+  return std::span(values.irradiance).subspan(first, last - first);
+}
+
 glm::vec3 blended(const Estimates& values, const NodeBlend& blend, std::size_t layer,
                   std::size_t layers) {
   glm::vec3 light(0.0f);
@@ -49,7 +59,8 @@ glm::vec3 blended(const Estimates& values, const NodeBlend& blend, std::size_t l
 }  // namespace
 
 BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-                       const BakeParameters& parameters, const Progress& progress)
+                       const light_maps::NodeSight& sight, const BakeParameters& parameters,
+                       const Progress& progress)
     : scene_(scene), maps_(maps) {
   choose_sides(source, parameters, progress);
   const auto most_side = static_cast<std::uint32_t>(parameters.most_side);
@@ -61,7 +72,8 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
     }
     texel_ *= coarser;
   }
-  fill(source, progress);
+  fill(source, sight, progress);
+  spread(sight);
 }
 
 void BakedLight::choose_sides(NodeSource& source, const BakeParameters& parameters,
@@ -136,7 +148,8 @@ glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t
   return glm::vec3(lattice.origin + at.x * lattice.across + at.y * lattice.along);
 }
 
-void BakedLight::fill(NodeSource& source, const Progress& progress) {
+void BakedLight::fill(NodeSource& source, const light_maps::NodeSight& sight,
+                      const Progress& progress) {
   NodeBlend nothing{};
   nothing.node.fill(none);
   blend_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
@@ -145,7 +158,10 @@ void BakedLight::fill(NodeSource& source, const Progress& progress) {
   const auto value = [&] {
     maps_.fill(hits, source, progress);
     tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
-      maps_.find(hits.sided_triangle[i], hits.position[i], blend_[texels[i]]);
+      const trace::FlushDenormals flush_denormals;
+      NodeBlend& blend = blend_[texels[i]];
+      maps_.find(hits.sided_triangle[i], hits.position[i], blend);
+      sight.look(hits.sided_triangle[i], hits.position[i], blend);
     });
     hits = {};
     texels.clear();
@@ -161,6 +177,51 @@ void BakedLight::fill(NodeSource& source, const Progress& progress) {
     if (texels.size() >= texels_per_fill) value();
   }
   value();
+}
+
+/// A lookup beside a box that stands on a floor takes a part of the texels under the box. Those
+/// that hold no light, and from which the box hides a lit texel next to them, get what that one
+/// has.
+void BakedLight::spread(const light_maps::NodeSight& sight) {
+  const std::vector<NodeBlend> found = blend_;
+  const Estimates& values = maps_.values();
+  const std::size_t nodes = maps_.statistics().nodes;
+  const auto lit = [&](const NodeBlend& blend) {
+    for (std::size_t i = 0; i < blend.node.size(); ++i) {
+      if (blend.weight[i] == 0.0f) continue;
+      const auto light = light_of(values, blend.node[i], nodes);
+      if (std::any_of(light.begin(), light.end(),
+                      [](const glm::vec3& value) { return value.x + value.y + value.z > 0; })) {
+        return true;
+      }
+    }
+    return false;
+  };
+  constexpr int around[8][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
+                                {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+  tbb::parallel_for(std::size_t{0}, placed_.size(), [&](std::size_t i) {
+    const trace::FlushDenormals flush_denormals;
+    const Placed& placed = placed_[i];
+    const TexelRectangle& rectangle = placed.rectangle;
+    const auto texel = [&](std::uint32_t x, std::uint32_t y) {
+      return std::size_t{rectangle.y + y} * atlas_.width + rectangle.x + x;
+    };
+    for (std::uint32_t y = 0; y < rectangle.height; ++y) {
+      for (std::uint32_t x = 0; x < rectangle.width; ++x) {
+        if (lit(found[texel(x, y)])) continue;
+        for (const auto& [dx, dy] : around) {
+          const std::uint32_t nx = x + dx, ny = y + dy;  // beyond 0 they are large
+          if (nx >= rectangle.width || ny >= rectangle.height) continue;
+          if (!lit(found[texel(nx, ny)]) ||
+              sight.sees(member_[placed.chart], point(placed, x, y), point(placed, nx, ny))) {
+            continue;
+          }
+          blend_[texel(x, y)] = found[texel(nx, ny)];
+          break;
+        }
+      }
+    }
+  });
 }
 
 std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t sided_triangle) const {

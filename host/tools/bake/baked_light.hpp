@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "light_maps/node_sight.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
@@ -22,13 +23,16 @@ struct BakeParameters {
 
 /// The charts of the light maps side by side: of each triangle the side on which more light falls,
 /// and the other where it is lit, too. Texels are points of the charts' lattices, so that a
-/// bilinear lookup blends neighbours of one chart; a border of one texel repeats the last.
+/// bilinear lookup blends neighbours of one chart; a border of one texel repeats the last. Texels
+/// under things that stand on a surface hold the light beside these, for lookups there.
 class BakedLight {
  public:
   /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
   /// at this distance of texels; those of LightMaps::fill.
+  ///   sight   of the light maps
   BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-             const BakeParameters& parameters, const Progress& progress);
+             const light_maps::NodeSight& sight, const BakeParameters& parameters,
+             const Progress& progress);
 
   std::uint32_t width() const { return atlas_.width; }
   std::uint32_t height() const { return atlas_.height; }
@@ -51,7 +55,8 @@ class BakedLight {
 
   void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
   bool place_charts(double texel, std::uint32_t most_side);
-  void fill(NodeSource& source, const Progress& progress);
+  void fill(NodeSource& source, const light_maps::NodeSight& sight, const Progress& progress);
+  void spread(const light_maps::NodeSight& sight);
   glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
 
   const Scene& scene_;

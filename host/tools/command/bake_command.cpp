@@ -48,8 +48,8 @@ void run_bake(BakeOptions& options) {
   LightMapEstimates& light_maps = maps.light_maps(progress);
   for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
   progress.begin("bake light maps", 0, "");
-  const bake::BakedLight baked(scene, light_maps.maps(), light_maps.source(), options.baking,
-                               progress);
+  const bake::BakedLight baked(scene, light_maps.maps(), light_maps.source(), light_maps.sight(),
+                               options.baking, progress);
   bake::write_baked(options.output, scene, baked, mix);
   progress.end();
   keep_light_maps(maps.light_map_contents(), render, progress);
