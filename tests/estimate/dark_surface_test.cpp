@@ -28,30 +28,59 @@ Scene plate_under(const std::vector<std::array<glm::vec3, 2>>& boxes, int cells 
   return builder.build();
 }
 
-/// The side of the plate's triangles that looks up, with the point on it.
-std::uint32_t upper_side_at(const Scene& scene, const glm::vec3& point) {
-  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    const auto c = scene.corners(t);
-    const glm::vec3 n(0, 0, 1);
-    if (c[0].z != 0 || c[1].z != 0 || c[2].z != 0) continue;
-    int left = 0, right = 0;
-    for (int i = 0; i < 3; ++i) {
-      const float turn = glm::dot(n, glm::cross(c[(i + 1) % 3] - c[i], point - c[i]));
-      left += turn >= 0, right += turn <= 0;
+/// The sides of the plate's triangles that look up, by place.
+class UpperSides {
+ public:
+  explicit UpperSides(const Scene& scene) : scene_(scene), at_(parts * parts) {
+    for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+      const auto c = scene.corners(t);
+      if (c[0].z != 0 || c[1].z != 0 || c[2].z != 0) continue;
+      const glm::ivec2 low = part(glm::min(c[0], glm::min(c[1], c[2])));
+      const glm::ivec2 high = part(glm::max(c[0], glm::max(c[1], c[2])));
+      for (int y = low.y; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) triangles(x, y).push_back(t);
+      }
     }
-    if (left == 3 || right == 3) return sided(t, sided_normal(scene, sided(t, 0)).z > 0 ? 0 : 1);
   }
-  throw std::logic_error("no triangle of the plate there");
-}
+
+  std::uint32_t at(const glm::vec3& point) {
+    for (const std::uint32_t t : triangles(part(point).x, part(point).y)) {
+      const auto c = scene_.corners(t);
+      const glm::vec3 n(0, 0, 1);
+      int left = 0, right = 0;
+      for (int i = 0; i < 3; ++i) {
+        const float turn = glm::dot(n, glm::cross(c[(i + 1) % 3] - c[i], point - c[i]));
+        left += turn >= 0, right += turn <= 0;
+      }
+      if (left == 3 || right == 3) {
+        return sided(t, sided_normal(scene_, sided(t, 0)).z > 0 ? 0 : 1);
+      }
+    }
+    throw std::logic_error("no triangle of the plate there");
+  }
+
+ private:
+  static constexpr int parts = 64;  ///< along each side of the plate
+  static glm::ivec2 part(const glm::vec3& point) {
+    return glm::min(glm::ivec2(glm::vec2(point) * static_cast<float>(parts)), parts - 1);
+  }
+  std::vector<std::uint32_t>& triangles(int x, int y) {
+    return at_[static_cast<std::size_t>(y * parts + x)];
+  }
+
+  const Scene& scene_;
+  std::vector<std::vector<std::uint32_t>> at_;
+};
 
 /// Photons of 1 lm/m2 on the part of the plate that is open, `density` to a square metre.
 Photons even_light(const Scene& scene, const Where& open, int density, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> place(0.0f, 1.0f);
+  UpperSides upper_sides(scene);
   Photons photons;
   for (int i = 0; i < density; ++i) {
     const glm::vec3 p(place(random), place(random), 0.0f);
-    if (open(p)) add_photon(photons, scene, p, upper_side_at(scene, p), random);
+    if (open(p)) add_photon(photons, scene, p, upper_sides.at(p), random);
   }
   photons.flux.assign(photons.size(), glm::vec3(1.0f / static_cast<float>(density)));
   return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
@@ -75,12 +104,13 @@ Means means(const Scene& scene, const Where& open, const Where& seen, int neighb
                           {.radius = widest});
     std::mt19937_64 random(100 + seed);
     std::uniform_real_distribution<float> place(0.0f, 1.0f);
+    UpperSides upper_sides(scene);
     PrimaryHits hits;
     while (hits.position.size() < 1000) {
       const glm::vec3 p(place(random), place(random), 0.0f);
       if (!seen(p)) continue;
       hits.position.push_back(p);
-      hits.sided_triangle.push_back(upper_side_at(scene, p));
+      hits.sided_triangle.push_back(upper_sides.at(p));
       hits.diffuse_albedo.emplace_back(0.5f);
     }
     count += hits.position.size();

@@ -45,13 +45,16 @@ std::map<std::string, std::string> failing(const Failure& failure, long at, bool
           {"PHOTILE_FAIL_COUNT_FILE", folder / "count"}};
 }
 
+/// How often an undisturbed render makes the call; each is counted once.
 long count_calls(const Failure& failure, const char* device = "") {
+  static std::map<std::pair<std::string, std::string>, long> counted;
+  long& count = counted[{failure.call, device}];
+  if (count > 0) return count;
   const FileFolder folder;
   const Outcome outcome =
       run_photile(small_render(folder, failing(failure, 0, false, folder, device)));
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == success);
-  long count = 0;
   std::ifstream(folder / "count") >> count;
   REQUIRE(count > 0);
   return count;
@@ -113,6 +116,7 @@ TEST_CASE("a render in which any allocation fails once gives the same picture") 
 
 TEST_CASE("a render whose 1st, 2nd, 4th, 8th ... call of a kind runs out of memory is the same") {
   const Failure failure = out_of_memory();
+  if (failure.call == std::string("clCreateBuffer")) return;  // each of them fails above
   for (long at = 1, calls = count_calls(failure); at <= calls; at *= 2) {
     check_same_picture(failure, at);
   }
