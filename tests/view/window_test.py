@@ -27,6 +27,7 @@ PATIENCE = 120
 PICTURE, ILLUMINANCE = (28, 326), (107, 326)
 # Rows and columns that neither the panel, the reading nor the legend covers.
 BESIDE_PANELS = slice(110, 340), slice(315, 385)
+LAMP_ROWS = 181, 163  # of the only lamp, first under "Lights", with and without a line of news above
 
 
 def fail(text):
@@ -76,6 +77,9 @@ class Window:
             [photile, "view", scene, "--outputs", folder, "--view", "standard", *SETTINGS],
             stderr=subprocess.PIPE, text=True)
         self.id = until(lambda: self.running() and self.find("photile"), "the window")
+        self.finish()
+
+    def finish(self):
         until(lambda: self.running() and self.find("4 of 4 samples, 0.1M paths"),
               "the finished picture")
 
@@ -139,8 +143,10 @@ class Window:
         return Picture(until(lambda: self.running() and kept(), f"what {key} keeps").pop())
 
     def picture_when(self, condition, what):
-        """The first kept picture of which condition(picture) is true."""
+        """The first kept picture of which condition(picture) is true. Coarse ones, of moving, are
+        not kept."""
         def kept():
+            self.finish()
             picture = self.keep("ctrl+s", "view-*.exr")
             return picture if condition(picture) else None
         return until(kept, what)
@@ -228,10 +234,10 @@ def main():
         if abs(moved.position()[1] - at_first[1]) > 1e-6:
             fail("walking ahead left the floor")
 
-        # The temperature beside the slider of the only lamp, first under "Lights", dragged from
-        # 6500 K. (Where it is missed, nothing is dragged.)
+        # The temperature beside the slider of the lamp, dragged from 6500 K. (Where it is missed,
+        # nothing is dragged.)
         def coloured():
-            for y in (181, 163):  # with and without a line of news above
+            for y in LAMP_ROWS:
                 window.drag((260, y), (200, y))
                 if window.keep("ctrl+s", "view-*.exr").lamp()["tint"] != [1, 1, 1]:
                     return True
@@ -250,9 +256,9 @@ def main():
         if abs(power - 7) > 1e-5:
             fail(f"the copy of the scene has a lamp of {power} lm, the mood one of 7")
 
-        # The slider of the only lamp, first under "Lights", all the way to the left.
+        # The slider of the lamp, all the way to the left.
         def darkened():
-            for y in range(165, 200, 5):
+            for y in LAMP_ROWS:
                 window.drag((150, y), (12, y))
                 picture = window.keep("ctrl+s", "view-*.exr")
                 if picture.lamp()["power"] == 0:
@@ -263,6 +269,7 @@ def main():
             fail("a lamp of 0 lm gives light")
 
         window.hand("windowsize", window.id, 400, 300)
+        time.sleep(1)
         resized = window.picture_when(lambda each: (each.spec.width, each.spec.height) ==
                                       (400, 300), "a picture of the new size")
         del resized
