@@ -144,6 +144,16 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   return values;
 }
 
+Estimates GatheredNodes::errors() const {
+  const GatheredIrradiance all = sum_of(nodes_.indirect, nodes_.direct, layer_powers_.size());
+  Estimates errors = all.mean;
+  for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
+    const double light = luminance(glm::dvec3(all.mean.irradiance[i]));
+    errors.irradiance[i] *= light > 0 ? static_cast<float>(all.error(i) / light) : 0.0f;
+  }
+  return errors;
+}
+
 PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
                                      std::span<const std::uint32_t> chosen) const {
   PrimaryHits points = estimate::reordered(batch.points, 0, chosen);

@@ -47,6 +47,10 @@ class GatheredNodes : public NodeSource {
   std::uint64_t bytes() const override;
   void forget() override;
 
+  /// Standard errors of all nodes that were valued, in their order, in the form of estimates: of
+  /// each light at power 1, in the colour of its light.
+  Estimates errors() const;
+
  private:
   void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> coarse,
                   const Progress& progress);

@@ -25,6 +25,9 @@ class HitSource {
   /// Whether automatic light maps are read: hits lie so close that many share nodes.
   virtual bool dense() const { return false; }
 
+  /// A film of standard errors, for those who ask for them where nodes of light maps gather.
+  virtual LightLayers* errors() const { return nullptr; }
+
   /// Whether somebody watches the film fill: renderers then finish fewer rows at a time.
   virtual bool watched() const { return false; }
   /// Rows [first, last) of the film are as far as they will be for a while: `share` of their light
@@ -34,21 +37,25 @@ class HitSource {
 
 class CameraHits : public HitSource {
  public:
-  explicit CameraHits(const Camera& camera) : camera_(camera) {}
+  ///   errors   made, and filled beside the picture: the noise of nodes, by light; may be null
+  explicit CameraHits(const Camera& camera, LightLayers* errors = nullptr)
+      : camera_(camera), errors_(errors) {}
   bool dense() const override { return true; }
+  LightLayers* errors() const override { return errors_; }
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
 
  private:
   const Camera& camera_;
+  LightLayers* errors_;
 };
 
 /// What a camera sees, for somebody who watches.
 class WatchedHits : public CameraHits {
  public:
   using Watcher = std::function<void(const LightLayers&, int first, int last, double share)>;
-  WatchedHits(const Camera& camera, Watcher watcher)
-      : CameraHits(camera), watcher_(std::move(watcher)) {}
+  WatchedHits(const Camera& camera, LightLayers* errors, Watcher watcher)
+      : CameraHits(camera, errors), watcher_(std::move(watcher)) {}
   bool watched() const override { return true; }
   void show(const LightLayers& layers, int first, int last, double share) const override {
     watcher_(layers, first, last, share);

@@ -30,15 +30,16 @@ double mean_photon(const Photons& photons, std::span<const double> powers) {
   return photons.size() == 0 ? 0 : sum / static_cast<double>(photons.size());
 }
 
-/// Writes the light of hits one after another, from light maps or from their own estimates.
+/// Writes the light of hits, or its errors, one after another, from nodes or from their own
+/// estimates.
 class Blend {
  public:
   ///   place    per hit: that of its own estimate, or none
   ///   blends   per hit, where it has none
-  Blend(const SceneNeeds& needs, const LightMaps& maps, const PrimaryHits& hits,
+  Blend(const SceneNeeds& needs, const Estimates& nodes, const PrimaryHits& hits,
         const Estimates& alone, std::span<const std::uint32_t> place,
         std::span<const NodeBlend> blends)
-      : needs_(needs), maps_(maps), hits_(hits), alone_(alone), place_(place), blends_(blends) {}
+      : needs_(needs), nodes_(nodes), hits_(hits), alone_(alone), place_(place), blends_(blends) {}
 
   /// Of hits [first, last).
   Estimates of(std::size_t first, std::size_t last) const {
@@ -56,11 +57,11 @@ class Blend {
   }
 
   /// Sum of the squares of relative standard errors of hits [first, last) that maps serve.
-  double squared_errors(std::size_t first, std::size_t last) const {
+  double squared_errors(const LightMaps& maps, std::size_t first, std::size_t last) const {
     double sum = 0;
     for (std::size_t hit = first; hit < last; ++hit) {
       if (place_[hit] != none) continue;
-      const double error = maps_.relative_error(blends_[hit]);
+      const double error = maps.relative_error(blends_[hit]);
       sum += error * error;
     }
     return sum;
@@ -69,13 +70,12 @@ class Blend {
  private:
   void add_from_maps(std::size_t hit, estimate::EstimateWriter& writer) const {
     const NodeBlend& blend = blends_[hit];
-    const Estimates& values = maps_.values();
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
     for (std::size_t i = 0; i < blend.node.size(); ++i) {
       if (blend.weight[i] == 0.0f) continue;
-      for_each_estimate(values, blend.node[i], needs_.light_count,
+      for_each_estimate(nodes_, blend.node[i], needs_.light_count,
                         [&](std::size_t layer, std::size_t value) {
-                          const glm::vec3 light = blend.weight[i] * values.irradiance[value];
+                          const glm::vec3 light = blend.weight[i] * nodes_.irradiance[value];
                           writer.add(static_cast<std::uint32_t>(layer), light, reflects * light);
                         });
     }
@@ -92,7 +92,7 @@ class Blend {
   }
 
   const SceneNeeds& needs_;
-  const LightMaps& maps_;
+  const Estimates& nodes_;
   const PrimaryHits& hits_;
   const Estimates& alone_;
   std::span<const std::uint32_t> place_;
@@ -180,16 +180,42 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   hits_read_ += hits.size() - alone.size();
   const Estimates own =
       alone.empty() ? Estimates{} : photons_[pass]->estimate(estimate::reordered(hits, 0, alone));
-  const Blend blend(needs_, maps_, hits, own, place, blends);
+  const Blend blend(needs_, maps_.values(), hits, own, place, blends);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
   std::vector<double> squared_errors(parts.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::size_t first = part * hits_per_blend_task;
     const std::size_t last = std::min(hits.size(), first + hits_per_blend_task);
     parts[part] = blend.of(first, last);
-    squared_errors[part] = blend.squared_errors(first, last);
+    squared_errors[part] = blend.squared_errors(maps_, first, last);
   });
   for (const double part : squared_errors) squared_errors_ += part;
+  return joined(std::move(parts));
+}
+
+Estimates LightMapEstimates::errors(const PrimaryHits& hits, const Estimates& estimates,
+                                    const Estimates& of_nodes) const {
+  std::vector<std::uint8_t> is_alone(hits.size(), 0);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) is_alone[hit] = serves(hits, hit) ? 0 : 1;
+  const std::vector<NodeBlend> blends = blends_of(hits, is_alone);
+  std::vector<std::uint32_t> place(hits.size(), none);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
+    if (is_alone[hit] != 0) place[hit] = hit;
+  }
+  Estimates own = estimates;
+  const float relative = 1 / std::sqrt(static_cast<float>(photons_.front()->neighbours()));
+  for (glm::vec3& light : own.irradiance) light *= relative;
+  for (glm::vec3& light : own.radiance) light *= relative;
+  const Blend blend(needs_, of_nodes, hits, own, place, blends);
+  std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const std::size_t first = part * hits_per_blend_task;
+    parts[part] = blend.of(first, std::min(hits.size(), first + hits_per_blend_task));
+  });
+  return joined(std::move(parts));
+}
+
+Estimates LightMapEstimates::joined(std::vector<Estimates> parts) const {
   Estimates all;
   if (needs_.many_lights()) all.first.push_back(0);
   for (Estimates& part : parts) all.append(std::move(part));

@@ -42,6 +42,13 @@ class LightMapEstimates {
   /// Errors: as DeviceEstimators; Interrupted.
   Estimates estimate(const PrimaryHits& hits, const Progress& progress, std::size_t pass = 0);
 
+  /// Standard errors of what `estimate` found at these hits, in the same form. Nodes around a hit
+  /// are taken to err alike; where photons served, theirs is that of a density from k of them.
+  ///   estimates   that were found
+  ///   of_nodes    as GatheredNodes::errors
+  Estimates errors(const PrimaryHits& hits, const Estimates& estimates,
+                   const Estimates& of_nodes) const;
+
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
   NodeSource& source() { return source_; }
@@ -86,6 +93,9 @@ class LightMapEstimates {
   /// Whether the light of a hit can be read: it has no specular lobe and no normal map, which ask
   /// where light comes from.
   bool serves(const PrimaryHits& hits, std::size_t hit) const;
+
+  /// Estimates of hits that follow each other.
+  Estimates joined(std::vector<Estimates> parts) const;
 
   /// The nodes around hits that are not `alone`. Makes those alone that none of their nodes sees.
   std::vector<NodeBlend> blends_of(const PrimaryHits& hits, std::vector<std::uint8_t>& alone) const;

@@ -160,6 +160,9 @@ std::optional<LightMapContents> Rendering::light_map_contents() const {
 void Rendering::add_pass(const HitSource& source, std::size_t after) {
   at_hand_ = after;
   film_.pass = pass_ + static_cast<int>(after);
+  if (LightLayers* errors = source.errors(); errors && film_.pass == 0) {
+    *errors = LightLayers(film_.width, film_.height, scene_);
+  }
   const int rows = rows_per_batch(source);
   progress_->begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
   for (int first = 0; first < film_.height; first += rows) {
@@ -324,12 +327,17 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
   PrimaryHitBatch batch = source.trace(rays_, film_, first, last, map_of);
   costs_.hits.add(hit_watch.taken());
   costs_.rays += batch.rays;
-  const auto add = [&](const PrimaryHitBatch& seen, float illuminance_weight) {
+  const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight) {
     const Estimates estimates =
         reads_light_maps(source) ? read_light_maps(seen.hits) : estimate(seen.hits, first, last);
     const Stopwatch film_watch;
     add_to_film(layers_, seen, estimates, illuminance_weight);
     costs_.film.add(film_watch.taken());
+    if (!source.errors() || !gathered_nodes_) return;
+    seen.emission.clear();  // is exact
+    add_to_film(*source.errors(), seen,
+                light_maps_->errors(seen.hits, estimates, gathered_nodes_->errors()),
+                illuminance_weight);
   };
   add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel));
   if (batch.reflected.size() == 0) return;

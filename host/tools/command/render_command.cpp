@@ -19,6 +19,7 @@
 #include "photile/path_tracer.hpp"
 #include "render/hit_source.hpp"
 #include "render/render_costs.hpp"
+#include "render/render_plan.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
@@ -46,6 +47,7 @@ PictureOutputs check_outputs_of(const RenderOptions& options) {
   auto files = outputs.files();
   if (!options.statistics.empty()) files.emplace_back(options.statistics);
   if (!options.glare.empty()) files.emplace_back(options.glare);
+  if (!options.errors.empty()) files.emplace_back(options.errors);
   if (!options.save_maps.empty()) files.emplace_back(options.save_maps);
   note_inputs_of(options);
   check_outputs(files);
@@ -104,13 +106,15 @@ struct Views {
 };
 
 /// What the camera sees; with --preview its picture is shown while it grows.
-std::unique_ptr<HitSource> hits_of(const Camera& camera, const RenderOptions& options,
-                                   const RunRecord& record, Progress& progress) {
-  if (options.preview.empty()) return std::make_unique<CameraHits>(camera);
+///   errors   where --errors asks for them, else null
+std::unique_ptr<HitSource> hits_of(const Camera& camera, LightLayers* errors,
+                                   const RenderOptions& options, const RunRecord& record,
+                                   Progress& progress) {
+  if (options.preview.empty()) return std::make_unique<CameraHits>(camera, errors);
   auto preview =
       std::make_shared<image::LivePreview>(options.preview, record.scene, record.mix, progress);
   return std::make_unique<WatchedHits>(
-      camera, [preview](const LightLayers& layers, int first, int last, double share) {
+      camera, errors, [preview](const LightLayers& layers, int first, int last, double share) {
         preview->rows(layers, first, last, share);
       });
 }
@@ -207,6 +211,11 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
                           const std::function<double()>& elapsed, Progress& progress) {
   check_settings(options);
   if (options.integrator == Integrator::path) refuse_photon_map_options(command);
+  if (!options.errors.empty() && (!nodes_gather(options.parameters) || keeps_maps(options))) {
+    throw UsageError(
+        "--errors: noise is known where nodes of light maps gather, as with --quality good, and "
+        "without --save-maps, --load-maps and --glare");
+  }
   const bool refined = refines(options.target, options.parameters);
   if (refined && keeps_maps(options)) {
     throw UsageError(
@@ -238,16 +247,21 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
     const bool own_cells = command.count("--photons-per-cell") > 0;
     use_stored_tuning(options.parameters, own_cells, devices, scene, progress);
   }
-  const std::unique_ptr<HitSource> hits = hits_of(camera, options, record, progress);
+  LightLayers errors;
+  const std::unique_ptr<HitSource> hits =
+      hits_of(camera, options.errors.empty() ? nullptr : &errors, options, record, progress);
   LightLayers reflections;
   const Views views{*hits, options.glare.empty() ? nullptr : &reflections};
   const auto write = [&](const LightLayers& layers) {
     record.stages.push_back(timed_stage("write pictures", progress, [&] {
-      const std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, record.mix);
-      set_camera_attributes(picture->header(), in_world(scene, camera), layers.width,
-                            layers.height);
-      set_run_attributes(picture->header(), record);
-      outputs.write(*picture, progress);
+      const auto picture_of = [&](const LightLayers& film) {
+        std::unique_ptr<LayeredPicture> picture = mixed_picture(film, record.mix);
+        set_camera_attributes(picture->header(), in_world(scene, camera), film.width, film.height);
+        set_run_attributes(picture->header(), record);
+        return picture;
+      };
+      outputs.write(*picture_of(layers), progress);
+      if (!options.errors.empty()) write_exr(options.errors, *picture_of(errors));
       if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
     }));
   };

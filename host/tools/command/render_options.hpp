@@ -46,6 +46,7 @@ struct RenderOptions {
   std::string statistics;            ///< file, "" = none
   std::string save_maps, load_maps;  ///< files, "" = none
   std::string preview;               ///< HOST:PORT of a tev; "" = none
+  std::string errors;                ///< EXR of standard errors, "" = none
   std::string glare;                 ///< PNG of marked reflections, "" = none
   double glare_limit = defaults::glare_limit;
   bool quiet = false;
