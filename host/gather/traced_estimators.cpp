@@ -28,7 +28,7 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
   PhotonTracerParameters tracing = plan.tracing(0, {});
   tracing.keep_caustics = true;
   const PhotonTracerResult traced = trace_photons(rays, tracing, progress);
-  const double radius = plan.radius(traced.photons);
+  const double radius = plan.radius(traced.photons, progress);
   const NeighbourGroups groups =
       find_map_groups(scene, traced.photons, plan.map_mode(), plan.groups(radius), progress);
   const auto surface = plan.clips_areas()

@@ -168,4 +168,12 @@ void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estima
   }
 }
 
+void raise_to_zero(LightLayers& layers) {
+  const auto raise = [](std::vector<glm::vec3>& radiance) {
+    for (glm::vec3& value : radiance) value = glm::max(value, glm::vec3(0.0f));
+  };
+  for (LightLayers::Layer& layer : layers.layers) raise(layer.radiance);
+  for (LightLayers::Row& row : layers.rows) raise(row.radiance);
+}
+
 }  // namespace photile

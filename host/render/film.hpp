@@ -17,4 +17,7 @@ namespace photile {
 void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estimates& estimates,
                  float sample_weight);
 
+/// Raises to zero what is below it in a finished picture.
+void raise_to_zero(LightLayers& layers);
+
 }  // namespace photile

@@ -89,10 +89,15 @@ PhotonTracerParameters RenderPlan::tracing(int pass,
   return parameters;
 }
 
-double RenderPlan::radius(const Photons& photons) const {
+double RenderPlan::radius(const Photons& photons, Progress& progress) const {
   if (used_.radius > 0) return used_.radius;
-  // Where rays bring all the light there is, no photon is stored, and any radius serves.
-  if (!all_photons(used_).store_direct && photons.size() < 2) return 1;
+  if (photons.size() < 2) {
+    // Nothing but lamps, mirrors and glass is seen, or rays bring all the light there is.
+    if (all_photons(used_).store_direct) {
+      progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
+    }
+    return 1;  // any serves
+  }
   try {
     return automatic_radius(photons, used_.neighbours);
   } catch (const UsageError& error) {

@@ -52,7 +52,7 @@ class RenderPlan {
 
   /// Of the first pass, metres: as asked, or by its photons. Errors: SettingError where they tell
   /// none.
-  double radius(const Photons& photons) const;
+  double radius(const Photons& photons, Progress& progress) const;
 
   MapMode map_mode() const;
   NeighbourGroupParameters groups(double first_radius) const;

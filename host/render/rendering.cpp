@@ -200,6 +200,8 @@ void Rendering::release() {
 }
 
 RenderResult Rendering::finish() {
+  // Looks at lamps may take more off a surface than light maps, which blur, hold there.
+  if (plan_.used().gloss == GlossMode::rays) raise_to_zero(layers_);
   costs_.film.host_bytes = layers_.bytes();
   costs_.shares.clear();
   costs_.compile_seconds = compile_seconds();
@@ -232,7 +234,7 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
   count(traced);
   if (pass == 0) {
     const Stopwatch radius_watch;
-    radius_ = prepared ? prepared->radius : plan_.radius(traced.photons);
+    radius_ = prepared ? prepared->radius : plan_.radius(traced.photons, *progress_);
     costs_.radius.add(radius_watch.taken());
     find_groups(traced.photons, prepared);  // once: no later radius is larger
     find_surface(traced.photons);

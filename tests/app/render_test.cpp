@@ -238,4 +238,20 @@ TEST_CASE("microseconds per hit leave out what compiling kernels took") {
   CHECK(figure->second == Approx(0.5));
 }
 
+TEST_CASE("where no surface stores photons the lamps are seen, and a line says that it is all") {
+  const FileFolder folder;
+  const std::string scene = folder.write(
+      "lamp.obj", "mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lamp\nusemtl lamp\nf 1 2 3\n");
+  folder.write("lamp.mtl", "newmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
+  const std::string quality = GENERATE("draft", "good");
+  const Outcome outcome = run_photile({"render", scene, "-o", folder / "out.exr", "--photons",
+                                       "100", "--size", "4x4", "--quality", quality});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.errors, Contains("lamp.obj: no surface but mirrors and glass is lit"));
+  const Image picture = read_image(folder / "out.exr");
+  const std::vector<float>& red = *picture.find("R");
+  CHECK(*std::max_element(red.begin(), red.end()) == Approx(1));
+}
+
 }  // namespace photile::test

@@ -114,16 +114,6 @@ TEST_CASE("a preview at no port is a usage error") {
   }
 }
 
-TEST_CASE("a scene that stores no photons is named, with the option that helps") {
-  const FileFolder folder;
-  const std::string scene = folder.write(
-      "lamp.obj", "mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lamp\nusemtl lamp\nf 1 2 3\n");
-  folder.write("lamp.mtl", "newmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
-  const Outcome outcome = run_photile({"render", scene, "-o", folder / "out.exr", "--photons",
-                                       "100", "--size", "4x4", "--quality", "draft"});
-  CHECK_THAT(last_error(outcome, usage), Contains("--radius: lamp.obj: automatic radius"));
-}
-
 TEST_CASE("a change of a light without a value is a usage error") {
   const FileFolder folder;
   const Outcome outcome = render_with(folder, "--light", "left");

@@ -236,4 +236,24 @@ TEST_CASE("commands at random keep what every command promises") {
   }
 }
 
+TEST_CASE("whatever a sound scene holds, it is rendered") {
+  const std::uint64_t count = number_from("PHOTILE_PROPERTIES", quick_commands) / 5,
+                      first = number_from("PHOTILE_PROPERTIES_SEED", 1);
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    Dice dice(seed);
+    const TemporaryFolder folder;
+    const RandomScene scene = write_random_scene(folder.path, dice);
+    if (!scene.sound) continue;
+    const std::string picture = folder.path / "picture.exr";
+    std::vector<std::string> arguments{"render", scene.file, "-o",    picture,     "--photons",
+                                       "2k",     "--size",   "16x12", "--samples", "1"};
+    if (dice.chance(0.5)) arguments.insert(arguments.end(), {"--quality", "draft"});
+    CAPTURE(seed, text_of(arguments));
+    const CommandRun run = run_command(arguments);
+    CAPTURE(run.errors);
+    CHECK(run.exit_code == 0);
+    if (run.exit_code == 0) CHECK(problem_of_picture(picture) == "");
+  }
+}
+
 }  // namespace photile::test

@@ -19,9 +19,10 @@ std::filesystem::path write(const std::filesystem::path& file, const std::string
 }
 
 /// Mostly of this size, rarely zero, negative, tiny or huge.
-double power(Dice& dice) {
-  if (dice.chance(0.02)) return dice.one_of(std::vector<double>{0, -1, 1e-30, 1e20, 1e29, 1e39});
-  return dice.size_between(0.01, 1e4);
+double power(RandomScene& scene, Dice& dice) {
+  if (!dice.chance(0.02)) return dice.size_between(0.01, 1e4);
+  scene.sound = false;
+  return dice.one_of(std::vector<double>{0, -1, 1e-30, 1e20, 1e29, 1e39});
 }
 
 std::string colour(Dice& dice, double least = 0, double most = 1) {
@@ -33,21 +34,22 @@ std::string colour(Dice& dice, double least = 0, double most = 1) {
 std::string rectangle(Dice& dice, double size, double height, bool down, int& vertices) {
   const double x = dice.between(-0.7, 0.4) * size, z = dice.between(-0.7, 0.4) * size,
                dx = dice.between(0.02, 0.5) * size, dz = dice.between(0.02, 0.5) * size;
-  std::string text;
+  std::string text, face;
   for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
-    text += fmt::format("v {} {} {}\n", x + u * dx, height, z + v * dz);
+    text += fmt::format("v {} {} {}\nvt {} {}\n", x + u * dx, height, z + v * dz, u, v);
+    ++vertices;
+    const std::string corner = fmt::format(" {}/{}", vertices, vertices - 8);  // the room has no vt
+    face = down ? face + corner : corner + face;
   }
-  const int first = vertices + 1;
-  vertices += 4;
-  return text + (down ? fmt::format("f {} {} {} {}\n", first, first + 1, first + 2, first + 3)
-                      : fmt::format("f {} {} {} {}\n", first + 3, first + 2, first + 1, first));
+  return text + "f" + face + "\n";
 }
 
 std::string material(Dice& dice, const std::string& name, bool textured) {
   std::string text = fmt::format("newmtl {}\nKd {}\n", name, colour(dice));
-  switch (dice.whole(0, 6)) {
+  switch (dice.whole(0, 8)) {
     case 0:
-      text += "Ks " + colour(dice) + fmt::format("\nNs {}\n", dice.whole(0, 2000));
+      text += fmt::format("illum 2\nKs {}\nNs {}\n", colour(dice), dice.whole(0, 2000));
+      if (textured && dice.chance(0.5)) text += "norm picture.png\n";
       break;
     case 1:
       text += fmt::format("illum 3\nKs {}\n", colour(dice));
@@ -57,6 +59,12 @@ std::string material(Dice& dice, const std::string& name, bool textured) {
       break;
     case 3:
       if (textured) text += "map_Kd picture.png\n";
+      break;
+    case 4:
+      if (textured) text += "norm picture.png\n";
+      break;
+    case 5:
+      if (textured) text += "map_d picture.png\n";
       break;
     default:
       break;
@@ -88,14 +96,16 @@ std::string room(double size) {
 RandomScene write_obj(const std::filesystem::path& folder, Dice& dice) {
   RandomScene scene;
   scene.size = dice.chance(0.1) ? dice.size_between(1e-6, 1e6) : dice.between(0.5, 5);
+  scene.sound = scene.size >= 0.5 && scene.size <= 5;
   const int lamps = dice.chance(0.03) ? 0 : dice.whole(1, 4), things = dice.whole(0, 3);
   std::string obj = "mtllib scene.mtl\n" + room(scene.size), mtl;
   int vertices = 8;
   mtl += material(dice, "wall", false);
   for (int lamp = 0; lamp < lamps; ++lamp) {
     const std::string name = fmt::format("lamp {}", lamp);
-    mtl += fmt::format("newmtl glow{}\nKd 0 0 0\nKe {:g} {:g} {:g}\n", lamp, power(dice),
-                       power(dice), power(dice));
+    mtl += fmt::format("newmtl glow{}\nKd 0 0 0\nKe {:g} {:g} {:g}\n", lamp, power(scene, dice),
+                       power(scene, dice), power(scene, dice));
+    if (dice.chance(0.2)) mtl += "map_Ke picture.png\n";
     obj += fmt::format("o {}\nusemtl glow{}\n", name, lamp);
     obj += rectangle(dice, scene.size, (0.99 - 0.01 * lamp) * scene.size, true, vertices);
     scene.lights.push_back(name);
@@ -144,7 +154,7 @@ RandomScene write_gltf(const std::filesystem::path& folder, Dice& dice) {
     const std::string name = fmt::format("bulb {}", light);
     json entry{{"name", name},
                {"type", dice.one_of({"point", "spot", "directional"})},
-               {"intensity", power(dice)}};
+               {"intensity", power(scene, dice)}};
     if (entry["type"] == "spot") {
       entry["spot"] = {{"innerConeAngle", dice.between(0, 0.4)}, {"outerConeAngle", 0.5}};
     }
@@ -172,7 +182,8 @@ RandomScene write_gltf(const std::filesystem::path& folder, Dice& dice) {
     scene.lights.emplace_back("panel");
   }
   if (dice.chance(0.3)) {
-    document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}}}}};
+    document["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.01}}}}};
     document["nodes"].push_back(
         {{"name", "eye"}, {"camera", 0}, {"translation", {0, 0.5 * s, 0.9 * s}}});
     document["scenes"][0]["nodes"].push_back(document["nodes"].size() - 1);
@@ -200,7 +211,11 @@ void damage(const RandomScene& scene, Dice& dice) {
 
 RandomScene write_random_scene(const std::filesystem::path& folder, Dice& dice) {
   RandomScene scene = dice.chance(0.6) ? write_obj(folder, dice) : write_gltf(folder, dice);
-  if (dice.chance(0.08)) damage(scene, dice);
+  if (dice.chance(0.08)) {
+    damage(scene, dice);
+    scene.sound = false;
+  }
+  scene.sound = scene.sound && !scene.lights.empty();
   return scene;
 }
 

@@ -80,7 +80,7 @@ class Pilot {
         rendering.prepare(0, nullptr, &keep);
       } else {
         PreparedPhotons again = kept;
-        again.radius = std::min(kept.radius, rendering.plan().radius(kept.photons));
+        again.radius = std::min(kept.radius, rendering.plan().radius(kept.photons, quiet));
         rendering.prepare(0, &again, nullptr);
       }
       rendering.add_pass(CameraHits(camera_));
