@@ -1,5 +1,7 @@
 #include "common/ascii_text.hpp"
 
+#include <algorithm>
+
 namespace photile {
 
 std::string lower(std::string_view text) {
@@ -20,6 +22,23 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    lines.push_back(text.substr(0, end));
+    const bool two = text.substr(end, 2) == "\r\n";
+    text.remove_prefix(std::min(end + (two ? 2 : 1), text.size()));
+  }
+  return lines;
+}
+
+std::optional<double> parse_signed(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  return parse_number<double>(text);
 }
 
 }  // namespace photile

@@ -1,8 +1,13 @@
-// Text of ASCII letters: its case, and the blanks around it.
+// Text of ASCII letters, whatever the locale says: case, blanks, lines and numbers.
 #pragma once
 
+#include <charconv>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 namespace photile {
 
@@ -14,5 +19,28 @@ bool ends_in(std::string_view text, std::string_view ending);
 
 /// Without blanks, carriage returns and the Ctrl-Z of old files at either end.
 std::string_view trimmed(std::string_view text);
+
+/// Lines without their ends (LF, CR LF or CR) and without a byte-order mark.
+std::vector<std::string_view> lines_of(std::string_view text);
+
+/// The number that all of a text spells, with a decimal point, in digits of `base` where it is a
+/// whole one. Nothing for NaN, infinities and all else.
+template <class Number>
+std::optional<Number> parse_number(std::string_view text, int base = 10) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  std::from_chars_result read{};
+  if constexpr (std::is_floating_point_v<Number>) {
+    read = std::from_chars(text.data(), end, value);
+    if (!std::isfinite(value)) return std::nullopt;
+  } else {
+    read = std::from_chars(text.data(), end, value, base);
+  }
+  if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
+  return value;
+}
+
+/// The same, where a leading + is allowed.
+std::optional<double> parse_signed(std::string_view text);
 
 }  // namespace photile

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <functional>
 #include <numeric>
@@ -41,10 +40,8 @@ std::optional<std::size_t> find(std::span<const DeviceInfo> devices, const std::
     if (devices[i].id == wanted) return i;
   }
   if (wanted.find_first_not_of("0123456789") == std::string::npos) {
-    std::size_t index = 0;
-    const auto parsed = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-    const bool listed = parsed.ec == std::errc() && index < devices.size();
-    return listed ? std::optional(index) : std::nullopt;
+    const auto index = parse_number<std::size_t>(wanted);
+    return index && *index < devices.size() ? index : std::nullopt;
   }
   if (wanted == "cpu" || wanted == "gpu") {
     const auto type = wanted == "cpu" ? DeviceType::cpu : DeviceType::gpu;
@@ -67,10 +64,8 @@ struct Source {
 
 /// A positive number of at most 9 digits.
 std::optional<std::uint32_t> parse_positive(std::string_view text) {
-  std::uint32_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_number = error == std::errc() && end == text.data() + text.size() && number > 0;
-  return is_number && text.size() <= 9 ? std::optional(number) : std::nullopt;
+  const auto number = parse_number<std::uint32_t>(text);
+  return number && *number > 0 && text.size() <= 9 ? number : std::nullopt;
 }
 
 /// What follows a device's name: sub-devices.

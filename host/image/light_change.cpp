@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
+#include "common/ascii_text.hpp"
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -20,26 +20,21 @@ namespace {
   throw UsageError(fmt::format("light '{}': '{}' {}", change.name, change.value, reason));
 }
 
-/// A finite number >= 0 that fills the whole text; independent of the locale.
+/// A finite number >= 0.
 std::optional<double> parse_amount(std::string_view text) {
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end || !std::isfinite(value) || value < 0.0) return {};
-  return value;
+  const auto value = parse_number<double>(text);
+  return value && *value >= 0 ? value : std::nullopt;
 }
 
 SetColor parse_color(const LightChange& change) {
   const std::string_view digits = std::string_view(change.value).substr(1);
-  std::uint32_t code = 0;
-  const char* const end = digits.data() + digits.size();
-  const auto [rest, error] = std::from_chars(digits.data(), end, code, 16);
-  if (digits.size() != 6 || error != std::errc() || rest != end) {
+  const auto code = parse_number<std::uint32_t>(digits, 16);
+  if (digits.size() != 6 || !code) {
     refuse(change, "is no colour; use six hexadecimal digits such as #FFD8A0");
   }
-  if (code == 0) refuse(change, "is black; to turn the light off use 'off'");
+  if (*code == 0) refuse(change, "is black; to turn the light off use 'off'");
   const auto channel = [&](unsigned shift) {
-    return linear_from_srgb(((code >> shift) & 0xFFu) / 255.0);
+    return linear_from_srgb(((*code >> shift) & 0xFFu) / 255.0);
   };
   return {{channel(16), channel(8), channel(0)}};
 }

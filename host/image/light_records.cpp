@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::image {
@@ -84,13 +84,11 @@ double read_efficacy(const PictureHeader& image) {
   const auto found = image.attributes.find(efficacy_attribute);
   if (found == image.attributes.end()) return defaults::lumen_per_watt;
   const std::string& text = found->second;
-  double efficacy = 0.0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), efficacy);
-  if (error != std::errc() || rest != text.data() + text.size() || !std::isfinite(efficacy) ||
-      efficacy <= 0.0) {
+  const auto efficacy = parse_number<double>(text);
+  if (!efficacy || *efficacy <= 0) {
     refuse(efficacy_attribute, fmt::format("'{}' is no number above 0", text));
   }
-  return efficacy;
+  return *efficacy;
 }
 
 }  // namespace

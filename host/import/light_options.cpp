@@ -16,8 +16,6 @@
 namespace photile {
 namespace {
 
-using scene_io::parse_number;
-
 /// The two sides of an '='. Errors: UsageError with the remedy.
 std::pair<std::string, std::string> sides(const std::string& text, std::size_t equals,
                                           const char* remedy) {
@@ -32,7 +30,7 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
   std::vector<double> numbers;
   for (bool more = true; more;) {
     const std::size_t comma = text.find(',');
-    const auto value = parse_number(text.substr(0, comma));
+    const auto value = parse_signed(text.substr(0, comma));
     if (!value) return std::nullopt;
     numbers.push_back(*value);
     more = comma != std::string_view::npos;
@@ -77,7 +75,7 @@ Sky Sky::parse(const std::string& text) {
                              std::pair{"overcast", SkyKind::overcast},
                              std::pair{"clear", SkyKind::clear}};
   const auto [kind, lux] = sides(text, text.find('='), remedy);
-  const auto illuminance = parse_number(lux);
+  const auto illuminance = parse_signed(lux);
   for (const auto& [word, value] : kinds) {
     if (kind == word && illuminance && *illuminance > 0.0) return {value, *illuminance};
   }
@@ -89,7 +87,7 @@ LuminousPanel LuminousPanel::parse(const std::string& text) {
       "use NAME=WxH,LUMENS, such as Area.001=1.2x0.6,3000: a node, metres and lumens";
   const auto [node, size] = sides(text, text.rfind('='), remedy);
   const std::size_t cross = size.find('x');
-  const auto width = parse_number(std::string_view(size).substr(0, cross));
+  const auto width = parse_signed(std::string_view(size).substr(0, cross));
   const auto rest = cross == std::string::npos
                         ? std::nullopt
                         : numbers_of(std::string_view(size).substr(cross + 1));
@@ -105,7 +103,7 @@ LightTemperature LightTemperature::parse(const std::string& text) {
   const auto [light, value] = sides(text, text.rfind('='), remedy);
   std::string_view digits = value;
   if (digits.ends_with('K')) digits.remove_suffix(1);
-  const auto kelvin = parse_number(digits);
+  const auto kelvin = parse_signed(digits);
   if (!kelvin) throw UsageError(fmt::format("light temperature '{}': {}", text, remedy));
   if (*kelvin < limits::min_color_temperature || *kelvin > limits::max_color_temperature) {
     throw UsageError(fmt::format("light temperature '{}': not between {} and {} kelvin", text,

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "common/ascii_text.hpp"
 #include "common/input_file.hpp"
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
@@ -81,31 +81,17 @@ std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
 
 namespace {
 
-bool separates(char c) { return c == ' ' || c == '\t' || c == ',' || c == '\r'; }
-
 /// The words of a line.
 std::vector<std::string_view> words_of(std::string_view line) {
+  constexpr std::string_view separators = " \t,";
   std::vector<std::string_view> words;
-  for (std::size_t i = 0; i < line.size();) {
-    if (separates(line[i])) {
-      ++i;
-      continue;
-    }
-    std::size_t end = i;
-    while (end < line.size() && !separates(line[end])) ++end;
-    words.push_back(line.substr(i, end - i));
-    i = end;
+  std::size_t first = 0;
+  while ((first = line.find_first_not_of(separators, first)) != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(separators, first), line.size());
+    words.push_back(line.substr(first, end - first));
+    first = end;
   }
   return words;
-}
-
-/// A whole word as a finite number within what a scene may hold; NaN where it is none.
-double number_of(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  const bool whole = error == std::errc() && end == word.data() + word.size();
-  return whole && std::abs(value) <= limits::max_coordinate ? value : NAN;
 }
 
 Sensor sensor_of(const std::vector<std::string_view>& words, const std::string& where) {
@@ -115,11 +101,12 @@ Sensor sensor_of(const std::vector<std::string_view>& words, const std::string& 
   }
   std::array<double, 6> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    numbers[i] = number_of(words[i]);
-    if (std::isnan(numbers[i])) {
+    const auto number = parse_signed(words[i]);
+    if (!number || std::abs(*number) > limits::max_coordinate) {
       throw InputError(
           fmt::format("{}: '{}' is no number of metres; write x y z dx dy dz", where, words[i]));
     }
+    numbers[i] = *number;
   }
   const glm::dvec3 facing(numbers[3], numbers[4], numbers[5]);
   const double length = glm::length(facing);
@@ -135,10 +122,8 @@ SensorGrid read_points(const std::filesystem::path& file) {
   const std::string text = read_input_text(file);
   SensorGrid grid{file.stem().string(), {}, {}};
   std::size_t number = 0;
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::size_t end = rest.find('\n');
-    const auto words = words_of(rest.substr(0, end));
-    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+  for (const std::string_view line : lines_of(text)) {
+    const auto words = words_of(line);
     ++number;
     if (words.empty() || words.front().starts_with('#')) continue;
     grid.sensors.push_back(sensor_of(words, fmt::format("{}: line {}", file.string(), number)));

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "common/ascii_text.hpp"
 #include "measuring/floor.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -45,13 +45,12 @@ WorkingPlane parse_working_plane(const std::string& text) {
   if (plane.above_floor && height.empty()) return plane;
   const bool plus = height.starts_with('+');
   if (plus) height.remove_prefix(1);
-  const auto [end, error] =
-      std::from_chars(height.data(), height.data() + height.size(), plane.height);
-  if (error != std::errc() || end != height.data() + height.size() ||
-      !(std::abs(plane.height) <= limits::max_coordinate) || (plane.above_floor && !plus)) {
+  const auto metres = parse_number<double>(height);
+  if (!metres || std::abs(*metres) > limits::max_coordinate || (plane.above_floor && !plus)) {
     throw UsageError(fmt::format(
         "working plane {}: is no height; write floor+0.75, or metres in the scene's world", text));
   }
+  plane.height = *metres;
   return plane;
 }
 

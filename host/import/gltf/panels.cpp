@@ -39,8 +39,8 @@ std::optional<Panel> size_of(const tinygltf::Value& extras) {
     const std::size_t cross = text.find('x');
     if (cross == std::string::npos) return std::nullopt;
     const std::string_view view = text;
-    panel.width = parse_number(trimmed(view.substr(0, cross))).value_or(0.0);
-    panel.height = parse_number(trimmed(view.substr(cross + 1))).value_or(0.0);
+    panel.width = parse_signed(trimmed(view.substr(0, cross))).value_or(0.0);
+    panel.height = parse_signed(trimmed(view.substr(cross + 1))).value_or(0.0);
   } else {
     const glm::dvec3 size = vector_member(extras, area_extra, glm::dvec3(0.0));
     panel.width = size.x;

@@ -37,7 +37,7 @@ class Lines {
     if (line > lines_.size()) throw ResourceError(fmt::format("the file ends before the {}", what));
     std::string text(trimmed(lines_[line - 1]));
     std::replace(text.begin(), text.end(), ',', '.');
-    const auto value = parse_number(text);
+    const auto value = parse_signed(text);
     if (!value) throw ResourceError(fmt::format("line {}: no number, for the {}", line, what));
     return *value;
   }

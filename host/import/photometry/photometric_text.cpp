@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "import/warnings.hpp"
@@ -28,27 +27,6 @@ std::string shown(std::string_view token) {
 
 }  // namespace
 
-std::optional<double> parse_number(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::vector<std::string_view> lines_of(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    lines.push_back(text.substr(0, end));
-    const bool two = text.substr(end, 2) == "\r\n";
-    text.remove_prefix(std::min(end + (two ? 2 : 1), text.size()));
-  }
-  return lines;
-}
-
 std::string_view NumberReader::token() {
   for (; line_ < lines_.size(); ++line_, column_ = 0) {
     const std::string_view line = lines_[line_];
@@ -65,7 +43,7 @@ std::string NumberReader::place() const { return fmt::format("line {}", line_ + 
 double NumberReader::number(const std::string& what) {
   const std::string_view text = token();
   if (text.empty()) throw ResourceError(fmt::format("the file ends before the {}", what));
-  const auto value = parse_number(text);
+  const auto value = parse_signed(text);
   if (!value) {
     throw ResourceError(
         fmt::format("{}: '{}' is no number, for the {}", place(), shown(text), what));

@@ -12,13 +12,6 @@
 
 namespace photile::scene_io {
 
-/// A number that fills the text, with a decimal point; a leading + is allowed. Nothing for NaN,
-/// infinities and all else.
-std::optional<double> parse_number(std::string_view text);
-
-/// Lines without their ends (LF, CR LF or CR) and without a byte-order mark.
-std::vector<std::string_view> lines_of(std::string_view text);
-
 /// Reads numbers separated by blanks, commas or ends of lines.
 class NumberReader {
  public:

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -13,21 +12,6 @@
 
 namespace photile::app {
 namespace {
-
-/// The number that all of `text` spells; nothing if something else is left over.
-template <class Number>
-std::optional<Number> parse_number(std::string_view text) {
-  Number value{};
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || rest != end) return std::nullopt;
-  return value;
-}
-
-std::optional<double> parse_finite(std::string_view text) {
-  const auto value = parse_number<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
 
 /// A number that is whole but for rounding (1.1M is) and fits 64 bits.
 std::optional<std::uint64_t> whole(double number) {
@@ -46,7 +30,7 @@ struct Unit {
 std::optional<double> parse_with_unit(std::string_view text, std::span<const Unit> units) {
   for (const Unit& unit : units) {
     if (!text.ends_with(unit.name)) continue;
-    const auto number = parse_finite(text.substr(0, text.size() - unit.name.size()));
+    const auto number = parse_number<double>(text.substr(0, text.size() - unit.name.size()));
     return number ? std::optional(*number * unit.factor) : std::nullopt;
   }
   return std::nullopt;
@@ -80,7 +64,7 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text) {
 std::optional<double> parse_share(std::string_view text) {
   const bool percent = text.ends_with('%');
   if (percent) text.remove_suffix(1);
-  const auto number = parse_finite(text);
+  const auto number = parse_number<double>(text);
   if (!number || *number <= 0) return std::nullopt;
   return percent ? *number / 100 : *number;
 }
@@ -151,7 +135,7 @@ std::optional<SettingValue> parse_value(std::string_view text, const ValueRange&
   const std::optional<SettingValue> value =
       std::holds_alternative<WholeNumbers>(range) ? as_value(parse_count(text))
       : std::holds_alternative<Words>(range)      ? std::optional<SettingValue>(text)
-                                                  : as_value(parse_finite(text));
+                                                  : as_value(parse_number<double>(text));
   return value && contains(range, *value) ? value : std::nullopt;
 }
 

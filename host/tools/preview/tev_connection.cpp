@@ -11,11 +11,11 @@
 #include <array>
 #include <bit>
 #include <cerrno>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::image {
@@ -83,10 +83,7 @@ int connect_to(const addrinfo& address) {
 TevConnection::TevConnection(const std::string& address) : address_(address) {
   const std::size_t colon = address.rfind(':');
   const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
-  std::uint16_t number = 0;
-  const char* const end = port.data() + port.size();
-  const auto [rest, error] = std::from_chars(port.data(), end, number);
-  if (colon == 0 || rest != end || error != std::errc() || number == 0) {
+  if (colon == 0 || parse_number<std::uint16_t>(port).value_or(0) == 0) {
     throw UsageError(
         fmt::format("preview at '{}': is no HOST:PORT, such as {}", address, tev_address));
   }

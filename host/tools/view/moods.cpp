@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/ascii_text.hpp"
 #include "common/input_file.hpp"
 #include "common/output_file.hpp"
 #include "photile/errors.hpp"
@@ -20,13 +20,12 @@ using nlohmann::json;
 constexpr int version = 1;
 
 glm::vec3 color_of(const std::string& hex) {
-  unsigned value = 0;
-  const char* end = hex.data() + hex.size();
-  if (hex.size() != 7 || hex[0] != '#' ||
-      std::from_chars(hex.data() + 1, end, value, 16).ptr != end) {
+  const auto code =
+      hex.size() == 7 && hex[0] == '#' ? parse_number<unsigned>(hex.substr(1), 16) : std::nullopt;
+  if (!code) {
     throw std::invalid_argument(fmt::format("'{}' is no colour such as #ffd9a0", hex));
   }
-  return glm::vec3((value >> 16) & 255, (value >> 8) & 255, value & 255) / 255.0f;
+  return glm::vec3((*code >> 16) & 255, (*code >> 8) & 255, *code & 255) / 255.0f;
 }
 
 double kelvin_of(double value) {
