@@ -35,6 +35,7 @@ import quality_report
 ROOT = scene_arguments.ROOT
 INTERIORS = ("kitchen", "classroom")
 SIZE = "256x192"
+QUALITIES = ("draft", "good", "final")
 PHOTONS = (62_500, 250_000, 1_000_000)
 PASSES = (1, 2, 4)
 PHOTONS_PER_PASS = 500_000
@@ -47,6 +48,10 @@ def arguments():
     parser = scene_arguments.parser(__doc__.splitlines()[0])
     parser.add_argument("--only", choices=INTERIORS,
                         help="measure this alone, the results keep the other")
+    parser.add_argument("--tool", choices=[tool for tool, _, _ in series(False)],
+                        help="measure this alone, the results keep the others")
+    parser.add_argument("--qualities", nargs="+", choices=QUALITIES, default=QUALITIES,
+                        help="rows of photile to measure; default: all")
     parser.add_argument("--redraw", action="store_true",
                         help="use the results in the folder instead of measuring")
     parser.add_argument("--quick", action="store_true",
@@ -97,27 +102,29 @@ def run_photile(command):
 
 
 def compile_kernels(command, scene, folder, options):
-    """Fills the cache with the kernels of these options, which depend on k."""
-    neighbours_used = options[options.index("-k") + 1]
-    subprocess.run([command, "render", scene, "--size", "8x8", "--photons", "10k", "--quiet",
-                    "--quality", "draft", "-o", folder / "compiled.exr", "-k", neighbours_used,
-                    "--least-neighbours", LEAST_NEIGHBOURS], check=True)
+    """Fills the cache with the kernels of these options."""
+    few = list(options)
+    if "--photons" in few:
+        few[few.index("--photons") + 1] = "10k"
+    else:
+        few += ["--photons", "10k"]
+    subprocess.run([command, "render", scene, "--size", "8x8", "--quiet", "-o",
+                    folder / "compiled.exr", *few], check=True)
 
 
 def photile(command, scene, size, folder, options):
-    """A picture and its costs."""
+    """A picture and its costs. What nodes gather is no cost of a further frame: none is told."""
     compile_kernels(command, scene, folder, options)
     picture, stats = folder / "photile.exr", folder / "photile.json"
     first, frame_processor = run_photile(
-        [command, "render", scene, "--size", size, "--quality", "draft", "--quota", "power",
-         "-o", picture, "--stats", stats, *options])
+        [command, "render", scene, "--size", size, "--quota", "power", "-o", picture,
+         "--stats", stats, *options])
     stages = {stage["stage"]: stage["seconds"] for stage in json.loads(stats.read_text())["stages"]}
     costs = {"first": first}
-    if frame_processor is not None:
+    if frame_processor is not None and "--light-maps" in options:
         costs["frame"] = {"processor": frame_processor,
                           "seconds": sum(stages.get(stage, 0) for stage in
-                                         ("primary hits", "light maps", "radiance estimate",
-                                          "film"))}
+                                         ("primary hits", "radiance estimate", "film"))}
     return picture_error.read_picture(picture), costs
 
 
@@ -136,22 +143,26 @@ def mitsuba(scene, size, folder, options):
 
 
 def photon_settings(photons, passes=1):
-    """Options of passes of so many photons."""
-    return ["--photons", str(photons * passes), "--passes", str(passes),
-            "-k", str(neighbours(photons)), "--least-neighbours", LEAST_NEIGHBOURS]
+    """Options of passes of so many photons, which are estimated at each hit."""
+    return ["--quality", "draft", "--light-maps", "off", "--photons", str(photons * passes),
+            "--passes", str(passes), "-k", str(neighbours(photons)),
+            "--least-neighbours", LEAST_NEIGHBOURS]
 
 
 def path_settings(paths):
     return ["--samples", str(paths), *(["--next"] if paths <= MOST_PATHS_OF_FRAMES else [])]
 
 
-def series(quick):
+def series(quick, qualities=QUALITIES):
     """Name of the tool, package that it needs, settings of each point in words and as options."""
     photons, passes, paths = ((20_000,), (2,), (1,)) if quick else (PHOTONS, PASSES, PATHS)
     per_pass = 10_000 if quick else PHOTONS_PER_PASS
     return (
-        ("photile", None, [(f"{n:,} photons", photon_settings(n)) for n in photons]),
-        ("photile, in passes", None,
+        ("photile", None, [(f"`--quality {quality}`", ["--quality", quality])
+                           for quality in (qualities[:1] if quick else qualities)]),
+        ("photile, photons alone", None,
+         [(f"{n:,} photons", photon_settings(n)) for n in photons]),
+        ("photile, photons in passes", None,
          [(f"{n} x {per_pass:,} photons", photon_settings(per_pass, n)) for n in passes]),
         ("Mitsuba", "mitsuba", [(f"{n} spp", path_settings(n)) for n in paths]),
         ("Mitsuba, denoised", "pyoidn",
@@ -202,7 +213,9 @@ def measure(options, folder):
         def by_mitsuba(more, scene=scene, size=size):
             return mitsuba(scene, size, folder, more)
 
-        for tool, package, points in series(options.quick):
+        for tool, package, points in series(options.quick, options.qualities):
+            if options.tool not in (None, tool):
+                continue
             try:
                 if package and not (installed("mitsuba") and installed(package)):
                     raise NoRival("not installed")
@@ -222,6 +235,18 @@ def version(package):
         return None
 
 
+def merged(known, rows):
+    """Rows known before with these in place of their own, by view, tool and time."""
+    def key(row):
+        return row["view"], row["tool"], row.get("setting")
+
+    tools = [tool for tool, _, _ in series(False)]
+    new = {key(row) for row in rows}
+    return sorted([row for row in known if key(row) not in new] + rows,
+                  key=lambda row: (INTERIORS.index(row["view"]), tools.index(row["tool"]),
+                                   row["first"]["processor"] if "first" in row else 0))
+
+
 def main():
     options = arguments()
     options.results.mkdir(parents=True, exist_ok=True)
@@ -229,13 +254,14 @@ def main():
     if not options.redraw:
         with tempfile.TemporaryDirectory() as folder:
             rows = measure(options, pathlib.Path(folder))
-        if options.only:
-            known = json.loads(file.read_text())["results"] if file.is_file() else []
-            rows = [row for row in known if row["view"] != options.only] + rows
+        known = json.loads(file.read_text()) if file.is_file() else {"results": [], "versions": {}}
+        if options.only or options.tool:
+            rows = merged(known["results"], rows)
         packages = ("mitsuba", "pyoidn", "flip-evaluator")
         record = {"bench": "quality", "cores": os.cpu_count(), "processor": quality_report.processor(),
                   "load_average": os.getloadavg()[1],
-                  "versions": {package: version(package) for package in packages}, "results": rows}
+                  "versions": {package: version(package) or known["versions"].get(package)
+                               for package in packages}, "results": rows}
         file.write_text(json.dumps(record, indent=1) + "\n")
     quality_report.write(json.loads(file.read_text()), options.results,
                          None if options.quick else ROOT / "docs/quality.md")

@@ -10,7 +10,8 @@ from report_section import replace_section
 
 WANTED = 0.02  # relMSE that first pictures and frames are timed for
 REFINED_SECONDS = 10  # of all cores
-STYLES = {"photile": ("#D55E00", "o"), "photile, in passes": ("#E69F00", "s"),
+STYLES = {"photile": ("#009E73", "D"), "photile, photons alone": ("#D55E00", "o"),
+          "photile, photons in passes": ("#E69F00", "s"),
           "Mitsuba": ("#56B4E9", "^"), "Mitsuba, denoised": ("#0072B2", "v")}
 MEASURES = {"rel_mse": "relMSE", "flip": "FLIP"}
 

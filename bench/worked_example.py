@@ -30,7 +30,8 @@ STEPS = (
     ("What does the file hold, and which lamps?",
      "photile info living-room.gltf", {}, ("scene", "extents", "light:")),
     ("Render it once, a layer for each lamp.",
-     "photile render living-room.gltf --photons 4M -k 200 -o room.exr --png day.png",
+     "photile render living-room.gltf --quality draft --photons 4M -k 200 -o room.exr "
+     "--png day.png",
      {"day.png": "By day, every lamp on"}, ()),
     ("How much light is there to read and work by? Points in or just over furniture are left out.",
      "photile measure living-room.gltf --plane floor+0.75 --clearance 0.1 --maintenance 0.8 "
@@ -50,7 +51,7 @@ STEPS = (
      "--maintenance 0.8 -s 600 --cb -o evening.svg",
      {"evening.svg": "The evening's contour bands"}, ("working plane", "lux", "all lights")),
     ("Is a reflection five times as bright as the mean of the picture?",
-     "photile render living-room.gltf --photons 4M -k 200 --glare glare.png",
+     "photile render living-room.gltf --quality draft --photons 4M -k 200 --glare glare.png",
      {}, ("glare",)),
 )
 QUICK = {"4M": "20k", "-k 200": "-k 50"}

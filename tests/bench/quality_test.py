@@ -68,6 +68,21 @@ class Settings(unittest.TestCase):
         self.assertEqual(quality.neighbours(100), 12)  # k cannot shrink for ever
 
 
+class Results(unittest.TestCase):
+    def test_a_row_measured_anew_takes_the_place_of_its_own_and_leaves_the_others(self):
+        def made(view, tool, setting, processor):
+            return {**row(tool, processor, 0.1), "view": view, "setting": setting}
+
+        known = [made("kitchen", "photile", "good", 20), made("kitchen", "Mitsuba", "1 spp", 1),
+                 made("classroom", "photile", "good", 15)]
+        merged = quality.merged(known, [made("kitchen", "photile", "good", 18),
+                                        made("kitchen", "photile", "draft", 5)])
+        self.assertEqual([(one["view"], one["setting"], one["first"]["processor"])
+                          for one in merged],
+                         [("kitchen", "draft", 5), ("kitchen", "good", 18), ("kitchen", "1 spp", 1),
+                          ("classroom", "good", 15)])
+
+
 class Meshes(unittest.TestCase):
     def test_the_cornell_box_has_its_triangles_colours_lamp_and_camera(self):
         meshes, view = gltf_meshes.read_gltf(ROOT / "scenes/cornell-box/cornell-box.gltf")
