@@ -65,7 +65,7 @@ void Rendering::start(const Film& film, int passes) {
   costs_.start_picture();
 }
 
-void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {
+void Rendering::drop_maps() {
   frames_.reset();
   light_maps_.reset();
   gathered_nodes_.reset();
@@ -73,6 +73,10 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   photons_.reset();
   caustics_.reset();
   late_maps_.reset();
+}
+
+void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {
+  drop_maps();
   further_.clear();
   pass_ = pass;
   if (prepared && reads_light_maps_of(*prepared)) {
@@ -187,13 +191,7 @@ double Rendering::compile_seconds() const {
 void Rendering::release() {
   const Stopwatch stopwatch;
   further_.clear();
-  frames_.reset();
-  light_maps_.reset();
-  gathered_nodes_.reset();
-  node_gather_.reset();
-  photons_.reset();
-  caustics_.reset();
-  late_maps_.reset();
+  drop_maps();
   surface_.reset();
   groups_ = {};
   costs_.release.add(stopwatch.taken());

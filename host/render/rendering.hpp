@@ -109,6 +109,7 @@ class Rendering {
     return plan_.reads_light_maps() && (source.dense() || plan_.asks_for_light_maps());
   }
   Estimates read_light_maps(const PrimaryHits& hits);
+  void drop_maps();
   double compile_seconds() const;
 
   const RayScene& rays_;

@@ -22,8 +22,8 @@ measuring::SensorGrid points_in(const std::string& text) {
 }  // namespace
 
 TEST_CASE("points are read with blanks, tabs, commas, comments and line ends of any kind") {
-  const auto grid =
-      points_in("# sensors\n1 2 0.75 0 0 1\r\n\n 1.5,2,7.5e-1, 0,0,2\n\t+2\t-2\t.75\t1\t0\t-1");
+  const auto grid = points_in(
+      "\xEF\xBB\xBF# sensors\n1 2 0.75 0 0 1\r\n\n 1.5,2,7.5e-1, 0,0,2\n\t+2\t-2\t.75\t1\t0\t-1");
   CHECK(grid.name == "desk");
   CHECK_FALSE(grid.layout);
   REQUIRE(grid.sensors.size() == 3);
@@ -32,6 +32,7 @@ TEST_CASE("points are read with blanks, tabs, commas, comments and line ends of 
   CHECK(grid.sensors[1].normal == glm::dvec3(0, 0, 1));
   CHECK(grid.sensors[2].position == glm::dvec3(2, -2, 0.75));
   CHECK(glm::length(grid.sensors[2].normal) == Approx(1));
+  CHECK(points_in("0 0 0 0 0 1\r1 0 0 0 0 1\r").sensors.size() == 2);
 }
 
 TEST_CASE("lines that are no points are refused by file and number") {
