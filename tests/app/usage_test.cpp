@@ -114,6 +114,17 @@ TEST_CASE("a preview at no port is a usage error") {
   }
 }
 
+TEST_CASE("arguments too many are told as they were given") {
+  const std::string line =
+      only_error(run_photile({"render", "a.obj", "--turn", "20", "--frames", "2"}), usage);
+  CHECK_THAT(line, Contains("--turn 20 --frames 2"));
+}
+
+TEST_CASE("the endings that a file may have are told in one sentence") {
+  const std::string line = only_error(run_photile({"walk", "a.obj", "-o", "frames"}), usage);
+  CHECK_THAT(line, Contains("'frames' does not end in .exr or .png; rename it"));
+}
+
 TEST_CASE("a change of a light without a value is a usage error") {
   const FileFolder folder;
   const Outcome outcome = render_with(folder, "--light", "left");

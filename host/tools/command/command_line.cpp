@@ -1,10 +1,14 @@
 #include "tools/command/command_line.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
@@ -55,6 +59,12 @@ void flush_standard_output() {
 ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const* arguments) {
   try {
     photile.parse(argument_count, arguments);
+  } catch (const CLI::ExtrasError&) {
+    // CLI11 tells them from the last to the first.
+    const std::vector<std::string> extra = photile.remaining(true);
+    throw UsageError(fmt::format("{} not expected: {}; see {}",
+                                 extra.size() > 1 ? "these arguments were" : "this argument was",
+                                 fmt::join(extra, " "), help_command(photile)));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
       throw UsageError(std::string(error.what()) + "; see " + help_command(photile));

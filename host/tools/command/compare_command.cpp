@@ -124,7 +124,7 @@ void add_compare_command(CLI::App& photile) {
       ->type_name("");
   command->add_option("-o,--output", options->picture, "both and their difference in false colour")
       ->type_name("FILE.png")
-      ->check(file_ending_in(".png"));
+      ->check(file_ending_in({".png"}));
   command->add_option("--json", options->json, "write the errors as JSON")->type_name("FILE");
   command
       ->add_option("-s,--scale", options->scale,

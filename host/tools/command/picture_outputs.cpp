@@ -19,7 +19,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->group("Output");
   command.add_option("--png", options.png, "tone-mapped picture to write")
       ->type_name("FILE.png")
-      ->check(file_ending_in(".png"))
+      ->check(file_ending_in({".png"}))
       ->allow_extra_args(false)
       ->group("Output");
   add_tone_mapping_options(command, options.tone_mapping, "Output");
@@ -31,7 +31,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   const auto add_drawing = [&](const char* name, std::string& file, const char* what) {
     command.add_option(name, file, what)
         ->type_name("FILE.png")
-        ->check(file_ending_in(".png"))
+        ->check(file_ending_in({".png"}))
         ->group("Output");
   };
   add_drawing("--illuminance", options.illuminance,

@@ -144,13 +144,13 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       .add_option("--errors", options.errors,
                   "standard errors of the picture, a layer per light: the noise of nodes")
       ->type_name("FILE.exr")
-      ->check(file_ending_in(".exr"))
+      ->check(file_ending_in({".exr"}))
       ->group("Quality");
   command
       .add_option("--glare", options.glare,
                   "picture in which reflections above a limit are marked, in a colour per light")
       ->type_name("FILE.png")
-      ->check(file_ending_in(".png"))
+      ->check(file_ending_in({".png"}))
       ->group("Output");
   command
       .add_option("--glare-limit", options.glare_limit,

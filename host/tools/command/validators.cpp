@@ -1,11 +1,13 @@
 #include "tools/command/validators.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
@@ -162,10 +164,12 @@ CLI::Validator picture_size() {
   return {check, ""};
 }
 
-CLI::Validator file_ending_in(const std::string& ending) {
-  const auto check = [=](std::string& file) -> std::string {
-    if (ends_in(file, ending)) return {};
-    return fmt::format("'{}' does not end in {}; rename it", file, ending);
+CLI::Validator file_ending_in(std::vector<std::string> endings) {
+  const auto check = [endings = std::move(endings)](std::string& file) -> std::string {
+    for (const std::string& ending : endings) {
+      if (ends_in(file, ending)) return {};
+    }
+    return fmt::format("'{}' does not end in {}; rename it", file, fmt::join(endings, " or "));
   };
   return {check, ""};
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/value_range.hpp"
 
@@ -60,8 +61,8 @@ CLI::Validator positive_number();
 /// A size as `parse_size` reads it, within the limits of pictures.
 CLI::Validator picture_size();
 
-/// The name of a file that ends so, in small letters or capitals.
-///   ending   ".png"
-CLI::Validator file_ending_in(const std::string& ending);
+/// The name of a file that ends in one of these, in small letters or capitals.
+///   endings   ".png", ...
+CLI::Validator file_ending_in(std::vector<std::string> endings);
 
 }  // namespace photile::app

@@ -323,7 +323,7 @@ void add_walk_command(CLI::App& photile) {
   command->add_option("-o,--output", options->output, "frames to write, such as frame.####.exr")
       ->required()
       ->type_name("PATTERN.exr")
-      ->check(file_ending_in(".exr") | file_ending_in(".png"))
+      ->check(file_ending_in({".exr", ".png"}))
       ->group("Output");
   command
       ->add_flag("--quick", options->quick,
@@ -332,12 +332,12 @@ void add_walk_command(CLI::App& photile) {
       ->group("Output");
   command->add_option("--png", options->png, "frames as PNG, with the exposure of the first")
       ->type_name("PATTERN.png")
-      ->check(file_ending_in(".png"))
+      ->check(file_ending_in({".png"}))
       ->group("Output");
   add_tone_mapping_options(*command, options->render.pictures.tone_mapping, "Output");
   command->add_option("--contact-sheet", options->sheet, "all frames on one PNG")
       ->type_name("FILE.png")
-      ->check(file_ending_in(".png"))
+      ->check(file_ending_in({".png"}))
       ->group("Output");
   CLI::Option* path = command
                           ->add_option("--camera-path", options->path,
