@@ -111,7 +111,8 @@ TEST_CASE("Rows traced in several batches change no bit of a picture", "[light_m
   const RenderResult whole = render(scene, room_camera(), test::device(), parameters);
   int batches = 0;
   const Camera camera = room_camera();
-  const WatchedHits watched(camera, [&](const LightLayers&, int, int, double) { ++batches; });
+  const WatchedHits watched(camera, nullptr,
+                            [&](const LightLayers&, int, int, double) { ++batches; });
   const RenderResult parts = render_hits(
       scene, watched, parameters.film, std::span(&test::device(), 1), parameters, Progress::none());
   CHECK(batches > 1);

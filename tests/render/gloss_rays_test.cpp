@@ -190,7 +190,7 @@ TEST_CASE("gloss by rays: the same bits on any number of threads and in any rows
   }
   CHECK(same_bits(pictures[0], pictures[1]));
   CHECK(same_bits(pictures[0], pictures[2]));
-  const WatchedHits watched(camera, [](const LightLayers&, int, int, double) {});
+  const WatchedHits watched(camera, nullptr, [](const LightLayers&, int, int, double) {});
   const RenderResult in_rows = render_hits(scene, watched, parameters.film, std::span(&device(), 1),
                                            parameters, Progress::none());
   CHECK(same_bits(pictures[0], in_rows.layers));
