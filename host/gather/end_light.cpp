@@ -8,41 +8,10 @@
 
 #include "estimate/map_order.hpp"
 #include "render/reflected_radiance.hpp"
-#include "trace/diffuse_part.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
-#include "trace/largest.hpp"
 
 namespace photile::gathering {
-namespace {
-
-/// Lobes that reflect more of the light towards the ray need directions: photons at the end itself.
-constexpr float strong_lobe = 0.2f;
-
-/// What an end's surface reflects towards the ray of light that is the same from everywhere.
-struct EndReflection {
-  glm::vec3 reflectance;
-  bool strong_lobe;
-};
-
-EndReflection reflection_of(const trace::EyeRecord& ends, std::size_t end) {
-  const glm::vec3& albedo = ends.hits[end].diffuse_albedo;
-  if (ends.glossy.empty() || ends.glossy[end].lobe.f90 == 0.0f) return {albedo, false};
-  const trace::GlossyEyeHit& glossy = ends.glossy[end];
-  const scene_io::Reflectance surface{albedo, glossy.lobe.specular, glossy.lobe.f90,
-                                      glossy.lobe.roughness};
-  const float cosine = std::max(glm::dot(glossy.lobe.normal, glossy.outgoing), 1e-6f);
-  PhotileAlbedoFit fit;
-  photile_albedo_fit(surface.alpha, &fit);
-  float f0_weight = 0, f90_weight = 0;
-  photile_lobe_albedo(&fit, cosine, &f0_weight, &f90_weight);
-  const glm::vec3 lobe = f0_weight * surface.f0 + f90_weight * surface.f90;
-  return {lobe + diffuse_reflectance(diffuse_part(surface, cosine), surface.alpha),
-          trace::largest(lobe) > strong_lobe};
-}
-
-}  // namespace
-
 IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& progress) {
   IndirectLight light{.rays = std::move(rays), .own_of = {}, .nodes = {}, .weight = {}, .own = {}};
   std::vector<std::uint8_t> has_own;
@@ -118,7 +87,7 @@ void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own
   tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
     const trace::FlushDenormals flush_denormals;
     for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
-      const EndReflection reflection = reflection_of(ends, end);
+      const trace::EndReflection reflection = trace::reflection_of(ends, end);
       has_own[end] = reflection.strong_lobe;
       light.weight[end] = ends.hits[end].throughput;
       if (reflection.strong_lobe) continue;

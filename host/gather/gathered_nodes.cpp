@@ -14,8 +14,9 @@
 namespace photile {
 namespace {
 
-constexpr int window = 2;  ///< places on each side that a place is averaged with,
-constexpr int rounds = 2;  ///< so many times
+/// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
+/// where light changes from one place to the next.
+constexpr NodeSource::Surroundings averaged{.window = 2, .rounds = 2, .fine_window = 1};
 /// Differences of so many standard errors count less by e.
 constexpr double tolerated_errors = 3;
 /// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
@@ -77,6 +78,26 @@ PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> 
   return links;
 }
 
+/// Means that `add(i, means)` makes of each of so many places; `like` has their batches and form.
+template <class Add>
+GatheredIrradiance means_of(std::size_t lights, const GatheredIrradiance& like, std::size_t count,
+                            const Add& add) {
+  std::vector<GatheredIrradiance> parts((count + nodes_per_task - 1) / nodes_per_task);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    gathering::WeightedPoints means(lights, like, parts[part]);
+    const std::size_t last = std::min(count, (part + 1) * nodes_per_task);
+    for (std::size_t i = part * nodes_per_task; i < last; ++i) {
+      add(i, means);
+      means.end_point();
+    }
+  });
+  GatheredIrradiance all;
+  all.batches = like.batches;
+  if (!like.mean.first.empty()) all.mean.first.push_back(0);
+  for (GatheredIrradiance& part : parts) all.append(std::move(part));
+  return all;
+}
+
 void append(const GatheredParts& from, std::size_t point, std::size_t lights, GatheredParts& to) {
   to.indirect.append(from.indirect, point, lights);
   to.direct.append(from.direct, point, lights);
@@ -87,10 +108,11 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 
 GatheredNodesParameters rays_of_nodes(int coarse, double inset) {
   // Shadow borders stand at the finer levels: there looks at lamps matter more than other rays.
-  return {{coarse, 2 * coarse}, {(coarse + 3) / 4, (3 * coarse + 1) / 2}, inset};
+  // Nine of these are averaged.
+  return {{coarse, 2 * coarse}, {(coarse + 3) / 4, (coarse + 1) / 2}, inset};
 }
 
-NodeSource::Surroundings GatheredNodes::surroundings() const { return {window, rounds}; }
+NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
 
 std::uint64_t GatheredNodes::bytes() const {
   return raw_.bytes() + nodes_.bytes() + gather_.bytes() +
@@ -109,14 +131,16 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   const std::size_t lights = layer_powers_.size();
   std::vector<std::uint32_t> coarse, fine;
   for (std::uint32_t i = 0; i < batch.points.size(); ++i) {
-    (i < batch.nodes && batch.parents[i][0] != NodeBatch::no_parent ? fine : coarse).push_back(i);
+    (batch.coarse[i] ? coarse : fine).push_back(i);
   }
-  gather_new(batch, coarse, progress);
+  gather_new(batch, coarse, parameters_.coarse, progress);
+  gather_new(batch, fine, parameters_.fine, progress);
   const GatheredParts smooth = smoothed(batch, coarse);
-  GatheredParts found = gather_.gather(points_at(batch, fine), numbers_at(batch, fine),
-                                       parameters_.fine.rays, parameters_.fine.looks, progress);
-  found.indirect = corrected(nodes_.indirect, found.indirect, batch, fine);
-  found.direct = corrected(nodes_.direct, found.direct, batch, fine);
+  std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
+  const GatheredIrradiance indirect =
+      corrected(nodes_.indirect, with_neighbours(raw_.indirect, batch, fine), batch, fine);
+  const GatheredIrradiance direct =
+      corrected(nodes_.direct, with_neighbours(raw_.direct, batch, fine), batch, fine);
 
   const std::size_t before = nodes_.distance.size();
   std::size_t next_coarse = 0, next_fine = 0;
@@ -126,15 +150,16 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
     if (batch.parents[node][0] == NodeBatch::no_parent) {
       append(smooth, next_coarse++, lights, nodes_);
     } else {
-      append(found, next_fine++, lights, nodes_);
+      nodes_.indirect.append(indirect, next_fine, lights);
+      nodes_.direct.append(direct, next_fine++, lights);
+      nodes_.distance.push_back(raw_.distance[raw_of_.at(batch.number[node])]);
     }
   }
-  GatheredIrradiance indirect, direct;
+  GatheredParts own;
   for (std::size_t row = before; row < nodes_.distance.size(); ++row) {
-    indirect.append(nodes_.indirect, row, lights);
-    direct.append(nodes_.direct, row, lights);
+    append(nodes_, row, lights, own);
   }
-  GatheredIrradiance all = sum_of(indirect, direct, lights);
+  GatheredIrradiance all = sum_of(own.indirect, own.direct, lights);
   NodeValues values;
   for (std::size_t node = 0; node < batch.nodes; ++node) {
     values.error.push_back(static_cast<float>(all.total(node, layer_powers_).error));
@@ -164,15 +189,15 @@ PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
   return points;
 }
 
-/// Gathers at coarse places where nobody did.
-void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> coarse,
-                               const Progress& progress) {
+/// Gathers at places where nobody did.
+void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> places,
+                               const NodeRays& rays, const Progress& progress) {
   std::vector<std::uint32_t> fresh;
-  for (const std::uint32_t point : coarse) {
+  for (const std::uint32_t point : places) {
     if (!raw_of_.contains(batch.number[point])) fresh.push_back(point);
   }
-  GatheredParts found = gather_.gather(points_at(batch, fresh), numbers_at(batch, fresh),
-                                       parameters_.coarse.rays, parameters_.coarse.looks, progress);
+  GatheredParts found = gather_.gather(points_at(batch, fresh), numbers_at(batch, fresh), rays.rays,
+                                       rays.looks, progress);
   for (const std::uint32_t point : fresh) {
     raw_of_.insert({batch.number[point], static_cast<std::uint32_t>(raw_of_.size())});
   }
@@ -191,10 +216,27 @@ GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
   }
   if (coarse.empty()) return parts;
   const PointLinks links = links_between(batch, coarse);
-  const IrradianceFilterParameters filter{.rounds = rounds, .tolerated_errors = tolerated_errors};
+  const IrradianceFilterParameters filter{.rounds = averaged.rounds,
+                                          .tolerated_errors = tolerated_errors};
   parts.indirect = filter_irradiance(std::move(parts.indirect), links, layer_powers_, filter);
   parts.direct = filter_irradiance(std::move(parts.direct), links, layer_powers_, filter);
   return parts;
+}
+
+/// Finer nodes averaged with the places next to them, as gathered.
+GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
+                                                  const NodeBatch& batch,
+                                                  std::span<const std::uint32_t> fine) const {
+  return means_of(layer_powers_.size(), raw, fine.size(), [&](std::size_t i, auto& means) {
+    const std::uint32_t node = fine[i], row = raw_of_.at(batch.number[node]);
+    const GatheredIrradiance::Total own = raw.total(row, layer_powers_);
+    means.add(raw, row, 1.0);
+    for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
+      const std::uint32_t other = raw_of_.at(batch.number[batch.neighbour[j]]);
+      const double weight = likeness(own, raw.total(other, layer_powers_), tolerated_errors);
+      if (weight > 0) means.add(raw, other, weight);
+    }
+  });
 }
 
 /// Finer nodes averaged with what lies around them at coarser levels.
@@ -203,36 +245,23 @@ GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
 GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
                                             const GatheredIrradiance& found, const NodeBatch& batch,
                                             std::span<const std::uint32_t> fine) const {
-  const std::size_t lights = layer_powers_.size();
-  std::vector<GatheredIrradiance> parts((fine.size() + nodes_per_task - 1) / nodes_per_task);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    gathering::WeightedPoints means(lights, found, parts[part]);
-    const std::size_t last = std::min(fine.size(), (part + 1) * nodes_per_task);
-    for (std::size_t i = part * nodes_per_task; i < last; ++i) {
-      GatheredIrradiance::Total expected;
-      std::array<std::uint32_t, 4> rows;
-      double variance = 0;
-      for (std::size_t parent = 0; parent < rows.size(); ++parent) {
-        rows[parent] = row_of_.at(batch.parents[fine[i]][parent]);
-        const GatheredIrradiance::Total total = known.total(rows[parent], layer_powers_);
-        expected.luminance += 0.25 * total.luminance;
-        variance += 0.25 * total.error * total.error;
-      }
-      expected.error = std::sqrt(variance);
-      const double weight =
-          weight_of_parents * likeness(found.total(i, layer_powers_), expected, tolerated_errors);
-      means.add(found, i, 1.0);
-      if (weight > 0) {
-        for (const std::uint32_t row : rows) means.add(known, row, 0.25 * weight);
-      }
-      means.end_point();
+  return means_of(layer_powers_.size(), found, fine.size(), [&](std::size_t i, auto& means) {
+    GatheredIrradiance::Total expected;
+    std::array<std::uint32_t, 4> rows;
+    double variance = 0;
+    for (std::size_t parent = 0; parent < rows.size(); ++parent) {
+      rows[parent] = row_of_.at(batch.parents[fine[i]][parent]);
+      const GatheredIrradiance::Total total = known.total(rows[parent], layer_powers_);
+      expected.luminance += 0.25 * total.luminance;
+      variance += 0.25 * total.error * total.error;
     }
+    expected.error = std::sqrt(variance);
+    const double weight =
+        weight_of_parents * likeness(found.total(i, layer_powers_), expected, tolerated_errors);
+    means.add(found, i, 1.0);
+    if (weight <= 0) return;
+    for (const std::uint32_t row : rows) means.add(known, row, 0.25 * weight);
   });
-  GatheredIrradiance all;
-  all.batches = found.batches;
-  if (!found.mean.first.empty()) all.mean.first.push_back(0);
-  for (GatheredIrradiance& part : parts) all.append(std::move(part));
-  return all;
 }
 
 }  // namespace photile

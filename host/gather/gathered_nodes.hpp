@@ -25,13 +25,13 @@ struct GatheredNodesParameters {
   double inset = 0;
 };
 
-/// So many rays at the coarsest level and a quarter at others; twice and one and a half times as
-/// many looks.
+/// So many rays at the coarsest level and a quarter at others; twice and half as many looks.
 GatheredNodesParameters rays_of_nodes(int coarse, double inset);
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
-/// finer ones with what coarser ones say of their place, as far as differences may be noise. Light
+/// finer ones with those next to them and with what coarser ones say of their place, as far as
+/// differences may be noise. Light
 /// straight from lamps and light of other surfaces are treated apart. All lights and batches have
 /// the same weights, so layers stay linear in the powers.
 class GatheredNodes : public NodeSource {
@@ -52,9 +52,11 @@ class GatheredNodes : public NodeSource {
   Estimates errors() const;
 
  private:
-  void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> coarse,
-                  const Progress& progress);
+  void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> places,
+                  const NodeRays& rays, const Progress& progress);
   GatheredParts smoothed(const NodeBatch& batch, std::span<const std::uint32_t> coarse) const;
+  GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const NodeBatch& batch,
+                                     std::span<const std::uint32_t> fine) const;
   GatheredIrradiance corrected(const GatheredIrradiance& known, const GatheredIrradiance& found,
                                const NodeBatch& batch, std::span<const std::uint32_t> fine) const;
 
@@ -65,7 +67,7 @@ class GatheredNodes : public NodeSource {
   std::span<const double> layer_powers_;
   GatheredNodesParameters parameters_;
   tsl::robin_map<std::uint64_t, std::uint32_t> raw_of_;  ///< by number of the point
-  GatheredParts raw_;                                    ///< of coarse places, as gathered
+  GatheredParts raw_;                                    ///< of places, as gathered
   tsl::robin_map<std::uint64_t, std::uint32_t> row_of_;  ///< by number of a node, in `nodes_`
   GatheredParts nodes_;
 };

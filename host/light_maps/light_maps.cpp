@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "light_maps/light_maps_impl.hpp"
@@ -21,6 +22,14 @@ constexpr std::size_t hits_per_lookup_task = 1024;
 
 /// Differences of fewer standard errors may be noise.
 constexpr double doubted_errors = 3;
+
+/// Nodes with less than this part of the sparse irradiance are dark: shut in by what stands on the
+/// surface, as likely as not.
+constexpr double dark_of_sparse = 0.5;
+
+/// Cells all of whose nodes are dark, and have something nearer than so many times their spacing,
+/// are split: the gap between two doors may lie among them.
+constexpr double near_of_spacing = 2;
 
 /// Places of the finest lattice are counted in 32 bits.
 int levels_that_fit(const Charts& charts, int wanted) {
@@ -93,7 +102,8 @@ void LightMaps::Impl::clear() {
 }
 
 std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
-                                                        std::vector<std::uint32_t>& pending) const {
+                                                        std::vector<std::uint32_t>& pending,
+                                                        int levels) const {
   struct Found {
     std::vector<MissingCell> cells;
     std::vector<std::uint32_t> hits;
@@ -107,8 +117,8 @@ std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
     for (std::size_t i = task * light_maps::hits_per_lookup_task; i < end; ++i) {
       const std::uint32_t hit = pending[i];
       NodeBlend blend;
-      const auto missing =
-          tiles.find(charts.chart_of()[hits.sided_triangle[hit]], hits.position[hit], blend);
+      const auto missing = tiles.find(charts.chart_of()[hits.sided_triangle[hit]],
+                                      hits.position[hit], blend, levels);
       if (!missing) continue;
       own.hits.push_back(hit);
       if (own.cells.empty() || own.cells.back() != *missing) own.cells.push_back(*missing);
@@ -205,10 +215,16 @@ bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes, double s
   if (error.empty()) return differ_by_photons(most, least);
   const double noise = std::hypot(error[*low], error[*high]);
   if (most - least > most * parameters.contrast + light_maps::doubted_errors * noise) return true;
-  double nearest = distance[nodes[0]];
-  for (const std::uint32_t node : nodes) nearest = std::min(nearest, double{distance[node]});
+  const auto [near, far] =
+      std::minmax({distance[nodes[0]], distance[nodes[1]], distance[nodes[2]], distance[nodes[3]]});
+  if (is_dark(most) && far < light_maps::near_of_spacing * spacing) return true;
+  const double nearest = near;
   return spacing > parameters.near * nearest &&
          most - least > 0.25 * most * parameters.contrast + noise;
+}
+
+bool LightMaps::Impl::is_dark(double light) const {
+  return light <= light_maps::dark_of_sparse * parameters.sparse_irradiance;
 }
 
 bool LightMaps::Impl::differ_by_photons(double high, double low) const {
@@ -229,13 +245,13 @@ LightMaps::~LightMaps() = default;
 LightMaps::LightMaps(LightMaps&&) noexcept = default;
 
 void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress& progress,
-                     int rounds) {
+                     int rounds, int levels) {
   std::vector<std::uint32_t> pending(hits.size());
   std::iota(pending.begin(), pending.end(), 0u);
   Tiles& tiles = impl_->tiles;
   for (int round = 0; round < rounds; ++round) {
     progress.throw_if_cancelled();
-    const std::vector<MissingCell> missing = impl_->missing_cells(hits, pending);
+    const std::vector<MissingCell> missing = impl_->missing_cells(hits, pending, levels);
     if (missing.empty()) return;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
     for (const MissingCell& cell : missing) cells.emplace_back(tiles.tile_of(cell), cell.cell);
@@ -266,9 +282,9 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
   }
 }
 
-bool LightMaps::find(std::uint32_t sided_triangle, const glm::vec3& position,
-                     NodeBlend& blend) const {
-  return !impl_->tiles.find(impl_->charts.chart_of()[sided_triangle], position, blend);
+bool LightMaps::find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend,
+                     int levels) const {
+  return !impl_->tiles.find(impl_->charts.chart_of()[sided_triangle], position, blend, levels);
 }
 
 double LightMaps::relative_error(const NodeBlend& blend) const {
@@ -285,7 +301,7 @@ double LightMaps::relative_error(const NodeBlend& blend) const {
 bool LightMaps::uneven(const NodeBlend& blend, double contrast) const {
   const auto light = [&](std::size_t corner) { return impl_->together[blend.node[corner]]; };
   const auto [least, most] = std::minmax({light(0), light(1), light(2), light(3)});
-  if (most - least > most * contrast || most == 0.0f) return true;
+  if (most - least > most * contrast || impl_->is_dark(most)) return true;
   if (impl_->distance.empty()) return false;
   const auto finest = static_cast<float>(std::ldexp(impl_->charts.spacing(), 1 - impl_->levels));
   return std::any_of(blend.node.begin(), blend.node.end(),
@@ -294,6 +310,10 @@ bool LightMaps::uneven(const NodeBlend& blend, double contrast) const {
 
 const LightMaps::NodePoint& LightMaps::point(std::uint32_t node) const {
   return impl_->points[node];
+}
+
+float LightMaps::distance(std::uint32_t node) const {
+  return impl_->distance.empty() ? std::numeric_limits<float>::infinity() : impl_->distance[node];
 }
 
 const Charts& LightMaps::charts() const { return impl_->charts; }

@@ -18,7 +18,8 @@ struct LightMaps::Impl {
 
   /// Cells that the hits need next, each once, ascending; leaves those hits in `pending`.
   std::vector<light_maps::MissingCell> missing_cells(const PrimaryHits& hits,
-                                                     std::vector<std::uint32_t>& pending) const;
+                                                     std::vector<std::uint32_t>& pending,
+                                                     int levels) const;
   /// Numbers of the nodes at the corners of cells; new ones are appended to `added`.
   void number_corners(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
                       std::vector<light_maps::NodePlace>& added);
@@ -36,6 +37,7 @@ struct LightMaps::Impl {
   void add_pass(std::uint32_t passes, NodeSource& source, std::size_t first, std::size_t last,
                 const Progress& progress);
   bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
+  bool is_dark(double light) const;
   bool differ_by_photons(double high, double low) const;
 
   const Scene& scene;

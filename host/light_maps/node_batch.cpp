@@ -87,70 +87,82 @@ std::array<std::uint64_t, 4> parent_numbers(const NodePlace& node, int levels) {
   return numbers;
 }
 
-/// Places of the coarsest lattice.
-class CoarsePlaces {
+/// The places around nodes, each in the coarsest lattice that has the node.
+class Lattices {
  public:
-  CoarsePlaces(const Charts& charts, int levels) : charts_(charts), step_(1u << (levels - 1)) {}
+  Lattices(const Charts& charts, int levels) : charts_(charts), levels_(levels) {}
 
-  bool has(const NodePlace& node) const { return (node.x | node.y) % step_ == 0; }
+  bool is_coarsest(const NodePlace& node) const { return step_of(node, levels_) == coarsest(); }
 
-  /// Calls visit(place) for those up to so many places away along one side of the lattice.
+  /// Calls visit(place) for those up to so many places away to both sides, and up and down.
   template <class Visit>
-  void along(const NodePlace& node, bool rows, int away, const Visit& visit) const {
+  void around(const NodePlace& node, int across, int along, const Visit& visit) const {
     const Chart& chart = charts_[node.chart];
-    const std::int64_t last = rows ? chart.rows : chart.columns;
-    const std::int64_t at = (rows ? node.y : node.x) / step_;
-    for (std::int64_t i = std::max<std::int64_t>(0, at - away); i <= std::min(last, at + away);
-         ++i) {
-      const auto moved = static_cast<std::uint32_t>(i) * step_;
-      visit(rows ? NodePlace{node.chart, node.x, moved} : NodePlace{node.chart, moved, node.y});
+    const std::uint32_t step = step_of(node, levels_);
+    const std::int64_t cells = coarsest() / step, x = node.x / step, y = node.y / step;
+    const std::int64_t last_x = std::min(chart.columns * cells, x + across);
+    const std::int64_t last_y = std::min(chart.rows * cells, y + along);
+    for (std::int64_t j = std::max<std::int64_t>(0, y - along); j <= last_y; ++j) {
+      for (std::int64_t i = std::max<std::int64_t>(0, x - across); i <= last_x; ++i) {
+        visit(NodePlace{node.chart, static_cast<std::uint32_t>(i) * step,
+                        static_cast<std::uint32_t>(j) * step});
+      }
     }
   }
 
  private:
+  std::uint32_t coarsest() const { return 1u << (levels_ - 1); }
+
   const Charts& charts_;
-  std::uint32_t step_;
+  int levels_;
 };
 
-/// Appends the places up to so many away from each coarse node that are not among them.
-NodeIndex add_surroundings(const CoarsePlaces& lattice, int reach, std::vector<NodePlace>& places) {
+/// Appends the places around each node that are not among them. Returns the numbers of all.
+NodeIndex add_surroundings(const Lattices& lattices, const NodeSource::Surroundings& surroundings,
+                           std::vector<NodePlace>& places) {
   NodeIndex index;
   for (const NodePlace& place : places) {
-    if (lattice.has(place)) index.insert({place, static_cast<std::uint32_t>(index.size())});
+    index.insert({place, static_cast<std::uint32_t>(index.size())});
   }
-  std::vector<NodePlace> coarse(index.size());
-  for (const auto& [place, number] : index) coarse[number] = place;
-  for (const bool rows : {false, true}) {
-    for (std::size_t i = 0, count = coarse.size(); i < count; ++i) {
-      const NodePlace from = coarse[i];
-      lattice.along(from, rows, reach, [&](const NodePlace& place) {
-        if (index.insert({place, static_cast<std::uint32_t>(index.size())}).second) {
-          coarse.push_back(place);
-        }
-      });
+  NodeIndex seen;  // coarse ones, whose surroundings are found side by side, then up and down
+  std::vector<NodePlace> coarse;
+  const auto see = [&](const NodePlace& place) {
+    if (seen.insert({place, 0}).second) coarse.push_back(place);
+  };
+  const auto add = [&](const NodePlace& place) {
+    if (index.insert({place, static_cast<std::uint32_t>(index.size())}).second) {
+      places.push_back(place);
+    }
+  };
+  for (std::size_t i = 0, nodes = places.size(); i < nodes; ++i) {
+    const NodePlace node = places[i];
+    if (lattices.is_coarsest(node)) {
+      see(node);
+    } else {
+      lattices.around(node, surroundings.fine_window, surroundings.fine_window, add);
     }
   }
-  NodeIndex all;
-  for (const NodePlace& place : places) {
-    all.insert({place, static_cast<std::uint32_t>(all.size())});
+  const int reach = surroundings.window * surroundings.rounds;
+  for (const bool upwards : {false, true}) {
+    for (std::size_t i = 0, count = coarse.size(); i < count; ++i) {
+      const NodePlace from = coarse[i];
+      lattices.around(from, upwards ? 0 : reach, upwards ? reach : 0, see);
+    }
   }
-  for (const NodePlace& place : coarse) {
-    if (all.insert({place, static_cast<std::uint32_t>(all.size())}).second) places.push_back(place);
-  }
-  return all;
+  for (const NodePlace& place : coarse) add(place);
+  return index;
 }
 
-/// Links of the coarse places that are there.
-void link(const CoarsePlaces& lattice, int window, std::span<const NodePlace> places,
-          const NodeIndex& index, NodeBatch& batch) {
+/// Links of the coarse places, and of the finer ones that are nodes, to those that are there.
+void link(const Lattices& lattices, const NodeSource::Surroundings& surroundings,
+          std::span<const NodePlace> places, const NodeIndex& index, NodeBatch& batch) {
   std::vector<std::vector<std::uint32_t>> links(places.size());
   tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    if (!lattice.has(places[i])) return;
-    lattice.along(places[i], true, window, [&](const NodePlace& row) {
-      lattice.along(row, false, window, [&](const NodePlace& place) {
-        const auto entry = index.find(place);
-        if (entry != index.end() && entry->second != i) links[i].push_back(entry->second);
-      });
+    if (!batch.coarse[i] && i >= batch.nodes) return;
+    const int window = batch.coarse[i] ? surroundings.window : surroundings.fine_window;
+    lattices.around(places[i], window, window, [&](const NodePlace& place) {
+      const auto entry = index.find(place);
+      if (entry != index.end() && entry->second != i) links[i].push_back(entry->second);
     });
   });
   batch.first_neighbour.push_back(0);
@@ -194,12 +206,11 @@ NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePla
   batch.nodes = nodes.size();
   for (const NodePlace& node : nodes) batch.parents.push_back(parent_numbers(node, levels));
   std::vector<NodePlace> places(nodes.begin(), nodes.end());
-  if (surroundings.rounds > 0) {
-    const CoarsePlaces lattice(charts, levels);
-    const NodeIndex index =
-        add_surroundings(lattice, surroundings.window * surroundings.rounds, places);
-    link(lattice, surroundings.window, places, index, batch);
-  }
+  const Lattices lattices(charts, levels);
+  NodeIndex index;
+  if (surroundings.rounds > 0) index = add_surroundings(lattices, surroundings, places);
+  for (const NodePlace& place : places) batch.coarse.push_back(lattices.is_coarsest(place));
+  if (surroundings.rounds > 0) link(lattices, surroundings, places, index, batch);
   for (const NodePlace& place : places) {
     batch.number.push_back(number_of(place));
   }

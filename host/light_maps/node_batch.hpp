@@ -28,7 +28,7 @@ using NodeIndex = tsl::robin_map<NodePlace, std::uint32_t, NodePlaceHash>;
 /// Their points, the numbers of these, parents and links.
 ///   levels         of the light maps
 ///   glossy         whether hits of the scene have lobes
-///   surroundings   of nodes of the coarsest level
+///   surroundings   places that values depend on
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
                      int levels, bool glossy, const NodeSource::Surroundings& surroundings);
 

@@ -34,7 +34,27 @@ bool see_each_other(const RayScene& rays, const Place& from, const Place& to) {
   return !trace::occluded(rays, start, end + left_out * (start - end));
 }
 
+/// Whether something lies in front of a place, nearer than this. The edge that it may lie on is
+/// left out by a step to a point of the surface.
+bool is_covered(const RayScene& rays, const Place& place, const glm::vec3& beside, float reach) {
+  const glm::vec3 foot = place.position + left_out * (beside - place.position);
+  return trace::occluded(rays, foot + lift_of_length * reach * place.normal,
+                         foot + reach * place.normal);
+}
+
 }  // namespace
+
+/// In a slit behind something that lies on the surface, such as the gap behind a door, a node sees
+/// the place beside the door, but no light.
+bool NodeSight::is_in_slit(const glm::vec3& position, const glm::vec3& normal,
+                           std::uint32_t node) const {
+  const LightMaps::NodePoint& point = maps_.point(node);
+  const float apart = glm::distance(position, point.position);
+  if (maps_.distance(node) >= apart) return false;
+  const Place there = place_of(rays_.scene(), point.sided_triangle, point.position);
+  return is_covered(rays_, there, position, apart) &&
+         !is_covered(rays_, {position, normal}, there.position, apart);
+}
 
 bool NodeSight::look(std::uint32_t sided_triangle, const glm::vec3& position,
                      NodeBlend& blend) const {
@@ -46,7 +66,8 @@ bool NodeSight::look(std::uint32_t sided_triangle, const glm::vec3& position,
   for (std::size_t i = 0; i < seen.node.size(); ++i) {
     if (seen.weight[i] == 0.0f) continue;
     const LightMaps::NodePoint& node = maps_.point(seen.node[i]);
-    if (see_each_other(rays_, here, place_of(scene, node.sided_triangle, node.position))) {
+    if (see_each_other(rays_, here, place_of(scene, node.sided_triangle, node.position)) &&
+        !is_in_slit(position, here.normal, seen.node[i])) {
       sum += seen.weight[i];
     } else {
       seen.weight[i] = 0.0f;

@@ -20,10 +20,11 @@ class NodeSight {
             double contrast = defaults::light_map_contrast)
       : rays_(rays), maps_(maps), contrast_(contrast) {}
 
-  /// Leaves out the nodes that something hides from the point, where the nodes differ so much that
-  /// it matters: their weight becomes 0, and those of the others 1 together. Returns false where
-  /// none is left; then the blend is what it was. Depends on the point and its nodes alone.
-  /// Thread-safe; the caller's thread must flush denormals (flush_denormals.hpp).
+  /// Leaves out the nodes that something hides from the point, or covers and not the point, where
+  /// the nodes differ so much that it matters: their weight becomes 0, and those of the others 1
+  /// together. Returns false where none is left; then the blend is what it was. Depends on the
+  /// point and its nodes alone. Thread-safe; the caller's thread must flush denormals
+  /// (flush_denormals.hpp).
   ///   position   of an opaque surface, metres
   ///   blend      of LightMaps::find, which found all nodes
   bool look(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
@@ -32,6 +33,8 @@ class NodeSight {
   bool sees(std::uint32_t sided_triangle, const glm::vec3& from, const glm::vec3& to) const;
 
  private:
+  bool is_in_slit(const glm::vec3& position, const glm::vec3& normal, std::uint32_t node) const;
+
   const RayScene& rays_;
   const LightMaps& maps_;
   double contrast_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -44,8 +45,9 @@ class Tiles {
 
   /// The nodes around a place of a chart: of the cell that is not split, or of the last one known
   /// above a missing one, which is returned then. Without any, nodes are none.
-  std::optional<MissingCell> find(std::uint32_t chart, const glm::vec3& position,
-                                  NodeBlend& blend) const {
+  ///   levels   that are looked at, the coarsest first
+  std::optional<MissingCell> find(std::uint32_t chart, const glm::vec3& position, NodeBlend& blend,
+                                  int levels = std::numeric_limits<int>::max()) const {
     const Chart& lattice = charts_[chart];
     const glm::vec2 place = charts_.place(chart).of(position);
     const auto cell_at = [](float at, std::uint32_t cells) {
@@ -62,7 +64,7 @@ class Tiles {
       const Tile& tile = tiles_[index];
       const std::uint32_t cell = y * 8 + x;
       if ((tile.known >> cell & 1) == 0) return MissingCell{index, cell, true};
-      const bool split = (tile.split >> cell & 1) != 0;
+      const bool split = static_cast<int>(tile.level) + 1 < levels && (tile.split >> cell & 1) != 0;
       const std::uint32_t quadrant = (y >> 2) * 2 + (x >> 2);
       const glm::vec2 doubled = 2.0f * within;
       const std::uint32_t right = doubled.x >= 1.0f, up = doubled.y >= 1.0f;

@@ -13,12 +13,18 @@
 #include "photile/statistics.hpp"
 #include "render/reflected_radiance.hpp"
 #include "trace/flush_denormals.hpp"
+#include "trace/largest.hpp"
 
 namespace photile {
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t hits_per_blend_task = 1024;
+
+/// Levels of light maps that serve a hit.
+int levels_for(const PrimaryHits& hits, std::size_t hit, float faint) {
+  return trace::largest(hits.throughput[hit]) < faint ? 1 : LightMaps::all_rounds;
+}
 
 /// Mean flux of a photon at the powers, luminance.
 double mean_photon(const Photons& photons, std::span<const double> powers) {
@@ -151,12 +157,12 @@ void LightMapEstimates::Passes::forget() {
 }
 
 Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress,
-                                      std::size_t pass) {
+                                      std::size_t pass, float faint) {
   std::vector<std::uint8_t> is_alone(hits.size(), 0);
-  std::vector<std::uint32_t> served;
+  std::vector<std::uint32_t> served, served_faint;
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (serves(hits, hit)) {
-      served.push_back(hit);
+      (levels_for(hits, hit, faint) > 1 ? served : served_faint).push_back(hit);
     } else {
       is_alone[hit] = 1;
     }
@@ -166,10 +172,12 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
     maps_.fill(hits, source_, progress);
   } else {
     maps_.fill(estimate::reordered(hits, 0, served), source_, progress);
+    maps_.fill(estimate::reordered(hits, 0, served_faint), source_, progress, LightMaps::all_rounds,
+               1);
   }
   maps_.refine(source_, progress);
   fill_time_ += stopwatch.taken();
-  const std::vector<NodeBlend> blends = blends_of(hits, is_alone);
+  const std::vector<NodeBlend> blends = blends_of(hits, faint, is_alone);
   std::vector<std::uint32_t> alone, place(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (is_alone[hit] == 0) continue;
@@ -194,10 +202,10 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
 }
 
 Estimates LightMapEstimates::errors(const PrimaryHits& hits, const Estimates& estimates,
-                                    const Estimates& of_nodes) const {
+                                    const Estimates& of_nodes, float faint) const {
   std::vector<std::uint8_t> is_alone(hits.size(), 0);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) is_alone[hit] = serves(hits, hit) ? 0 : 1;
-  const std::vector<NodeBlend> blends = blends_of(hits, is_alone);
+  const std::vector<NodeBlend> blends = blends_of(hits, faint, is_alone);
   std::vector<std::uint32_t> place(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (is_alone[hit] != 0) place[hit] = hit;
@@ -222,7 +230,7 @@ Estimates LightMapEstimates::joined(std::vector<Estimates> parts) const {
   return all;
 }
 
-std::vector<NodeBlend> LightMapEstimates::blends_of(const PrimaryHits& hits,
+std::vector<NodeBlend> LightMapEstimates::blends_of(const PrimaryHits& hits, float faint,
                                                     std::vector<std::uint8_t>& alone) const {
   std::vector<NodeBlend> blends(hits.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_blend_task),
@@ -231,11 +239,12 @@ std::vector<NodeBlend> LightMapEstimates::blends_of(const PrimaryHits& hits,
                       for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
                         if (alone[hit] != 0) continue;
                         const std::uint32_t sided = hits.sided_triangle[hit];
-                        maps_.find(sided, hits.position[hit], blends[hit]);
+                        const int levels = levels_for(hits, hit, faint);
+                        maps_.find(sided, hits.position[hit], blends[hit], levels);
                         const bool seen = sight_.look(sided, hits.position[hit], blends[hit]);
                         // Where photons value nodes they would say no more at the hit, and may
                         // have to be traced first.
-                        alone[hit] = gathered_ && !seen ? 1 : 0;
+                        alone[hit] = gathered_ && !seen && levels > 1 ? 1 : 0;
                       }
                     });
   return blends;

@@ -38,16 +38,20 @@ class LightMapEstimates {
   void add_pass(MapEstimators& photons, NodeSource* nodes);
 
   /// Of hits in any order. Those with a specular lobe or a normal map are estimated where they are.
-  ///   pass   whose photons do that
+  ///   pass    whose photons do that
+  ///   faint   hits that count less in their pixel are read from the coarsest nodes alone, which
+  ///           rays along lobes would otherwise have refined wherever they end
   /// Errors: as DeviceEstimators; Interrupted.
-  Estimates estimate(const PrimaryHits& hits, const Progress& progress, std::size_t pass = 0);
+  Estimates estimate(const PrimaryHits& hits, const Progress& progress, std::size_t pass = 0,
+                     float faint = 0);
 
   /// Standard errors of what `estimate` found at these hits, in the same form. Nodes around a hit
   /// are taken to err alike; where photons served, theirs is that of a density from k of them.
   ///   estimates   that were found
   ///   of_nodes    as GatheredNodes::errors
-  Estimates errors(const PrimaryHits& hits, const Estimates& estimates,
-                   const Estimates& of_nodes) const;
+  ///   faint       as there
+  Estimates errors(const PrimaryHits& hits, const Estimates& estimates, const Estimates& of_nodes,
+                   float faint) const;
 
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
@@ -98,7 +102,8 @@ class LightMapEstimates {
   Estimates joined(std::vector<Estimates> parts) const;
 
   /// The nodes around hits that are not `alone`. Makes those alone that none of their nodes sees.
-  std::vector<NodeBlend> blends_of(const PrimaryHits& hits, std::vector<std::uint8_t>& alone) const;
+  std::vector<NodeBlend> blends_of(const PrimaryHits& hits, float faint,
+                                   std::vector<std::uint8_t>& alone) const;
 
   const Scene& scene_;
   const SceneNeeds needs_;

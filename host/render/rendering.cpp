@@ -23,6 +23,10 @@ std::int64_t hits_per_batch(int neighbours) {
          std::max(defaults::neighbours, neighbours);
 }
 
+/// What a lobe reflects and counts less in its sample, as a dielectric seen from the front, shows
+/// no more than the coarsest nodes know.
+constexpr float faint_reflection = 0.1f;
+
 /// What nodes depend on beside the scene and the photons: the settings of estimates and of rays
 /// that gather, and the kind of device, whose sums may have another order.
 std::string light_map_settings(const RenderParameters& used, std::span<Device> devices) {
@@ -327,23 +331,24 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
   PrimaryHitBatch batch = source.trace(rays_, film_, first, last, map_of);
   costs_.hits.add(hit_watch.taken());
   costs_.rays += batch.rays;
-  const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight) {
-    const Estimates estimates =
-        reads_light_maps(source) ? read_light_maps(seen.hits) : estimate(seen.hits, first, last);
+  const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight, float faint) {
+    const Estimates estimates = reads_light_maps(source) ? read_light_maps(seen.hits, faint)
+                                                         : estimate(seen.hits, first, last);
     const Stopwatch film_watch;
     add_to_film(layers_, seen, estimates, illuminance_weight);
     costs_.film.add(film_watch.taken());
     if (!source.errors() || !gathered_nodes_) return;
     seen.emission.clear();  // is exact
     add_to_film(*source.errors(), seen,
-                light_maps_->errors(seen.hits, estimates, gathered_nodes_->errors()),
+                light_maps_->errors(seen.hits, estimates, gathered_nodes_->errors(), faint),
                 illuminance_weight);
   };
-  add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel));
+  const float of_sample = 1.0f / static_cast<float>(film_.samples_per_pixel);
+  add(batch, of_sample, 0.0f);
   if (batch.reflected.size() == 0) return;
   PrimaryHitBatch reflected;
   reflected.hits = std::move(batch.reflected);
-  add(reflected, 0.0f);  // the pixel's illuminance is not theirs
+  add(reflected, 0.0f, faint_reflection * of_sample);  // the pixel's illuminance is not theirs
 }
 
 /// Of the hits of rows [first_row, last_row).
@@ -397,13 +402,13 @@ LightMapFrames& Rendering::frames() {
   return *frames_;
 }
 
-Estimates Rendering::read_light_maps(const PrimaryHits& hits) {
+Estimates Rendering::read_light_maps(const PrimaryHits& hits, float faint) {
   const Stopwatch stopwatch;
   LightMapEstimates& light_maps = this->light_maps();
   const std::uint64_t alone_before = light_maps.hits_alone();
   const std::uint64_t nodes_before = light_maps.maps().statistics().nodes;
   const TimeTaken filled_before = light_maps.fill_time();
-  Estimates estimates = light_maps.estimate(hits, *progress_, at_hand_);
+  Estimates estimates = light_maps.estimate(hits, *progress_, at_hand_, faint);
   const LightMapStatistics maps = light_maps.maps().statistics();
   const TimeTaken filling = light_maps.fill_time() - filled_before;
   costs_.light_maps.add(filling, maps.value_bytes + maps.index_bytes);

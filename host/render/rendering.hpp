@@ -108,7 +108,7 @@ class Rendering {
   bool reads_light_maps(const HitSource& source) const {
     return plan_.reads_light_maps() && (source.dense() || plan_.asks_for_light_maps());
   }
-  Estimates read_light_maps(const PrimaryHits& hits);
+  Estimates read_light_maps(const PrimaryHits& hits, float faint);
   void drop_maps();
   double compile_seconds() const;
 

@@ -143,8 +143,14 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   if (setup.direct) {
     looks.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
   }
-  const auto end = follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr);
-  if (end) follow_lobes(setup, *end, {of_pixel, index, path}, reflected);
+  auto end = follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr);
+  if (!end) return;
+  const OpaqueBsdf bsdf(*setup.rays->scene, end->point, end->ray.direction);
+  const auto rays = static_cast<std::uint32_t>(bsdf.lobe_rays());
+  end->ray.throughput /= static_cast<float>(rays);
+  for (std::uint32_t i = 0; i < rays; ++i) {
+    follow_lobes(setup, *end, {of_pixel, index * rays + i, path, i}, reflected);
+  }
 }
 
 }  // namespace photile::trace

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
+#include "trace/diffuse_part.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_point.hpp"
+#include "trace/largest.hpp"
 #include "trace/sampling.hpp"
 #include "trace/sobol.hpp"
 
@@ -19,6 +21,9 @@ constexpr std::size_t points_per_task = 16;
 
 /// Near surfaces in a row that a ray goes on from.
 constexpr std::uint32_t most_near = 3;
+
+/// Lobes that reflect more of the light towards the ray need directions.
+constexpr float strong_lobe = 0.2f;
 
 struct TaskEnds {
   EyeRecord ends;
@@ -34,7 +39,8 @@ struct RunSetup {
   EyeSetup later;  ///< of those that go on from near surface
 };
 
-/// Replaces the last end by light that reaches it, as long as it is matt surface near the point.
+/// Replaces the last end by light that reaches it, as long as it is surface near the point that
+/// reflects light from everywhere alike, or nearly so.
 ///   from     the point
 ///   before   ends of the rays before
 ///   stream   of the ray; those of later ones are `streams` apart
@@ -48,13 +54,14 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
     const EyeHit hit = ends.hits.back();
     if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
     const std::uint32_t triangle = triangle_of(hit.sided_triangle);
-    if (scene.materials[scene.triangle_material[triangle]].glossy()) return;
+    const EndReflection reflection = reflection_of(ends, ends.hits.size() - 1);
+    if (reflection.strong_lobe) return;
     ends.hits.pop_back();
     if (!ends.glossy.empty()) ends.glossy.pop_back();
     const SurfacePoint point =
         surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
                       side_of(hit.sided_triangle));
-    const glm::vec3 throughput = hit.throughput * hit.diffuse_albedo;
+    const glm::vec3 throughput = hit.throughput * reflection.reflectance;
     const RandomStream random(run.parameters.seed, number, stream + bounce * streams);
     found.clear();
     look_at_lamps(run.rays, lamps, point, 1, 1.0f, LookSamples(random, 0), found);
@@ -154,6 +161,22 @@ HemisphereRays join(std::vector<TaskEnds> tasks) {
 }
 
 }  // namespace
+
+EndReflection reflection_of(const EyeRecord& ends, std::size_t end) {
+  const glm::vec3& albedo = ends.hits[end].diffuse_albedo;
+  if (ends.glossy.empty() || ends.glossy[end].lobe.f90 == 0.0f) return {albedo, false};
+  const GlossyEyeHit& glossy = ends.glossy[end];
+  const scene_io::Reflectance surface{albedo, glossy.lobe.specular, glossy.lobe.f90,
+                                      glossy.lobe.roughness};
+  const float cosine = std::max(glm::dot(glossy.lobe.normal, glossy.outgoing), 1e-6f);
+  PhotileAlbedoFit fit;
+  photile_albedo_fit(surface.alpha, &fit);
+  float f0_weight = 0, f90_weight = 0;
+  photile_lobe_albedo(&fit, cosine, &f0_weight, &f90_weight);
+  const glm::vec3 lobe = f0_weight * surface.f0 + f90_weight * surface.f90;
+  return {lobe + diffuse_reflectance(diffuse_part(surface, cosine), surface.alpha),
+          largest(lobe) > strong_lobe};
+}
 
 HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points, std::size_t first,
                                  std::size_t count, std::span<const std::uint64_t> number,

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,9 @@ struct HemisphereParameters {
   /// > 0: rays also see the lamps that they meet at once or through panes, and looks at lamps find
   /// the same: by the power heuristic. 0 = they see none.
   float rays_per_look = 0;
-  /// Matt surface nearer than this, metres, does not end a ray: what light falls there is looked
-  /// for by one more look at lamps and one more ray, a few times over. 0 = all opaque surface does.
+  /// Surface without a strong lobe nearer than this, metres, does not end a ray: what light falls
+  /// there is looked for by one more look at lamps and one more ray, a few times over. 0 = all
+  /// opaque surface does.
   float near = 0;
 };
 
@@ -42,6 +44,13 @@ struct HemisphereRays {
   /// Per point: sum of the inverse distances to the surfaces that rays met first, 1/m.
   std::vector<float> inverse_distances;
 };
+
+/// What the surface of an end reflects towards its ray of light that is the same from everywhere.
+struct EndReflection {
+  glm::vec3 reflectance;
+  bool strong_lobe;  ///< its lobe reflects so much that it asks where light comes from
+};
+EndReflection reflection_of(const EyeRecord& ends, std::size_t end);
 
 /// Traces rays with the density of the cosine to the geometric normal, through holes, mirrors and
 /// glass to the next opaque surface. Lamps in mirrors or behind glass that bends are not seen:

@@ -40,6 +40,8 @@ void look_at_lamp(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& wh
 
 void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, EyeRecord& record) {
   const Scene& scene = *setup.rays->scene;
+  const std::uint32_t first_stream =
+      sample.ray * (static_cast<std::uint32_t>(setup.parameters->max_specular_depth) + 1);
   const auto looks_at_hits = static_cast<std::uint32_t>(setup.direct ? setup.direct->count : 1);
   glm::vec3 left(1.0f);  // of the light, since the first lobe
   for (int depth = 1; depth <= setup.parameters->max_specular_depth; ++depth) {
@@ -65,7 +67,7 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     const LampTechnique other{setup.lobes->lamps, density};
     const LookSamples looks(sample.of_pixel, sample.index * looks_at_hits, surface);
     const RandomStream random(setup.parameters->seed, sample.path,
-                              static_cast<std::uint32_t>(depth));
+                              first_stream + static_cast<std::uint32_t>(depth));
     const auto next = follow_eye_ray(setup, ray, random, record, &other, &looks);
     if (!next) return;
     end = *next;

@@ -14,6 +14,7 @@ struct PixelSample {
   const RandomStream& of_pixel;  ///< sequences that all samples of the pixel share
   std::uint32_t index;           ///< of the sample, into them
   std::uint64_t path;            ///< of the sample alone, as RandomStream numbers them
+  std::uint32_t ray = 0;         ///< of those that follow the sample's first lobe
 };
 
 /// Follows the lobe of `end`, and those of the surfaces met, and appends what each reflects beside

@@ -14,6 +14,9 @@ namespace {
 /// narrow.
 constexpr float narrow_lobe_alpha = 0.3f, faint_lobe_albedo = 0.25f;
 
+/// Rays that follow the lobe of a metal; narrower lobes than this scatter so much less.
+constexpr float most_lobe_rays = 8, scattering_lobe_alpha = 0.04f;
+
 }  // namespace
 
 OpaqueBsdf::OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
@@ -66,6 +69,12 @@ void OpaqueBsdf::drop_lobe() {
 bool OpaqueBsdf::lobe_suits_rays() const {
   if (!lobe_ || !(lobe_->albedo > 0.0f)) return false;
   return surface_.alpha < narrow_lobe_alpha || lobe_->albedo < faint_lobe_albedo;
+}
+
+int OpaqueBsdf::lobe_rays() const {
+  if (!lobe_) return 0;
+  const float scatters = std::min(1.0f, surface_.alpha / scattering_lobe_alpha);
+  return std::max(1, static_cast<int>(std::lround(most_lobe_rays * scatters * lobe_->albedo)));
 }
 
 glm::vec3 OpaqueBsdf::base_reflectance() const {

@@ -39,6 +39,10 @@ class OpaqueBsdf {
   /// little.
   bool lobe_suits_rays() const;
 
+  /// Rays by which to follow the lobe of one sample: one where it reflects little or hardly
+  /// scatters, more where all light of the surface is its, and comes from many directions.
+  int lobe_rays() const;
+
   /// Share of light from all sides that is reflected, but for one facet's reflection.
   glm::vec3 base_reflectance() const;
 

@@ -37,16 +37,17 @@ class Tiles;   // host/light_maps/tiles.hpp
 
 /// Nodes of light maps that are valued together.
 struct NodeBatch {
-  /// Where they are. Beyond the first `nodes` points follow places of the coarsest lattice that lie
-  /// around its nodes: see NodeSource::surroundings.
+  /// Where they are. Beyond the first `nodes` points follow places that lie around them: see
+  /// NodeSource::surroundings.
   PrimaryHits points;
   std::size_t nodes = 0;
   std::vector<std::uint64_t> number;  ///< of each point: by its place alone, below 2^48
+  std::vector<std::uint8_t> coarse;   ///< of each point: whether the coarsest lattice has it
   /// Of each node: the numbers of those of coarser levels between which it lies, two or four, one
   /// of two twice. All `no_parent` at the coarsest level.
   std::vector<std::array<std::uint64_t, 4>> parents;
   static constexpr std::uint64_t no_parent = ~std::uint64_t{0};
-  /// Point i of the coarsest lattice is linked to neighbour[first_neighbour[i] ..
+  /// Point i of the coarsest lattice, or node i, is linked to neighbour[first_neighbour[i] ..
   /// first_neighbour[i + 1]), others to none. Empty without surroundings.
   std::vector<std::uint32_t> first_neighbour, neighbour;
 };
@@ -67,10 +68,11 @@ class NodeSource {
  public:
   virtual ~NodeSource() = default;
 
-  /// Values of the coarsest level may depend on places around the node in its chart.
+  /// Values may depend on places around the node in its chart, in the coarsest lattice that has it.
   struct Surroundings {
-    int window = 0;  ///< places on each side that a place is linked to
-    int rounds = 0;  ///< links from one place to the next
+    int window = 0;       ///< places on each side that a place of the coarsest level is linked to
+    int rounds = 0;       ///< links from one such place to the next
+    int fine_window = 0;  ///< places on each side that a node of a finer level is linked to
   };
   virtual Surroundings surroundings() const { return {}; }
 
@@ -161,10 +163,10 @@ class LightMaps {
   LightMaps(LightMaps&&) noexcept;
 
   /// Values all nodes that these hits on opaque surfaces need, or those of the next `rounds` levels
-  /// that each of them lacks. Errors: those of the source, after which all is as it was;
-  /// Interrupted.
+  /// that each of them lacks. With fewer `levels` they are read from so many, the coarsest. Errors:
+  /// those of the source, after which all is as it was; Interrupted.
   void fill(const PrimaryHits& hits, NodeSource& source, const Progress& progress,
-            int rounds = all_rounds);
+            int rounds = all_rounds, int levels = all_rounds);
   static constexpr int all_rounds = 1 << 30;
 
   /// Makes nodes hold the mean over all passes of their source, as far as so many values go: pass
@@ -178,7 +180,8 @@ class LightMaps {
   /// The nodes around a point of an opaque surface. Thread-safe between fills. Where nodes are not
   /// valued yet it returns false, and the nodes of the finest level that is there; the first is
   /// `none` where no level is.
-  bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
+  bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend,
+            int levels = all_rounds) const;
 
   /// Standard error of the light of all lights between nodes, relative; 0 where the source does not
   /// tell it, or without light. Errors of neighbours are taken for the same, and so are those of
@@ -195,6 +198,10 @@ class LightMaps {
     std::uint32_t sided_triangle;
   };
   const NodePoint& point(std::uint32_t node) const;
+
+  /// Harmonic mean of the distances to what sends light to a node, metres; infinite where the
+  /// source does not tell it.
+  float distance(std::uint32_t node) const;
 
   /// What nodes hold, in the form of estimates: node n is hit n.
   const Estimates& values() const;

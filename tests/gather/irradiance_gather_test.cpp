@@ -155,6 +155,14 @@ TEST_CASE("gathering: light gathered from near surface is that of paths, with le
   check_against_paths(scene, 0.015, {.near = 0.6});
 }
 
+TEST_CASE("gathering: light gathered from near coats is that of paths, with less bias", "[slow]") {
+  Scene scene = furnished_room();
+  for (Material& material : scene.materials) {
+    material = glossy(glm::vec3(0.5f), glm::vec3(0.04f), 0.3f);
+  }
+  check_against_paths(scene, 0.02, {.near = 0.6});
+}
+
 TEST_CASE("gathering: layers of glossy rooms are those of paths", "[slow]") {
   Scene scene = furnished_room();
   SECTION("a coat on the floor and the walls") {

@@ -242,4 +242,31 @@ TEST_CASE("Light maps refuse what makes no lattice", "[light_maps]") {
   }
 }
 
+TEST_CASE(
+    "hits read from the coarsest nodes alone have the same light whoever looked closer before",
+    "[light_maps]") {
+  SceneBuilder builder;
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  const Scene scene = with_one_lamp(std::move(builder).build());
+  const PrimaryHits hits = points_on(scene, 20);
+  const auto light = [](const glm::vec3& p, std::uint32_t) { return p.x > 0.41f ? 10.0f : 0.0f; };
+  FormulaSource fresh(light), refined(light);
+  LightMaps coarse(scene, quiet_parameters()), fine(scene, quiet_parameters());
+  coarse.fill(hits, fresh, Progress::none(), LightMaps::all_rounds, 1);
+  fine.fill(hits, refined, Progress::none());
+  CHECK(fresh.asked < refined.asked);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const auto read_coarse = [&](const LightMaps& maps) {
+      NodeBlend blend;
+      REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend, 1));
+      float sum = 0;
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        sum += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
+      }
+      return sum;
+    };
+    CHECK(read_coarse(coarse) == read_coarse(fine));
+  }
+}
+
 }  // namespace photile::test

@@ -32,6 +32,32 @@ float open_floor(const glm::vec3& p, std::uint32_t) {
   return beside || between ? 10.0f : 0.0f;
 }
 
+/// Two plates that lie 2 mm above the floor, 8 mm apart: in the slits below them it is dark.
+Scene plates_above_floor() {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
+  builder.box({0.2f, 0.2f, 0.002f}, {0.4963f, 0.8f, 0.02f}, white, true);
+  builder.box({0.5043f, 0.2f, 0.002f}, {0.8f, 0.8f, 0.02f}, white, true);
+  return with_one_lamp(std::move(builder).build());
+}
+
+/// 10 lx in the gap between the plates and beside them; knows how near these are.
+class PlateSource : public NodeSource {
+ public:
+  NodeValues value(const NodeBatch& batch, const Progress&) override {
+    NodeValues values;
+    for (const glm::vec3& p : batch.points.position) {
+      const bool open =
+          p.y < 0.2f || p.y > 0.8f || p.x < 0.2f || p.x > 0.8f || (p.x > 0.4963f && p.x < 0.5043f);
+      values.irradiance.irradiance.emplace_back(open ? 10.0f : 0.0f);
+      values.error.push_back(0.0f);
+      values.distance.push_back(open ? 1.0f : 0.003f);
+    }
+    return values;
+  }
+};
+
 /// Floor triangles come first; the side that looks up.
 std::uint32_t floor_under(const Scene& scene, const glm::vec3& p) {
   for (std::uint32_t t = 0; t < 8; ++t) {
@@ -104,6 +130,36 @@ TEST_CASE("a place in a slot sees none of the nodes under its sides", "[light_ma
     const NodeBlend before = blend;
     CHECK_FALSE(sight.look(hits.sided_triangle[i], hits.position[i], blend));
     CHECK(blend.weight == before.weight);
+  }
+}
+
+TEST_CASE(
+    "a gap between plates is as bright as its own nodes, not as those in the slits below them",
+    "[light_maps]") {
+  const trace::FlushDenormals flush_denormals;
+  const Scene scene = plates_above_floor();
+  const RayScene rays(scene);
+  PlateSource source;
+  LightMaps maps(scene, quiet_parameters());
+  const light_maps::NodeSight sight(rays, maps);
+  PrimaryHits hits;
+  for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
+    for (const float x : {0.4985f, 0.4995f, 0.5005f, 0.5015f}) {
+      const glm::vec3 place(x, y, 0);
+      add_hit(hits, place, floor_under(scene, place));
+    }
+  }
+  maps.fill(hits, source, Progress::none());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    CAPTURE(hits.position[i].x, hits.position[i].y);
+    NodeBlend blend;
+    REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend));
+    CHECK(sight.look(hits.sided_triangle[i], hits.position[i], blend));
+    float light = 0;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      light += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
+    }
+    CHECK(light == Approx(10).epsilon(1e-5));
   }
 }
 

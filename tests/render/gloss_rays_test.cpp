@@ -136,6 +136,34 @@ TEST_CASE(
   CHECK_VERDICT(mean_is(ratio, 1.0, 0.05));
 }
 
+TEST_CASE("gloss by rays: one sample of rough metal shows what it reflects without confetti") {
+  // Its lobe looks half at a white ceiling, half at a black one: one ray would give all or nothing,
+  // with a relative variance of 1.
+  SceneBuilder builder;
+  builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 9, 0}, 1,
+               builder.add(glossy(glm::vec3(0.0f), glm::vec3(0.9f), 0.05f)));
+  builder.grid({0, -3, 1}, {0, 9, 0}, {3, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.8f))));
+  builder.grid({-3, -3, 1}, {0, 9, 0}, {3, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+  Scene scene = builder.build();
+  scene.lights = {point_light("lamp", {0.0f, 4.0f, 0.5f})};
+  const Camera camera = Camera::look_at({0, -1, 0.8}, {0, 0, 0}, {0, 0, 1}, 0.005);
+  RenderParameters parameters = with_rays();
+  parameters.film.width = parameters.film.height = 32;
+  parameters.film.samples_per_pixel = 1;
+  const RenderResult result = render(scene, camera, device(), parameters);
+  double sum = 0, squares = 0;
+  const std::vector<glm::vec3>& pixels = result.layers.layers[0].radiance;
+  for (const glm::vec3& pixel : pixels) {
+    sum += luminance(glm::dvec3(pixel));
+    squares += std::pow(luminance(glm::dvec3(pixel)), 2);
+  }
+  const auto count = static_cast<double>(pixels.size());
+  const double relative_variance = squares * count / (sum * sum) - 1;
+  CAPTURE(relative_variance, sum / count);
+  CHECK(sum > 0);
+  CHECK(relative_variance < 0.3);
+}
+
 TEST_CASE("gloss by rays: the narrowest lobe reflects a room as a mirror does") {
   const auto radiance_of = [](const Material& material, std::uint64_t seed) {
     RenderParameters parameters = with_rays(seed);
