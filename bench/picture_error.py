@@ -13,17 +13,17 @@ MID_GREY = 0.18
 COLOUR_STEP = 0.05  # of the false colours; a few steps also make small PNG files
 
 
-def read_picture(path):
-    """R, G and B of an EXR file. Raises OSError where there are none."""
+def read_picture(path, channels="RGB"):
+    """Channels of an EXR file, in this order. Raises OSError where they are not there."""
     source = oiio.ImageInput.open(str(path))
     if not source:
         raise OSError(f"{path}: {oiio.geterror()}")
     names = list(source.spec().channelnames)
-    if not {"R", "G", "B"} <= set(names):
-        raise OSError(f"{path}: no channels R, G and B")
+    if not set(channels) <= set(names):
+        raise OSError(f"{path}: no channels {', '.join(channels)}")
     pixels = source.read_image(oiio.FLOAT)
     source.close()
-    return np.asarray(pixels, dtype=np.float64)[:, :, [names.index(name) for name in "RGB"]]
+    return np.asarray(pixels, dtype=np.float64)[:, :, [names.index(name) for name in channels]]
 
 
 def write_png(path, colours):

@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "image/pixel_lights.hpp"
+#include "image/srgb.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "photile/scene.hpp"
@@ -27,6 +28,10 @@ RootPlanes root_of(const Image& image) {
     throw InputError("the picture has no channels R, G and B to show; relight it first");
   }
   return {*r, *g, *b};
+}
+
+void check_exposure(double stops) {
+  if (!std::isfinite(stops)) throw UsageError("exposure must be a finite number of stops");
 }
 
 /// DisplayView::standard of values from 0 to `brightest`.
@@ -61,6 +66,21 @@ glm::dvec3 displayed(glm::dvec3 rgb, DisplayView view) {
 
 }  // namespace
 
+std::vector<std::uint8_t> image::tone_mapped_texels(std::span<const glm::vec3> rgb, double exposure,
+                                                    DisplayView view) {
+  check_exposure(exposure);
+  const double scale = std::exp2(exposure);
+  std::vector<std::uint8_t> texels(3 * rgb.size());
+  for_each_pixel(rgb.size(), [&](std::size_t pixel) {
+    const glm::dvec3 shown = displayed(scale * glm::dvec3(rgb[pixel]), view);
+    for (int channel = 0; channel < 3; ++channel) {
+      texels[3 * pixel + static_cast<std::size_t>(channel)] =
+          srgb8_from_linear(static_cast<float>(shown[channel]));
+    }
+  });
+  return texels;
+}
+
 std::string_view name_of(DisplayView view) {
   switch (view) {
     case DisplayView::neutral:
@@ -94,9 +114,7 @@ double automatic_exposure(const Image& scene_referred) {
 }
 
 Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
-  if (!std::isfinite(parameters.exposure)) {
-    throw UsageError("exposure must be a finite number of stops");
-  }
+  check_exposure(parameters.exposure);
   const RootPlanes root = root_of(scene_referred);
   const double scale = std::exp2(parameters.exposure) *
                        (parameters.automatic_exposure ? automatic_exposure(scene_referred) : 1.0);

@@ -55,7 +55,6 @@ Rendering::Rendering(const PreparedScene& scene, std::span<Device> devices,
       devices_(devices),
       progress_(&progress),
       plan_(parameters, rays_, progress),
-      kernels_(scene_, devices, plan_.used()),
       paths_before_(scene_.lights.size()),
       layer_powers_(layer_powers(scene_)) {
   if (devices.empty()) throw UsageError("rendering needs a device; give at least one");
@@ -224,6 +223,7 @@ RenderResult Rendering::finish() {
 /// The photons are gone when this returns: the maps hold copies.
 Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
                                            const KeepPhotons* keep) {
+  if (!kernels_) kernels_.emplace(scene_, devices_, plan_.used());  // while photons are traced
   const Stopwatch trace_watch;
   PhotonTracerResult traced;
   if (prepared) {
@@ -265,7 +265,7 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
 std::vector<PhotonMaps> Rendering::build(const Photons& photons,
                                          const PhotonMapParameters& parameters) {
   const Stopwatch stopwatch;
-  kernels_.wait();
+  kernels_->wait();
   std::vector<PhotonMaps> maps =
       build_maps_on_each(devices_, scene_, photons, groups_, parameters, *progress_);
   std::uint64_t device_bytes = 0, spilled_bytes = 0;

@@ -117,7 +117,7 @@ class Rendering {
   std::span<Device> devices_;
   Progress* progress_;
   const RenderPlan plan_;
-  KernelPreparation kernels_;
+  std::optional<KernelPreparation> kernels_;  ///< begun where photons are needed
   PrimaryHitParameters film_;
   LightLayers layers_;
   std::vector<std::uint64_t> paths_before_;  ///< per light

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "image/glare.hpp"
+#include "image/srgb.hpp"
 #include "photile/errors.hpp"
 #include "test_scenes.hpp"
 #include "tools/report/number_text.hpp"
@@ -35,6 +36,31 @@ LightMix mix_of(double a, double b) { return test::two_lights("a", a, "b", b); }
 
 TEST_CASE("illuminance is the sum over lights of power times layer") {
   CHECK(mixed_illuminance(two_pixels().layers, mix_of(10, 100)) == std::vector<float>{130, 200});
+}
+
+TEST_CASE("a frame is shown as a picture of the same light is written") {
+  Frame frame;
+  frame.layers.width = 64, frame.layers.height = 3;
+  Image picture;
+  picture.width = 64, picture.height = 3;
+  for (const char* channel : {"R", "G", "B"}) picture.add(channel);
+  for (int i = 0; i < 64 * 3; ++i) {
+    glm::vec3 light(std::exp2(0.1f * static_cast<float>(i) - 12), 0.01f * static_cast<float>(i),
+                    0.3f);
+    if (i == 7) light = glm::vec3(-1, std::nanf(""), HUGE_VALF);
+    frame.mixed.push_back(light);
+    for (int channel = 0; channel < 3; ++channel) {
+      picture.channels[static_cast<std::size_t>(channel)][static_cast<std::size_t>(i)] =
+          light[channel];
+    }
+  }
+  for (const DisplayView view : {DisplayView::neutral, DisplayView::standard}) {
+    DisplaySettings settings;
+    settings.exposure = 1.3;
+    settings.view = view;
+    CHECK(display(frame, mix_of(1, 1), settings).rgb ==
+          image::srgb8_texels(tone_map(picture, {false, 1.3, view})));
+  }
 }
 
 TEST_CASE("a reading has each light's part of luminance and illuminance") {

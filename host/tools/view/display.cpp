@@ -16,16 +16,20 @@ using image::for_each_pixel;
 
 namespace {
 
-/// The mixed picture, as tone mapping takes it.
+/// The picture of a frame with layers, mixed.
+std::vector<glm::vec3> mixed(const LightLayers& layers, const LightMix& mix) {
+  std::vector<glm::vec3> rgb(static_cast<std::size_t>(layers.width) *
+                             static_cast<std::size_t>(layers.height));
+  combine_layers(layers, mix, rgb);
+  return rgb;
+}
+
+/// The mixed picture, as automatic exposure takes it.
 Image root_of(const Frame& frame, const LightMix& mix) {
   Image image;
   image.width = frame.layers.width;
   image.height = frame.layers.height;
-  std::vector<glm::vec3> rgb = frame.mixed;
-  if (rgb.empty()) {
-    rgb.resize(image.pixels());
-    combine_layers(frame.layers, mix, rgb);
-  }
+  const std::vector<glm::vec3> rgb = frame.mixed.empty() ? mixed(frame.layers, mix) : frame.mixed;
   for (int channel = 0; channel < 3; ++channel) {
     std::vector<float>& plane = image.add(std::string(1, "RGB"[channel]));
     for (std::size_t pixel = 0; pixel < rgb.size(); ++pixel) plane[pixel] = rgb[pixel][channel];
@@ -33,9 +37,13 @@ Image root_of(const Frame& frame, const LightMix& mix) {
   return image;
 }
 
-DisplayedFrame tone_mapped(const Image& root, const DisplaySettings& settings) {
-  return {root.width, root.height,
-          image::srgb8_texels(tone_map(root, {false, settings.exposure, settings.view}))};
+DisplayedFrame tone_mapped(const Frame& frame, const LightMix& mix,
+                           const DisplaySettings& settings) {
+  const auto texels = [&](std::span<const glm::vec3> rgb) {
+    return image::tone_mapped_texels(rgb, settings.exposure, settings.view);
+  };
+  return {frame.layers.width, frame.layers.height,
+          frame.mixed.empty() ? texels(mixed(frame.layers, mix)) : texels(frame.mixed)};
 }
 
 /// Illuminances in their colours; of isolines and bands the rest is the picture.
@@ -47,7 +55,7 @@ DisplayedFrame false_coloured(const Frame& frame, const LightMix& mix,
   DisplayedFrame result{frame.layers.width, frame.layers.height,
                         std::vector<std::uint8_t>(3 * values.size())};
   if (contours == Contours::lines || contours == Contours::bands) {
-    result = tone_mapped(root_of(frame, mix), settings);
+    result = tone_mapped(frame, mix, settings);
   }
   measuring::draw_false_colour(values, result.width, settings.false_colour, result.rgb);
   return result;
@@ -86,7 +94,7 @@ DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySet
   if (settings.mode == DisplayMode::illuminance && frame.mixed.empty()) {
     return false_coloured(frame, mix, settings);
   }
-  DisplayedFrame result = tone_mapped(root_of(frame, mix), settings);
+  DisplayedFrame result = tone_mapped(frame, mix, settings);
   // The first frames of the mode may still be without.
   if (settings.mode == DisplayMode::glare && frame.reflections) {
     image::draw_marks(

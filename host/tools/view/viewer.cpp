@@ -84,6 +84,9 @@ class Viewer {
       window_.draw_frame();
       keep_screenshot();
       window_.show_frame();
+      if (parameters_.redrawn) {
+        parameters_.redrawn({frame_.get(), new_frame, events.lights_changed, was_moving_});
+      }
     }
     photons_.reset();
     const std::shared_ptr<MapGeneration> maps = frames_.stop();

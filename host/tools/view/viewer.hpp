@@ -13,6 +13,14 @@
 
 namespace photile::view {
 
+/// What the window shows.
+struct Redraw {
+  const Frame* frame = nullptr;  ///< null before the first
+  bool new_frame = false;        ///< seen for the first time
+  bool lights_changed = false;   ///< by this redraw's input
+  bool moving = false;           ///< the viewer
+};
+
 struct ViewerParameters {
   RenderParameters render;  ///< film: size of the window and most samples, standing still
   double frames_per_second = defaults::view_frames_per_second;  ///< aimed at while moving
@@ -27,6 +35,8 @@ struct ViewerParameters {
   KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
   /// Is given the light maps of all photons at the end, where there are any; may be empty.
   std::function<void(const LightMapContents&)> keep_light_maps;
+  /// Told after each redraw; may be empty.
+  std::function<void(const Redraw&)> redrawn;
   /// Asked before each redraw: true ends the walkthrough.
   std::function<bool()> interrupted = [] { return false; };
 };
