@@ -1,5 +1,5 @@
 // The window on a screen, driven by keys and mouse: how often it shows a new frame while somebody
-// walks through what was seen before and into what was not, and how soon a slider is seen.
+// walks through what was seen before and into what was not.
 //
 //     xvfb-run --server-args "-screen 0 1920x1080x24" photile_bench_window --size 512x512
 //
@@ -33,8 +33,6 @@ struct Settings {
   double frame_rate = defaults::view_frames_per_second;
 };
 
-/// Two views differ by more than this part where a lamp was turned down.
-constexpr double darkened = 0.98;
 constexpr double seconds_of_patience = 120;
 
 /// What is seen from one press of a key to its release.
@@ -43,15 +41,11 @@ class Observer {
   void redrawn(const view::Redraw& redraw) {
     const std::lock_guard lock(mutex_);
     ++redraws_;
-    if (redraw.lights_changed && !changed_at_) changed_at_ = stopwatch_.seconds();
     if (!redraw.new_frame) return;
     paths_ = redraw.frame->emitted_photons;
     at_rest_ = redraw.frame->mixed.empty();
-    brightness_ = 0;
-    for (const glm::vec3& pixel : redraw.frame->mixed) brightness_ += luminance(glm::dvec3(pixel));
-    const double now = stopwatch_.seconds();
-    if (changed_at_ && !seen_at_ && !at_rest_ && brightness_ < darkened * bright_) seen_at_ = now;
     if (redraw.moving && !at_rest_) {
+      const double now = stopwatch_.seconds();
       if (last_frame_) gaps_.push_back(now - *last_frame_);
       last_frame_ = now;
       whole_ += redraw.frame->seconds;
@@ -62,8 +56,7 @@ class Observer {
     const std::lock_guard lock(mutex_);
     stopwatch_ = {};
     gaps_.clear();
-    last_frame_ = changed_at_ = seen_at_ = std::nullopt;
-    bright_ = brightness_;
+    last_frame_ = std::nullopt;
     whole_ = 0;
     redraws_ = 0;
   }
@@ -83,8 +76,6 @@ class Observer {
       row["ninth of ten"] = 1e3 * gaps_[gaps_.size() * 9 / 10];
       row["longest"] = 1e3 * gaps_.back();
     }
-    if (changed_at_ && seen_at_)
-      row["ms until a slider is seen"] = 1e3 * (*seen_at_ - *changed_at_);
     return row;
   }
 
@@ -97,16 +88,16 @@ class Observer {
   mutable std::mutex mutex_;
   Stopwatch stopwatch_;
   std::vector<double> gaps_;  ///< seconds between frames of a moving viewer
-  std::optional<double> last_frame_, changed_at_, seen_at_;
-  double brightness_ = 0, bright_ = 0, whole_ = 0;
+  std::optional<double> last_frame_;
+  double whole_ = 0;
   std::uint64_t redraws_ = 0, paths_ = 0;
   bool at_rest_ = false;
 };
 
 /// Keys and the mouse, as xdotool moves them.
-class Hands {
+class Operator {
  public:
-  Hands(Observer& observer, std::uint64_t paths, BenchRecord& record)
+  Operator(Observer& observer, std::uint64_t paths, BenchRecord& record)
       : observer_(observer), paths_(paths), record_(record) {}
 
   void work() {
@@ -116,11 +107,10 @@ class Hands {
     walk("back", {"s"});
     walk("aside, into surface that nobody saw", {"d"});
     walk("turned by 70 degrees, into surface that nobody saw", {}, 300);
-    walk("a slider while walking", {"w"}, 0, true);
   }
 
  private:
-  static void hand(const std::string& arguments) {
+  static void xdotool(const std::string& arguments) {
     if (std::system(("xdotool " + arguments).c_str()) != 0) {
       throw std::runtime_error("xdotool " + arguments + " failed");
     }
@@ -136,23 +126,19 @@ class Hands {
   }
 
   ///   pixels   that the mouse drags the view
-  ///   slides   the slider of the first lamp to the left
-  void walk(const std::string& what, const std::vector<std::string>& keys, int pixels = 0,
-            bool slides = false) {
+  void walk(const std::string& what, const std::vector<std::string>& keys, int pixels = 0) {
     constexpr int steps = 30;
-    if (pixels > 0) hand("mousemove 480 300 mousedown 1");
-    if (slides) hand("mousemove 150 163");
-    for (const std::string& key : keys) hand("keydown " + key);
+    if (pixels > 0) xdotool("mousemove 480 300 mousedown 1");
+    for (const std::string& key : keys) xdotool("keydown " + key);
     sleep(0.3);
     observer_.begin();
-    if (slides) hand("mousedown 1 mousemove 12 163");
     for (int step = 0; step < steps; ++step) {
       sleep(1.5 / steps);
-      if (pixels > 0) hand(fmt::format("mousemove_relative -- {} 0", -pixels / steps));
+      if (pixels > 0) xdotool(fmt::format("mousemove_relative -- {} 0", -pixels / steps));
     }
     const nlohmann::json row = observer_.end(what);
-    for (const std::string& key : keys) hand("keyup " + key);
-    if (pixels > 0 || slides) hand("mouseup 1");
+    for (const std::string& key : keys) xdotool("keyup " + key);
+    if (pixels > 0) xdotool("mouseup 1");
     if (!what.empty()) record_.add(row);
     sleep(0.5);
     rest();
@@ -186,9 +172,9 @@ bool run(const BenchOptions& options, const Settings& settings) {
   std::exception_ptr error;
   parameters.redrawn = [&](const view::Redraw& redraw) { observer.redrawn(redraw); };
   parameters.interrupted = [&] { return done.load(); };
-  std::jthread hands([&] {
+  std::jthread operating([&] {
     try {
-      Hands(observer, settings.paths, record).work();
+      Operator(observer, settings.paths, record).work();
     } catch (...) {
       error = std::current_exception();
     }
@@ -201,7 +187,7 @@ bool run(const BenchOptions& options, const Settings& settings) {
   };
   view::run_viewer(scene, scene.cameras.front(), LightMix::of(scene, defaults::lumen_per_watt),
                    open_devices, std::move(parameters));
-  hands.join();
+  operating.join();
   if (error) std::rethrow_exception(error);
   record.write();
   return true;

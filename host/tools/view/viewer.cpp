@@ -85,7 +85,7 @@ class Viewer {
       keep_screenshot();
       window_.show_frame();
       if (parameters_.redrawn) {
-        parameters_.redrawn({frame_.get(), new_frame, events.lights_changed, was_moving_});
+        parameters_.redrawn({frame_.get(), new_frame, was_moving_});
       }
     }
     photons_.reset();

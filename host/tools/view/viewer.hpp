@@ -17,7 +17,6 @@ namespace photile::view {
 struct Redraw {
   const Frame* frame = nullptr;  ///< null before the first
   bool new_frame = false;        ///< seen for the first time
-  bool lights_changed = false;   ///< by this redraw's input
   bool moving = false;           ///< the viewer
 };
 
