@@ -77,6 +77,7 @@ class RenderPlan {
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.
+  ///   passes   at least 1
   PrimaryHitParameters hits(const Film& film, int passes) const;
 
   trace::FinalGatherParameters gathering() const;

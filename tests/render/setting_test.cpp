@@ -136,12 +136,12 @@ TEST_CASE("a plan draws from what is asked what follows from it") {
 
   asked.direct_rays = 3;
   CHECK_FALSE(plan().tracing(0, {}).store_direct);
-  CHECK(plan().hits({16, 12, 2}, 0).direct_rays == 3);
+  CHECK(plan().hits({16, 12, 2}, 1).direct_rays == 3);
   asked.direct_rays = 0;
   asked.final_gather_rays = 2;  // which see direct light where they end
   CHECK(plan().tracing(0, {}).store_direct);
   CHECK(plan().tracing(0, {}).keep_caustics);
-  CHECK(plan().hits({16, 12, 2}, 0).direct_rays == defaults::direct_rays);
+  CHECK(plan().hits({16, 12, 2}, 1).direct_rays == defaults::direct_rays);
 
   asked.maps = MapMode::naive;
   CHECK_FALSE(plan().clips_areas());
@@ -153,8 +153,9 @@ TEST_CASE("a plan draws from what is asked what follows from it") {
   CHECK(levels == std::vector{5, 20, 80});
 
   asked.passes = 7;
-  CHECK(plan().hits({16, 12, 9}, 3).samples_per_pixel == 14);
-  CHECK(plan().hits({16, 12, 9}, 3).pass == 3);
+  CHECK(plan().hits({16, 12, 9}, 7).samples_per_pixel == 14);
+  CHECK(plan().hits({16, 12, 9}, 7).passes == 7);
+  CHECK(plan().hits({16, 12, 9}, 1).samples_per_pixel == 9);
   std::uint64_t paths = 0;
   for (int pass = 0; pass < 7; ++pass) paths += plan().tracing(pass, {0, 0}).emitted_photons;
   CHECK(paths == 5'000);
