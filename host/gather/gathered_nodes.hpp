@@ -31,9 +31,8 @@ GatheredNodesParameters rays_of_nodes(int coarse, double inset);
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
 /// finer ones with those next to them and with what coarser ones say of their place, as far as
-/// differences may be noise. Light
-/// straight from lamps and light of other surfaces are treated apart. All lights and batches have
-/// the same weights, so layers stay linear in the powers.
+/// differences may be noise. Light straight from lamps and light of other surfaces are treated
+/// apart. All lights and batches have the same weights, so layers stay linear in the powers.
 class GatheredNodes : public NodeSource {
  public:
   /// References are kept. It serves one LightMaps.

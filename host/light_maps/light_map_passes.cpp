@@ -1,5 +1,6 @@
 // Light maps over several photon passes: nodes come to hold the mean of all.
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "light_maps/light_maps_impl.hpp"
