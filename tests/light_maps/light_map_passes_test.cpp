@@ -9,6 +9,7 @@
 #include "photile/light_groups.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
+#include "photon_passes.hpp"
 #include "render/pictures.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -113,16 +114,6 @@ double error_after(int passes) {
     }
   }
   return std::sqrt(squares);
-}
-
-/// What theory leaves of bias and noise after n passes, as photon_passes_test.cpp has it.
-double predicted(int passes) {
-  double factor = 1, sum = 0;
-  for (int pass = 1; pass <= passes; ++pass) {
-    sum += factor;
-    factor *= (pass + 2.0 / 3.0) / (pass + 1.0);
-  }
-  return sum / passes;
 }
 
 }  // namespace
@@ -242,8 +233,8 @@ TEST_CASE("With more passes the error of frames falls as theory says", "[light_m
   // Slack as in photon_passes_test.cpp; the lattice is that of the first pass.
   for (const int passes : {4, 16}) {
     const double error = error_after(passes);
-    CAPTURE(passes, one, error, error / one, predicted(passes));
-    CHECK(error < 1.25 * predicted(passes) * one);
+    CAPTURE(passes, one, error, error / one, predicted_of_passes(passes));
+    CHECK(error < 1.25 * predicted_of_passes(passes) * one);
   }
 }
 

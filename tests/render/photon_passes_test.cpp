@@ -1,5 +1,7 @@
 // Pictures from several photon passes: consistent, reproducible, bounded in memory.
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include "photon_passes.hpp"
+
 #include <tbb/global_control.h>
 
 #include <catch2/catch.hpp>
@@ -64,17 +66,6 @@ double error_after(int passes, std::uint64_t photons, int neighbours, double rad
   return std::sqrt(squares);
 }
 
-/// What theory leaves of bias and of the deviation by noise after n passes: the mean of the factors
-/// by which the squared radius has shrunk, which falls as n^(-1/3).
-double predicted(int passes) {
-  double factor = 1, sum = 0;
-  for (int pass = 1; pass <= passes; ++pass) {
-    sum += factor;
-    factor *= (pass + 2.0 / 3.0) / (pass + 1.0);
-  }
-  return sum / passes;
-}
-
 /// The errors after 4, 16 and 64 passes against what theory leaves of that of one. Slack: a
 /// quarter. The error of one pass is known to a few percent, since a view holds dozens of discs,
 /// and terms of the bias beyond the second order make it a little less than in proportion to the
@@ -84,8 +75,8 @@ void check_convergence(std::uint64_t photons, int neighbours, double radius) {
   CHECK(one > 0.03);  // there is something to lose
   for (const int passes : {4, 16, 64}) {
     const double error = error_after(passes, photons, neighbours, radius);
-    CAPTURE(passes, one, error, error / one, predicted(passes));
-    CHECK(error < 1.25 * predicted(passes) * one);
+    CAPTURE(passes, one, error, error / one, predicted_of_passes(passes));
+    CHECK(error < 1.25 * predicted_of_passes(passes) * one);
   }
 }
 
