@@ -44,6 +44,11 @@ inline constexpr float photons_per_cell = 4.0f;  ///< aimed at; about 4 is best 
 inline constexpr int max_specular_depth = 16;  ///< mirrors and glass followed by a primary ray
 inline constexpr int direct_rays = 1;          ///< looks at lamps from a hit, where rays do that
 
+// Denoising
+inline constexpr int denoising_samples = 16;  ///< primary rays a pixel that guides are traced by
+inline constexpr float denoising_errors = 3;  ///< known standard errors that a value may move by
+inline constexpr const char* denoising_library = "libOpenImageDenoise.so.2";
+
 // The trade between time and error
 inline constexpr int trade_width = 256;         ///< pixels
 inline constexpr int trade_height = 192;        ///< pixels

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "image/glare.hpp"
 #include "image/srgb.hpp"
 #include "photile/camera_attributes.hpp"
+#include "photile/denoiser.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/path_tracer.hpp"
@@ -106,7 +108,7 @@ struct Views {
 };
 
 /// What the camera sees; with --preview its picture is shown while it grows.
-///   errors   where --errors asks for them, else null
+///   errors   where they are wanted, else null
 std::unique_ptr<HitSource> hits_of(const Camera& camera, LightLayers* errors,
                                    const RenderOptions& options, const RunRecord& record,
                                    Progress& progress) {
@@ -190,6 +192,35 @@ LightLayers render_by_paths(const Scene& scene, const Camera& camera, const View
   return std::move(result.layers);
 }
 
+/// What --denoise asks for: loaded before the rendering, so that a library which is not there is
+/// told at once.
+class Denoising {
+ public:
+  ///   film   of the picture
+  Denoising(const RenderOptions& options, const Scene& scene, const Camera& camera)
+      : denoiser_(options.denoiser, options.threads),
+        scene_(scene),
+        camera_(camera),
+        film_(options.parameters.film),
+        seed_(options.parameters.seed) {}
+
+  const std::string& version() const { return denoiser_.version(); }
+
+  ///   errors   standard errors of the layers, or null
+  LightLayers denoised(const LightLayers& layers, const LightLayers* errors) {
+    if (!guides_) guides_ = denoising_guides(RayScene(scene_), camera_, film_, seed_);
+    return denoiser_.denoised(layers, *guides_, errors);
+  }
+
+ private:
+  Denoiser denoiser_;
+  const Scene& scene_;
+  const Camera& camera_;
+  Film film_;
+  std::uint64_t seed_;
+  std::optional<DenoisingGuides> guides_;  ///< once they are needed
+};
+
 /// Writes the file that --glare names, and tells what is marked. `reflections` are the part of
 /// `layers` that came by reflection. Errors: OutputError.
 void write_glare(const RenderOptions& options, const LightLayers& layers,
@@ -211,10 +242,17 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
                           const std::function<double()>& elapsed, Progress& progress) {
   check_settings(options);
   if (options.integrator == Integrator::path) refuse_photon_map_options(command);
-  if (!options.errors.empty() && (!nodes_gather(options.parameters) || keeps_maps(options))) {
+  const bool knows_errors =
+      options.integrator == Integrator::photon_map && nodes_gather(options.parameters);
+  if (!options.errors.empty() && (!knows_errors || keeps_maps(options))) {
     throw UsageError(
         "--errors: noise is known where nodes of light maps gather, as with --quality good, and "
         "without --save-maps, --load-maps and --glare");
+  }
+  if (!options.denoiser.empty() && knows_errors && keeps_maps(options)) {
+    throw UsageError(
+        "--denoise needs the noise of nodes, which is not known with --save-maps, --load-maps and "
+        "--glare; leave those out");
   }
   const bool refined = refines(options.target, options.parameters);
   if (refined && keeps_maps(options)) {
@@ -247,12 +285,25 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
     const bool own_cells = command.count("--photons-per-cell") > 0;
     use_stored_tuning(options.parameters, own_cells, devices, scene, progress);
   }
+  std::optional<Denoising> denoising;
+  if (!options.denoiser.empty()) {
+    denoising.emplace(options, scene, camera);
+    record.denoiser = denoising->version();
+  }
+  const bool wants_errors = !options.errors.empty() || (denoising && knows_errors);
   LightLayers errors;
   const std::unique_ptr<HitSource> hits =
-      hits_of(camera, options.errors.empty() ? nullptr : &errors, options, record, progress);
+      hits_of(camera, wants_errors ? &errors : nullptr, options, record, progress);
   LightLayers reflections;
   const Views views{*hits, options.glare.empty() ? nullptr : &reflections};
-  const auto write = [&](const LightLayers& layers) {
+  const auto write = [&](const LightLayers& rendered) {
+    std::optional<LightLayers> denoised;
+    if (denoising) {
+      record.stages.push_back(timed_stage("denoise", progress, [&] {
+        denoised = denoising->denoised(rendered, wants_errors ? &errors : nullptr);
+      }));
+    }
+    const LightLayers& layers = denoised ? *denoised : rendered;
     record.stages.push_back(timed_stage("write pictures", progress, [&] {
       const auto picture_of = [&](const LightLayers& film) {
         std::unique_ptr<LayeredPicture> picture = mixed_picture(film, record.mix);

@@ -147,6 +147,14 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->check(file_ending_in({".exr"}))
       ->group("Quality");
   command
+      .add_option("--denoise", options.denoiser,
+                  "denoise each light's layer by Open Image Denoise 2, an installed library; never "
+                  "the illuminance")
+      ->type_name("[LIBRARY]")
+      ->expected(0, 1)
+      ->default_str(defaults::denoising_library)
+      ->group("Picture");
+  command
       .add_option("--glare", options.glare,
                   "picture in which reflections above a limit are marked, in a colour per light")
       ->type_name("FILE.png")

@@ -47,6 +47,7 @@ struct RenderOptions {
   std::string save_maps, load_maps;  ///< files, "" = none
   std::string preview;               ///< HOST:PORT of a tev; "" = none
   std::string errors;                ///< EXR of standard errors, "" = none
+  std::string denoiser;              ///< library of Open Image Denoise, "" = not denoised
   std::string glare;                 ///< PNG of marked reflections, "" = none
   double glare_limit = defaults::glare_limit;
   bool quiet = false;

@@ -97,6 +97,7 @@ void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
     attributes["photile." + std::string(wish.name)] =
         fmt::format("{}{}", record.target.*wish.value, wish.type == "TIME" ? " seconds" : "");
   }
+  if (!record.denoiser.empty()) attributes["photile.denoiser"] = record.denoiser;
   attributes["photile.times"] = times_text(record.stages);
   for (const Setting& setting : settings()) {
     if (!record.has_photons() && !is_of_any_integrator(setting)) continue;
@@ -120,6 +121,7 @@ json run_json(const RunRecord& record) {
               {"total_seconds", record.total.seconds},
               {"total_processor_seconds", record.total.processor_seconds},
               {"peak_host_bytes", peak_host_bytes()}};
+  if (!record.denoiser.empty()) result["denoiser"] = record.denoiser;
   if (record.has_photons()) result["photons_stored"] = record.stored_photons;
   for (const MixedLight& light : record.mix.lights) {
     result["lights"].push_back({{"name", light.name},

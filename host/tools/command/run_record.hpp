@@ -29,6 +29,7 @@ struct RunRecord {
   std::vector<DeviceInfo> devices;
   std::vector<double> device_shares;  ///< of the hits, per device
   LightMix mix;
+  std::string denoiser;  ///< and its version; "" = not denoised
   std::uint64_t stored_photons = 0;
   RunStatistics stages;
   TimeTaken total;  ///< of the process
