@@ -7,13 +7,13 @@
 
 namespace photile {
 
-KeptMaps::KeptMaps(const Scene& scene, std::span<Device> devices,
+KeptMaps::KeptMaps(std::shared_ptr<const PreparedScene> scene, std::span<Device> devices,
                    const RenderParameters& parameters, PreparedPhotons* prepared,
                    const KeepPhotons& keep, Progress& progress)
-    : scene_(scene),
+    : scene_(std::move(scene)),
       devices_(devices),
       parameters_(parameters),
-      rendering_(scene_, devices, parameters, progress) {
+      rendering_(*scene_, devices, parameters, progress) {
   const RenderPlan& plan = rendering_.plan();
   if (prepared && !prepared->caustics && plan.keeps_caustics()) {
     throw SettingError(
@@ -37,7 +37,7 @@ KeptMaps::Pass KeptMaps::prepare_pass(int pass, std::vector<Device> devices,
                                       Progress& progress) const {
   Pass made{std::move(devices), nullptr};
   const std::span<Device> used = made.devices.empty() ? devices_ : std::span(made.devices);
-  made.rendering = std::make_unique<Rendering>(scene_, used, parameters_, progress);
+  made.rendering = std::make_unique<Rendering>(*scene_, used, parameters_, progress);
   made.rendering->follow(rendering_, pass);
   made.rendering->report_to(Progress::none());
   return made;
@@ -71,7 +71,8 @@ struct SceneRenderer::Pass : KeptMaps::Pass {};
 SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
                              const RenderParameters& parameters, PreparedPhotons* prepared,
                              const KeepPhotons& keep, Progress& progress, Passes passes)
-    : impl_(std::make_unique<Impl>(scene, devices, parameters, prepared, keep, progress)) {
+    : impl_(std::make_unique<Impl>(std::make_shared<const PreparedScene>(scene), devices,
+                                   parameters, prepared, keep, progress)) {
   if (passes == Passes::all) impl_->add_passes(progress);
 }
 

@@ -11,8 +11,9 @@ namespace photile {
 class KeptMaps {
  public:
   /// As SceneRenderer, but that of several passes only the first is prepared.
-  KeptMaps(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
-           PreparedPhotons* prepared, const KeepPhotons& keep, Progress& progress);
+  KeptMaps(std::shared_ptr<const PreparedScene> scene, std::span<Device> devices,
+           const RenderParameters& parameters, PreparedPhotons* prepared, const KeepPhotons& keep,
+           Progress& progress);
 
   /// As SceneRenderer.
   struct Pass {
@@ -41,7 +42,7 @@ class KeptMaps {
   }
 
  private:
-  const PreparedScene scene_;
+  const std::shared_ptr<const PreparedScene> scene_;
   std::span<Device> devices_;
   const RenderParameters parameters_;
   Rendering rendering_;

@@ -1,3 +1,6 @@
+#include <memory>
+
+#include "render/first_picture.hpp"
 #include "render/hit_source.hpp"
 #include "render/kept_maps.hpp"
 #include "render/rendering.hpp"
@@ -7,22 +10,27 @@ namespace photile {
 RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& film,
                          std::span<Device> devices, const RenderParameters& parameters,
                          Progress& progress) {
+  const auto prepared = std::make_shared<const PreparedScene>(scene);
+  const TimeTaken first = draw_first_picture(*prepared, hits, film, devices, parameters, progress);
+  const auto with_first = [&](RenderResult result) {
+    if (first.seconds > 0) add_time(result.statistics, "first picture", first);
+    return result;
+  };
   const bool reads_nodes = parameters.light_maps == LightMapMode::on || nodes_gather(parameters);
   if (parameters.passes > 1 && reads_nodes) {
-    KeptMaps maps(scene, devices, parameters, nullptr, {},
+    KeptMaps maps(prepared, devices, parameters, nullptr, {},
                   progress);  // nodes hold the mean of all passes
     maps.add_passes(progress);
-    return maps.render(hits, film, progress);
+    return with_first(maps.render(hits, film, progress));
   }
-  const PreparedScene prepared(scene);
-  Rendering rendering(prepared, devices, parameters, progress);
+  Rendering rendering(*prepared, devices, parameters, progress);
   rendering.start(film);
   for (int pass = 0; pass < rendering.plan().passes(); ++pass) {
     rendering.prepare(pass, nullptr, nullptr);
     rendering.add_pass(hits);
   }
   rendering.release();
-  return rendering.finish();
+  return with_first(rendering.finish());
 }
 
 RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> devices,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_bvh.hpp"
@@ -101,11 +102,61 @@ class ExposureFinder {
     dark_tree_ = geometry::BoxTree(dark_boxes_);
   }
 
-  float exposure_of(std::uint32_t own) const {
-    if (is_dark(own)) return 1;
-    const glm::dvec3 normal = normal_of(own);
-    const Corners corners = corners_of(triangle_of(own));
-    const std::vector<Projection> covers = covers_near(own, corners, normal);
+  /// Writes that of sides [first, last) that are lit and original. Sides that follow each other
+  /// mostly lie close together: what may cover one of them is looked up for all of them.
+  void find(std::uint32_t first, std::uint32_t last, std::span<float> exposure) const {
+    std::vector<LitSide> sides;
+    geometry::Box all;
+    float each = 0;
+    for (std::uint32_t s = first; s < last; ++s) {
+      if (mesh_.original[s] != s || is_dark(s)) continue;
+      sides.push_back(lit_side(s));
+      all.extend(sides.back().prism);
+      each += half_area(sides.back().prism);
+    }
+    if (sides.empty()) return;
+    std::vector<std::uint32_t> near;
+    const bool together = half_area(all) <= 2 * each;
+    if (together) {
+      dark_tree_.visit_overlapping(dark_boxes_, all, [&](std::uint32_t i) { near.push_back(i); });
+    }
+    for (const LitSide& side : sides) {
+      std::vector<Projection> covers;
+      const Projection outline(side.corners, side.normal);
+      const auto look_at = [&](std::uint32_t i) { add_cover(side, outline, i, covers); };
+      if (together) {
+        for (const std::uint32_t i : near) {
+          if (geometry::overlap(dark_boxes_[i], side.prism)) look_at(i);
+        }
+      } else {
+        dark_tree_.visit_overlapping(dark_boxes_, side.prism, look_at);
+      }
+      exposure[side.own] = open_part(side.corners, covers);
+    }
+  }
+
+ private:
+  struct LitSide {
+    std::uint32_t own;
+    glm::dvec3 normal;
+    Corners corners;
+    geometry::Box prism;  ///< covers lie within it
+  };
+
+  static float half_area(const geometry::Box& box) {
+    const glm::vec3 size = glm::max(box.size(), glm::vec3(0.0f));
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+  }
+
+  LitSide lit_side(std::uint32_t s) const {
+    const glm::dvec3 normal = normal_of(s);
+    const Corners corners = corners_of(triangle_of(s));
+    // A cover lies within the slab, and so where it covers within the prism over the triangle.
+    return {s, normal, corners,
+            box_of_prism(corners, -coincident * radius_ * normal, reach * radius_ * normal)};
+  }
+
+  float open_part(const Corners& corners, const std::vector<Projection>& covers) const {
     if (covers.empty()) return 1;
     int open = 0;
     for (const glm::dvec2& weight : weights_) {
@@ -118,7 +169,6 @@ class ExposureFinder {
     return open < least_open * samples ? static_cast<float>(open) / samples : 1.0f;
   }
 
- private:
   glm::dvec3 normal_of(std::uint32_t s) const {
     return side_of(s) == 0 ? mesh_.normal[triangle_of(s)] : -mesh_.normal[triangle_of(s)];
   }
@@ -137,32 +187,23 @@ class ExposureFinder {
 
   bool is_dark(std::uint32_t s) const { return lit_[sheets_.of[s]] == 0; }
 
-  /// What lies above a triangle, close to it, as seen along its normal.
-  std::vector<Projection> covers_near(std::uint32_t own, const Corners& own_corners,
-                                      const glm::dvec3& normal) const {
-    std::vector<Projection> covers;
-    const Projection outline(own_corners, normal);
-    // A cover lies within the slab, and so where it covers within the prism over the triangle.
-    const geometry::Box prism =
-        box_of_prism(own_corners, -coincident * radius_ * normal, reach * radius_ * normal);
-    const std::uint32_t own_plane = facets_.plane[triangle_of(own)];
-    dark_tree_.visit_overlapping(dark_boxes_, prism, [&](std::uint32_t i) {
-      const std::uint32_t triangle = dark_[i];
-      if (facets_.plane[triangle] == own_plane) return;
-      if (!faces_in_the_dark(triangle, normal)) return;
-      const Corners corners = corners_of(triangle);
-      if (outline.is_apart_from(corners)) return;
-      double lowest = reach * radius_, highest = 0;
-      for (const glm::dvec3& corner : corners) {
-        const double height = glm::dot(corner - own_corners[0], normal);
-        lowest = std::min(lowest, height);
-        highest = std::max(highest, height);
-      }
-      if (lowest < -coincident * radius_ || highest >= reach * radius_) return;
-      const Projection cover(corners, normal);
-      if (!cover.is_apart_from(own_corners)) covers.push_back(cover);
-    });
-    return covers;
+  /// Appends a dark triangle that lies above a side, close to it, as seen along its normal.
+  void add_cover(const LitSide& side, const Projection& outline, std::uint32_t dark,
+                 std::vector<Projection>& covers) const {
+    const std::uint32_t triangle = dark_[dark];
+    if (facets_.plane[triangle] == facets_.plane[triangle_of(side.own)]) return;
+    if (!faces_in_the_dark(triangle, side.normal)) return;
+    const Corners corners = corners_of(triangle);
+    if (outline.is_apart_from(corners)) return;
+    double lowest = reach * radius_, highest = 0;
+    for (const glm::dvec3& corner : corners) {
+      const double height = glm::dot(corner - side.corners[0], side.normal);
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
+    }
+    if (lowest < -coincident * radius_ || highest >= reach * radius_) return;
+    const Projection cover(corners, side.normal);
+    if (!cover.is_apart_from(side.corners)) covers.push_back(cover);
   }
 
   const SurfaceMesh& mesh_;
@@ -183,9 +224,13 @@ std::vector<float> find_exposure(const SurfaceMesh& mesh, const Facets& facets,
                                  double radius, double angle_degrees) {
   const ExposureFinder finder(mesh, facets, sheets, lit, radius, angle_degrees);
   std::vector<float> exposure(mesh.original.size(), 1.0f);
-  tbb::parallel_for(std::size_t{0}, exposure.size(), [&](std::size_t i) {
-    const auto s = static_cast<std::uint32_t>(i);
-    if (mesh.original[s] == s) exposure[i] = finder.exposure_of(s);
+  constexpr std::size_t sides_at_a_time = 32;
+  const std::size_t blocks = (exposure.size() + sides_at_a_time - 1) / sides_at_a_time;
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+    const std::size_t first = block * sides_at_a_time;
+    finder.find(static_cast<std::uint32_t>(first),
+                static_cast<std::uint32_t>(std::min(first + sides_at_a_time, exposure.size())),
+                exposure);
   });
   return exposure;
 }

@@ -1,8 +1,12 @@
 #include "surface/facets.hpp"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "photile/device/surface.h"
 
@@ -38,13 +42,15 @@ bool equally_dark(std::span<const std::uint8_t> dark, const MeshEdge& a, const M
 
 std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh, std::span<const std::uint8_t> dark) {
   std::vector<Beyond> beyond(mesh.corner.size(), Beyond{none, none, none});
-  mesh.for_each_edge([&](std::span<const MeshEdge> edges) {
-    for (const MeshEdge& edge : edges) {
-      const MeshEdge* next = continuation(mesh, edges, edge);
-      if (next == nullptr || continuation(mesh, edges, *next) != &edge) continue;
-      if (!equally_dark(dark, edge, *next)) continue;
-      beyond[edge.triangle][edge.index] = next->triangle;
-    }
+  tbb::parallel_for(std::size_t{0}, mesh.edge_shares(), [&](std::size_t share) {
+    mesh.for_each_edge_of(share, [&](std::span<const MeshEdge> edges) {
+      for (const MeshEdge& edge : edges) {
+        const MeshEdge* next = continuation(mesh, edges, edge);
+        if (next == nullptr || continuation(mesh, edges, *next) != &edge) continue;
+        if (!equally_dark(dark, edge, *next)) continue;
+        beyond[edge.triangle][edge.index] = next->triangle;
+      }
+    });
   });
   return beyond;
 }
@@ -55,20 +61,22 @@ class FacetGrower {
               std::vector<std::uint32_t>& plane)
       : mesh_(mesh), beyond_(beyond), height_(largest_height * radius), plane_(plane) {}
 
-  /// The triangles of the seed's facet.
-  const std::vector<std::uint32_t>& grow(std::uint32_t seed) {
-    members_.assign(1, seed);
+  /// The triangles of all facets, each facet's together, its seed first.
+  const std::vector<std::uint32_t>& members() const { return members_; }
+
+  void grow(std::uint32_t seed) {
+    std::size_t i = members_.size();
+    members_.push_back(seed);
     plane_[seed] = seed;
     normal_ = mesh_.normal[seed];
     point_ = glm::dvec3(mesh_.scene.corners(seed)[0]);
-    for (std::size_t i = 0; i < members_.size(); ++i) {
+    for (; i < members_.size(); ++i) {
       for (const std::uint32_t next : beyond_[members_[i]]) {
         if (next == none || plane_[next] != none || !in_plane(next)) continue;
         plane_[next] = seed;
         members_.push_back(next);
       }
     }
-    return members_;
   }
 
  private:
@@ -88,7 +96,7 @@ class FacetGrower {
   glm::dvec3 normal_{0.0}, point_{0.0};
 };
 
-double diagonal_of(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
+double diagonal_of(const Scene& scene, std::span<const std::uint32_t> triangles) {
   glm::vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower);
   for (const std::uint32_t triangle : triangles) {
     for (const glm::vec3& corner : scene.corners(triangle)) {
@@ -117,28 +125,40 @@ void add_borders(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, std
 Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::uint8_t> dark) {
   const std::size_t count = mesh.corner.size();
   std::vector<std::uint32_t> seeds;
-  std::vector<double> area(count);
   for (std::uint32_t t = 0; t < count; ++t) {
-    area[t] = triangle_area(mesh.scene, t);
     if (mesh.counts(t)) seeds.push_back(t);
   }
-  std::stable_sort(seeds.begin(), seeds.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
+  std::vector<double> area(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t t) {
+    area[t] = triangle_area(mesh.scene, static_cast<std::uint32_t>(t));
+  });
+  tbb::parallel_sort(seeds.begin(), seeds.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return area[a] != area[b] ? area[a] > area[b] : a < b;
+  });
   const std::vector<Beyond> beyond = triangles_beyond(mesh, dark);
   Facets facets;
   facets.of_triangle.assign(count, PHOTILE_NO_FACET);
   facets.plane.assign(count, none);
   FacetGrower grower(mesh, beyond, radius, facets.plane);
-  std::vector<BorderEdge> borders;
+  std::vector<std::size_t> first_of;
   for (const std::uint32_t seed : seeds) {
     if (facets.plane[seed] != none) continue;
-    const std::vector<std::uint32_t>& members = grower.grow(seed);
-    borders.clear();
-    for (const std::uint32_t t : members) add_borders(mesh, beyond, t, facets.plane, borders);
+    first_of.push_back(grower.members().size());
+    grower.grow(seed);
+  }
+  first_of.push_back(grower.members().size());
+  std::vector<std::vector<BorderEdge>> borders(first_of.size() - 1);
+  tbb::parallel_for(std::size_t{0}, borders.size(), [&](std::size_t i) {
+    const std::span members(grower.members().data() + first_of[i], first_of[i + 1] - first_of[i]);
+    std::vector<BorderEdge> own;
+    for (const std::uint32_t t : members) add_borders(mesh, beyond, t, facets.plane, own);
     const bool small = diagonal_of(mesh.scene, members) <= 2 * radius;
-    if (small && members.size() <= 2 * borders.size()) continue;
-    for (const std::uint32_t t : members) facets.of_triangle[t] = seed;
-    facets.borders.insert(facets.borders.end(), borders.begin(), borders.end());
+    if (small && members.size() <= 2 * own.size()) return;
+    for (const std::uint32_t t : members) facets.of_triangle[t] = members.front();
+    borders[i] = std::move(own);
+  });
+  for (const std::vector<BorderEdge>& own : borders) {
+    facets.borders.insert(facets.borders.end(), own.begin(), own.end());
   }
   return facets;
 }

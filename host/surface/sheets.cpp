@@ -1,5 +1,7 @@
 #include "surface/sheets.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,13 +39,20 @@ bool run_along(const LoneEdge& a, const LoneEdge& b, double tolerance) {
   return shared > 2 * tolerance;
 }
 
+/// The parts of several tasks, one after the other.
+template <class Value>
+void append_all(const std::vector<std::vector<Value>>& parts, std::vector<Value>& all) {
+  for (const std::vector<Value>& part : parts) all.insert(all.end(), part.begin(), part.end());
+}
+
 void join_along_edges(const SurfaceMesh& mesh, const std::vector<LoneEdge>& edges, double tolerance,
                       double cos_angle, std::vector<Connection>& connections) {
-  std::vector<geometry::Box> boxes;
-  for (const LoneEdge& edge : edges) boxes.push_back(box_of(edge));
+  constexpr std::size_t edges_per_task = 1024;
+  std::vector<geometry::Box> boxes(edges.size());
+  std::transform(edges.begin(), edges.end(), boxes.begin(), box_of);
   const geometry::BoxTree tree(boxes);
   const auto limit = static_cast<float>(tolerance * tolerance);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  const auto join = [&](std::size_t i, std::vector<Connection>& found) {
     tree.visit_within(boxes[i], limit, [&](std::uint32_t j) {
       if (j <= i || !run_along(edges[i], edges[j], tolerance)) return false;
       const double directions = glm::dot(edges[i].to - edges[i].from, edges[j].to - edges[j].from);
@@ -51,10 +60,16 @@ void join_along_edges(const SurfaceMesh& mesh, const std::vector<LoneEdge>& edge
       const std::uint32_t flip = directions > 0 ? 1 : 0;
       const glm::dvec3 other = flip == 0 ? mesh.normal[b] : -mesh.normal[b];
       if (mesh.stores(a) != mesh.stores(b)) return false;
-      if (normals_agree(mesh.normal[a], other, cos_angle)) connections.push_back({a, b, flip});
+      if (normals_agree(mesh.normal[a], other, cos_angle)) found.push_back({a, b, flip});
       return false;
     });
-  }
+  };
+  std::vector<std::vector<Connection>> found((edges.size() + edges_per_task - 1) / edges_per_task);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t task) {
+    const std::size_t last = std::min(edges.size(), (task + 1) * edges_per_task);
+    for (std::size_t i = task * edges_per_task; i < last; ++i) join(i, found[task]);
+  });
+  append_all(found, connections);
 }
 
 }  // namespace
@@ -62,22 +77,28 @@ void join_along_edges(const SurfaceMesh& mesh, const std::vector<LoneEdge>& edge
 std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
                                          double angle_degrees) {
   const double cos_angle = std::cos(glm::radians(angle_degrees));
+  std::vector<std::vector<Connection>> connected(mesh.edge_shares());
+  std::vector<std::vector<LoneEdge>> alone(mesh.edge_shares());
+  tbb::parallel_for(std::size_t{0}, mesh.edge_shares(), [&](std::size_t share) {
+    mesh.for_each_edge_of(share, [&](std::span<const MeshEdge> edges) {
+      if (edges.size() == 1) {
+        const MeshEdge& edge = edges.front();
+        const auto corners = mesh.scene.corners(edge.triangle);
+        alone[share].push_back({corners[edge.index], corners[(edge.index + 1) % 3], edge.triangle});
+      }
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        for (std::size_t j = i + 1; j < edges.size(); ++j) {
+          if (!(fold_cosine(mesh, edges[i], edges[j]) >= cos_angle - 1e-6)) continue;
+          connected[share].push_back(
+              {edges[i].triangle, edges[j].triangle, flip_between(edges[i], edges[j])});
+        }
+      }
+    });
+  });
   std::vector<Connection> connections;
   std::vector<LoneEdge> lone;
-  mesh.for_each_edge([&](std::span<const MeshEdge> edges) {
-    if (edges.size() == 1) {
-      const MeshEdge& edge = edges.front();
-      const auto corners = mesh.scene.corners(edge.triangle);
-      lone.push_back({corners[edge.index], corners[(edge.index + 1) % 3], edge.triangle});
-    }
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      for (std::size_t j = i + 1; j < edges.size(); ++j) {
-        if (!(fold_cosine(mesh, edges[i], edges[j]) >= cos_angle - 1e-6)) continue;
-        connections.push_back(
-            {edges[i].triangle, edges[j].triangle, flip_between(edges[i], edges[j])});
-      }
-    }
-  });
+  append_all(connected, connections);
+  append_all(alone, lone);
   join_along_edges(mesh, lone, 1e-3 * radius, cos_angle, connections);
   return connections;
 }

@@ -1,6 +1,7 @@
 // The triangles of a scene with what they share: corners, edges, places.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -26,16 +27,20 @@ struct SurfaceMesh {
   /// Edges with the same two corners, which stand together in `edges`.
   template <class Visit>
   void for_each_edge(const Visit& visit) const {
-    for (std::size_t first = 0; first < edges.size();) {
-      std::size_t last = first + 1;
-      while (last < edges.size() && edges[last].low == edges[first].low &&
-             edges[last].high == edges[first].high) {
-        ++last;
-      }
-      visit(std::span(edges).subspan(first, last - first));
-      first = last;
-    }
+    for_each_edge_from(0, edges.size(), visit);
   }
+
+  /// Those of them that begin in a share of all edges: shares may be visited in parallel.
+  template <class Visit>
+  void for_each_edge_of(std::size_t share, const Visit& visit) const {
+    const auto begin_of = [&](std::size_t i) {
+      i = std::min(i * edges_per_share, edges.size());
+      while (i > 0 && i < edges.size() && alike(edges[i - 1], edges[i])) ++i;
+      return i;
+    };
+    for_each_edge_from(begin_of(share), begin_of(share + 1), visit);
+  }
+  std::size_t edge_shares() const { return (edges.size() + edges_per_share - 1) / edges_per_share; }
 
   const Scene& scene;
   std::vector<std::array<std::uint32_t, 3>> corner;  ///< welded, per triangle
@@ -49,6 +54,23 @@ struct SurfaceMesh {
   /// Whether photons are stored on it: not on mirrors and glass.
   bool stores(std::uint32_t triangle) const {
     return scene.materials[scene.triangle_material[triangle]].interaction == Interaction::opaque;
+  }
+
+ private:
+  static constexpr std::size_t edges_per_share = 8192;
+
+  static bool alike(const MeshEdge& a, const MeshEdge& b) {
+    return a.low == b.low && a.high == b.high;
+  }
+
+  template <class Visit>
+  void for_each_edge_from(std::size_t first, std::size_t end, const Visit& visit) const {
+    while (first < end) {
+      std::size_t last = first + 1;
+      while (last < end && alike(edges[first], edges[last])) ++last;
+      visit(std::span(edges).subspan(first, last - first));
+      first = last;
+    }
   }
 };
 

@@ -1,7 +1,10 @@
 #include "surface/surface_tree.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -28,10 +31,12 @@ struct Range {
   Box box;
 };
 
+/// Ranges of more are split by tasks of their own.
+constexpr std::size_t pieces_per_task = 2048;
+
 class TreeBuilder {
  public:
-  TreeBuilder(const std::vector<SurfacePiece>& pieces, SurfaceTree& tree)
-      : pieces_(pieces), tree_(tree) {}
+  explicit TreeBuilder(const std::vector<SurfacePiece>& pieces) : pieces_(pieces) {}
 
   Range range_of(std::span<std::uint32_t> pieces) const {
     Range range{pieces, {}};
@@ -39,20 +44,27 @@ class TreeBuilder {
     return range;
   }
 
-  /// The node of more than eight pieces, or any for the root.
-  std::uint32_t add_node(const Range& range, int depth) {
+  /// Appends the node of more than eight pieces, or any for the root, and all below it. Returns its
+  /// number.
+  std::uint32_t add_node(const Range& range, int depth, SurfaceTree& tree) const {
     const std::vector<Range> children = children_of(range, depth);
-    const auto node = static_cast<std::uint32_t>(tree_.nodes.size());
-    tree_.nodes.emplace_back();
+    const auto node = static_cast<std::uint32_t>(tree.nodes.size());
+    tree.nodes.emplace_back();
     std::array<std::uint32_t, width> links;
-    for (std::size_t i = 0; i < children.size(); ++i) {
-      links[i] = children[i].pieces.size() <= width ? add_leaf(children[i])
-                                                    : add_node(children[i], depth + 1);
+    if (range.pieces.size() > pieces_per_task) {
+      std::array<SurfaceTree, width> below;
+      tbb::parallel_for(std::size_t{0}, children.size(),
+                        [&](std::size_t i) { add_child(children[i], depth, below[i]); });
+      for (std::size_t i = 0; i < children.size(); ++i) links[i] = append(below[i], tree);
+    } else {
+      for (std::size_t i = 0; i < children.size(); ++i) {
+        links[i] = add_child(children[i], depth, tree);
+      }
     }
     for (std::size_t i = 0; i < width; ++i) {
       const bool used = i < children.size();
       const Box box = used ? children[i].box : Box{};
-      PhotileSurfaceNode& made = tree_.nodes[node];
+      PhotileSurfaceNode& made = tree.nodes[node];
       made.lower_x[i] = box.lower.x, made.lower_y[i] = box.lower.y, made.lower_z[i] = box.lower.z;
       made.upper_x[i] = box.upper.x, made.upper_y[i] = box.upper.y, made.upper_z[i] = box.upper.z;
       made.child[i] = used ? links[i] : PHOTILE_SURFACE_NONE;
@@ -61,9 +73,27 @@ class TreeBuilder {
   }
 
  private:
-  std::uint32_t add_leaf(const Range& range) {
-    tree_.leaves.emplace_back(range.pieces.begin(), range.pieces.end());
-    return static_cast<std::uint32_t>(tree_.leaves.size() - 1) | PHOTILE_SURFACE_LEAF;
+  /// Appends a node or a leaf; returns the link to it.
+  std::uint32_t add_child(const Range& range, int depth, SurfaceTree& tree) const {
+    if (range.pieces.size() > width) return add_node(range, depth + 1, tree);
+    tree.leaves.emplace_back(range.pieces.begin(), range.pieces.end());
+    return static_cast<std::uint32_t>(tree.leaves.size() - 1) | PHOTILE_SURFACE_LEAF;
+  }
+
+  /// Appends what add_child left in a tree of its own; returns the link to it, as if it had been
+  /// added there.
+  static std::uint32_t append(SurfaceTree& child, SurfaceTree& tree) {
+    const auto first_node = static_cast<std::uint32_t>(tree.nodes.size());
+    const auto first_leaf = static_cast<std::uint32_t>(tree.leaves.size());
+    for (PhotileSurfaceNode& node : child.nodes) {
+      for (std::uint32_t& link : node.child) {
+        if (link == PHOTILE_SURFACE_NONE) continue;
+        link += (link & PHOTILE_SURFACE_LEAF) != 0 ? first_leaf : first_node;
+      }
+    }
+    tree.nodes.insert(tree.nodes.end(), child.nodes.begin(), child.nodes.end());
+    std::move(child.leaves.begin(), child.leaves.end(), std::back_inserter(tree.leaves));
+    return child.nodes.empty() ? first_leaf | PHOTILE_SURFACE_LEAF : first_node;
   }
 
   /// At most eight parts: again and again the one with the largest surface is split.
@@ -159,7 +189,6 @@ class TreeBuilder {
   }
 
   const std::vector<SurfacePiece>& pieces_;
-  SurfaceTree& tree_;
 };
 
 }  // namespace
@@ -168,8 +197,8 @@ SurfaceTree build_surface_tree(const std::vector<SurfacePiece>& pieces) {
   SurfaceTree tree;
   std::vector<std::uint32_t> order(pieces.size());
   std::iota(order.begin(), order.end(), 0u);
-  TreeBuilder builder(pieces, tree);
-  builder.add_node(builder.range_of(order), 0);
+  const TreeBuilder builder(pieces);
+  builder.add_node(builder.range_of(order), 0, tree);
   return tree;
 }
 

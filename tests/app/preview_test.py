@@ -32,6 +32,7 @@ class Tev:
         self.server = socket.create_server(("127.0.0.1", 0))
         self.address = f"127.0.0.1:{self.server.getsockname()[1]}"
         self.pictures, self.updates = {}, 0
+        self.first = None  # what the first packet with pixels shows, where that is a whole picture
         self.thread = threading.Thread(target=self.serve)
         self.thread.start()
 
@@ -62,6 +63,8 @@ class Tev:
                 values = data[offset::stride][:width * height]
                 self.pictures[name][y:y + height, x:x + width, channel] = values.reshape(
                     height, width)
+            if self.updates == 0 and self.pictures[name].shape[:2] == (height, width):
+                self.first = self.pictures[name].copy()
             self.updates += 1
         else:
             fail(f"a packet of type {kind}")
@@ -103,6 +106,14 @@ def main():
                 fail(f"pictures {list(tev.pictures)}")
             if "path" not in extra and tev.updates < 10:
                 fail(f"only {tev.updates} updates: no live picture")
+            if "path" not in extra:
+                if tev.first is None:
+                    fail("rows come before a first picture")
+                # By other photons, of surfaces: few samples meet a lamp's border, and those count most.
+                last = rgb_of(picture).mean(axis=2)
+                ratio = np.median(tev.first.mean(axis=2)[last > 0]) / np.median(last[last > 0])
+                if not 0.85 < ratio < 1.15:
+                    fail(f"{extra}: the first picture is {ratio:.2f} times as bright as the last")
             if not np.allclose(tev.pictures[SCENE.name], rgb_of(picture), rtol=1e-5, atol=1e-6):
                 fail(f"{extra}: tev shows another picture than the EXR holds")
     print("tev shows what the EXR holds")

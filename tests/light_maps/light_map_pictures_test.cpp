@@ -10,6 +10,7 @@
 
 #include "photile/light_groups.hpp"
 #include "photile/renderer.hpp"
+#include "photile/scene_needs.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
 #include "render/pictures.hpp"
@@ -117,6 +118,62 @@ TEST_CASE("Rows traced in several batches change no bit of a picture", "[light_m
       scene, watched, parameters.film, std::span(&test::device(), 1), parameters, Progress::none());
   CHECK(batches > 1);
   CHECK(same_bits(whole.layers, parts.layers));
+}
+
+TEST_CASE("A first picture comes before all rows, once, and changes no bit of the last",
+          "[light_map_pictures]") {
+  const Scene scene = test::furnished_room(2);
+  const RenderParameters parameters = with_light_maps();
+  const RenderResult whole = render(scene, room_camera(), test::device(), parameters);
+  int rows = 0, first = 0;
+  const Camera camera = room_camera();
+  const WatchedHits watched(camera, nullptr, [&](const LightLayers&, int, int, double) { ++rows; },
+                            {std::vector<glm::vec3>(needs_of(scene).light_count, glm::vec3(1.0f)),
+                             [&](int width, int height, std::span<const glm::vec3> picture) {
+                               CHECK(rows == 0);
+                               CHECK(picture.size() == static_cast<std::size_t>(width * height));
+                               ++first;
+                             }});
+  for (int again = 0; again < 2; ++again) {
+    const RenderResult parts =
+        render_hits(scene, watched, parameters.film, std::span(&test::device(), 1), parameters,
+                    Progress::none());
+    CHECK(same_bits(whole.layers, parts.layers));
+  }
+  CHECK(first == 1);
+}
+
+TEST_CASE("A first picture shows a lamp's closed form, whatever brings that light later",
+          "[light_map_pictures]") {
+  test::SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(1.0f))));
+  builder.add(test::point_light("lamp", {0, 0, 1}, 1.0));
+  const Scene scene = builder.build();
+  constexpr double side = 0.8;
+  const Camera camera = test::above(0, 0, 10, side);
+  RenderParameters parameters = with_light_maps();
+  parameters.maps = GENERATE(MapMode::automatic, MapMode::naive);
+  parameters.light_maps = LightMapMode::automatic;
+  parameters.direct_rays = GENERATE(0, 1);
+  double mean = 0, expected = 0;
+  constexpr double power = 3;
+  const WatchedHits watched(
+      camera, nullptr, [](const LightLayers&, int, int, double) {},
+      {{glm::vec3(power)}, [&](int width, int height, std::span<const glm::vec3> picture) {
+         for (int y = 0; y < height; ++y) {
+           for (int x = 0; x < width; ++x) {
+             const double px = ((x + 0.5) / width - 0.5) * side * width / height;
+             const double py = ((y + 0.5) / height - 0.5) * side;
+             const double irradiance =
+                 power / (4 * glm::pi<double>() * std::pow(px * px + py * py + 1, 1.5));
+             expected += irradiance / glm::pi<double>();
+             mean += picture[static_cast<std::size_t>(y * width + x)].y;
+           }
+         }
+       }});
+  render_hits(scene, watched, parameters.film, std::span(&test::device(), 1), parameters,
+              Progress::none());
+  CHECK(mean / expected == Approx(1).margin(0.1));
 }
 
 TEST_CASE("A hit on a wall reads the same light from wherever it is seen", "[light_map_pictures]") {

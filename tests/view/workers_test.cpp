@@ -58,6 +58,7 @@ void wait_for(const Condition& condition) {
 TEST_CASE("photons grow from few to all that were asked for") {
   CHECK(generations_to(16'000'000) ==
         std::vector<std::uint64_t>{8192, 1'000'000, 4'000'000, 16'000'000});
+  CHECK(generations_to(500'000) == std::vector<std::uint64_t>{8192, 125'000, 500'000});
   CHECK(generations_to(100'000) == std::vector<std::uint64_t>{6250, 25'000, 100'000});
   CHECK(generations_to(1) == std::vector<std::uint64_t>{1});
 }

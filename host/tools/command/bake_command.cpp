@@ -43,8 +43,8 @@ void run_bake(BakeOptions& options) {
   tell_scene(scene, mix, progress);
 
   std::optional<PreparedPhotons> prepared = load_maps(scene, render, progress);
-  KeptMaps maps(scene, devices, render.parameters, prepared ? &*prepared : nullptr,
-                keep_maps(scene, render, progress), progress);
+  KeptMaps maps(std::make_shared<const PreparedScene>(scene), devices, render.parameters,
+                prepared ? &*prepared : nullptr, keep_maps(scene, render, progress), progress);
   LightMapEstimates& light_maps = maps.light_maps(progress);
   for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
   progress.begin("bake light maps", 0, "");

@@ -36,6 +36,7 @@
 #include "tools/command/threads.hpp"
 #include "tools/command/tuning_report.hpp"
 #include "tools/preview/live_preview.hpp"
+#include "tools/view/display.hpp"
 #include "tools/view/snapshots.hpp"
 
 namespace photile::app {
@@ -116,9 +117,15 @@ std::unique_ptr<HitSource> hits_of(const Camera& camera, LightLayers* errors,
   auto preview =
       std::make_shared<image::LivePreview>(options.preview, record.scene, record.mix, progress);
   return std::make_unique<WatchedHits>(
-      camera, errors, [preview](const LightLayers& layers, int first, int last, double share) {
+      camera, errors,
+      [preview](const LightLayers& layers, int first, int last, double share) {
         preview->rows(layers, first, last, share);
-      });
+      },
+      WatchedHits::FirstWatcher{
+          view::scales_of(record.mix),
+          [preview](int width, int height, std::span<const glm::vec3> picture) {
+            preview->picture(width, height, picture);
+          }});
 }
 
 /// Takes what was found on the way to a picture.

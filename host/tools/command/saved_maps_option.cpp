@@ -77,8 +77,9 @@ RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, con
       timed(keeping, [&] { save(photons); });
     };
   }
-  auto maps = std::make_unique<KeptMaps>(scene, devices, options.parameters,
-                                         prepared ? &*prepared : nullptr, keep, progress);
+  auto maps = std::make_unique<KeptMaps>(std::make_shared<const PreparedScene>(scene), devices,
+                                         options.parameters, prepared ? &*prepared : nullptr, keep,
+                                         progress);
   maps->add_passes(progress);
   RenderResult result = maps->render(hits, options.parameters.film, progress);
   timed(keeping, [&] { keep_light_maps(maps->light_map_contents(), options, progress); });

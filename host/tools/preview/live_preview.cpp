@@ -37,12 +37,24 @@ void LivePreview::picture(const LightLayers& layers, const LightMix& mix) {
   rows(layers, 0, layers.height, 1);
 }
 
+void LivePreview::picture(int width, int height, std::span<const glm::vec3> rgb) {
+  if (!tev_) return;
+  attempt(tev_, progress_, [&] {
+    create(width, height);
+    tev_->update(name_, 0, 0, width, height, rgb);
+  });
+}
+
+/// Unless the picture there is of this size.
+void LivePreview::create(int width, int height) {
+  if (width == width_ && height == height_) return;
+  tev_->create(name_, width, height);
+  width_ = width;
+  height_ = height;
+}
+
 void LivePreview::send_rows(const LightLayers& layers, int first, int last, double share) {
-  if (layers.width != width_ || layers.height != height_) {
-    tev_->create(name_, layers.width, layers.height);
-    width_ = layers.width;
-    height_ = layers.height;
-  }
+  create(layers.width, layers.height);
   const auto width = static_cast<std::size_t>(width_);
   const auto begin = static_cast<std::size_t>(first);
   std::vector<glm::vec3> rgb(width * static_cast<std::size_t>(last - first));

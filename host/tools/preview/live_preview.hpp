@@ -1,7 +1,9 @@
 // A picture in the making, shown in a running tev.
 #pragma once
 
+#include <glm/glm.hpp>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "photile/light_mix.hpp"
@@ -23,8 +25,12 @@ class LivePreview {
   /// A whole picture with another mix.
   void picture(const LightLayers& layers, const LightMix& mix);
 
+  /// A whole picture of mixed lights: linear RGB radiance, row 0 at the top.
+  void picture(int width, int height, std::span<const glm::vec3> rgb);
+
  private:
   void send_rows(const LightLayers& layers, int first, int last, double share);
+  void create(int width, int height);
 
   const std::string name_;
   LightMix mix_;

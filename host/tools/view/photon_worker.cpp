@@ -6,6 +6,7 @@
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "render/first_picture.hpp"
 
 namespace photile::view {
 
@@ -64,6 +65,8 @@ std::vector<std::uint64_t> generations_to(std::uint64_t total) {
   }
   if (paths.back() > 4 * defaults::view_first_photons) {
     paths.push_back(defaults::view_first_photons);
+  } else if (paths.size() > 1) {
+    paths.back() = std::min(paths.back(), defaults::view_first_photons);
   }
   std::reverse(paths.begin(), paths.end());
   return paths;
@@ -97,9 +100,11 @@ void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
     if (!prepared) {
       std::vector<std::uint64_t> before = generations_to(paths);
       before.pop_back();
-      for (const std::uint64_t fewer : before) deliver_(build(fewer, false, nullptr));
+      for (const std::uint64_t fewer : before) {
+        deliver_(build(fewer, fewer == before.front() ? Step::first : Step::next, nullptr));
+      }
     }
-    const auto maps = build(paths, true, prepared ? &*prepared : nullptr);
+    const auto maps = build(paths, Step::last, prepared ? &*prepared : nullptr);
     deliver_(maps);
     for (int pass = 1; pass < passes; ++pass) {
       maps->hand_over(maps->renderer->prepare_pass(pass, open_devices_(), *listener_), paths);
@@ -113,11 +118,12 @@ void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
   }
 }
 
-std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, bool last,
+std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, Step step,
                                                    PreparedPhotons* prepared) {
   listener_->throw_if_cancelled();
-  RenderParameters parameters = parameters_;
-  if (!last) {
+  RenderParameters parameters =
+      step == Step::first ? first_picture_parameters(parameters_) : parameters_;
+  if (step != Step::last) {
     parameters.photons.emitted_photons = paths;
     parameters.passes = 1;
   }
@@ -125,7 +131,7 @@ std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, bool las
   generation->devices = open_devices_();
   const KeepPhotons keep = [&](const PreparedPhotons& photons) {
     generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
-    if (last && keep_) keep_(photons);
+    if (step == Step::last && keep_) keep_(photons);
   };
   generation->renderer =
       std::make_unique<SceneRenderer>(scene_, generation->devices, parameters, prepared, keep,

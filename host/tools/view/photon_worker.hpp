@@ -43,9 +43,10 @@ struct WorkProgress {
   double share = 0;   ///< of the stage, in [0, 1]; 0 where it is not known
 };
 
-/// Traces photons and builds maps on a thread of its own: first with few paths, so that there is
-/// something to see at once, then with a sixteenth of all, a quarter, and all. The last maps
-/// are those that `render` builds from the same parameters. Of several passes that is the first;
+/// Traces photons and builds maps on a thread of its own: first those of a first picture
+/// (render/first_picture.hpp), so that there is something to see at once, then with a sixteenth of
+/// all paths, a quarter, and all. The last maps are those that `render` builds from the same
+/// parameters. Of several passes that is the first;
 /// the others are handed over to it one after another.
 class PhotonWorker {
  public:
@@ -68,8 +69,10 @@ class PhotonWorker {
  private:
   class Listener;
 
+  enum class Step { first, next, last };
+
   void work(std::optional<PreparedPhotons> prepared);
-  std::shared_ptr<MapGeneration> build(std::uint64_t paths, bool last, PreparedPhotons* prepared);
+  std::shared_ptr<MapGeneration> build(std::uint64_t paths, Step step, PreparedPhotons* prepared);
 
   const Scene& scene_;
   const OpenDevices open_devices_;

@@ -158,12 +158,15 @@ class Viewer {
     return true;
   }
 
-  /// Frames of a moving viewer are too small to be of use elsewhere.
+  /// Frames of a moving viewer are too many to be of use elsewhere, or too small.
   void show_preview() {
-    if (!frame_->mixed.empty()) return;
-    if (frame_->layers.width != window_.width() || frame_->layers.height != window_.height())
-      return;
-    preview_->picture(frame_->layers, lights_.mix());
+    const int width = frame_->layers.width, height = frame_->layers.height;
+    if (was_moving_ || width != window_.width() || height != window_.height()) return;
+    if (frame_->mixed.empty()) {
+      preview_->picture(frame_->layers, lights_.mix());
+    } else {
+      preview_->picture(width, height, frame_->mixed);
+    }
   }
 
   void write_scene(const std::string& mood) {

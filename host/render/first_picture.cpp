@@ -1,0 +1,49 @@
+#include "render/first_picture.hpp"
+
+#include <algorithm>
+
+#include "photile/errors.hpp"
+#include "photile/quiet_progress.hpp"
+
+namespace photile {
+namespace {
+
+/// Metres; no coarsest nodes lie farther apart, so that there are none but those.
+constexpr double no_detail = 1e30;
+
+}  // namespace
+
+RenderParameters first_picture_parameters(const RenderParameters& asked) {
+  RenderParameters first = asked;
+  first.photons.emitted_photons =
+      std::min(asked.photons.emitted_photons, defaults::view_first_photons);
+  first.passes = 1;
+  first.radius = 0;
+  first.least_neighbours = 0;
+  first.direct_rays = first.final_gather_rays = first.light_map_rays = 0;
+  first.light_maps = LightMapMode::on;
+  first.light_map_detail = no_detail;
+  if (asked.maps == MapMode::naive) first.maps = MapMode::automatic;
+  return first;
+}
+
+TimeTaken draw_first_picture(const PreparedScene& scene, const HitSource& hits, const Film& film,
+                             std::span<Device> devices, const RenderParameters& asked,
+                             Progress& progress) {
+  if (!hits.awaits_first()) return {};
+  const Stopwatch stopwatch;
+  QuietProgress quiet(progress);
+  progress.begin("first picture", 0, "");
+  try {
+    Rendering rendering(scene, devices, first_picture_parameters(asked), quiet);
+    rendering.prepare(0, nullptr, nullptr);
+    hits.draw_first(rendering.frames(), film, quiet);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error&) {
+  }
+  progress.end();
+  return stopwatch.taken();
+}
+
+}  // namespace photile
