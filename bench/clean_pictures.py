@@ -19,33 +19,12 @@ from processes import timed
 
 packages.require("numpy", "OpenImageIO")
 
-import numpy as np
-
 import picture_error
 
 SIZE = "256x192"
 ROWS = tuple((scene, options) for scene in ("classroom", "kitchen") for options in (
     "--quality draft --photons 500k -k 100 --samples 16", "--quality good",
     "--quality good --photons 1M", "--quality final"))
-
-
-def windows(plane, reach):
-    """The planes that are moved by up to `reach` pixels, borders repeated."""
-    height, width = plane.shape
-    padded = np.pad(plane, reach, mode="edge")
-    side = 2 * reach + 1
-    return np.stack([padded[y:y + height, x:x + width] for y in range(side) for x in range(side)])
-
-
-def mottle(picture, reference):
-    """Rms relative error of the luminance after a 3x3 mean, where the reference varies by less than
-    a tenth within 5x5 pixels and no lamp is seen."""
-    own, true = (image @ picture_error.LUMINANCE for image in (picture, reference))
-    around = windows(true, 2)
-    smooth = around.max(0) - around.min(0) < 0.1 * around.mean(0)
-    smooth &= picture_error.without_lamps(reference)
-    error = windows(own, 1).mean(0) / windows(true, 1).mean(0) - 1
-    return float(np.sqrt((error[smooth] ** 2).mean()))
 
 
 def measured(given, scene, options, folder):
@@ -61,7 +40,7 @@ def measured(given, scene, options, folder):
     maps = next(stage["figures"] for stage in stages if stage["stage"] == "light maps")
     stated = maps.get("standard error percent")
     return (f"| {scene} | `{options}` | {picture_error.rel_mse_text(figures)} | "
-            f"{100 * mottle(picture, reference):.1f}% | "
+            f"{100 * picture_error.mottle(picture, reference):.1f}% | "
             f"{figures['mean_ratio']:.3f} | {f'{stated:.1f}%' if stated else ''} | "
             f"{maps['new nodes']:,.0f} | {seconds:.1f} |")
 

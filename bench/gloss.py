@@ -25,7 +25,6 @@ packages.require("numpy", "OpenImageIO")
 import numpy as np
 
 import picture_error
-from clean_pictures import mottle
 
 SIZE = "256x192"
 PATHS_OF_PICTURE = 64
@@ -61,7 +60,7 @@ def measured(given, scene, folder):
     stages = json.loads((folder / "stats.json").read_text())["stages"]
     maps = next(stage["figures"] for stage in stages if stage["stage"] == "light maps")
     return (f"| {scene.stem} | {picture_error.rel_mse_text(figures)} | "
-            f"{noise:.4f} | {100 * mottle(picture, reference):.1f}% | {figures['mean_ratio']:.3f} | "
+            f"{noise:.4f} | {100 * picture_error.mottle(picture, reference):.1f}% | {figures['mean_ratio']:.3f} | "
             f"{maps['new nodes']:,.0f} | {seconds:.1f} |")
 
 

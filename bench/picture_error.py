@@ -65,6 +65,27 @@ def measure(picture, reference):
     }
 
 
+def windows(plane, reach):
+    """The planes that are moved by up to `reach` pixels, borders repeated."""
+    height, width = plane.shape
+    padded = np.pad(plane, reach, mode="edge")
+    side = 2 * reach + 1
+    return np.stack([padded[y:y + height, x:x + width] for y in range(side) for x in range(side)])
+
+
+def mottle(picture, reference):
+    """Rms relative error of the luminance after a 3x3 mean, where the reference varies by less than
+    a tenth within 5x5 pixels and no lamp is seen; None where that is nowhere."""
+    own, true = (image @ LUMINANCE for image in (picture, reference))
+    around = windows(true, 2)
+    smooth = around.max(0) - around.min(0) < 0.1 * around.mean(0)
+    smooth &= without_lamps(reference)
+    if not smooth.any():
+        return None
+    error = windows(own, 1).mean(0) / windows(true, 1).mean(0) - 1
+    return float(np.sqrt((error[smooth] ** 2).mean()))
+
+
 def exposure(reference):
     """The factor that makes the mean luminance of the reference, lamps left out, mid grey."""
     return MID_GREY / (reference @ LUMINANCE)[without_lamps(reference)].mean()

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 """Error against time of photile beside what a user would pick instead; writes docs/quality.md.
 
-    bench/quality.py [SCENES] [--only VIEW] [--redraw] [--quick] [--results FOLDER]
+    bench/quality.py [SCENES] [--only VIEW] [--tool TOOL] [--redraw] [--quick] [--results FOLDER]
 
-Renders the two diffuse interiors of SCENES with photile, in one pass and in many, and with Mitsuba 3's
-path tracer with and without Open Image Denoise; compares with the path-traced references of SCENES by
-relMSE and FLIP. Needs the built command, and numpy, matplotlib and OpenImageIO. The rivals are those
-that the interpreter finds: the packages mitsuba, pyoidn and flip-evaluator of PyPI, for example in an
-environment made with `/usr/bin/python3 -m venv --system-site-packages`. Mitsuba wants LLVM, which
+Renders the two diffuse interiors of SCENES in two sizes with photile, by its qualities, by photons alone
+and by denoised paths, with Mitsuba 3's path tracer with and without Open Image Denoise, and with LuxCore
+and its cache of photons; compares with the path-traced references of SCENES by relMSE, mottle and FLIP.
+Needs the built command, and numpy, matplotlib and OpenImageIO. The rivals are those that the interpreter
+finds: the packages mitsuba, pyoidn, pyluxcore and flip-evaluator of PyPI, for example in an environment
+made with `/usr/bin/python3 -m venv --system-site-packages`. Mitsuba wants LLVM, which
 DRJIT_LIBLLVM_PATH names. What is not there becomes a row that says so.
 """
 
@@ -34,22 +35,25 @@ import quality_report
 
 ROOT = scene_arguments.ROOT
 INTERIORS = ("kitchen", "classroom")
-SIZE = "256x192"
+SIZES = ("256x192", "512x384")
+VIEWS = tuple(f"{name} {size}" for size in SIZES for name in INTERIORS)
 QUALITIES = ("draft", "good", "final")
 PHOTONS = (62_500, 250_000, 1_000_000)
 PASSES = (1, 2, 4)
 PHOTONS_PER_PASS = 500_000
 LEAST_NEIGHBOURS = "12"
 PATHS = (1, 4, 16, 64, 128)  # of a pixel
+FEW_PATHS = (4, 16, 64)  # in large pictures, and of the tools with less to show
 MOST_PATHS_OF_FRAMES = 16  # beyond, a further frame takes what the first takes
+PACKAGES = ("mitsuba", "pyoidn", "pyluxcore", "flip-evaluator")
 
 
 def arguments():
     parser = scene_arguments.parser(__doc__.splitlines()[0])
-    parser.add_argument("--only", choices=INTERIORS,
-                        help="measure this alone, the results keep the other")
-    parser.add_argument("--tool", choices=[tool for tool, _, _ in series(False)],
-                        help="measure this alone, the results keep the others")
+    parser.add_argument("--only", choices=VIEWS, nargs="+", default=VIEWS, metavar="VIEW",
+                        help="measure these alone, the results keep the others: " + ", ".join(VIEWS))
+    parser.add_argument("--tool", choices=TOOLS, nargs="+", default=TOOLS, metavar="TOOL",
+                        help="measure these alone, the results keep the others: " + ", ".join(TOOLS))
     parser.add_argument("--qualities", nargs="+", choices=QUALITIES, default=QUALITIES,
                         help="rows of photile to measure; default: all")
     parser.add_argument("--redraw", action="store_true",
@@ -114,11 +118,12 @@ def compile_kernels(command, scene, folder, options):
 
 def photile(command, scene, size, folder, options):
     """A picture and its costs. What nodes gather is no cost of a further frame: none is told."""
-    compile_kernels(command, scene, folder, options)
+    if "--integrator" not in options:
+        options = ["--quota", "power", *options]
+        compile_kernels(command, scene, folder, options)
     picture, stats = folder / "photile.exr", folder / "photile.json"
     first, frame_processor = run_photile(
-        [command, "render", scene, "--size", size, "--quota", "power", "-o", picture,
-         "--stats", stats, *options])
+        [command, "render", scene, "--size", size, "-o", picture, "--stats", stats, *options])
     stages = {stage["stage"]: stage["seconds"] for stage in json.loads(stats.read_text())["stages"]}
     costs = {"first": first}
     if frame_processor is not None and "--light-maps" in options:
@@ -132,14 +137,15 @@ class NoRival(Exception):
     """Why a rival renders nothing here."""
 
 
-def mitsuba(scene, size, folder, options):
-    picture = folder / "mitsuba.npy"
+def rival(script, scene, size, folder, options):
+    """A picture and its costs by one of the scripts beside this one."""
+    picture = folder / "rival.npy"
     done = subprocess.run(
-        [sys.executable, ROOT / "bench/quality_mitsuba.py", scene, "--size", size, "-o", picture,
+        [sys.executable, ROOT / "bench" / script, scene, "--size", size, "-o", picture,
          "--begin", str(time.monotonic()), *options], stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
         raise NoRival(f"ended with {done.returncode}; DRJIT_LIBLLVM_PATH should name LLVM 19")
-    return np.load(picture).astype(np.float64), json.loads(done.stdout)
+    return np.load(picture).astype(np.float64), json.loads(done.stdout[done.stdout.rindex('{"first"'):])
 
 
 def photon_settings(photons, passes=1):
@@ -153,20 +159,61 @@ def path_settings(paths):
     return ["--samples", str(paths), *(["--next"] if paths <= MOST_PATHS_OF_FRAMES else [])]
 
 
-def series(quick, qualities=QUALITIES):
-    """Name of the tool, package that it needs, settings of each point in words and as options."""
-    photons, passes, paths = ((20_000,), (2,), (1,)) if quick else (PHOTONS, PASSES, PATHS)
+def denoising_library():
+    """The shared library of Open Image Denoise that pyoidn carries."""
+    folder = pathlib.Path(importlib.util.find_spec("pyoidn").origin).parent
+    return next(folder.rglob("libOpenImageDenoise.so.2"))
+
+
+def denoised_paths(paths):
+    return ["--integrator", "path", "--samples", str(paths), "--denoise", str(denoising_library())]
+
+
+# Name of a tool, what renders, the packages that it needs.
+TOOLS = {"photile": ("photile", ()),
+         "photile, photons alone": ("photile", ()),
+         "photile, photons in passes": ("photile", ()),
+         "photile, paths denoised": ("photile", ("pyoidn",)),
+         "Mitsuba": ("quality_mitsuba.py", ("mitsuba",)),
+         "Mitsuba, low discrepancy": ("quality_mitsuba.py", ("mitsuba",)),
+         "Mitsuba, denoised": ("quality_mitsuba.py", ("mitsuba", "pyoidn")),
+         "LuxCore, PhotonGI": ("quality_luxcore.py", ("pyluxcore",)),
+         "LuxCore, PhotonGI, denoised": ("quality_luxcore.py", ("pyluxcore",))}
+
+
+def points(tool, qualities, large, quick):
+    """Settings of each picture of a tool in words and as options.
+
+    large: a view in which each picture takes four times as long
+    """
+    few_paths = FEW_PATHS[:1] if quick else FEW_PATHS
+    paths = few_paths if quick or large else PATHS
+    photons, passes = ((20_000,), (2,)) if quick else (PHOTONS, PASSES)
     per_pass = 10_000 if quick else PHOTONS_PER_PASS
-    return (
-        ("photile", None, [(f"`--quality {quality}`", ["--quality", quality])
-                           for quality in (qualities[:1] if quick else qualities)]),
-        ("photile, photons alone", None,
-         [(f"{n:,} photons", photon_settings(n)) for n in photons]),
-        ("photile, photons in passes", None,
-         [(f"{n} x {per_pass:,} photons", photon_settings(per_pass, n)) for n in passes]),
-        ("Mitsuba", "mitsuba", [(f"{n} spp", path_settings(n)) for n in paths]),
-        ("Mitsuba, denoised", "pyoidn",
-         [(f"{n} spp", [*path_settings(n), "--denoise"]) for n in paths]))
+    if quick:
+        qualities = qualities[:1]
+    elif large:
+        photons, passes = photons[-1:], passes[-1:]
+        qualities = [quality for quality in qualities if quality != "final"]
+
+    def by_paths(chosen, options):
+        return [(f"{n} spp", options(n)) for n in chosen]
+
+    return {
+        "photile": lambda: [(f"`--quality {quality}`", ["--quality", quality])
+                            for quality in qualities],
+        "photile, photons alone": lambda: [(f"{n:,} photons", photon_settings(n)) for n in photons],
+        "photile, photons in passes": lambda: [
+            (f"{n} x {per_pass:,} photons", photon_settings(per_pass, n)) for n in passes],
+        "photile, paths denoised": lambda: by_paths(few_paths, denoised_paths),
+        "Mitsuba": lambda: by_paths(paths, path_settings),
+        "Mitsuba, low discrepancy": lambda: by_paths(
+            few_paths, lambda n: ["--samples", str(n), "--sampler", "ldsampler"]),
+        "Mitsuba, denoised": lambda: by_paths(paths, lambda n: [*path_settings(n), "--denoise"]),
+        "LuxCore, PhotonGI": lambda: by_paths(few_paths, lambda n: ["--samples", str(n)]),
+        "LuxCore, PhotonGI, denoised": lambda: by_paths(
+            few_paths, lambda n: ["--samples", str(n), "--denoise"]),
+    }[tool]()
 
 
 def flip(picture, reference):
@@ -181,22 +228,24 @@ def flip(picture, reference):
 def subjects(options, folder):
     """Name, scene file, size and reference of each view."""
     if not options.quick:
-        return [(name, options.scenes / name / f"{name}-diffuse.gltf", SIZE,
-                 options.scenes / "references" / f"{name}-diffuse-{SIZE}.exr")
-                for name in INTERIORS if options.only in (None, name)]
+        for view in options.only:
+            name, size = view.split()
+            yield view, *scene_arguments.interior(options.scenes, name, size), size
+        return
     scene, reference = ROOT / "scenes/cornell-box/cornell-box.gltf", folder / "reference.exr"
     subprocess.run([options.photile, "render", scene, "--size", "32x32", "--integrator", "path",
                     "--samples", "64", "--quiet", "-o", reference], check=True)
-    return [("cornell-box", scene, "32x32", reference)]
+    yield "cornell-box", scene, reference, "32x32"
 
 
-def measure_series(render, points, view, tool, reference):
+def measure_tool(tool, chosen, render, view, reference):
     """Rows of one tool in one view."""
     rows = []
-    for setting, options in points:
+    for setting, options in chosen:
         picture, costs = render(options)
         rows.append({"view": view, "tool": tool, "setting": setting, **costs,
                      **picture_error.measure(picture, reference),
+                     "mottle": picture_error.mottle(picture, reference),
                      "flip": flip(picture, reference)})
         print(json.dumps(rows[-1]), flush=True)
     return rows
@@ -204,25 +253,25 @@ def measure_series(render, points, view, tool, reference):
 
 def measure(options, folder):
     rows = []
-    for view, scene, size, reference_file in subjects(options, folder):
+    for view, scene, reference_file, size in subjects(options, folder):
         reference = picture_error.read_picture(reference_file)
+        for tool in options.tool:
+            renderer, needed = TOOLS[tool]
 
-        def by_photile(more, scene=scene, size=size):
-            return photile(options.photile, scene, size, folder, more)
+            def render(more, scene=scene, size=size, renderer=renderer):
+                if renderer == "photile":
+                    return photile(options.photile, scene, size, folder, more)
+                return rival(renderer, scene, size, folder, more)
 
-        def by_mitsuba(more, scene=scene, size=size):
-            return mitsuba(scene, size, folder, more)
-
-        for tool, package, points in series(options.quick, options.qualities):
-            if options.tool not in (None, tool):
-                continue
             try:
-                if package and not (installed("mitsuba") and installed(package)):
-                    raise NoRival("not installed")
-                if package:
-                    by_mitsuba(points[0][1])  # fills its cache of kernels
-                rows += measure_series(by_mitsuba if package else by_photile, points, view, tool,
-                                       reference)
+                for package in needed:
+                    if not installed(package):
+                        raise NoRival("not installed")
+                chosen = points(tool, options.qualities, size != SIZES[0] and not options.quick,
+                                options.quick)
+                if renderer == "quality_mitsuba.py":
+                    render(chosen[0][1])  # fills its cache of kernels
+                rows += measure_tool(tool, chosen, render, view, reference)
             except NoRival as reason:
                 rows.append({"view": view, "tool": tool, "missing": str(reason)})
     return rows
@@ -240,10 +289,10 @@ def merged(known, rows):
     def key(row):
         return row["view"], row["tool"], row.get("setting")
 
-    tools = [tool for tool, _, _ in series(False)]
+    tools = list(TOOLS)
     new = {key(row) for row in rows}
-    return sorted([row for row in known if key(row) not in new] + rows,
-                  key=lambda row: (INTERIORS.index(row["view"]), tools.index(row["tool"]),
+    return sorted([row for row in known if row["view"] in VIEWS and key(row) not in new] + rows,
+                  key=lambda row: (VIEWS.index(row["view"]), tools.index(row["tool"]),
                                    row["first"]["processor"] if "first" in row else 0))
 
 
@@ -255,13 +304,12 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             rows = measure(options, pathlib.Path(folder))
         known = json.loads(file.read_text()) if file.is_file() else {"results": [], "versions": {}}
-        if options.only or options.tool:
+        if not options.quick:
             rows = merged(known["results"], rows)
-        packages = ("mitsuba", "pyoidn", "flip-evaluator")
         record = {"bench": "quality", "cores": os.cpu_count(), "processor": quality_report.processor(),
                   "load_average": os.getloadavg()[1],
                   "versions": {package: version(package) or known["versions"].get(package)
-                               for package in packages}, "results": rows}
+                               for package in PACKAGES}, "results": rows}
         file.write_text(json.dumps(record, indent=1) + "\n")
     quality_report.write(json.loads(file.read_text()), options.results,
                          None if options.quick else ROOT / "docs/quality.md")

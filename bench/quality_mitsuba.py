@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Renders an interior of diffuse surfaces with Mitsuba 3; quality.py runs it once per picture.
 
-    bench/quality_mitsuba.py SCENE --size WxH --samples N [--denoise] [--next] --begin SECONDS
-                             -o FILE.npy
+    bench/quality_mitsuba.py SCENE --size WxH --samples N [--sampler NAME] [--denoise] [--next]
+                             --begin SECONDS -o FILE.npy
 
-Path tracing with the llvm_ad_rgb variant; with --denoise Open Image Denoise, led by albedo and normals.
+Path tracing with the llvm_ad_rgb variant, by default with independent samples; with --denoise Open Image Denoise, led by albedo and normals.
 Writes the first picture, shape (height, width, 3), and prints JSON: the costs of the first picture,
 from the start of the process, and with --next of the next. Costs are wall-clock seconds and processor seconds of
 all threads. Needs the packages mitsuba and, with --denoise, pyoidn.
@@ -32,6 +32,7 @@ def arguments():
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("--size", required=True)
     parser.add_argument("--samples", type=int, required=True)
+    parser.add_argument("--sampler", default="independent", help="plugin of Mitsuba")
     parser.add_argument("--denoise", action="store_true")
     parser.add_argument("--next", action="store_true", help="time a second picture, too")
     parser.add_argument("--begin", type=float, required=True,
@@ -57,7 +58,7 @@ def mitsuba_mesh(mesh):
     return made
 
 
-def seen_scene(meshes, view, width, height):
+def seen_scene(meshes, view, width, height, sampler="independent"):
     """Meshes of Mitsuba's as the camera of a file sees them."""
     flip = np.diag([-1.0, 1.0, -1.0, 1.0])  # Mitsuba's cameras look along +z, with x to the left
     camera = {"type": "perspective", "fov_axis": "y",
@@ -65,14 +66,14 @@ def seen_scene(meshes, view, width, height):
               "to_world": mitsuba.ScalarTransform4f(view.to_world @ flip),
               "film": {"type": "hdrfilm", "width": width, "height": height,
                        "rfilter": {"type": "box"}, "pixel_format": "rgb"},
-              "sampler": {"type": "independent"}}
+              "sampler": {"type": sampler}}
     return mitsuba.load_dict({"type": "scene", "sensor": camera,
                               **{f"mesh_{i}": mesh for i, mesh in enumerate(meshes)}})
 
 
-def mitsuba_scene(path, width, height):
+def mitsuba_scene(path, width, height, sampler="independent"):
     meshes, view = read_gltf(path)
-    return seen_scene([mitsuba_mesh(mesh) for mesh in meshes], view, width, height)
+    return seen_scene([mitsuba_mesh(mesh) for mesh in meshes], view, width, height, sampler)
 
 
 def integrator(denoise):
@@ -102,7 +103,8 @@ def main():
     mitsuba.set_variant(VARIANT)
     drjit.set_thread_count(os.cpu_count())
     width, height = (int(side) for side in options.size.split("x"))
-    scene, method = mitsuba_scene(options.scene, width, height), integrator(options.denoise)
+    scene = mitsuba_scene(options.scene, width, height, options.sampler)
+    method = integrator(options.denoise)
     np.save(options.output, render(scene, method, options.samples, 0, options.denoise))
     first = {"seconds": time.monotonic() - options.begin, "processor": time.process_time()}
     costs = {"first": first}

@@ -12,7 +12,10 @@ WANTED = 0.02  # relMSE that first pictures and frames are timed for
 REFINED_SECONDS = 10  # of all cores
 STYLES = {"photile": ("#009E73", "D"), "photile, photons alone": ("#D55E00", "o"),
           "photile, photons in passes": ("#E69F00", "s"),
-          "Mitsuba": ("#56B4E9", "^"), "Mitsuba, denoised": ("#0072B2", "v")}
+          "photile, paths denoised": ("#009E73", "x"),
+          "Mitsuba": ("#56B4E9", "^"), "Mitsuba, low discrepancy": ("#56B4E9", "<"),
+          "Mitsuba, denoised": ("#0072B2", "v"),
+          "LuxCore, PhotonGI": ("#CC79A7", "p"), "LuxCore, PhotonGI, denoised": ("#882255", "h")}
 MEASURES = {"rel_mse": "relMSE", "flip": "FLIP"}
 
 
@@ -63,6 +66,10 @@ def figure(value):
     return "-" if value is None else f"{value:.2g}"
 
 
+def percent(share):
+    return "-" if share is None else f"{100 * share:.1f}%"
+
+
 def tools(rows):
     return list(dict.fromkeys(row["tool"] for row in rows))
 
@@ -93,16 +100,17 @@ def pair(cost):
 def table(rows):
     """One view: a line a picture."""
     lines = ["| tool | setting | first picture: processor s | wall s | further frame: processor s "
-             "| wall s | relMSE | without the worst 5% | FLIP | mean ratio |",
-             "|---|---|" + "--:|" * 8]
+             "| wall s | relMSE | without the worst 5% | mottle | FLIP | mean ratio |",
+             "|---|---|" + "--:|" * 9]
     for row in rows:
         if "missing" in row:
-            lines.append(f"| {row['tool']} | {row['missing']} |" + " |" * 8)
+            lines.append(f"| {row['tool']} | {row['missing']} |" + " |" * 9)
         else:
             lines.append(
                 f"| {row['tool']} | {row['setting']} | {pair(row['first'])} "
                 f"| {pair(row.get('frame'))} | {row['rel_mse']:.4f} "
-                f"| {row['rel_mse_without_worst']:.4f} | {figure(row['flip'])} "
+                f"| {row['rel_mse_without_worst']:.4f} | {percent(row['mottle'])} "
+                f"| {figure(row['flip'])} "
                 f"| {row['mean_ratio']:.3f} |")
     return "\n".join(lines)
 
