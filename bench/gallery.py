@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Renders the scenes of scenes/gallery by photon maps and by paths and writes docs/gallery.md.
+"""Renders the scenes of scenes/gallery by the default and by paths and writes docs/gallery.md.
 
     bench/gallery.py [--photile COMMAND] [--only SCENE] [--quick --results FOLDER]
 
-Takes a few minutes. Needs the built command and the Debian packages python3-numpy and
+Takes about half an hour. Needs the built command and the Debian packages python3-numpy and
 python3-openimageio.
 """
 
@@ -11,10 +11,10 @@ import argparse
 import dataclasses
 import json
 import pathlib
-import subprocess
 import tempfile
 
 import packages
+from processes import timed
 from report_section import replace_section
 
 packages.require("numpy", "OpenImageIO")
@@ -24,25 +24,21 @@ import numpy as np
 import picture_error
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SIZE, REFERENCE_SAMPLES = "240x180", 256
-PHOTONS = ["--quality", "draft", "--photons", "1M", "-k", "80", "--samples", "16"]
+SIZE, REFERENCE_SAMPLES = "480x360", 1024
 
 
 @dataclasses.dataclass
 class Subject:
-    """One scene: its file's name, what it shows, and the options of its lights and estimate."""
+    """One scene: its file's name, what it shows, and the options of its lights."""
     name: str
     caption: str
     lights: tuple = ()
-    estimate: tuple = ()
 
 
 SUBJECTS = (
     Subject("glass-sphere", "The caustic of a glass sphere below a small round lamp."),
     Subject("metal-ring", "The caustic inside a mirroring ring; beside it a band of rough steel."),
-    Subject("glossy-floor", "A window and its reflection in a floor of polished stone. The light "
-            "straight from the window comes by rays: photons are too few for a narrow lobe.",
-            estimate=("--direct", "rays", "--direct-rays", "4")),
+    Subject("glossy-floor", "A window and its reflection in a floor of polished stone."),
     Subject("sun-and-sky", "A room lit by the sun and a clear sky through a window, "
             "`--sun 60,40,40000 --sky clear=12000`.",
             lights=("--sun", "60,40,40000", "--sky", "clear=12000")),
@@ -63,27 +59,28 @@ def arguments():
 
 
 def render(given, subject, options, picture):
-    """The pixels of a picture, by way of an EXR file."""
-    subprocess.run([given.photile, "render", ROOT / f"scenes/gallery/{subject.name}.gltf",
-                    *subject.lights, *options, "-o", picture, "--quiet"], check=True)
-    return picture_error.read_picture(picture)
+    """The pixels of a picture, by way of an EXR file, and the processor seconds that it took."""
+    _, seconds, _ = timed([given.photile, "render", ROOT / f"scenes/gallery/{subject.name}.gltf",
+                           *subject.lights, *options, "-o", picture, "--quiet"])
+    return picture_error.read_picture(picture), seconds
 
 
 def measure(given, subject, folder):
     """Renders a scene both ways, writes the two side by side, and returns the figures."""
     size = "32x24" if given.quick else SIZE
-    photons = ["--quality", "draft", "--photons", "20k", "-k", "20"] if given.quick else PHOTONS
+    few = ["--quality", "draft", "--photons", "20k", "-k", "20"] if given.quick else []
     samples = "4" if given.quick else str(REFERENCE_SAMPLES)
-    own = render(given, subject, [*photons, *subject.estimate, "--size", size],
-                 folder / "photons.exr")
-    paths = render(given, subject, ["--integrator", "path", "--samples", samples, "--size", size],
-                   folder / "paths.exr")
+    own, seconds = render(given, subject, [*few, "--size", size], folder / "photons.exr")
+    paths, _ = render(given, subject,
+                      ["--integrator", "path", "--samples", samples, "--size", size],
+                      folder / "paths.exr")
     factor = picture_error.exposure(paths)
     both = [picture_error.displayed(own, factor), np.ones((own.shape[0], 4, 3)),
             picture_error.displayed(paths, factor)]
     picture_error.write_png(given.results / f"{subject.name}.png", np.concatenate(both, axis=1))
     figures = picture_error.measure(own, paths)
-    return {"scene": subject.name, "mean ratio": figures["mean_ratio"],
+    return {"scene": subject.name, "processor seconds": seconds,
+            "mean ratio": figures["mean_ratio"],
             "relMSE": figures["rel_mse"],
             "relMSE without the worst 5%": figures["rel_mse_without_worst"]}
 
@@ -94,11 +91,13 @@ def section(results):
         row = results.get(subject.name)
         if row is None:
             continue
-        options = " ".join([*PHOTONS, *subject.estimate])
+        options = " ".join(["photile render", f"{subject.name}.gltf", *subject.lights,
+                            "--size", SIZE])
         text += (f"## {subject.name.replace('-', ' ').capitalize()}\n\n{subject.caption}\n\n"
-                 f"![By photon maps, and by paths](pictures/gallery/{subject.name}.png)\n\n"
+                 f"![By the default, and by paths](pictures/gallery/{subject.name}.png)\n\n"
                  f"Mean ratio {row['mean ratio']:.3f}, relMSE {row['relMSE']:.4f}, without the worst "
-                 f"5% of the pixels {row['relMSE without the worst 5%']:.4f}. `{options}` beside "
+                 f"5% of the pixels {row['relMSE without the worst 5%']:.4f}, after "
+                 f"{row['processor seconds']:.0f} processor seconds: `{options}` beside "
                  f"{REFERENCE_SAMPLES} paths a pixel.\n\n")
     return text.rstrip()
 

@@ -47,16 +47,18 @@ def properties(values):
 
 
 def materials(meshes):
-    """Reflect, and emit, on the front alone unless they are double-sided."""
+    """Reflect on the front alone unless they are double-sided or lamps."""
     values = {"scene.materials.black.type": "matte", "scene.materials.black.kd": [0.0, 0.0, 0.0]}
     for i, mesh in enumerate(meshes):
-        front = f"scene.materials.m{i}" + ("" if mesh.double_sided else "-front")
+        lit = any(mesh.radiance)
+        both = mesh.double_sided or lit  # what has two sides emits on both, others on their front
+        front = f"scene.materials.m{i}" + ("" if both else "-front")
         values |= {f"{front}.type": "matte", f"{front}.kd": [float(k) for k in mesh.reflectance]}
-        if not mesh.double_sided:
+        if not both:
             whole = f"scene.materials.m{i}"
             values |= {f"{whole}.type": "twosided", f"{whole}.frontmaterial": f"m{i}-front",
                        f"{whole}.backmaterial": "black"}
-        if any(mesh.radiance):
+        if lit:
             values[f"scene.materials.m{i}.emission"] = [float(k) for k in mesh.radiance]
     return values
 

@@ -40,10 +40,11 @@ TEST_CASE("a trade has all pairs of photons and neighbours, and every other valu
   axes.neighbours = {10, 40, 160};
   axes.radius_scales = {0.5};
   axes.samples = {2, 4};
+  axes.node_rays = {8};
   axes.maps = {MapMode::naive};
   const std::vector<TradePoint> points = subject.measure(axes);
   // The parameters themselves are rendered once more.
-  REQUIRE(points.size() == 2 * 3 + 1 + 2 + 1 + 1);
+  REQUIRE(points.size() == 2 * 3 + 1 + 2 + 1 + 1 + 1);
   const auto count = [&](const char* varied) {
     return std::count_if(points.begin(), points.end(),
                          [&](const TradePoint& point) { return point.varied == varied; });
@@ -51,6 +52,7 @@ TEST_CASE("a trade has all pairs of photons and neighbours, and every other valu
   CHECK(count("photons and neighbours") == 6);
   CHECK(count("radius") == 1);
   CHECK(count("samples") == 2);
+  CHECK(count("node rays") == 1);
   CHECK(count("maps") == 1);
   const TradePoint& base = points[6];
   CHECK(base.varied == "nothing");

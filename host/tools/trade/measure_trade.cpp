@@ -5,6 +5,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/quiet_progress.hpp"
+#include "render/quality.hpp"
 #include "tools/trade/trade.hpp"
 
 namespace photile {
@@ -95,6 +96,12 @@ class Trade {
     vary("final gather", axes_.final_gather_rays, [](auto& p, int rays) {
       p.final_gather_rays = rays;
       p.direct_rays = rays;  // cheaper ones; with fewer, their noise is all that is seen
+    });
+    vary("node rays", axes_.node_rays, [](auto& p, int rays) {
+      set_quality(p, Quality::good);
+      p.photons.emitted_photons = p.photons.emitted_photons * static_cast<std::uint64_t>(rays) /
+                                  static_cast<std::uint64_t>(p.light_map_rays);
+      p.light_map_rays = rays;
     });
     vary("kernel", axes_.kernels, [](auto& p, DensityKernel kernel) { p.kernel = kernel; });
     vary("maps", axes_.maps, [](auto& p, MapMode mode) { p.maps = mode; });
