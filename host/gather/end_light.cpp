@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
@@ -12,6 +13,13 @@
 #include "trace/hit_batch.hpp"
 
 namespace photile::gathering {
+namespace {
+
+/// What is known of the cells of the light maps.
+constexpr std::uint8_t unknown_cell = 0, open_cell = 1, crossed_cell = 2;
+
+}  // namespace
+
 IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& progress) {
   IndirectLight light{.rays = std::move(rays), .own_of = {}, .nodes = {}, .weight = {}, .own = {}};
   std::vector<std::uint8_t> has_own;
@@ -25,6 +33,7 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
   }
   if (!maps_) maps_.emplace(rays_, parameters_);
   maps_->maps.fill(served, *this, progress);
+  maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
   find_nodes(light, has_own);
   light.own_of.assign(ends.hits.size(), none);
   std::vector<std::uint32_t> own;
@@ -96,6 +105,17 @@ void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own
   });
 }
 
+/// Whether the middle of a cell sees all of its nodes. All who ask at once find the same.
+bool EndLight::is_open(const NodeBlend& cell) const {
+  const std::atomic_ref<std::uint8_t> known(maps_->cells[cell.node[0]]);
+  std::uint8_t state = known.load(std::memory_order_relaxed);
+  if (state == unknown_cell) {
+    state = maps_->sight.is_open(cell) ? open_cell : crossed_cell;
+    known.store(state, std::memory_order_relaxed);
+  }
+  return state == open_cell;
+}
+
 /// Of ends that have no estimates of their own. Ends that none of their nodes sees get one.
 void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   light.nodes.resize(has_own.size());
@@ -105,6 +125,7 @@ void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_o
       if (has_own[end]) continue;
       const trace::EyeHit& hit = light.rays.ends.hits[end];
       maps_->maps.find(hit.sided_triangle, hit.position, light.nodes[end]);
+      if (is_open(light.nodes[end])) continue;
       if (maps_->sight.look(hit.sided_triangle, hit.position, light.nodes[end])) continue;
       has_own[end] = 1;
       // Estimates of ends are radiance.

@@ -40,6 +40,7 @@ class EndLight : private PointSource {
  public:
   /// References are kept.
   ///   photons   whose estimates of hits do not depend on the hits beside them
+  ///   maps      of one level: a cell is known by its first node
   EndLight(const RayScene& rays, MapEstimators& photons, const LightMapParameters& maps)
       : rays_(rays), photons_(photons), parameters_(maps) {}
 
@@ -67,18 +68,21 @@ class EndLight : private PointSource {
   Estimates irradiance(const PrimaryHits& nodes) override;
   void classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   void find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
+  bool is_open(const NodeBlend& cell) const;
   EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen);
 
   const RayScene& rays_;
   MapEstimators& photons_;
-  /// What nodes differ by that have something dark between them: looks cost as much as the ray.
-  static constexpr double hidden_contrast = 0.75;
+  /// What nodes of a cell must differ by to be looked at where something stands in it.
+  static constexpr double any_contrast = 0;
 
   struct Maps {
     Maps(const RayScene& rays, const LightMapParameters& parameters)
-        : maps(rays.scene(), parameters), sight(rays, maps, hidden_contrast) {}
+        : maps(rays.scene(), parameters), sight(rays, maps, any_contrast) {}
     LightMaps maps;
     light_maps::NodeSight sight;
+    /// By the first node of a cell: whether its middle sees all nodes, once an end asked.
+    mutable std::vector<std::uint8_t> cells;
   };
   const LightMapParameters parameters_;
   std::optional<Maps> maps_;  ///< made when the first ray ends

@@ -17,8 +17,9 @@ namespace {
 /// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one place to the next.
 constexpr NodeSource::Surroundings averaged{.window = 2, .rounds = 2, .fine_window = 1};
-/// Differences of so many standard errors count less by e.
-constexpr double tolerated_errors = 3;
+/// Differences that may be noise. Light straight from lamps ends at borders: beyond the horizon of
+/// a lamp that is near, places know that they are dark, and those before it are not sure of much.
+constexpr NoiseTolerance of_indirect{.errors = 3}, of_direct{.errors = 3, .ratio = 2};
 /// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
 /// mean over many.
 constexpr double weight_of_parents = 3;
@@ -137,10 +138,12 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   gather_new(batch, fine, parameters_.fine, progress);
   const GatheredParts smooth = smoothed(batch, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
-  const GatheredIrradiance indirect =
-      corrected(nodes_.indirect, with_neighbours(raw_.indirect, batch, fine), batch, fine);
-  const GatheredIrradiance direct =
-      corrected(nodes_.direct, with_neighbours(raw_.direct, batch, fine), batch, fine);
+  const auto averaged_fine = [&](const GatheredIrradiance& raw, const GatheredIrradiance& known,
+                                 const NoiseTolerance& tolerated) {
+    return corrected(known, with_neighbours(raw, batch, fine, tolerated), batch, fine, tolerated);
+  };
+  const GatheredIrradiance indirect = averaged_fine(raw_.indirect, nodes_.indirect, of_indirect);
+  const GatheredIrradiance direct = averaged_fine(raw_.direct, nodes_.direct, of_direct);
 
   const std::size_t before = nodes_.distance.size();
   std::size_t next_coarse = 0, next_fine = 0;
@@ -216,24 +219,25 @@ GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
   }
   if (coarse.empty()) return parts;
   const PointLinks links = links_between(batch, coarse);
-  const IrradianceFilterParameters filter{.rounds = averaged.rounds,
-                                          .tolerated_errors = tolerated_errors};
-  parts.indirect = filter_irradiance(std::move(parts.indirect), links, layer_powers_, filter);
-  parts.direct = filter_irradiance(std::move(parts.direct), links, layer_powers_, filter);
+  parts.indirect = filter_irradiance(std::move(parts.indirect), links, layer_powers_,
+                                     {.rounds = averaged.rounds, .tolerated = of_indirect});
+  parts.direct = filter_irradiance(std::move(parts.direct), links, layer_powers_,
+                                   {.rounds = averaged.rounds, .tolerated = of_direct});
   return parts;
 }
 
 /// Finer nodes averaged with the places next to them, as gathered.
 GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
                                                   const NodeBatch& batch,
-                                                  std::span<const std::uint32_t> fine) const {
+                                                  std::span<const std::uint32_t> fine,
+                                                  const NoiseTolerance& tolerated) const {
   return means_of(layer_powers_.size(), raw, fine.size(), [&](std::size_t i, auto& means) {
     const std::uint32_t node = fine[i], row = raw_of_.at(batch.number[node]);
     const GatheredIrradiance::Total own = raw.total(row, layer_powers_);
     means.add(raw, row, 1.0);
     for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
       const std::uint32_t other = raw_of_.at(batch.number[batch.neighbour[j]]);
-      const double weight = likeness(own, raw.total(other, layer_powers_), tolerated_errors);
+      const double weight = likeness(own, raw.total(other, layer_powers_), tolerated);
       if (weight > 0) means.add(raw, other, weight);
     }
   });
@@ -244,7 +248,8 @@ GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
 ///   found   of the fine nodes
 GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
                                             const GatheredIrradiance& found, const NodeBatch& batch,
-                                            std::span<const std::uint32_t> fine) const {
+                                            std::span<const std::uint32_t> fine,
+                                            const NoiseTolerance& tolerated) const {
   return means_of(layer_powers_.size(), found, fine.size(), [&](std::size_t i, auto& means) {
     GatheredIrradiance::Total expected;
     std::array<std::uint32_t, 4> rows;
@@ -257,7 +262,7 @@ GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
     }
     expected.error = std::sqrt(variance);
     const double weight =
-        weight_of_parents * likeness(found.total(i, layer_powers_), expected, tolerated_errors);
+        weight_of_parents * likeness(found.total(i, layer_powers_), expected, tolerated);
     means.add(found, i, 1.0);
     if (weight <= 0) return;
     for (const std::uint32_t row : rows) means.add(known, row, 0.25 * weight);

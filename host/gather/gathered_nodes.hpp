@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "gather/irradiance_filter.hpp"
 #include "gather/irradiance_gather.hpp"
 #include "photile/light_maps.hpp"
 
@@ -55,9 +56,11 @@ class GatheredNodes : public NodeSource {
                   const NodeRays& rays, const Progress& progress);
   GatheredParts smoothed(const NodeBatch& batch, std::span<const std::uint32_t> coarse) const;
   GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const NodeBatch& batch,
-                                     std::span<const std::uint32_t> fine) const;
+                                     std::span<const std::uint32_t> fine,
+                                     const NoiseTolerance& tolerated) const;
   GatheredIrradiance corrected(const GatheredIrradiance& known, const GatheredIrradiance& found,
-                               const NodeBatch& batch, std::span<const std::uint32_t> fine) const;
+                               const NodeBatch& batch, std::span<const std::uint32_t> fine,
+                               const NoiseTolerance& tolerated) const;
 
   PrimaryHits points_at(const NodeBatch& batch, std::span<const std::uint32_t> chosen) const;
 

@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t filtered_per_task = 256;
 
 GatheredIrradiance filtered_once(const GatheredIrradiance& before, const PointLinks& links,
-                                 std::span<const double> layer_powers, double tolerated_errors) {
+                                 std::span<const double> layer_powers,
+                                 const NoiseTolerance& tolerated) {
   const std::size_t lights = layer_powers.size(), points = before.points(lights);
   const std::size_t tasks = (points + filtered_per_task - 1) / filtered_per_task;
   std::vector<GatheredIrradiance::Total> total(points);
@@ -33,7 +34,7 @@ GatheredIrradiance filtered_once(const GatheredIrradiance& before, const PointLi
     for (std::size_t i = first; i < last; ++i) {
       sums.add(before, i, 1.0);
       for (const std::uint32_t other : links.of(i)) {
-        const double weight = likeness(total[i], total[other], tolerated_errors);
+        const double weight = likeness(total[i], total[other], tolerated);
         if (weight > 0) sums.add(before, other, weight);
       }
       sums.end_point();
@@ -49,18 +50,23 @@ GatheredIrradiance filtered_once(const GatheredIrradiance& before, const PointLi
 }  // namespace
 
 double likeness(const GatheredIrradiance::Total& a, const GatheredIrradiance::Total& b,
-                double tolerated_errors) {
+                const NoiseTolerance& tolerated) {
   const double difference = a.luminance - b.luminance;
   if (difference == 0) return 1;
   const double variance = a.error * a.error + b.error * b.error;
-  return std::exp(-difference * difference / (tolerated_errors * tolerated_errors * variance));
+  const double like =
+      std::exp(-difference * difference / (tolerated.errors * tolerated.errors * variance));
+  const auto [low, high] = std::minmax(a.error, b.error);
+  if (!(tolerated.ratio * low < high)) return like;
+  const double part = tolerated.ratio * low / high;
+  return like * part * part;
 }
 
 GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointLinks& links,
                                      std::span<const double> layer_powers,
                                      const IrradianceFilterParameters& parameters) {
   for (int round = 0; round < parameters.rounds; ++round) {
-    irradiance = filtered_once(irradiance, links, layer_powers, parameters.tolerated_errors);
+    irradiance = filtered_once(irradiance, links, layer_powers, parameters.tolerated);
   }
   return irradiance;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,21 +21,29 @@ struct PointLinks {
   }
 };
 
+/// What may be noise.
+struct NoiseTolerance {
+  double errors = 3;  ///< differences of so many standard errors count less by e
+  /// Where one standard error is larger than this many times the other, the two count less, by the
+  /// square of what is more: they do not see the same light.
+  double ratio = std::numeric_limits<double>::infinity();
+};
+
 struct IrradianceFilterParameters {
   int rounds = 8;  ///< light spreads over one link a round
-  /// Differences of so many standard errors count less by e.
-  double tolerated_errors = 3;
+  NoiseTolerance tolerated = {};
 };
 
 /// In [0, 1]: whether what two places differ by may be noise.
 double likeness(const GatheredIrradiance::Total& a, const GatheredIrradiance::Total& b,
-                double tolerated_errors);
+                const NoiseTolerance& tolerated);
 
 /// Replaces each point's light by the mean of it and its neighbours', weighted by exp(-d^2 / (9
 /// (se_a^2 + se_b^2))), d the difference of the luminance of all lights at `layer_powers` and se
-/// its standard errors, a few times over. All lights and batches have the same weights, so that
-/// layers stay exactly linear in the powers and errors are known afterwards, too. Points of no
-/// error stay what they are, but for equal ones. Does not depend on threads.
+/// its standard errors, and less where these differ more than is tolerated, a few times over. All
+/// lights and batches have the same weights, so that layers stay exactly linear in the powers and
+/// errors are known afterwards, too. Points of no error stay what they are, but for equal ones.
+/// Does not depend on threads.
 GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointLinks& links,
                                      std::span<const double> layer_powers,
                                      const IrradianceFilterParameters& parameters = {});

@@ -83,7 +83,9 @@ struct RunLight {
   }
   void look(std::size_t point, BatchSums& sums) const {
     thread_local std::vector<trace::ReceivedLight> found;
+    thread_local trace::LampChances chances;
     const trace::SurfacePoint where = trace::point_of(rays.scene(), points, point);
+    if (traced) lamps.weigh(where.position, where.normal, chances);
     for (std::uint32_t batch = 0; batch < static_cast<std::uint32_t>(parameters.batches); ++batch) {
       found.clear();
       const trace::LookSamples samples(trace::RandomStream(parameters.seed, number[point], batch),
@@ -92,7 +94,7 @@ struct RunLight {
         trace::look_at_lamps(
             rays, lamps, where, looks_per_batch,
             static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch), samples,
-            found);
+            chances, found);
       } else {
         trace::find_direct_light(rays, lamps, where, -where.normal, trace::ReflectedPart::all,
                                  looks_per_batch, samples, found);

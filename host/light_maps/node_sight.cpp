@@ -79,6 +79,17 @@ bool NodeSight::look(std::uint32_t sided_triangle, const glm::vec3& position,
   return true;
 }
 
+bool NodeSight::is_open(const NodeBlend& cell) const {
+  const Scene& scene = rays_.scene();
+  glm::vec3 middle(0.0f);
+  for (const std::uint32_t node : cell.node) middle += 0.25f * maps_.point(node).position;
+  const Place here = place_of(scene, maps_.point(cell.node[0]).sided_triangle, middle);
+  return std::all_of(cell.node.begin(), cell.node.end(), [&](std::uint32_t index) {
+    const LightMaps::NodePoint& node = maps_.point(index);
+    return see_each_other(rays_, here, place_of(scene, node.sided_triangle, node.position));
+  });
+}
+
 bool NodeSight::sees(std::uint32_t sided_triangle, const glm::vec3& from,
                      const glm::vec3& to) const {
   const Scene& scene = rays_.scene();

@@ -29,6 +29,9 @@ class NodeSight {
   ///   blend      of LightMaps::find, which found all nodes
   bool look(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
 
+  /// Whether the middle of the cell sees all of its nodes.
+  bool is_open(const NodeBlend& cell) const;
+
   /// Whether nothing stands between two places, metres, on the plane of a triangle's side.
   bool sees(std::uint32_t sided_triangle, const glm::vec3& from, const glm::vec3& to) const;
 

@@ -51,7 +51,10 @@ SurfacePoint AreaSampler::sample_front(const RandomBlock& random) const {
     const TriangleHit where = sample(random);
     return surface_point(*scene_, where, scene_->front_side[where.triangle]);
   }
-  const std::size_t number = chosen(random);
+  return sample_front_of(chosen(random), random);
+}
+
+SurfacePoint AreaSampler::sample_front_of(std::size_t number, const RandomBlock& random) const {
   const Front& front = fronts_[number];
   const glm::vec2 uv = sample_triangle(random.uniform(2), random.uniform(3));
   SurfacePoint point;

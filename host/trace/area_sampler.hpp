@@ -22,6 +22,8 @@ class AreaSampler {
   TriangleHit sample(const RandomBlock& random) const;
   /// The same on the front of the surface.
   SurfacePoint sample_front(const RandomBlock& random) const;
+  /// Uniformly on the front of triangle `number` of the light, which has no texture.
+  SurfacePoint sample_front_of(std::size_t number, const RandomBlock& random) const;
   /// Of `sample` at a point of the light, per square metre of one side.
   double density(const TriangleHit& where) const;
 

@@ -126,7 +126,7 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
 
 void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
                    int count, float directions, const LookSamples& samples,
-                   std::vector<ReceivedLight>& found) {
+                   const LampChances& chances, std::vector<ReceivedLight>& found) {
   const float share = 1.0f / static_cast<float>(count);
   thread_local std::vector<LineOfSight> lines;
   thread_local std::vector<std::uint8_t> hidden;
@@ -134,7 +134,7 @@ void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const Surfac
   const std::size_t before = found.size();
   for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {
     const LookSamples::Look look = samples.look(number);
-    const auto lamp = lamps.sample(point.position, look.lamp, look.place);
+    const auto lamp = lamps.sample(point.position, look.lamp, look.place, chances);
     if (!lamp) continue;
     const float cosine = glm::dot(lamp->direction, point.normal);
     if (!(cosine > 0.0f)) continue;

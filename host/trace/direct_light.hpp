@@ -63,8 +63,9 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
 /// The part of the irradiance that looks at lamps find where directions with the density of the
 /// cosine are followed as well: both together are what find_direct_light finds.
 ///   directions   followed for each look; what both would find is weighed
+///   chances      of lamps at the point
 void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
                    int count, float directions, const LookSamples& samples,
-                   std::vector<ReceivedLight>& found);
+                   const LampChances& chances, std::vector<ReceivedLight>& found);
 
 }  // namespace photile::trace

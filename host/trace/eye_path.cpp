@@ -85,7 +85,8 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
         const glm::vec3 radiance = light.radiance(ray.direction);
         if (radiance == glm::vec3(0.0f)) continue;
         const float weight =
-            other ? weight_against(other->lamps.density(light, ray.direction)) : 1.0f;
+            other ? weight_against(other->lamps.density(light, ray.direction, other->chances))
+                  : 1.0f;
         record.emission.push_back(
             {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});
       }
@@ -94,7 +95,8 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
     const SurfacePoint& point = *met;
     if (emits(scene, point) && sees_lamps) {
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
-      const float weight = other ? weight_against(other->lamps.density(start, point)) : 1.0f;
+      const float weight =
+          other ? weight_against(other->lamps.density(start, point, other->chances)) : 1.0f;
       record.emission.push_back({ray.pixel, light,
                                  weight * ray.radiance_weight() * (*setup.emitted_radiance)[light] *
                                      emission_texel(scene, point)});

@@ -97,8 +97,9 @@ struct EyeEnd {
 /// panes.
 struct LampTechnique {
   const LightSampler& lamps;
-  float density;      ///< of the ray's direction, per steradian
-  bool only = false;  ///< lamps that it does not find count nothing
+  float density;                                 ///< of the ray's direction, per steradian
+  bool only = false;                             ///< lamps that it does not find count nothing
+  const LampChances& chances = by_shares_alone;  ///< at the ray's start
 };
 
 /// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to

@@ -64,7 +64,7 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
     const glm::vec3 throughput = hit.throughput * reflection.reflectance;
     const RandomStream random(run.parameters.seed, number, stream + bounce * streams);
     found.clear();
-    look_at_lamps(run.rays, lamps, point, 1, 1.0f, LookSamples(random, 0), found);
+    look_at_lamps(run.rays, lamps, point, 1, 1.0f, LookSamples(random, 0), by_shares_alone, found);
     for (const ReceivedLight& light : found) {
       ends.direct.push_back(
           {hit.pixel, light.layer, throughput * glm::one_over_pi<float>() * light.irradiance});
@@ -96,6 +96,8 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
   const RandomStream of_point(parameters.seed, number, 0);
   const Frame frame(point.normal);
   const glm::vec3 throughput(glm::pi<float>() / static_cast<float>(rays));
+  thread_local LampChances chances;
+  if (parameters.rays_per_look > 0) parameters.lamps->weigh(point.position, point.normal, chances);
   float inverse_distances = 0;
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
     const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
@@ -107,8 +109,9 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
       const std::uint32_t stream = batch * rays + i + 1;
       const RandomStream random(parameters.seed, number, stream);
       const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
-      const LampTechnique looks{
-          *parameters.lamps, parameters.rays_per_look * cosine * glm::one_over_pi<float>(), true};
+      const LampTechnique looks{*parameters.lamps,
+                                parameters.rays_per_look * cosine * glm::one_over_pi<float>(), true,
+                                chances};
       const std::size_t before = ends.hits.size();
       follow_eye_ray(run.first,
                      {point.origin_towards(direction), direction, throughput,

@@ -16,13 +16,13 @@ LightSampler::LightSampler(const Scene& scene)
     : scene_(&scene),
       groups_(light_groups_of(scene)),
       bounds_(bounding_sphere(scene)),
+      share_(light_shares(scene.lights, PhotonQuota::balanced)),
+      pieces_(scene, share_, bounds_),
       radiance_(emitted_radiance_at_unit_power(scene)),
       distant_(distant_lights(scene)),
       distant_of_(scene.lights.size(), none) {
   double sum = 0;
-  for (const double share : light_shares(scene.lights, PhotonQuota::balanced)) {
-    chance_up_to_.push_back(sum += share);
-  }
+  for (const double share : share_) share_up_to_.push_back(sum += share);
   for (const Light& light : scene.lights) {
     const bool area = light.kind == LightKind::area;
     area_of_.push_back(area ? static_cast<std::uint32_t>(areas_.size()) : none);
@@ -34,47 +34,58 @@ LightSampler::LightSampler(const Scene& scene)
   }
 }
 
-float LightSampler::chance(std::uint32_t light) const {
-  const double before = light == 0 ? 0.0 : chance_up_to_[light - 1];
-  return static_cast<float>((chance_up_to_[light] - before) / chance_up_to_.back());
+/// Of a light that is chosen as a whole.
+float LightSampler::chance(std::uint32_t light, const LampChances& chances) const {
+  if (!chances.up_to.empty()) return static_cast<float>(chances.of(pieces_.whole(light)));
+  const double before = light == 0 ? 0.0 : share_up_to_[light - 1];
+  return static_cast<float>((share_up_to_[light] - before) / share_up_to_.back());
 }
 
 std::optional<LightSample> LightSampler::sample(const glm::vec3& position,
-                                                const RandomBlock& choice,
-                                                const RandomBlock& place) const {
-  // The last entry is larger than the target, so there always is one.
-  const double target = choice.uniform_double(0) * chance_up_to_.back();
-  const auto light = static_cast<std::uint32_t>(
-      std::upper_bound(chance_up_to_.begin(), chance_up_to_.end(), target) - chance_up_to_.begin());
-  if (distant_of_[light] != none) return towards_distant(light, position, place);
-  switch (scene_->lights[light].kind) {
-    case LightKind::area:
-      return towards_area(light, position, place);
-    case LightKind::directional:
-      return towards_sun(light, position);
-    default:
-      return towards_point(light, position);
+                                                const RandomBlock& choice, const RandomBlock& place,
+                                                const LampChances& chances) const {
+  std::uint32_t light, triangle = none;
+  if (chances.up_to.empty()) {
+    // The last entry is larger than the target, so there always is one.
+    const double target = choice.uniform_double(0) * share_up_to_.back();
+    light = static_cast<std::uint32_t>(
+        std::upper_bound(share_up_to_.begin(), share_up_to_.end(), target) - share_up_to_.begin());
+  } else {
+    const LampPieces::Choice chosen = pieces_.choose(chances, choice, place);
+    light = chosen.light;
+    triangle = chosen.triangle;
   }
+  if (distant_of_[light] != none) return towards_distant(light, position, place, chances);
+  if (scene_->lights[light].kind == LightKind::area) {
+    const AreaSampler& area = areas_[area_of_[light]];
+    return towards_area(
+        light, triangle == none ? area.sample_front(place) : area.sample_front_of(triangle, place),
+        position, chances);
+  }
+  return scene_->lights[light].kind == LightKind::directional
+             ? towards_sun(light, position, chances)
+             : towards_point(light, position, chances);
 }
 
-std::optional<LightSample> LightSampler::towards_area(std::uint32_t light,
+/// Towards a point of the light.
+std::optional<LightSample> LightSampler::towards_area(std::uint32_t light, SurfacePoint point,
                                                       const glm::vec3& position,
-                                                      const RandomBlock& place) const {
-  SurfacePoint point = areas_[area_of_[light]].sample_front(place);
+                                                      const LampChances& chances) const {
   const glm::vec3 direction = glm::normalize(point.position - position);
   if (glm::dot(point.normal, direction) > 0.0f) {
     point.side = 1 - point.side;
     point.normal = -point.normal;
   }
   if (!emits(*scene_, point)) return std::nullopt;
-  const float seen = density(position, point);
+  const float seen = density(position, point, chances);
   if (!(seen > 0.0f) || !(seen < std::numeric_limits<float>::infinity())) return std::nullopt;
   return LightSample{groups_.group_of[light], direction, point.origin_towards(-direction),
                      radiance_[light] * emission_texel(*scene_, point) / seen, seen};
 }
 
 std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
-                                                       const glm::vec3& position) const {
+                                                       const glm::vec3& position,
+                                                       const LampChances& chances) const {
   const Light& lamp = scene_->lights[light];
   const glm::dvec3 offset = glm::dvec3(lamp.position) - glm::dvec3(position);
   const double squared_distance = glm::dot(offset, offset);
@@ -92,7 +103,7 @@ std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
   if (!(intensity > 0)) return std::nullopt;
   return LightSample{groups_.group_of[light], glm::vec3(direction), lamp.position,
                      glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] * intensity /
-                               (squared_distance * double{chance(light)})),
+                               (squared_distance * double{chance(light, chances)})),
                      0.0f};
 }
 
@@ -101,38 +112,53 @@ glm::vec3 LightSampler::beyond(const glm::vec3& position, const glm::vec3& direc
   return position + static_cast<float>(std::max(2.5 * bounds_.radius, reach)) * direction;
 }
 
-LightSample LightSampler::towards_sun(std::uint32_t light, const glm::vec3& position) const {
+LightSample LightSampler::towards_sun(std::uint32_t light, const glm::vec3& position,
+                                      const LampChances& chances) const {
   const Light& lamp = scene_->lights[light];
   // Its flux falls on the disc of the bounding sphere, which the line of sight leaves.
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
   return {groups_.group_of[light], -lamp.direction, beyond(position, -lamp.direction),
-          glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] / (disc * double{chance(light)})),
+          glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] /
+                    (disc * double{chance(light, chances)})),
           0.0f};
 }
 
 LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& position,
-                                          const RandomBlock& place) const {
+                                          const RandomBlock& place,
+                                          const LampChances& chances) const {
   const std::uint32_t index = distant_of_[light];
   const DistantSampler::Sample chosen = distant_samplers_[index].sample(place);
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
   // Density is in proportion to luminance, and both integrate to 1 over the sphere.
-  return {
-      groups_.group_of[light], chosen.direction, beyond(position, chosen.direction),
-      glm::vec3(glm::dvec3(chosen.color) * groups_.share[light] / (disc * double{chance(light)})),
-      chance(light) * chosen.density};
+  return {groups_.group_of[light], chosen.direction, beyond(position, chosen.direction),
+          glm::vec3(glm::dvec3(chosen.color) * groups_.share[light] /
+                    (disc * double{chance(light, chances)})),
+          chance(light, chances) * chosen.density};
 }
 
-float LightSampler::density(const DistantLight& light, const glm::vec3& direction) const {
-  return chance(light.light()) * distant_samplers_[distant_of_[light.light()]].density(direction);
+float LightSampler::density(const DistantLight& light, const glm::vec3& direction,
+                            const LampChances& chances) const {
+  return chance(light.light(), chances) *
+         distant_samplers_[distant_of_[light.light()]].density(direction);
 }
 
-float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitting) const {
-  const std::uint32_t light = scene_->triangle_light[emitting.where.triangle];
+float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitting,
+                            const LampChances& chances) const {
+  const std::uint32_t triangle = emitting.where.triangle;
+  const std::uint32_t light = scene_->triangle_light[triangle];
   const glm::vec3 offset = emitting.position - position;
   const float squared_distance = glm::dot(offset, offset);
   const float cosine = -glm::dot(offset, emitting.normal) / std::sqrt(squared_distance);
-  const auto chosen = static_cast<float>(areas_[area_of_[light]].density(emitting.where));
-  return cosine > 0.0f ? chance(light) * chosen * squared_distance / cosine : 0.0f;
+  if (!(cosine > 0.0f)) return 0.0f;
+  float chosen;  // per square metre
+  if (chances.up_to.empty() || pieces_.whole(light) != none) {
+    chosen = chance(light, chances) *
+             static_cast<float>(areas_[area_of_[light]].density(emitting.where));
+  } else {
+    const std::uint32_t piece = pieces_.piece_of(triangle);
+    chosen = static_cast<float>(chances.of(piece) / pieces_.area(piece));
+  }
+  return chosen * squared_distance / cosine;
 }
 
 }  // namespace photile::trace

@@ -10,6 +10,7 @@
 #include "photile/scene.hpp"
 #include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"
+#include "trace/lamp_pieces.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
 
@@ -30,25 +31,35 @@ struct LightSample {
 
 /// Chooses one lamp of all, half by power and half equally as PhotonQuota::balanced does, and on an
 /// area light a point by what it emits, of light from beyond the scene a direction by its
-/// luminance.
+/// luminance. Looks from one point may prefer what is near it and faces it.
 class LightSampler {
  public:
   /// References are kept. Errors: InputError for an area light without area.
   explicit LightSampler(const Scene& scene);
 
+  /// Chances of lamps for looks from a point of a surface, which take as long as two rays to find:
+  /// for several looks.
+  ///   normal   unit, to the side from which is looked
+  void weigh(const glm::vec3& position, const glm::vec3& normal, LampChances& chances) const {
+    pieces_.weigh(position, normal, chances);
+  }
+
   /// A lamp as seen from `position`. Nothing where it shines elsewhere.
   ///   choice, place   blocks of their own
   std::optional<LightSample> sample(const glm::vec3& position, const RandomBlock& choice,
-                                    const RandomBlock& place) const;
+                                    const RandomBlock& place,
+                                    const LampChances& chances = by_shares_alone) const;
 
   /// Density per steradian with which `sample` would have chosen a point that emits, seen from
   /// `position`.
-  float density(const glm::vec3& position, const SurfacePoint& emitting) const;
+  float density(const glm::vec3& position, const SurfacePoint& emitting,
+                const LampChances& chances = by_shares_alone) const;
 
   /// Lights beyond the scene that rays can meet, and the density per steradian with which `sample`
   /// would have chosen a direction towards one of them.
   const std::vector<DistantLight>& distant() const { return distant_; }
-  float density(const DistantLight& light, const glm::vec3& direction) const;
+  float density(const DistantLight& light, const glm::vec3& direction,
+                const LampChances& chances = by_shares_alone) const;
 
   /// Radiance that a point of an area light emits at the power 1 of its layer.
   glm::vec3 radiance(const SurfacePoint& emitting) const {
@@ -58,20 +69,25 @@ class LightSampler {
   std::uint32_t layer(std::uint32_t light) const { return groups_.group_of[light]; }
 
  private:
-  float chance(std::uint32_t light) const;
-  std::optional<LightSample> towards_area(std::uint32_t light, const glm::vec3& position,
-                                          const RandomBlock& place) const;
-  std::optional<LightSample> towards_point(std::uint32_t light, const glm::vec3& position) const;
-  LightSample towards_sun(std::uint32_t light, const glm::vec3& position) const;
+  float chance(std::uint32_t light, const LampChances& chances) const;
+  std::optional<LightSample> towards_area(std::uint32_t light, SurfacePoint point,
+                                          const glm::vec3& position,
+                                          const LampChances& chances) const;
+  std::optional<LightSample> towards_point(std::uint32_t light, const glm::vec3& position,
+                                           const LampChances& chances) const;
+  LightSample towards_sun(std::uint32_t light, const glm::vec3& position,
+                          const LampChances& chances) const;
   LightSample towards_distant(std::uint32_t light, const glm::vec3& position,
-                              const RandomBlock& place) const;
+                              const RandomBlock& place, const LampChances& chances) const;
   /// A place in that direction behind all of the scene, wherever the position is.
   glm::vec3 beyond(const glm::vec3& position, const glm::vec3& direction) const;
 
   const Scene* scene_;
   LightGroups groups_;
   BoundingSphere bounds_;
-  std::vector<double> chance_up_to_;    ///< of the lights up to and with this one
+  std::vector<double> share_;  ///< of looks from everywhere, per light
+  LampPieces pieces_;
+  std::vector<double> share_up_to_;     ///< of the lights up to and with this one
   std::vector<glm::vec3> radiance_;     ///< per light, of white texels; black without area
   std::vector<std::uint32_t> area_of_;  ///< per light: its sampler, or `none`
   std::vector<AreaSampler> areas_;

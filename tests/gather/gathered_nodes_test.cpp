@@ -152,6 +152,39 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
   CHECK(std::abs(mean) < 0.01);
 }
 
+TEST_CASE("gathered nodes: a wall is dark below the horizon of a bright lamp beside it") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-0.6f, 0, -0.6f}, {1.2f, 0, 0}, {0, 0, 1.2f}, 1, black);  // its front to y < 0
+  // A lamp that shines upwards, 2 mm from the wall; and a faint one far away.
+  const glm::dvec3 corner{-0.11, -0.102, 0}, far{-0.5, -3, -0.5};
+  builder.grid(glm::vec3(corner), {0.22f, 0, 0}, {0, 0.1f, 0}, 1, black,
+               builder.add(area_light("sconce", 1)));
+  builder.grid(glm::vec3(far), {0, 0, 1}, {1, 0, 0}, 1, black,
+               builder.add(area_light("window", 1)));
+  GatheringScene plain(builder.build(), looked_up(20'000));
+  const auto by_window = [&](const glm::vec3& position) {
+    return validation::rectangle_factor(glm::dvec3(position), {0, -1, 0}, far, {1, 0, 0},
+                                        {0, 0, 1});
+  };
+  PrimaryHits below;
+  const PrimaryHits all = points_on(plain.scene, 60);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const glm::vec3& at = all.position[i];
+    if (triangle_of(all.sided_triangle[i]) < 2 && at.z < -0.015f && at.z > -0.2f &&
+        sided_normal(plain.scene, all.sided_triangle[i]).y < 0 && std::abs(at.x) < 0.3f) {
+      add_hit(below, at, all.sided_triangle[i]);
+    }
+  }
+  REQUIRE(below.size() > 100);
+  GatheredMaps maps(plain, few_rays, 0.04);
+  maps.fill(below);
+  const auto [rms, mean] = errors_of(maps, below, by_window);
+  CAPTURE(rms, mean);
+  CHECK(rms < 0.1);
+  CHECK(std::abs(mean) < 0.02);
+}
+
 TEST_CASE("gathered nodes: the same bits whatever was looked at before, on any number of threads") {
   GatheringScene room(furnished_room(2), looked_up(50'000));
   const PrimaryHits hits = points_on(room.scene, 5);

@@ -1,0 +1,129 @@
+// Looks at lamps that go by what is near a point: unbiased, and with less noise.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "test_scenes.hpp"
+#include "tools/validation/form_factors.hpp"
+#include "trace/light_sampler.hpp"
+#include "uniform.hpp"
+
+namespace photile::test {
+
+using namespace photile::trace;
+
+namespace {
+
+constexpr int lamps_in_row = 12;
+constexpr double lamp_side = 0.1, lamp_height = 0.4;
+
+glm::dvec3 corner_of_lamp(int lamp) {
+  return {0.5 * lamp - lamp_side / 2, -lamp_side / 2, lamp_height};
+}
+
+/// A floor in z = 0 under a row of small lamps along x that are one light, half a metre apart.
+SceneBuilder floor_under_row() {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-1, -1, 0}, {8, 0, 0}, {0, 2, 0}, 1, black);
+  const std::uint32_t row = builder.add(area_light("row", 1.0));
+  for (int lamp = 0; lamp < lamps_in_row; ++lamp) {
+    // Its front looks down.
+    builder.grid(glm::vec3(corner_of_lamp(lamp)), {0, lamp_side, 0}, {lamp_side, 0, 0}, 1, black,
+                 row);
+  }
+  return builder;
+}
+
+/// Irradiance on the floor by the row.
+double by_row(const glm::dvec3& point) {
+  double factors = 0;
+  for (int lamp = 0; lamp < lamps_in_row; ++lamp) {
+    factors += validation::rectangle_factor(point, {0, 0, 1}, corner_of_lamp(lamp),
+                                            {lamp_side, 0, 0}, {0, lamp_side, 0});
+  }
+  return factors / (lamps_in_row * lamp_side * lamp_side);
+}
+
+/// Mean of what looks find, and its variance for a single look.
+struct Looked {
+  std::array<double, 2> mean{};  ///< per layer
+  double variance = 0;           ///< of all layers together
+};
+
+Looked look(const LightSampler& lamps, const glm::vec3& point, const LampChances& chances,
+            int count) {
+  Looked looked;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < count; ++i) {
+    const RandomStream random(5, static_cast<std::uint64_t>(i), 0);
+    const auto lamp = lamps.sample(point, random.block(Purpose::direct_light, 0),
+                                   random.block(Purpose::direct_light, 1), chances);
+    if (!lamp || !(lamp->direction.z > 0)) continue;
+    const double found = double{lamp->direction.z} * luminance(glm::dvec3(lamp->received));
+    looked.mean[lamp->layer] += found / count;
+    sum += found / count;
+    squares += found * found / count;
+  }
+  looked.variance = squares - sum * sum;
+  return looked;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "lamp pieces: looks from a point are unbiased, and have less noise near one lamp of many") {
+  SceneBuilder builder = floor_under_row();
+  constexpr double power = 0.3;
+  const glm::vec3 bulb(3, 0.5f, 1);
+  builder.add(point_light("bulb", bulb, power));
+  const Scene scene = builder.build();
+  const LightSampler lamps(scene);
+  constexpr int count = 100'000;
+  for (const float x : {0.0f, 2.75f, 6.5f}) {
+    const glm::vec3 point(x, 0.03f, 0);
+    LampChances near;
+    lamps.weigh(point, {0, 0, 1}, near);
+    const Looked looked = look(lamps, point, near, count);
+    const double error = std::sqrt(looked.variance / count);
+    const glm::dvec3 offset = glm::dvec3(bulb) - glm::dvec3(point);
+    const double distance = glm::length(offset);
+    const double by_bulb =
+        offset.z / (4 * glm::pi<double>() * distance * distance * distance);  // at power 1
+    CAPTURE(x, error);
+    CHECK(std::abs(looked.mean[0] - by_row(glm::dvec3(point))) < 4 * error);
+    CHECK(std::abs(looked.mean[1] - by_bulb) < 4 * error);
+    CHECK(error < 0.01 * (by_row(glm::dvec3(point)) + by_bulb));
+    if (x < 3) {
+      CHECK(looked.variance < 0.3 * look(lamps, point, by_shares_alone, count).variance);
+    }
+  }
+}
+
+TEST_CASE("lamp pieces: densities of directions towards lamps integrate to one") {
+  const Scene scene = floor_under_row().build();
+  const LightSampler lamps(scene);
+  const glm::vec3 point(1.1f, 0.2f, 0);
+  LampChances near;
+  lamps.weigh(point, {0, 0, 1}, near);
+  Uniform uniform(7);
+  constexpr int points_of_triangle = 2000;
+  double sum = 0;
+  for (const std::uint32_t triangle : scene.lights[0].triangles) {
+    for (int i = 0; i < points_of_triangle; ++i) {
+      const float u = uniform();
+      const glm::vec2 uv = sample_triangle(u, uniform());
+      const SurfacePoint emitting =
+          surface_point(scene, {triangle, uv.x, uv.y}, scene.front_side[triangle]);
+      const glm::dvec3 offset = glm::dvec3(point) - glm::dvec3(emitting.position);
+      const double squared = glm::dot(offset, offset);
+      const double cosine = glm::dot(offset, glm::dvec3(emitting.normal)) / std::sqrt(squared);
+      sum += double{lamps.density(point, emitting, near)} * cosine / squared *
+             triangle_area(scene, triangle) / points_of_triangle;
+    }
+  }
+  CHECK(sum == Approx(1).epsilon(1e-3));
+}
+
+}  // namespace photile::test
