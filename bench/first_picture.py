@@ -4,8 +4,9 @@
     bench/first_picture.py [SCENES] [--repeats N] [--results FOLDER] [--redraw]
 
 Renders three scenes at 256x192, 4 samples a pixel: with an empty cache of kernels (the very first
-run), with a full one (every later run), and from photons that --save-maps kept. Every figure is a
-median of processes of their own. Beside them stands Mitsuba's first picture with a denoiser, where
+run), with an empty one where kernels are installed for all users, with a full one (every later
+run), from photons that --save-maps kept, and by the default quality. Kernels are installed into a
+folder of the bench's own first. Every figure is a median of processes of their own. Beside them stands Mitsuba's first picture with a denoiser, where
 the interpreter finds the packages mitsuba and pyoidn (docs/quality.md tells how); what is not there
 becomes a row that says so.
 """
@@ -14,27 +15,29 @@ import importlib.util
 import json
 import os
 import pathlib
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 import scene_arguments
 
 ROOT = scene_arguments.ROOT
 SIZE, SAMPLES = "256x192", "4"
-CASES = (  # name, scene, paths
-    ("classroom, 62,500 paths", "classroom/classroom-diffuse.gltf", 62_500),
-    ("classroom, 1M paths", "classroom/classroom-diffuse.gltf", 1_000_000),
-    ("kitchen, 1M paths", "kitchen/kitchen-diffuse.gltf", 1_000_000),
-    ("living room, 2M paths", None, 2_000_000),
+CASES = (  # name, scene, paths, whether the default quality is measured, too
+    ("classroom, 62,500 paths", "classroom/classroom-diffuse.gltf", 62_500, False),
+    ("classroom, 1M paths", "classroom/classroom-diffuse.gltf", 1_000_000, True),
+    ("kitchen, 1M paths", "kitchen/kitchen-diffuse.gltf", 1_000_000, True),
+    ("living room, 2M paths", None, 2_000_000, True),
 )
-STATES = ("empty cache", "full cache", "saved maps")
+STATES = ("empty cache", "installed kernels", "full cache", "saved maps", "default quality")
 STAGES_OF = ("empty cache", "full cache")  # the states whose stages are told
 # Mitsuba's script knows diffuse surfaces alone.
 RIVALS = (("classroom", "classroom/classroom-diffuse.gltf"),
           ("kitchen", "kitchen/kitchen-diffuse.gltf"))
-RIVAL_STATES = STATES[:2]
+RIVAL_STATES = ("empty cache", "full cache")
 RIVAL_PACKAGES = ("mitsuba", "pyoidn")
 
 
@@ -61,11 +64,18 @@ def cost_of(command, variables):
             "bytes": usage.ru_maxrss * 1024}
 
 
-def measured(command, cache):
+def install_kernels(photile, folder):
+    """As `cmake --install BUILD --component kernels` does, below `folder`/photile."""
+    subprocess.run([photile, "devices", "--compile"], check=True, stdout=subprocess.DEVNULL,
+                   env={**os.environ, "XDG_CACHE_HOME": str(folder)})
+
+
+def measured(command, cache, installed=""):
     """A run of photile with its stages, and how many photons it stored."""
     with tempfile.TemporaryDirectory() as folder:
         stats = pathlib.Path(folder) / "stats.json"
-        cost = cost_of([*command, "--stats", stats, "--quiet"], {"XDG_CACHE_HOME": str(cache)})
+        cost = cost_of([*command, "--stats", stats, "--quiet"],
+                       {"XDG_CACHE_HOME": str(cache), "XDG_DATA_DIRS": str(installed) or "/none"})
         record = json.loads(stats.read_text())
     return {**cost, "stages": record["stages"], "photons": record["photons_stored"]}
 
@@ -76,21 +86,53 @@ def median_of(runs):
     return {**runs[len(runs) // 2], "least": runs[0]["processor"], "most": runs[-1]["processor"]}
 
 
-def measure(photile, scene, paths, repeats):
-    """Per state of STATES: a run."""
+def measure(photile, scene, paths, with_default, installed, repeats):
+    """Per state of STATES: a run. `installed`: where kernels are installed."""
     runs = {state: [] for state in STATES}
     for _ in range(repeats):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            picture = [photile, "render", scene, "--size", SIZE, "--quality", "draft",
-                       "--samples", SAMPLES, "--photons", str(paths), "-o", folder / "picture.exr"]
-            cache, maps = folder / "cache", folder / "kept.maps"
+            default = [photile, "render", scene, "--size", SIZE, "-o", folder / "picture.exr"]
+            picture = [*default, "--quality", "draft", "--samples", SAMPLES, "--photons",
+                       str(paths)]
+            cache, fresh, maps = folder / "cache", folder / "fresh", folder / "kept.maps"
             cache.mkdir()
+            fresh.mkdir()
+            runs["installed kernels"].append(measured(picture, fresh, installed))
             runs["empty cache"].append(measured(picture, cache))
             runs["full cache"].append(measured(picture, cache))
             measured([*picture, "--save-maps", maps], cache)
             runs["saved maps"].append(measured([*picture, "--load-maps", maps], cache))
-    return {state: median_of(of_state) for state, of_state in runs.items()}
+            if with_default:
+                runs["default quality"].append(measured(default, fresh, installed))
+    return {state: median_of(of_state) for state, of_state in runs.items() if of_state}
+
+
+def first_shown(photile, scene, installed, repeats):
+    """What --preview takes from the scene being read to its first picture: medians of processor and
+    wall-clock seconds."""
+    costs = []
+    for _ in range(repeats):
+        with socket.create_server(("127.0.0.1", 0)) as server, \
+                tempfile.TemporaryDirectory() as folder:
+            threading.Thread(target=read_all, args=[server], daemon=True).start()
+            run = measured([photile, "render", scene, "--preview",
+                            f"127.0.0.1:{server.getsockname()[1]}", "--size", SIZE, "--quality",
+                            "draft", "--photons", "62500", "-o",
+                            pathlib.Path(folder) / "picture.exr"], folder, installed)
+        own = [stage for stage in run["stages"]
+               if stage["stage"] in ("ray tracing structure", "first picture")]
+        costs.append((sum(stage["processor_seconds"] for stage in own),
+                      sum(stage["seconds"] for stage in own)))
+    processor, seconds = sorted(costs)[len(costs) // 2]
+    return {"processor": processor, "seconds": seconds}
+
+
+def read_all(server):
+    """Stands in for tev."""
+    with server.accept()[0] as connection:
+        while connection.recv(1 << 20):
+            pass
 
 
 def missing_packages():
@@ -177,22 +219,33 @@ def page(results):
         costs=table(["run", "processor seconds", "seconds", "MB at most",
                      "bytes a stored photon", "told by the stages"],
                     rows + rival_rows(results["rivals"])),
-        empty=stage_table(cases, STAGES_OF[0]), full=stage_table(cases, STAGES_OF[1]))
+        empty=stage_table(cases, STAGES_OF[0]), full=stage_table(cases, STAGES_OF[1]),
+        shown=table(["scene", "processor seconds", "seconds"],
+                    [[scene, f"{run['processor']:.2f}", f"{run['seconds']:.2f}"]
+                     for scene, run in results["first shown"].items()]),
+        load=f"{results['load']:.0f}")
 
 
 def main():
     options = arguments()
     file = options.results / "startup.json"
     if not options.redraw:
-        results = {"photile": {}}
-        for case, scene, paths in CASES:
-            path = (options.scenes / scene if scene
-                    else ROOT / "scenes/living-room/living-room.gltf")
-            if not path.exists():
-                print(f"first_picture.py: {path}: not there; left out", file=sys.stderr)
-                continue
-            results["photile"][case] = measure(options.photile, path, paths, options.repeats)
+        results = {"photile": {}, "first shown": {}}
+        with tempfile.TemporaryDirectory() as installed:
+            install_kernels(options.photile, installed)
+            for case, scene, paths, with_default in CASES:
+                path = (options.scenes / scene if scene
+                        else ROOT / "scenes/living-room/living-room.gltf")
+                if not path.exists():
+                    print(f"first_picture.py: {path}: not there; left out", file=sys.stderr)
+                    continue
+                results["photile"][case] = measure(options.photile, path, paths, with_default,
+                                                   installed, options.repeats)
+                if with_default:
+                    results["first shown"][case.partition(",")[0]] = first_shown(
+                        options.photile, path, installed, options.repeats)
         results["rivals"] = rivals(options)
+        results["load"] = os.getloadavg()[2]
         file.write_text(json.dumps(results, indent=1) + "\n")
     (options.results / "startup.md").write_text(page(json.loads(file.read_text())))
 

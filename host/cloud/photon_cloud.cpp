@@ -148,7 +148,7 @@ PhotonMaps PhotonCloud::Impl::build(Device& device, const CloudPhotons& cloud,
     maps::build_global_map(*store, photons, 1);
   } else if (photons.size() > 0) {
     store->map_of = voxels.take_own_maps();
-    maps::build_maps(*store, photons, voxels.take_plan(), progress);
+    maps::build_maps(*store, photons, nullptr, voxels.take_plan(), progress);
   }
   store->statistics.spilled_bytes = store->pages.spilled_bytes();
   store->statistics.seconds = stopwatch.seconds();

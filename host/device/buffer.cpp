@@ -1,11 +1,14 @@
 // Buffers: allocation, transfers, fills.
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "device/context_impl.hpp"
@@ -42,6 +45,22 @@ void prefer_huge_pages(cl_command_queue queue, cl_mem memory, std::size_t bytes)
   const std::uintptr_t last = (begin + bytes) / huge_page * huge_page;
   if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
   clEnqueueUnmapMemObject(queue, memory, mapped, 0, nullptr, nullptr);
+}
+
+/// A runtime fills a buffer from one core, and the system clears its memory on the way.
+constexpr std::size_t least_bytes_for_all_cores = std::size_t{1} << 20;
+
+/// A block of elements to fill so many bytes with, one block after the other.
+std::vector<unsigned char> repeated(const void* element, std::size_t element_bytes,
+                                    std::size_t bytes) {
+  constexpr std::size_t block_bytes = std::size_t{1} << 18;
+  const auto* const first = static_cast<const unsigned char*>(element);
+  const std::size_t elements = std::max<std::size_t>(1, block_bytes / element_bytes);
+  std::vector<unsigned char> block;
+  for (std::size_t i = 0; i < elements && block.size() < bytes; ++i) {
+    block.insert(block.end(), first, first + element_bytes);
+  }
+  return block;
 }
 
 }  // namespace
@@ -157,9 +176,35 @@ RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_
                    }));
 }
 
+void Context::fill_from_all_cores(const RawBuffer& buffer, std::span<const unsigned char> block,
+                                  std::size_t bytes, std::size_t first) {
+  void* mapped = nullptr;
+  const cl_int status = impl_->persevere([&] {
+    cl_int done = CL_SUCCESS;
+    mapped = clEnqueueMapBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE,
+                                CL_MAP_WRITE_INVALIDATE_REGION, first, bytes, 0, nullptr, nullptr,
+                                &done);
+    return done;
+  });
+  impl_->check(status, "clEnqueueMapBuffer", fmt::format("{} bytes", bytes));
+  const std::size_t blocks = (bytes + block.size() - 1) / block.size();
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
+    const std::size_t offset = i * block.size();
+    std::memcpy(static_cast<unsigned char*>(mapped) + offset, block.data(),
+                std::min(block.size(), bytes - offset));
+  });
+  impl_->check(
+      clEnqueueUnmapMemObject(impl_->queue.get(), memory_of(buffer), mapped, 0, nullptr, nullptr),
+      "clEnqueueUnmapMemObject", fmt::format("{} bytes", bytes));
+}
+
 void Context::fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
                          std::size_t bytes, std::size_t first) {
   check_range(buffer, bytes, first, "fill");
+  if (shares_host_memory() && bytes >= least_bytes_for_all_cores) {
+    fill_from_all_cores(buffer, repeated(pattern, pattern_bytes, bytes), bytes, first);
+    return;
+  }
   if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
     const cl_int status = impl_->persevere([&] {
       return clEnqueueFillBuffer(impl_->queue.get(), memory_of(buffer), pattern, pattern_bytes,
@@ -169,12 +214,7 @@ void Context::fill_bytes(const RawBuffer& buffer, const void* pattern, std::size
     return;
   }
   // OpenCL fills with powers of two only: other elements are written block by block.
-  const auto* const element = static_cast<const unsigned char*>(pattern);
-  const std::size_t block_elements = std::max<std::size_t>(1, (1u << 20) / pattern_bytes);
-  std::vector<unsigned char> block;
-  for (std::size_t i = 0; i < block_elements && block.size() < bytes; ++i) {
-    block.insert(block.end(), element, element + pattern_bytes);
-  }
+  const std::vector<unsigned char> block = repeated(pattern, pattern_bytes, bytes);
   for (std::size_t offset = 0; offset < bytes; offset += block.size()) {
     write_bytes(buffer, block.data(), std::min(block.size(), bytes - offset), first + offset);
   }

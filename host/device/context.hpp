@@ -264,6 +264,9 @@ class Context {
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
+  /// With blocks of bytes one after the other, where the device shares memory with the host.
+  void fill_from_all_cores(const RawBuffer& buffer, std::span<const unsigned char> block,
+                           std::size_t bytes, std::size_t first);
   void fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
                   std::size_t bytes, std::size_t offset);
   bool shares_host_memory() const;

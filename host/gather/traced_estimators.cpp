@@ -27,7 +27,7 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
   const RenderPlan plan(in_one_pass(parameters), rays, progress);
   PhotonTracerParameters tracing = plan.tracing(0, {});
   tracing.keep_caustics = true;
-  const PhotonTracerResult traced = trace_photons(rays, tracing, progress);
+  PhotonTracerResult traced = trace_photons(rays, tracing, progress);
   const double radius = plan.radius(traced.photons, progress);
   const NeighbourGroups groups =
       find_map_groups(scene, traced.photons, plan.map_mode(), plan.groups(radius), progress);
@@ -35,17 +35,17 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
                            ? std::make_shared<const SurfaceIndex>(index_surface(
                                  scene, traced.photons, radius, plan.used().angle_degrees))
                            : nullptr;
-  const auto estimators_of = [&](const Photons& photons) {
+  const auto estimators_of = [&](Photons photons) {
     std::vector<EstimateParameters> levels = plan.estimates(0, surface);
     estimate_each_alone(levels, devices.front());
-    return MapEstimators(
-        devices, scene,
-        build_maps_on_each(devices, scene, photons, groups, plan.maps(0, radius), progress), levels,
-        layer_powers_);
+    return MapEstimators(devices, scene,
+                         build_maps_on_each(devices, scene, std::move(photons), groups,
+                                            plan.maps(0, radius), progress),
+                         levels, layer_powers_);
   };
   ends_ = plan.ends(0, radius, traced.photons, layer_powers_);
-  photons_.emplace(estimators_of(traced.photons));
-  if (traced.caustics.size() > 0) caustics_.emplace(estimators_of(traced.caustics));
+  photons_.emplace(estimators_of(std::move(traced.photons)));
+  if (traced.caustics.size() > 0) caustics_.emplace(estimators_of(std::move(traced.caustics)));
 }
 
 }  // namespace photile

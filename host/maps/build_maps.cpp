@@ -100,8 +100,9 @@ struct CountedMaps {
   }
 };
 
+///   release   as EntryGathering
 MapPage build_page(const Build& build, const Photons& photons, const CountedMaps& counted,
-                   const MapRange& range) {
+                   const MapRange& range, const PhotonRelease* release) {
   const MapStore& store = build.store;
   MapPage page;
   page.first_map = range.first;
@@ -121,7 +122,11 @@ MapPage build_page(const Build& build, const Photons& photons, const CountedMaps
     build_trees(build.context, store.parameters.structure, photons, counted.photons, page);
   }
   gather_entries(build.kernels, store.needs, *build.photon_pages,
-                 counted.any_mixed(range) ? &build.normals : nullptr, range.tile.has_value(), page);
+                 {.normals = counted.any_mixed(range) ? &build.normals : nullptr,
+                  .gaps = range.tile.has_value(),
+                  .release = release,
+                  .memory = memory_pages(store)},
+                 page);
   build.context.finish();
   return page;
 }
@@ -144,17 +149,20 @@ void renumber_tile(MapStore& store, const MapRange& range, std::uint32_t map, Ma
 }
 
 /// Builds the pages of `queue` into the store. Tiles are numbered after all whole maps.
+///   release   what lets go of photons, for the last page; null: they stay
 void build_pages(MapStore& store, const Build& build, const Photons& photons,
-                 const CountedMaps& counted, PageQueue& queue, Progress& progress) {
+                 const CountedMaps& counted, PageQueue& queue, const PhotonRelease* release,
+                 Progress& progress) {
   auto tile_number = static_cast<std::uint32_t>(counted.photons.size());
   while (const auto range = queue.next()) {
     progress.throw_if_cancelled();
     try {
-      MapPage page = build_page(build, photons, counted, *range);
+      MapPage page = build_page(build, photons, counted, *range, queue.empty() ? release : nullptr);
       if (range->tile) renumber_tile(store, *range, tile_number++, page);
       add_page(store, std::move(page));
       progress.advance(range->entries);
     } catch (const DeviceMemoryError&) {
+      if (build.photon_pages->released()) throw;
       // The larger one of what lies on the device together, if it can be made smaller.
       const bool photons_first = build.photon_pages->page_bytes() >= queue.bytes(*range);
       if (photons_first && build.photon_pages->halve()) {
@@ -178,7 +186,7 @@ std::vector<glm::vec3> sided_normals(const Scene& scene) {
 }
 
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
-                          const NeighbourGroups& groups, Progress& progress) {
+                          Photons* spent, const NeighbourGroups& groups, Progress& progress) {
   const Patches& patches = groups.patches;
   MapPlan plan;
   plan.reach = reach_of(scene, store.parameters.radius);
@@ -190,10 +198,11 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
   plan.surfaces = map_shapes(scene, patches, numbers.pairs, glm::radians(groups.angle_degrees));
   plan.crowding = of_numbered(numbers, photon_crowding(scene, photons, patches));
   plan.name_of = [&](std::uint32_t pair) { return surface_name(numbers.pairs[pair], patches); };
-  build_maps(store, photons, std::move(plan), progress);
+  build_maps(store, photons, spent, std::move(plan), progress);
 }
 
-void build_maps(MapStore& store, const Photons& photons, MapPlan plan, Progress& progress) {
+void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan plan,
+                Progress& progress) {
   Context& context = device::context_of(*store.device);
   Build build{.context = context,
               .store = store,
@@ -223,7 +232,14 @@ void build_maps(MapStore& store, const Photons& photons, MapPlan plan, Progress&
       page_limits(context, store, build.photons_per_cell, statistics.mixed_maps > 0), store.tilings,
       [&](std::uint32_t map) { return tiling_of(build, map); },
       [&](std::uint32_t map) { return plan.name_of(map / 2); });
-  build_pages(store, build, photons, counted, queue, progress);
+  const PhotonRelease release{[&] { plan.candidates = {}; },
+                              [&] {
+                                spent->position = {};
+                                spent->flux = {};
+                                spent->incoming = {};
+                                spent->light = {};
+                              }};
+  build_pages(store, build, photons, counted, queue, spent ? &release : nullptr, progress);
   if (statistics.mixed_maps == 0) store.normals.clear();
   const std::vector<std::uint32_t>& counts = counted.photons;
   statistics.maps = static_cast<std::uint64_t>(
@@ -256,7 +272,7 @@ void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map
       [&](PhotonRange range) { return upload_photon_records(context, photons, range); },
       context.largest_buffer());
   const device::Buffer<float> normals = upload_normals(context, store);
-  gather_entries(build_kernels(store, false), store.needs, pages, &normals, false, page);
+  gather_entries(build_kernels(store, false), store.needs, pages, {.normals = &normals}, page);
   context.finish();
   store.statistics.maps = 1;
   store.statistics.largest_map = count;

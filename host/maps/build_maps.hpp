@@ -16,8 +16,9 @@ namespace photile::maps {
 
 /// Builds one map per sided triangle or side of a patch: uniform grids, kd-trees, or plain lists of
 /// photons. Fills the pages and statistics of `store`, whose device, needs and parameters are set.
+///   spent   the same photons where their arrays may be given back on the way, else null
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
-                          const NeighbourGroups& groups, Progress& progress);
+                          Photons* spent, const NeighbourGroups& groups, Progress& progress);
 
 /// Where maps lie, and which photons may enter them.
 struct MapPlan {
@@ -32,7 +33,9 @@ struct MapPlan {
 
 /// Builds the maps of a plan. `store.map_of` is set, and with plan.normals `store.normals`, which
 /// is empty afterwards where no map needs it.
-void build_maps(MapStore& store, const Photons& photons, MapPlan plan, Progress& progress);
+///   spent   as for build_maps_of_groups
+void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan plan,
+                Progress& progress);
 
 /// Builds one kd-tree over all photons for hits of `map_count` maps; `store.normals` is set.
 /// Errors: DeviceError when they do not fit in one buffer.

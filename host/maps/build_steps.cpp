@@ -177,7 +177,7 @@ void place_grids(const Build& build, MapPage& page) {
 
 void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile) {
   page.cell_start = build.context.allocate<std::uint32_t>(
-      std::size_t{page.cell_count} + 2, "cell offsets", device::MemoryPages::large);
+      std::size_t{page.cell_count} + 2, "cell offsets", memory_pages(build.store));
   build.context.fill(page.cell_start, 0u);
   const auto over_photons = [&](const char* kernel, const PhotonPage& photons) {
     device::Launch launch =
@@ -222,15 +222,14 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
 }
 
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
-                    PhotonPages& photon_pages, const device::Buffer<float>* normals, bool gaps,
-                    MapPage& page) {
+                    PhotonPages& photon_pages, const EntryGathering& gathering, MapPage& page) {
   device::Context& context = build.context();
   page.entry_stride = entry_stride(page.entry_count);
   // Vector loads reach into padding and gaps; what they find there is masked, but must be a number.
   const auto planes = [&](std::string_view what) {
-    auto buffer = context.allocate<float>(3 * std::size_t{page.entry_stride}, what,
-                                          device::MemoryPages::large);
-    const std::size_t first_empty = gaps ? 0 : page.entry_count;
+    auto buffer =
+        context.allocate<float>(3 * std::size_t{page.entry_stride}, what, gathering.memory);
+    const std::size_t first_empty = gathering.gaps ? 0 : page.entry_count;
     for (std::size_t plane = 0; plane < 3; ++plane) {
       context.fill(buffer, 0.0f, plane * page.entry_stride + first_empty,
                    page.entry_stride - first_empty);
@@ -242,11 +241,17 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
   if (needs.several_lights()) {
     page.entry_light =
         context.allocate<std::uint8_t>(std::size_t{bytes_per_light(needs)} * page.entry_stride,
-                                       "photon map lights", device::MemoryPages::large);
+                                       "photon map lights", gathering.memory);
   }
   if (needs.glossy) page.entry_incoming = planes("photon map directions");
-  if (normals != nullptr) page.entry_normal = planes("photon map normals");
+  if (gathering.normals != nullptr) page.entry_normal = planes("photon map normals");
+  const PhotonRelease* const release = photon_pages.single() ? gathering.release : nullptr;
   for (const PhotonPage& photons : photon_pages.entering(page.first_map, page.last_map)) {
+    if (release != nullptr) {  // all memory is allocated: the page in use stays to the end
+      context.finish();
+      photon_pages.release_lists();
+      release->lists();
+    }
     const auto launch_of = [&](const char* kernel) {
       device::Launch launch = build.launch(kernel);
       launch.set("entry_count", page.entry_count)
@@ -268,10 +273,15 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
       gather.set("incoming", photons.incoming).set("entry_incoming", page.entry_incoming);
     }
     gather.run(page.entry_count, work_group_size);
-    if (normals != nullptr) {
+    if (release != nullptr) {
+      context.finish();
+      photon_pages.release_records();
+      release->records();
+    }
+    if (gathering.normals != nullptr) {
       launch_of("gather_normals")
           .set("sided_triangle", photons.sided_triangle)
-          .set("normal", *normals)
+          .set("normal", *gathering.normals)
           .set("entry_normal", page.entry_normal)
           .run(page.entry_count, work_group_size);
     }

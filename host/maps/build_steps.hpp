@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -69,12 +70,31 @@ void place_grids(const Build& build, MapPage& page);
 /// `tile`: cells that the page holds, where it holds a tile; else nothing.
 void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile);
 
+/// What lets go of photons on the host, once their one page has let go of them.
+struct PhotonRelease {
+  std::function<void()> lists;    ///< of candidate maps
+  std::function<void()> records;  ///< all that entries copy, but for the photons' triangles
+};
+
+/// How entries are gathered.
+struct EntryGathering {
+  /// 3 floats per sided triangle, where the entries keep normals; else null.
+  const device::Buffer<float>* normals = nullptr;
+  bool gaps = false;  ///< there are entries without a photon, as in tiles
+  /// Is called as soon as no kernel reads what it lets go of, where photons are one page; null:
+  /// photons are needed for further pages of maps.
+  const PhotonRelease* release = nullptr;
+  device::MemoryPages memory = device::MemoryPages::large;
+};
+
+/// Of a store's maps.
+inline device::MemoryPages memory_pages(const MapStore& store) {
+  return store.parameters.large_pages ? device::MemoryPages::large : device::MemoryPages::ordinary;
+}
+
 /// `build`: see build_kernels. Before: page.entry_count and page.entry_photon are set. After: the
 /// other entry buffers that the scene needs are filled.
-///   normals   3 floats per sided triangle, where the entries keep normals; else null
-///   gaps      whether there are entries without a photon, as in tiles
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
-                    PhotonPages& photon_pages, const device::Buffer<float>* normals, bool gaps,
-                    MapPage& page);
+                    PhotonPages& photon_pages, const EntryGathering& gathering, MapPage& page);
 
 }  // namespace photile::maps

@@ -33,6 +33,8 @@ class PageQueue {
   /// The next page, as far as possible within the limits; nothing at the end. Errors: DeviceError
   /// where the photons within the radius of one place need a buffer larger than the largest.
   std::optional<MapRange> next();
+  /// Whether `next` will return none, unless a page is cut or put back.
+  bool empty() const { return pages_.empty(); }
 
   /// Cuts a page that did not fit, and puts its parts back; false where it cannot be cut.
   bool cut(const MapRange& page);

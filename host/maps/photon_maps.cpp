@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "common/value_range.hpp"
 #include "geometry/radius_range.hpp"
@@ -56,6 +57,19 @@ std::string_view name_of(MapStructure structure) {
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
                        Progress& progress) {
+  build(device, scene, photons, nullptr, groups, parameters, progress);
+}
+
+PhotonMaps::PhotonMaps(Device& device, const Scene& scene, Photons&& photons,
+                       const NeighbourGroups& groups, const PhotonMapParameters& parameters,
+                       Progress& progress) {
+  Photons own = std::move(photons);
+  build(device, scene, own, &own, groups, parameters, progress);
+}
+
+void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photons, Photons* spent,
+                       const NeighbourGroups& groups, const PhotonMapParameters& parameters,
+                       Progress& progress) {
   check_scene(scene);
   check(scene, photons, groups, parameters);
   const Stopwatch stopwatch;
@@ -79,7 +93,7 @@ PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photon
       throw InputError(
           fmt::format("neighbour groups of {}: those of another scene", scene.source.string()));
     }
-    maps::build_maps_of_groups(*store_, scene, photons, groups, progress);
+    maps::build_maps_of_groups(*store_, scene, photons, spent, groups, progress);
   }
 
   store_->statistics.spilled_bytes = store_->pages.spilled_bytes();

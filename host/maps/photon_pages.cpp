@@ -156,6 +156,26 @@ std::uint64_t PhotonPages::page_bytes() const {
   return arrays * largest_array();
 }
 
+void PhotonPages::load(std::size_t page) {
+  if (released_) throw DeviceMemoryError("photons were let go of before their maps were built");
+  pages_[page] = upload_(ranges_[page]);
+}
+
+void PhotonPages::release_lists() {
+  PhotonPage& page = pages_.front();
+  for (auto* lists : {&page.list, &page.list_offsets, &page.list_members, &page.entered}) {
+    *lists = {};
+  }
+  released_ = true;
+}
+
+void PhotonPages::release_records() {
+  PhotonPage& page = pages_.front();
+  for (auto* records : {&page.position, &page.flux, &page.incoming}) *records = {};
+  page.light = {};
+  released_ = true;
+}
+
 bool PhotonPages::halve() {
   constexpr std::uint64_t least_bytes = 4096;
   const std::uint64_t largest = largest_array();

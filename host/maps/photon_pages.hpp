@@ -102,12 +102,20 @@ class PhotonPages final : private Residents {
   /// Device memory that the largest page takes, about.
   std::uint64_t page_bytes() const;
 
+  /// Whether one page holds all photons.
+  bool single() const { return ranges_.size() == 1; }
+  /// Let go of parts of the one page: of lists and `entered`, of all else but sided_triangle. It
+  /// cannot be uploaded again afterwards.
+  void release_lists();
+  void release_records();
+  bool released() const { return released_; }
+
   /// Smaller pages from now on. False where they are as small as is sensible.
   bool halve();
 
  private:
   std::uint64_t largest_array() const;
-  void load(std::size_t page) override { pages_[page] = upload_(ranges_[page]); }
+  void load(std::size_t page) override;
   void unload(std::size_t page) override { pages_[page] = {}; }
 
   Plan plan_;
@@ -115,6 +123,7 @@ class PhotonPages final : private Residents {
   std::uint64_t max_bytes_;
   std::vector<PhotonRange> ranges_;
   std::vector<PhotonPage> pages_;
+  bool released_ = false;
 };
 
 }  // namespace photile::maps

@@ -10,12 +10,16 @@
 namespace photile {
 
 std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
-                                           const Photons& photons, const NeighbourGroups& groups,
+                                           Photons photons, const NeighbourGroups& groups,
                                            const PhotonMapParameters& parameters,
                                            Progress& progress) {
   std::vector<std::optional<PhotonMaps>> built(devices.size());
   for_each_device(devices, progress, [&](std::size_t i, Progress& shared) {
-    built[i].emplace(devices[i], scene, photons, groups, parameters, shared);
+    if (devices.size() == 1) {
+      built[i].emplace(devices[i], scene, std::move(photons), groups, parameters, shared);
+    } else {
+      built[i].emplace(devices[i], scene, std::as_const(photons), groups, parameters, shared);
+    }
   });
   std::vector<PhotonMaps> maps;
   for (auto& one : built) maps.push_back(std::move(*one));

@@ -12,9 +12,10 @@
 
 namespace photile {
 
-/// Builds the same maps on every device, all at once. Errors: as PhotonMaps, see for_each_device.
+/// Builds the same maps on every device, all at once; for one alone, photons are given back on the
+/// way. Errors: as PhotonMaps, see for_each_device.
 std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
-                                           const Photons& photons, const NeighbourGroups& groups,
+                                           Photons photons, const NeighbourGroups& groups,
                                            const PhotonMapParameters& parameters,
                                            Progress& progress);
 

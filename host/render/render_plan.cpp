@@ -121,7 +121,8 @@ NeighbourGroupParameters RenderPlan::groups(double first_radius) const {
 PhotonMapParameters RenderPlan::maps(int pass, double first_radius) const {
   return {.radius = estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
           .photons_per_cell = used_.photons_per_cell,
-          .structure = used_.structure};
+          .structure = used_.structure,
+          .large_pages = !reads_light_maps()};  // whose nodes are few
 }
 
 std::vector<EstimateParameters> RenderPlan::estimates(

@@ -251,23 +251,22 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
     if (own.caustics) traced.caustics = std::move(*own.caustics);
   }
   const PhotonMapParameters parameters = plan_.maps(pass, radius_);
-  Maps maps{build(traced.photons, parameters), {}};
+  Maps maps{build(std::move(traced.photons), parameters), {}};
   costs_.maps = maps.photons.front().statistics().maps;
   costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
-  if (traced.caustics.size() > 0) maps.caustics = build(traced.caustics, parameters);
+  if (traced.caustics.size() > 0) maps.caustics = build(std::move(traced.caustics), parameters);
   const Stopwatch release_watch;
   traced = {};
   costs_.release.add(release_watch.taken());
   return maps;
 }
 
-std::vector<PhotonMaps> Rendering::build(const Photons& photons,
-                                         const PhotonMapParameters& parameters) {
+std::vector<PhotonMaps> Rendering::build(Photons photons, const PhotonMapParameters& parameters) {
   const Stopwatch stopwatch;
   kernels_->wait();
   std::vector<PhotonMaps> maps =
-      build_maps_on_each(devices_, scene_, photons, groups_, parameters, *progress_);
+      build_maps_on_each(devices_, scene_, std::move(photons), groups_, parameters, *progress_);
   std::uint64_t device_bytes = 0, spilled_bytes = 0;
   for (const PhotonMaps& one : maps) {
     device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;

@@ -98,7 +98,7 @@ class Rendering {
   void choose_light_maps(int pass, const Photons& photons);
   MapEstimators::Parts parts_of(std::vector<PhotonMaps> maps) const;
   Maps trace_and_build(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
-  std::vector<PhotonMaps> build(const Photons& photons, const PhotonMapParameters& parameters);
+  std::vector<PhotonMaps> build(Photons photons, const PhotonMapParameters& parameters);
   void count(const PhotonTracerResult& traced);
   void find_groups(const Photons& photons, PreparedPhotons* prepared);
   void find_surface(const Photons& photons);

@@ -83,7 +83,8 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
   index.sheets = sheets.count;
   index.normal.resize(2 * scene.triangle_count());
   tbb::parallel_for(std::size_t{0}, index.normal.size(), [&](std::size_t s) {
-    index.normal[s] = glm::vec3(sided_normal(scene, static_cast<std::uint32_t>(s)));
+    const glm::dvec3& normal = mesh.normal[s / 2];
+    index.normal[s] = glm::vec3(s % 2 == 0 ? normal : -normal);
   });
   index.exposure = surface::find_exposure(mesh, facets, sheets, lit_sheets(index, landed), radius,
                                           angle_degrees);

@@ -36,6 +36,9 @@ struct PhotonMapParameters {
   double radius = 0;  ///< metres, > 0: no neighbour is farther; at most the groups' radius
   float photons_per_cell = defaults::photons_per_cell;  ///< aimed at, in uniform grids
   MapStructure structure = MapStructure::uniform_grid;
+  /// Whether a CPU device keeps maps in large pages of memory. Estimates of millions of hits are
+  /// quicker by them; to clear them takes longer, where the system has none ready.
+  bool large_pages = true;
 };
 
 struct PhotonMapStatistics {
@@ -71,6 +74,10 @@ class PhotonMaps {
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
              Progress& progress = Progress::none());
+  /// The same of photons that nobody else needs: their arrays are given back as soon as the maps
+  /// hold copies, so that they do not lie in memory beside all of those.
+  PhotonMaps(Device& device, const Scene& scene, Photons&& photons, const NeighbourGroups& groups,
+             const PhotonMapParameters& parameters, Progress& progress = Progress::none());
   ~PhotonMaps();
   PhotonMaps(PhotonMaps&&) noexcept;
   PhotonMaps& operator=(PhotonMaps&&) noexcept;
@@ -86,6 +93,10 @@ class PhotonMaps {
   friend const maps::MapStore& maps::store_of(const PhotonMaps& maps);
   friend PhotonMaps maps::maps_in(std::unique_ptr<maps::MapStore> store);
   explicit PhotonMaps(std::unique_ptr<maps::MapStore> store);
+  /// `spent`: the same photons where they may be given back, else null.
+  void build(Device& device, const Scene& scene, const Photons& photons, Photons* spent,
+             const NeighbourGroups& groups, const PhotonMapParameters& parameters,
+             Progress& progress);
 
   std::unique_ptr<maps::MapStore> store_;
 };

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -47,6 +48,18 @@ TEST_CASE("fill sets a range and leaves the rest") {
   std::vector<int> back(6);
   context.read<int>(buffer, back);
   CHECK(back == std::vector<int>{0, 1, 9, 9, 9, 5});
+}
+
+TEST_CASE("fill sets a range of millions and leaves the rest") {
+  Context context({});
+  const std::vector<int> values = counted(3'000'001);
+  auto buffer = context.upload<int>(values, "values");
+  context.fill(buffer, 9, 7, 2'500'003);
+  std::vector<int> back(values.size());
+  context.read<int>(buffer, back);
+  std::vector<int> expected = values;
+  std::fill_n(expected.begin() + 7, 2'500'003, 9);
+  CHECK((back == expected));
 }
 
 TEST_CASE("a shared buffer holds the host's values, and outlives its context") {

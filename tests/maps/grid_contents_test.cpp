@@ -99,9 +99,13 @@ Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
   return contents;
 }
 
-void check_against_reference(const Scene& scene, const Photons& photons, double radius) {
+///   given_up   the maps are built from photons that go on the way
+void check_against_reference(const Scene& scene, const Photons& photons, double radius,
+                             bool given_up = false) {
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
-  const PhotonMaps photon_maps(test::device(), scene, photons, groups, {radius, 4});
+  const PhotonMaps photon_maps =
+      given_up ? PhotonMaps(test::device(), scene, Photons(photons), groups, {radius, 4})
+               : PhotonMaps(test::device(), scene, photons, groups, {radius, 4});
   Contents contents = read_contents(photon_maps, photons);
   CHECK(contents.cells_ascend);
   CHECK(contents.cells_agree);
@@ -164,7 +168,8 @@ TEST_CASE("grid contents equal the host reference on a folded plate") {
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
   test::add_plate(scene, {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 2);
   test::add_plate(scene, {0, 0, -0.02f}, {1, 0, 0}, {0, 1, 0}, 1);
-  check_against_reference(scene, test::uniform_photons(scene, 3000, 11), 0.15);
+  check_against_reference(scene, test::uniform_photons(scene, 3000, 11), 0.15,
+                          GENERATE(false, true));
 }
 
 TEST_CASE("grid contents equal the host reference on a torus, triangles smaller than the radius") {
@@ -229,6 +234,24 @@ TEST_CASE("two builds give the same bits") {
     CHECK(download(maps::store_of(first).pages.use(i).cell_start) ==
           download(maps::store_of(second).pages.use(i).cell_start));
   }
+}
+
+TEST_CASE("photons that are given up leave the normals that kept ones do, and are gone") {
+  Scene scene = test::empty_scene();
+  test::add_torus(scene, 1.0f, 0.4f, 16, 8);
+  const Photons photons = test::uniform_photons(scene, 50'000, 15);
+  Photons given_up = photons;
+  const NeighbourGroups groups = find_map_groups(scene, photons, MapMode::patch, {0.2, 60});
+  const PhotonMaps kept(test::device(), scene, photons, groups, {0.2, 4});
+  const PhotonMaps gone(test::device(), scene, std::move(given_up), groups, {0.2, 4});
+  REQUIRE(kept.statistics().mixed_maps > 0);
+  CHECK(given_up.size() == 0);
+  REQUIRE(maps::store_of(kept).pages.size() == 1);
+  const maps::MapPage& first = maps::store_of(kept).pages.use(0);
+  const maps::MapPage& second = maps::store_of(gone).pages.use(0);
+  CHECK(download(first.entry_position) == download(second.entry_position));
+  CHECK(download(first.entry_flux) == download(second.entry_flux));
+  CHECK(download(first.entry_normal) == download(second.entry_normal));
 }
 
 TEST_CASE("a radius beyond the groups' or no number is refused") {

@@ -116,6 +116,7 @@ std::unique_ptr<HitSource> hits_of(const Camera& camera, LightLayers* errors,
   if (options.preview.empty()) return std::make_unique<CameraHits>(camera, errors);
   auto preview =
       std::make_shared<image::LivePreview>(options.preview, record.scene, record.mix, progress);
+  if (!preview->connected()) return std::make_unique<CameraHits>(camera, errors);
   return std::make_unique<WatchedHits>(
       camera, errors,
       [preview](const LightLayers& layers, int first, int last, double share) {

@@ -19,6 +19,9 @@ class LivePreview {
   /// Errors: UsageError for a malformed address.
   LivePreview(const std::string& address, std::string name, LightMix mix, Progress& progress);
 
+  /// Whether there is a tev to send to.
+  bool connected() const { return tev_ != nullptr; }
+
   /// Rows [first, last), of whose light `share` is there.
   void rows(const LightLayers& layers, int first, int last, double share);
 
