@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What a first picture costs, from the start of the process to its end; writes docs/startup.md.
 
-    bench/first_picture.py [SCENES] [--repeats N] [--results FOLDER] [--redraw]
+    bench/first_picture.py [SCENES] [--repeats N] [--installed FOLDER] [--results FOLDER] [--redraw]
 
 Renders three scenes at 256x192, 4 samples a pixel: with an empty cache of kernels (the very first
 run), with an empty one where kernels are installed for all users, with a full one (every later
@@ -46,6 +46,9 @@ def arguments():
     parser.add_argument("--repeats", type=int, default=3, help="default: %(default)s")
     parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs",
                         help="where startup.json and startup.md go; default: %(default)s")
+    parser.add_argument("--installed", type=pathlib.Path, metavar="FOLDER",
+                        help="kernels are installed in FOLDER/photile/kernels; default: they are "
+                             "compiled first")
     parser.add_argument("--redraw", action="store_true",
                         help="write the page from startup.json instead of measuring")
     return parser.parse_args()
@@ -226,27 +229,33 @@ def page(results):
         load=f"{results['load']:.0f}")
 
 
+def measurements(options, installed):
+    """The results so far, after each case."""
+    results = {"photile": {}, "first shown": {}, "rivals": rivals(options)}
+    for case, scene, paths, with_default in CASES:
+        path = options.scenes / scene if scene else ROOT / "scenes/living-room/living-room.gltf"
+        if not path.exists():
+            print(f"first_picture.py: {path}: not there; left out", file=sys.stderr)
+            continue
+        results["photile"][case] = measure(options.photile, path, paths, with_default, installed,
+                                           options.repeats)
+        if with_default:
+            results["first shown"][case.partition(",")[0]] = first_shown(
+                options.photile, path, installed, options.repeats)
+        results["load"] = os.getloadavg()[2]
+        yield results
+
+
 def main():
     options = arguments()
     file = options.results / "startup.json"
     if not options.redraw:
-        results = {"photile": {}, "first shown": {}}
-        with tempfile.TemporaryDirectory() as installed:
-            install_kernels(options.photile, installed)
-            for case, scene, paths, with_default in CASES:
-                path = (options.scenes / scene if scene
-                        else ROOT / "scenes/living-room/living-room.gltf")
-                if not path.exists():
-                    print(f"first_picture.py: {path}: not there; left out", file=sys.stderr)
-                    continue
-                results["photile"][case] = measure(options.photile, path, paths, with_default,
-                                                   installed, options.repeats)
-                if with_default:
-                    results["first shown"][case.partition(",")[0]] = first_shown(
-                        options.photile, path, installed, options.repeats)
-        results["rivals"] = rivals(options)
-        results["load"] = os.getloadavg()[2]
-        file.write_text(json.dumps(results, indent=1) + "\n")
+        with tempfile.TemporaryDirectory() as folder:
+            installed = (options.installed or pathlib.Path(folder)).resolve()
+            if not options.installed:
+                install_kernels(options.photile, folder)
+            for results in measurements(options, installed):  # what is there is kept
+                file.write_text(json.dumps(results, indent=1) + "\n")
     (options.results / "startup.md").write_text(page(json.loads(file.read_text())))
 
 

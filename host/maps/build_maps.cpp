@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "kdtree/kdtree_builder.hpp"
 #include "maps/build_steps.hpp"
@@ -60,6 +61,15 @@ std::unique_ptr<PhotonPages> photon_pages(const Build& build, const CandidateMap
         return page;
       },
       std::min(context.largest_buffer(), context.memory_limit() / 32));
+}
+
+/// All but what is told by the photons' triangles.
+void give_back_records(Photons& photons) {
+  // Nothing is assigned: that would keep the memory.
+  std::vector<glm::vec3>().swap(photons.position);
+  std::vector<glm::vec3>().swap(photons.flux);
+  std::vector<glm::vec3>().swap(photons.incoming);
+  std::vector<std::uint16_t>().swap(photons.light);
 }
 
 /// A page of maps takes at most half of the memory: beside it lie a page of photons and what the
@@ -232,13 +242,8 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
       page_limits(context, store, build.photons_per_cell, statistics.mixed_maps > 0), store.tilings,
       [&](std::uint32_t map) { return tiling_of(build, map); },
       [&](std::uint32_t map) { return plan.name_of(map / 2); });
-  const PhotonRelease release{[&] { plan.candidates = {}; },
-                              [&] {
-                                spent->position = {};
-                                spent->flux = {};
-                                spent->incoming = {};
-                                spent->light = {};
-                              }};
+  const PhotonRelease release{[&] { plan.candidates = CandidateMaps(); },
+                              [&] { give_back_records(*spent); }};
   build_pages(store, build, photons, counted, queue, spent ? &release : nullptr, progress);
   if (statistics.mixed_maps == 0) store.normals.clear();
   const std::vector<std::uint32_t>& counts = counted.photons;
