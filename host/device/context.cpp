@@ -2,7 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <mutex>
 
+#include "device/cache_folder.hpp"
 #include "device/context_impl.hpp"
 #include "device/device_list.hpp"
 #include "device/device_selection.hpp"
@@ -15,8 +17,14 @@ std::vector<ListedDevice> find_all(const std::string& selector) {
   DeviceList list = enumerate_devices();
   std::vector<DeviceInfo> infos;
   for (const auto& listed : list.usable) infos.push_back(listed.info);
+  const std::vector<DeviceChoice> choices = select_devices(infos, selector, list.left_out);
+  if (chooses_best(selector)) {
+    static std::once_flag told;
+    const std::string line = untested_gpu(infos, infos[choices.front().index]);
+    if (!line.empty()) std::call_once(told, [&] { warn(line); });
+  }
   std::vector<ListedDevice> chosen;
-  for (const DeviceChoice& choice : select_devices(infos, selector, list.left_out)) {
+  for (const DeviceChoice& choice : choices) {
     ListedDevice& listed = list.usable[choice.index];
     if (choice.compute_units.empty()) {
       chosen.push_back(std::move(listed));
@@ -42,15 +50,22 @@ ListedDevice find_one(const std::string& selector) {
   return std::move(found.front());
 }
 
+/// A card draws the display and serves other programs: a tenth of its memory is left to them.
+std::uint64_t usable_memory(const DeviceInfo& info) {
+  const std::uint64_t bytes = info.global_memory_bytes;
+  return info.type == DeviceType::cpu ? bytes : bytes - bytes / 10;
+}
+
 }  // namespace
 
 Context::Impl::Impl(ListedDevice listed, const DeviceOptions& options)
     : info(std::move(listed.info)),
       sub_device(std::move(listed.sub_device)),
-      memory_limit(options.memory_bytes == 0
-                       ? info.global_memory_bytes
-                       : std::min(info.global_memory_bytes, options.memory_bytes)),
+      device(listed.device),
+      memory_limit(usable_memory(info)),
       profile(options.profile) {
+  limited = options.memory_bytes != 0 && options.memory_bytes < memory_limit;
+  if (limited) memory_limit = options.memory_bytes;
   const cl_context_properties properties[] = {
       CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(listed.platform), 0};
   cl_int status = CL_SUCCESS;
@@ -67,14 +82,13 @@ Context::Impl::Impl(ListedDevice listed, const DeviceOptions& options)
 void Context::Impl::check(cl_int status, std::string_view call, const std::string& what) const {
   if (status == CL_SUCCESS) return;
   if (!is_out_of_memory(status)) throw_status(status, call, what);
-  const bool budget = memory_limit < info.global_memory_bytes;
   throw DeviceMemoryError(
       fmt::format("{} failed: {}; {}; '{}' allows {} bytes a buffer and {} {} bytes of memory, {} "
                   "bytes are in use; use {}",
                   call, status_name(status), what, info.name, info.max_allocation_bytes,
-                  budget ? "may use" : "has", memory_limit, memory->live.load(),
-                  budget ? "a larger memory limit, fewer photons or a smaller radius"
-                         : "fewer photons or a smaller radius"),
+                  limited ? "may use" : "has", memory_limit, memory->live.load(),
+                  limited ? "a larger memory limit, fewer photons or a smaller radius"
+                          : "fewer photons or a smaller radius"),
       status);
 }
 

@@ -20,6 +20,8 @@ struct Kernel::Impl {
   KernelHandle kernel;
   std::string name;
   std::vector<std::string> arguments;  ///< names, in the order of the kernel's source
+  std::size_t largest_group = 0;       ///< work-items that the device can run of it together
+  std::size_t required_group = 0;      ///< that its source asks for, or 0
   bool launched = false;
 };
 
@@ -65,6 +67,8 @@ struct Context::Impl {
   LiveContext live;
   DeviceInfo info;
   SubDeviceHandle sub_device;  ///< outlives all that is made on it
+  cl_device_id device = nullptr;
+  bool limited = false;  ///< the user bounds the memory
   std::uint64_t memory_limit = 0;
   ContextHandle context;
   QueueHandle queue;

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "device/pocl_work_folder.hpp"
+#include "device/test_results.hpp"
 
 namespace photile::device {
 namespace {
@@ -20,6 +21,15 @@ DeviceType type_of(cl_device_type type) {
   if (type & CL_DEVICE_TYPE_GPU) return DeviceType::gpu;
   if (type & CL_DEVICE_TYPE_ACCELERATOR) return DeviceType::accelerator;
   return DeviceType::other;
+}
+
+/// What NVIDIA's and AMD's devices say of their warps or wavefronts; 0 of others.
+std::uint32_t lanes_of(cl_device_id device) {
+  for (const cl_device_info name : {CL_DEVICE_WARP_SIZE_NV, CL_DEVICE_WAVEFRONT_WIDTH_AMD}) {
+    cl_uint lanes = 0;
+    if (clGetDeviceInfo(device, name, sizeof lanes, &lanes, nullptr) == CL_SUCCESS) return lanes;
+  }
+  return 0;
 }
 
 DeviceInfo describe(cl_platform_id platform, cl_device_id device) {
@@ -37,7 +47,13 @@ DeviceInfo describe(cl_platform_id platform, cl_device_id device) {
   info.local_memory_bytes = device_property<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
   info.max_work_group_size = device_property<std::size_t>(device, CL_DEVICE_MAX_WORK_GROUP_SIZE);
   info.native_float_width = device_property<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
+  if (info.type != DeviceType::cpu) info.lanes = lanes_of(device);
+  const auto single = device_property<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG);
+  info.denormals = (single & CL_FP_DENORM) != 0;
+  info.exact_division = (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
   info.is_pocl = info.platform == "Portable Computing Language";
+  // Asked of others than CPUs alone: what these compute is tested with photile.
+  if (info.type != DeviceType::cpu) info.test_result = kept_test_result(info);
   return info;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/ascii_text.hpp"
+#include "device/test_results.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::device {
@@ -25,17 +26,29 @@ int rank(const DeviceInfo& device) {
   return device.type == DeviceType::cpu ? 2 : 3;
 }
 
+/// The same where nobody has asked for the device.
+int default_rank(const DeviceInfo& device) {
+  const bool untested = device.type == DeviceType::gpu && device.test_result != passed;
+  return untested ? 3 : rank(device);
+}
+
 std::optional<std::size_t> best(std::span<const DeviceInfo> devices,
-                                const std::function<bool(const DeviceInfo&)>& matches) {
+                                const std::function<bool(const DeviceInfo&)>& matches,
+                                int (*rank_of)(const DeviceInfo&) = rank) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    if (matches(devices[i]) && (!found || rank(devices[i]) < rank(devices[*found]))) found = i;
+    if (matches(devices[i]) && (!found || rank_of(devices[i]) < rank_of(devices[*found]))) {
+      found = i;
+    }
   }
   return found;
 }
 
 std::optional<std::size_t> find(std::span<const DeviceInfo> devices, const std::string& wanted) {
-  if (wanted.empty()) return best(devices, [](const DeviceInfo&) { return true; });
+  if (wanted.empty()) {
+    return best(
+        devices, [](const DeviceInfo&) { return true; }, default_rank);
+  }
   for (std::size_t i = 0; i < devices.size(); ++i) {
     if (devices[i].id == wanted) return i;
   }
@@ -143,14 +156,39 @@ DeviceChoice choose(std::span<const DeviceInfo> devices, std::string name, const
   return {*found, compute_units_of(partition, devices[*found], source)};
 }
 
+/// $PHOTILE_DEVICE, or "".
+std::string device_from_environment() {
+  const char* const variable = std::getenv(device_variable);
+  return variable == nullptr ? "" : variable;
+}
+
 }  // namespace
+
+bool chooses_best(const std::string& selector) {
+  return selector.empty() && device_from_environment().empty();
+}
+
+std::string untested_gpu(std::span<const DeviceInfo> devices, const DeviceInfo& chosen) {
+  const auto untested = [](const DeviceInfo& device) {
+    return device.type == DeviceType::gpu && device.test_result != passed;
+  };
+  const auto found = std::find_if(devices.begin(), devices.end(), untested);
+  const bool is_gpu = chosen.type == DeviceType::gpu;
+  if (found == devices.end() || (is_gpu && !untested(chosen))) return {};
+  const DeviceInfo& gpu = is_gpu ? chosen : *found;
+  const std::string why = gpu.test_result.empty()
+                              ? "has not been tested; run photile devices --test once"
+                              : "did not pass its test (" + gpu.test_result + ")";
+  return is_gpu ? fmt::format("{} {} {}, and there is no other device", gpu.id, gpu.name, why)
+                : fmt::format("{} {} is not used, as it {}; or choose it by --device {}", gpu.id,
+                              gpu.name, why, gpu.id);
+}
 
 std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string selector,
                                          std::span<const std::string> left_out) {
   std::string origin = "device selector";
-  if (const char* const variable = std::getenv(device_variable);
-      selector.empty() && variable != nullptr && *variable != '\0') {
-    selector = variable;
+  if (selector.empty() && !chooses_best(selector)) {
+    selector = device_from_environment();
     origin = device_variable;
   }
   if (devices.empty()) {

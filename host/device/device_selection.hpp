@@ -23,10 +23,17 @@ struct DeviceChoice {
 /// The devices that `selector` means (see DeviceOptions::selector), in its order. Of several that a
 /// name matches the best is taken: a GPU, then PoCL, then another CPU, then anything else,
 /// Oclgrind's simulator last; the first listed among equals. "" means $PHOTILE_DEVICE where that is
-/// set. Errors: DeviceError that lists `devices` when a name matches none, and names `left_out`
-/// when there are none at all; when one is named twice, or has fewer compute units than are asked
-/// for.
+/// set; else the best, where GPUs that have not passed their test come after CPUs. Errors:
+/// DeviceError that lists `devices` when a name matches none, and names `left_out` when there are
+/// none at all; when one is named twice, or has fewer compute units than are asked for.
 std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string selector,
                                          std::span<const std::string> left_out = {});
+
+/// Why `chosen`, which "" means, is a CPU though there is a GPU, or a GPU that has not passed its
+/// test: one line; "" where neither is so.
+std::string untested_gpu(std::span<const DeviceInfo> devices, const DeviceInfo& chosen);
+
+/// Whether `selector`, or the environment in its place, leaves the choice to photile.
+bool chooses_best(const std::string& selector);
 
 }  // namespace photile::device

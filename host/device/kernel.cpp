@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <mutex>
 #include <optional>
 
@@ -49,6 +51,14 @@ std::optional<std::vector<std::string>> argument_names(cl_kernel kernel) {
   return names;
 }
 
+template <class T>
+T group_property(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info name) {
+  T value{};
+  check(clGetKernelWorkGroupInfo(kernel, device, name, sizeof value, &value, nullptr),
+        "clGetKernelWorkGroupInfo");
+  return value;
+}
+
 }  // namespace
 
 Kernel Context::kernel(const std::string& file, const std::string& name, const Defines& defines) {
@@ -81,6 +91,19 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
   }
   made->name = name;
   made->arguments = std::move(*arguments);
+  const cl_kernel made_kernel = made->kernel.get();
+  const cl_device_id device = impl_->device;
+  made->largest_group = group_property<std::size_t>(made_kernel, device, CL_KERNEL_WORK_GROUP_SIZE);
+  made->required_group = group_property<std::array<std::size_t, 3>>(
+      made_kernel, device, CL_KERNEL_COMPILE_WORK_GROUP_SIZE)[0];
+  const auto local = group_property<cl_ulong>(made_kernel, device, CL_KERNEL_LOCAL_MEM_SIZE);
+  if (local > impl_->info.local_memory_bytes) {
+    throw DeviceError(
+        fmt::format("kernel '{}' of '{}' takes {} bytes of local memory where '{}' has "
+                    "{}; use fewer neighbours, or another device",
+                    name, file, local, impl_->info.name, impl_->info.local_memory_bytes),
+        CL_OUT_OF_RESOURCES);
+  }
   if (impl_->profile) impl_->times.add_preparation(name, stopwatch.seconds());
   return impl_->kernels.emplace(key, Kernel(std::move(made))).first->second;
 }
@@ -111,7 +134,7 @@ Launch& Launch::set_bytes(std::string_view name, const void* value, std::size_t 
 
 void Launch::run(std::size_t global_size, std::size_t local_size) {
   const DeviceInfo& info = context_.info();
-  const bool specialises = info.is_pocl && info.type == DeviceType::cpu && local_size > 0;
+  const bool specialises = info.is_pocl && local_size > 0;
   if (global_size > 0 && specialises) global_size = std::max(global_size, least_unspecialised);
   enqueue(global_size, local_size);
 }
@@ -130,6 +153,15 @@ void Launch::enqueue(std::size_t global_size, std::size_t local_size) {
                       CL_INVALID_KERNEL_ARGS);
   }
   if (global_size == 0) return;
+  if (local_size > impl.largest_group) {
+    if (impl.required_group != 0 || impl.largest_group == 0) {
+      throw DeviceError(fmt::format("kernel '{}' works in groups of {} where '{}' runs at most {} "
+                                    "work-items of it together; use another device",
+                                    impl.name, local_size, context.info.name, impl.largest_group),
+                        CL_INVALID_WORK_GROUP_SIZE);
+    }
+    local_size = std::bit_floor(impl.largest_group);
+  }
   if (local_size != 0) global_size = (global_size + local_size - 1) / local_size * local_size;
   if (global_size > max_work_items) {
     throw DeviceError(fmt::format("kernel '{}' is to run on {} work-items; at most {} can be",
@@ -143,11 +175,24 @@ void Launch::enqueue(std::size_t global_size, std::size_t local_size) {
   if (time_preparation) context_.finish();
   const Stopwatch stopwatch;
   cl_event event = nullptr;
-  const cl_int status = context.persevere([&] {
+  const auto launch = [&] {
     return clEnqueueNDRangeKernel(context.queue.get(), impl.kernel.get(), 1, nullptr, &global_size,
                                   local_size == 0 ? nullptr : &local_size, 0, nullptr,
                                   context.profile ? &event : nullptr);
-  });
+  };
+  cl_int status = launch();
+  if (status == CL_OUT_OF_RESOURCES) {  // registers or local memory: releasing buffers is no help
+    clFinish(context.queue.get());
+    status = launch();
+  } else if (is_out_of_memory(status)) {
+    status = context.persevere(launch);
+  }
+  if (status == CL_OUT_OF_RESOURCES) {
+    throw_status(status, "clEnqueueNDRangeKernel",
+                 fmt::format("kernel '{}' in groups of {} asks for more registers or local memory "
+                             "than '{}' has, or the device is lost; use another device",
+                             impl.name, local_size, context.info.name));
+  }
   if (status != CL_SUCCESS) {
     context.check(status, "clEnqueueNDRangeKernel",
                   fmt::format("kernel '{}', {} work-items in groups of {}", impl.name, global_size,

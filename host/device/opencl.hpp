@@ -4,6 +4,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #define CL_USE_DEPRECATED_OPENCL_1_2_APIS  // clCreateCommandQueue: its successor is OpenCL 2.0
 #include <CL/cl.h>
+#include <CL/cl_ext.h>
 
 #include <string>
 #include <string_view>

@@ -70,7 +70,7 @@ void EstimateBuffers::read_vectors(const device::Buffer<float>& buffer,
 
 /// Takes the empty slots out on the device: it is fast there, and less is read.
 Estimates EstimateBuffers::read_slots() {
-  device::Defines defines;
+  device::Defines defines = maps::group_defines(context_.info());
   sums_.set_defines(defines);
   if (sums_.glossy) defines.set("GLOSSY");
   const device::KernelSet kernels(context_, "estimate/pack_estimates.cl", std::move(defines));

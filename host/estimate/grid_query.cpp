@@ -1,7 +1,9 @@
 #include <algorithm>
 
+#include "device/launch_pace.hpp"
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
+#include "estimate/tuning.hpp"
 
 namespace photile::estimate {
 namespace {
@@ -11,6 +13,7 @@ class GridQuery : public Query {
   GridQuery(const maps::MapStore& store, const QueryParameters& parameters)
       : store_(store),
         context_(device::context_of(*store.device)),
+        pace_(context_),
         parameters_(parameters),
         choice_(specialise(parameters.tuning, store.needs,
                            static_cast<int>(parameters.compiled_neighbours))) {
@@ -27,7 +30,9 @@ class GridQuery : public Query {
                           context_.kernel(choice_.kernel_file(), "estimate", estimate_defines));
     set_estimate_arguments(launch, store_, hits, parameters_, estimates);
     set_grid(launch, hits.page);
-    launch.run(choice_.work_items(hits.count), choice_.work_group_size);
+    run(launch, hits, [&](std::uint32_t count) {
+      launch.run(choice_.work_items(count), choice_.work_group_size);
+    });
   }
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
@@ -38,10 +43,26 @@ class GridQuery : public Query {
     set_normal_arguments(launch, store_, hits, nullptr);
     set_grid(launch, hits.page);
     launch.set("neighbours", photons).set("squared_radius", squared_radius);
-    launch.run(hits.count, maps::work_group_size);
+    const bool lanes = choice_.strategy == EstimateStrategy::lanes;
+    run(launch, hits, [&](std::uint32_t count) {
+      launch.run(choice_.nearest_items(count),
+                 lanes ? choice_.work_group_size : maps::work_group_size);
+    });
   }
 
  private:
+  /// Calls run_part(count) for the hits, part by part.
+  template <class RunPart>
+  void run(device::Launch& launch, const PageHits& hits, RunPart run_part) {
+    // Work-items and tiles take the same hits together whatever the parts are.
+    constexpr std::uint32_t unit = 64;
+    static_assert(unit % max_hits_per_item == 0);
+    pace_.run(hits.count, unit, [&](std::uint32_t first, std::uint32_t count) {
+      launch.set("first_hit", hits.first + first).set("hit_count", count);
+      run_part(count);
+    });
+  }
+
   static void set_grid(device::Launch& launch, const maps::MapPage& page) {
     launch.set("grids", page.grids).set("cell_start", page.cell_start);
   }
@@ -54,6 +75,7 @@ class GridQuery : public Query {
 
   const maps::MapStore& store_;
   device::Context& context_;
+  device::LaunchPace pace_;
   QueryParameters parameters_;
   Specialisation choice_;
 };

@@ -22,8 +22,10 @@ void LightSums::set_defines(device::Defines& defines) const {
   }
 }
 
+std::size_t LightSums::table_bytes() const { return table * sizeof(std::uint16_t); }
+
 std::size_t LightSums::private_bytes() const {
-  if (many_lights) return table * sizeof(std::uint16_t);
+  if (many_lights) return table_bytes();
   return std::size_t{lights} * 3 * sizeof(float) * (glossy ? 2 : 1);
 }
 

@@ -32,6 +32,8 @@ struct LightSums {
 
   /// The symbols of sums.clh.
   void set_defines(device::Defines& defines) const;
+  /// Of the hash table.
+  std::size_t table_bytes() const;
   /// Of the arrays that a work-item keeps in private memory.
   std::size_t private_bytes() const;
   /// Of EstimateBuffers.

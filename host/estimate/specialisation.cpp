@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "maps/entry_defines.hpp"
+#include "photile/device/surface.h"
 
 namespace photile::estimate {
 namespace {
@@ -15,8 +16,12 @@ int rounded_up(int value, int multiple) { return (value + multiple - 1) / multip
 /// Distances kept for a hit: a block holds some 3 k candidates in chunks that are four fifths full,
 /// and several times as many where a map holds more than one surface. Chunks of one are counted,
 /// too.
-int capacity_for(int neighbours, int vector_width) {
+int capacity_for(int neighbours, EstimateStrategy strategy, int vector_width) {
   constexpr int least = 256;
+  if (strategy == EstimateStrategy::lanes) {
+    return std::clamp(rounded_up(std::min(neighbours, largest_lane_capacity) * 8, vector_width),
+                      least, largest_lane_capacity);
+  }
   const int most = vector_width == 1 ? largest_capacity / 2 : largest_capacity;
   return std::clamp(rounded_up(std::min(neighbours, most) * 8, 16), least, most);
 }
@@ -31,9 +36,12 @@ int tile_capacity_for(int neighbours) {
 
 device::Defines Specialisation::defines() const {
   device::Defines defines;
+  const bool lanes = strategy == EstimateStrategy::lanes;
+  if (lanes) defines.set("LANES");
   defines.set("VECTOR_WIDTH", static_cast<long long>(vector_width));
   defines.set("CAPACITY", static_cast<long long>(capacity));
-  defines.set("NEAR_CAPACITY", static_cast<long long>(near_capacity));
+  // Lanes list the near entries of a hit all at once.
+  defines.set("NEAR_CAPACITY", static_cast<long long>(lanes ? neighbours : near_capacity));
   defines.set("HITS_PER_ITEM", static_cast<long long>(hits_per_item));
   if (strategy == EstimateStrategy::heap) {
     defines.set("LIST_CAPACITY", static_cast<long long>(neighbours));
@@ -54,22 +62,31 @@ std::string Specialisation::kernel_file() const {
     case EstimateStrategy::tile:
       return "estimate/estimate_tile.cl";
     case EstimateStrategy::select:
+    case EstimateStrategy::lanes:
       break;
   }
   return "estimate/estimate.cl";
 }
 
-std::uint32_t Specialisation::work_items(std::uint32_t hits) const {
-  const int hits_of_item = strategy == EstimateStrategy::select ? hits_per_item
-                           : strategy == EstimateStrategy::tile ? vector_width
-                                                                : 1;
+std::size_t Specialisation::work_items(std::uint32_t hits) const {
+  const int hits_of_item = strategy == EstimateStrategy::tile ? vector_width : hits_per_item;
   const auto divisor = static_cast<std::uint32_t>(hits_of_item);
-  return hits / divisor + (hits % divisor != 0);
+  const std::size_t items = hits / divisor + (hits % divisor != 0);
+  return strategy == EstimateStrategy::lanes ? items * static_cast<std::size_t>(vector_width)
+                                             : items;
+}
+
+std::uint32_t Specialisation::nearest_items(std::uint32_t hits) const {
+  if (strategy != EstimateStrategy::lanes) return hits;
+  // More hits are taken in turn: work-items are counted in 32 bits.
+  constexpr std::uint32_t most_groups = 1u << 24;
+  return std::min(hits, most_groups) * static_cast<std::uint32_t>(vector_width);
 }
 
 std::size_t Specialisation::private_bytes() const {
   const auto width = static_cast<std::size_t>(vector_width);
   const bool listed = needs.glossy || needs.many_lights();
+  if (strategy == EstimateStrategy::lanes) return needs.many_lights() ? 0 : sums.private_bytes();
   std::size_t bytes = sums.private_bytes();
   if (strategy == EstimateStrategy::heap) {
     return bytes + static_cast<std::size_t>(neighbours) * (sizeof(float) + sizeof(std::uint32_t));
@@ -84,6 +101,21 @@ std::size_t Specialisation::private_bytes() const {
   return bytes;
 }
 
+std::size_t Specialisation::local_bytes() const {
+  if (strategy != EstimateStrategy::lanes) return 0;
+  const auto width = static_cast<std::size_t>(vector_width);
+  const auto kept = static_cast<std::size_t>(capacity);
+  const std::size_t chunks = kept / width;
+  constexpr std::size_t word = sizeof(std::uint32_t), columns = 8, queue = 16;
+  std::size_t words = 5 * (width + columns) + kept + chunks;
+  if (needs.glossy || needs.many_lights()) {
+    words += chunks * ((width + 31) / 32) + static_cast<std::size_t>(neighbours);
+  }
+  words += PHOTILE_SURFACE_STACK + queue + PHOTILE_SURFACE_WIDTH;
+  if (needs.many_lights()) words += (needs.glossy ? 7 : 4) * width + sums.table_bytes() / word + 1;
+  return words * word;
+}
+
 Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours) {
   Specialisation choice;
   const bool too_many_for_heap =
@@ -91,13 +123,24 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
   choice.strategy = too_many_for_heap ? EstimateStrategy::select : tuning.strategy;
   // A heap is a list of single entries.
   choice.vector_width = choice.strategy == EstimateStrategy::heap ? 1 : tuning.vector_width;
-  choice.capacity = capacity_for(neighbours, choice.vector_width);
+  choice.capacity = capacity_for(neighbours, choice.strategy, choice.vector_width);
   choice.neighbours = neighbours;
   choice.tile_capacity = tile_capacity_for(neighbours);
-  choice.hits_per_item = choice.strategy == EstimateStrategy::select ? tuning.hits_per_item : 1;
   choice.needs = needs;
   choice.sums = LightSums(needs, static_cast<std::uint32_t>(neighbours));
   choice.work_group_size = static_cast<std::size_t>(tuning.work_group_size);
+  if (choice.local_bytes() > max_local_bytes) {
+    choice.strategy = EstimateStrategy::select;
+    choice.vector_width = 1;
+    choice.capacity = capacity_for(neighbours, choice.strategy, choice.vector_width);
+  }
+  const bool in_turn =
+      choice.strategy == EstimateStrategy::select || choice.strategy == EstimateStrategy::lanes;
+  choice.hits_per_item = in_turn ? tuning.hits_per_item : 1;
+  if (choice.strategy == EstimateStrategy::lanes) {
+    choice.work_group_size = static_cast<std::size_t>(choice.vector_width);
+    return choice;
+  }
   while (choice.work_group_size > 1 &&
          choice.work_group_size * choice.private_bytes() > max_private_bytes_per_group) {
     choice.work_group_size /= 2;

@@ -22,12 +22,21 @@ inline constexpr std::size_t max_private_bytes_per_group = 512u << 10;
 /// stays within max_private_bytes_per_group.
 inline constexpr int largest_capacity = 1600;
 
+/// The same for the lanes of a group, which keep them in local memory. What a group may have of
+/// that is at least 32 KiB on any device with a full profile; half of it leaves room for two
+/// groups.
+inline constexpr int largest_lane_capacity = 4096;
+
+/// Local memory that every device with a full profile has.
+inline constexpr std::size_t max_local_bytes = 32u << 10;
+
 /// Compile-time choices of kernels/estimate, and how to launch them.
 struct Specialisation {
   EstimateStrategy strategy = EstimateStrategy::select;
-  int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16
-  int capacity = 256;    ///< distances kept in private memory by `select`, and where a tile fails
-  int neighbours = 1;    ///< k
+  int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16; work-items of `lanes`: 16, 32 or 64
+  /// Distances kept, in private memory by `select` and where a tile fails, in local by `lanes`.
+  int capacity = 256;
+  int neighbours = 1;       ///< k
   int tile_capacity = 512;  ///< candidates of a tile, `tile` only
   int hits_per_item = 1;    ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
@@ -36,13 +45,19 @@ struct Specialisation {
 
   device::Defines defines() const;
   std::string kernel_file() const;
-  std::uint32_t work_items(std::uint32_t hits) const;
+  /// Work-items that estimate so many hits.
+  std::size_t work_items(std::uint32_t hits) const;
+  /// Work-items of nearest.cl for so many hits.
+  std::uint32_t nearest_items(std::uint32_t hits) const;
   /// Of the arrays that one work-item keeps in private memory.
   std::size_t private_bytes() const;
+  /// Of the local memory of a group: kernels/estimate/lane_memory.clh. 0 but for `lanes`.
+  std::size_t local_bytes() const;
 };
 
 /// The capacities hold the candidates that k photons usually need. Where k does not suit the
-/// strategy, it becomes `select`; work-groups are halved until their private memory is within
+/// strategy, or the lists of a group of `lanes` would not fit into max_local_bytes, it becomes
+/// `select`; work-groups are halved until their private memory is within
 /// max_private_bytes_per_group.
 Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours);
 

@@ -16,6 +16,8 @@ std::string_view name_of(EstimateStrategy strategy) {
       return "heap";
     case EstimateStrategy::tile:
       return "tile";
+    case EstimateStrategy::lanes:
+      return "lanes";
   }
   return "unknown";
 }
@@ -32,8 +34,14 @@ EstimateTuning shipped_tuning(const DeviceInfo& device) {
 namespace estimate {
 
 std::string tuning_problem(const EstimateTuning& tuning) {
-  const auto& widths = vector_widths;
-  if (std::find(widths.begin(), widths.end(), tuning.vector_width) == widths.end()) {
+  const auto is_one_of = [&](const auto& widths) {
+    return std::find(widths.begin(), widths.end(), tuning.vector_width) != widths.end();
+  };
+  if (tuning.strategy == EstimateStrategy::lanes) {
+    if (!is_one_of(lane_widths)) {
+      return fmt::format("lanes of {} work-items: must be 16, 32 or 64", tuning.vector_width);
+    }
+  } else if (!is_one_of(vector_widths)) {
     return fmt::format("vector width {}: must be 1, 4, 8 or 16", tuning.vector_width);
   }
   if (tuning.strategy == EstimateStrategy::tile && tuning.vector_width == 1) {

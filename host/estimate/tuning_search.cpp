@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::array tried_photons_per_cell = {2.0f, 4.0f, 8.0f};
 constexpr std::array tried_hits_per_item = {1, 8, 16, 64};
+constexpr std::array tried_hits_of_lanes = {1, 4, 16};
 constexpr std::array tried_work_group_sizes = {1, 16, 64, 256};
 
 bool groups_fit(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours) {
@@ -32,6 +33,15 @@ std::vector<EstimateTuning> other_strategies(const EstimateTuning& from, const S
   for (const EstimateStrategy strategy : all_estimate_strategies) {
     EstimateTuning tuning = from;
     tuning.strategy = strategy;
+    if (from.strategy == EstimateStrategy::lanes) {
+      tuning.vector_width = 1;
+      tuning.work_group_size = EstimateTuning{}.work_group_size;
+    }
+    if (strategy == EstimateStrategy::lanes) {
+      // Where work-items hold vectors they are no lanes: such kernels crawl on CPUs.
+      if (from.vector_width > 1) continue;
+      tuning.vector_width = tuning.work_group_size = 32;
+    }
     if (strategy == EstimateStrategy::tile) {
       if (needs.glossy) continue;  // estimated one by one, as `select` does
       if (tuning.vector_width == 1) tuning.vector_width = 8;  // a tile of one hit is none
@@ -64,6 +74,11 @@ std::vector<EstimateTuning> alternatives(TuningParameter parameter, const Estima
       break;
     case TuningParameter::vector_width:
       if (from.strategy == EstimateStrategy::heap) break;  // uses no vectors
+      if (from.strategy == EstimateStrategy::lanes) {
+        add(&EstimateTuning::vector_width, lane_widths);
+        for (EstimateTuning& tuning : tunings) tuning.work_group_size = tuning.vector_width;
+        break;
+      }
       add(&EstimateTuning::vector_width, vector_widths);
       if (from.strategy == EstimateStrategy::tile) {
         std::erase_if(tunings,
@@ -74,9 +89,12 @@ std::vector<EstimateTuning> alternatives(TuningParameter parameter, const Estima
     case TuningParameter::hits_per_item:
       if (from.strategy == EstimateStrategy::select) {
         add(&EstimateTuning::hits_per_item, tried_hits_per_item);
+      } else if (from.strategy == EstimateStrategy::lanes) {
+        add(&EstimateTuning::hits_per_item, tried_hits_of_lanes);
       }
       break;
     case TuningParameter::work_group_size:
+      if (from.strategy == EstimateStrategy::lanes) break;  // that of its width
       add(&EstimateTuning::work_group_size, tried_work_group_sizes);
       std::erase_if(tunings, [&](const EstimateTuning& tuning) {
         return !groups_fit(tuning, needs, neighbours);

@@ -16,6 +16,7 @@ void build_tree(MapStructure structure, const Photons& photons, const PhotileGri
                 std::span<std::uint32_t> entries, std::uint32_t first_entry,
                 std::vector<PhotileTreeNode>& nodes) {
   const bool planar = structure == MapStructure::kdtree_2d;
+  std::sort(entries.begin(), entries.end());  // work-items scattered them in any order
   std::vector<glm::vec3> points(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const glm::vec3& position = photons.position[entries[i]];

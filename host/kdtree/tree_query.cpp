@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "device/launch_pace.hpp"
 #include "estimate/query.hpp"
 #include "maps/entry_defines.hpp"
 
@@ -18,6 +19,7 @@ class TreeQuery : public Query {
   TreeQuery(const maps::MapStore& store, const QueryParameters& parameters)
       : store_(store),
         context_(device::context_of(*store.device)),
+        pace_(context_),
         parameters_(parameters),
         sums_(store.needs, parameters.compiled_neighbours) {
     const std::uint32_t neighbours = parameters.neighbours;
@@ -67,18 +69,22 @@ class TreeQuery : public Query {
   }
 
   /// With the arguments of the trees.
-  void run(device::Launch& launch, const PageHits& hits) const {
+  void run(device::Launch& launch, const PageHits& hits) {
     launch.set("root", hits.page.tree_root)
         .set("frames", hits.page.grids)
         .set("nodes", hits.page.tree_nodes);
     if (list_entry_.size() > 0) {
       launch.set("list_distance", list_distance_).set("list_entry", list_entry_);
     }
-    launch.run_no_more(std::min<std::size_t>(hits.count, work_items_), maps::work_group_size);
+    pace_.run(hits.count, 1, [&](std::uint32_t first, std::uint32_t count) {
+      launch.set("first_hit", hits.first + first).set("hit_count", count);
+      launch.run_no_more(std::min<std::size_t>(count, work_items_), maps::work_group_size);
+    });
   }
 
   const maps::MapStore& store_;
   device::Context& context_;
+  device::LaunchPace pace_;
   QueryParameters parameters_;
   LightSums sums_;
   device::Defines defines_;

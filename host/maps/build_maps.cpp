@@ -218,6 +218,7 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
               .store = store,
               .kernels = build_kernels(store, plan.normals),
               .tile_kernels = tile_kernels(store),
+              .in_groups = works_in_groups(context.info()),
               .patches = plan.normals,
               .squared_reach = plan.reach * plan.reach,
               .radius = static_cast<float>(store.parameters.radius),

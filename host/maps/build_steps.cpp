@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 
+#include "kdtree/kdtree_builder.hpp"
 #include "maps/entry_defines.hpp"
 #include "maps/prefix_sum.hpp"
 #include "photile/errors.hpp"
@@ -13,20 +14,51 @@
 namespace photile::maps {
 
 device::KernelSet build_kernels(const MapStore& store, bool patches) {
-  device::Defines defines;
+  device::Defines defines = group_defines(store.device->info());
   set_entry_defines(defines, store.needs);
   if (patches) defines.set("PATCHES");
   return {device::context_of(*store.device), "grid/build.cl", std::move(defines)};
 }
 
 device::KernelSet tile_kernels(const MapStore& store) {
-  return {device::context_of(*store.device), "grid/build_tiles.cl", {}};
+  return {device::context_of(*store.device), "grid/build_tiles.cl",
+          group_defines(store.device->info())};
 }
 
 namespace {
 
 using device::Buffer;
 using device::Context;
+
+/// Cells of more photons are sorted by a group: kernels/grid/sort_cells.cl.
+constexpr std::uint32_t insertion_limit = 48;
+
+/// Groups that sort crowded cells: enough to fill any GPU with what there is of them.
+constexpr std::size_t sorting_groups = 1024;
+
+/// Brings the photons of each cell into ascending order.
+void sort_cells(const Build& build, const MapPage& page) {
+  device::Launch launch = build.kernels.launch("sort_cells");
+  launch.set("cell_count", page.cell_count)
+      .set("cell_start", page.cell_start)
+      .set("entry_photon", page.entry_photon);
+  if (!build.in_groups) {
+    launch.run(page.cell_count, work_group_size);
+    return;
+  }
+  auto crowded = build.context.allocate<std::uint32_t>(1, "number of crowded cells");
+  auto crowded_cell = build.context.allocate<std::uint32_t>(page.entry_count / insertion_limit + 1,
+                                                            "crowded cells");
+  build.context.fill(crowded, 0u);
+  launch.set("crowded", crowded).set("crowded_cell", crowded_cell);
+  launch.run(page.cell_count, work_group_size);
+  build.kernels.launch("sort_crowded")
+      .set("cell_start", page.cell_start)
+      .set("entry_photon", page.entry_photon)
+      .set("crowded", crowded)
+      .set("crowded_cell", crowded_cell)
+      .run_no_more(sorting_groups * group_size, group_size);
+}
 
 /// A launch over photons of a page, given what tells which maps they enter.
 device::Launch photon_launch(const Build& build, const device::KernelSet& kernels,
@@ -214,11 +246,8 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
         .set("entry_photon", page.entry_photon)
         .run(photons.count, work_group_size);
   }
-  build.kernels.launch("sort_cells")
-      .set("cell_count", page.cell_count)
-      .set("cell_start", page.cell_start)
-      .set("entry_photon", page.entry_photon)
-      .run(page.cell_count, work_group_size);
+  // Trees bring them into an order of their own.
+  if (!is_tree(build.store.parameters.structure)) sort_cells(build, page);
 }
 
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,

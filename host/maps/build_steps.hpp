@@ -17,8 +17,9 @@
 
 namespace photile::maps {
 
-/// The kernels that build the maps of `store`, specialised by what its scene needs and by whether
-/// its maps serve several triangles (`patches`).
+/// The kernels that build the maps of `store`, specialised by what its scene needs, by whether its
+/// maps serve several triangles (`patches`), and by whether work-items work in groups
+/// (works_in_groups).
 device::KernelSet build_kernels(const MapStore& store, bool patches);
 
 /// Those that pages need which hold a tile of a map.
@@ -35,6 +36,7 @@ struct Build {
   const MapStore& store;
   device::KernelSet kernels;
   device::KernelSet tile_kernels;
+  bool in_groups;       ///< see works_in_groups
   bool patches;         ///< maps may serve several triangles
   float squared_reach;  ///< square metres: within it of a triangle photons enter its map
   float radius;         ///< metres, of the search

@@ -40,4 +40,21 @@ struct MapStore {
 /// Work-items of a group in every kernel of build and estimate.
 inline constexpr std::size_t work_group_size = 64;
 
+/// That of the kernels whose work-items work together in local memory: kernels/shared/scan.clh,
+/// kernels/grid/sort_cells.cl.
+inline constexpr std::size_t group_size = 256;
+
+/// Whether such kernels are used: anywhere but on CPUs, where work-items of a group run in turn,
+/// and on devices of smaller groups.
+inline bool works_in_groups(const DeviceInfo& device) {
+  return device.type != DeviceType::cpu && device.max_work_group_size >= group_size;
+}
+
+/// What programs with such kernels are built with.
+inline device::Defines group_defines(const DeviceInfo& device) {
+  device::Defines defines;
+  if (works_in_groups(device)) defines.set("IN_GROUPS");
+  return defines;
+}
+
 }  // namespace photile::maps

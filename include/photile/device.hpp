@@ -26,7 +26,14 @@ struct DeviceInfo {
   std::uint64_t local_memory_bytes = 0;
   std::uint64_t max_work_group_size = 0;
   std::uint32_t native_float_width = 0;  ///< the device's native vector width for float
+  std::uint32_t lanes = 0;  ///< work-items that it runs in step, where it says so; else 0
+  /// Single-precision numbers below 1.2e-38 are kept, and quotients and roots are correctly
+  /// rounded. Without, results are right but for their last bits.
+  bool denormals = false, exact_division = false;
   bool is_pocl = false;
+  /// Of the last test of this device, with this driver and these kernels: "passed", what was found
+  /// wrong, or "" where none is remembered; see photile/device_test.hpp.
+  std::string test_result;
 };
 
 /// Every usable device of every platform. A platform without devices is skipped; no platform at all
@@ -34,11 +41,11 @@ struct DeviceInfo {
 std::vector<DeviceInfo> list_devices();
 
 struct DeviceOptions {
-  /// "" = the best (a GPU before PoCL before other CPUs); else "platform:device", an index into
-  /// list_devices(), "cpu", "gpu", or a part of the device's or platform's name. A suffix takes
-  /// sub-devices in place of the whole: "cpu/2" splits it into two of equal size, "cpu=3" is one of
-  /// 3 compute units, "cpu=2+1" are two. Several, separated by commas, or "all" (every device but
-  /// Oclgrind's simulator) are for open_devices.
+  /// "" = the best (a GPU that has passed its test before PoCL before other CPUs); else
+  /// "platform:device", an index into list_devices(), "cpu", "gpu", or a part of the device's or
+  /// platform's name. A suffix takes sub-devices in place of the whole: "cpu/2" splits it into two
+  /// of equal size, "cpu=3" is one of 3 compute units, "cpu=2+1" are two. Several, separated by
+  /// commas, or "all" (every device but Oclgrind's simulator) are for open_devices.
   std::string selector;
   bool use_program_cache = true;
   bool profile = false;            ///< keep event times of every kernel

@@ -18,23 +18,28 @@ namespace photile {
 enum class EstimateStrategy {
   select,  ///< distances of a block of cells in one pass, the k-th by radix selection; no list
   heap,    ///< a bounded max-heap per hit; for k up to max_heap_neighbours, else `select`
-  tile     ///< a vector of neighbouring hits shares one block of candidates
+  tile,    ///< a vector of neighbouring hits shares one block of candidates
+  lanes    ///< as `select`, by a group of work-items that are the lanes of a vector: for GPUs
 };
 
 inline constexpr std::array all_estimate_strategies = {
-    EstimateStrategy::select, EstimateStrategy::heap, EstimateStrategy::tile};
+    EstimateStrategy::select, EstimateStrategy::heap, EstimateStrategy::tile,
+    EstimateStrategy::lanes};
 
 /// Largest k whose heap is kept in private memory.
 inline constexpr int max_heap_neighbours = 256;
 
-/// "select", "heap", "tile".
+/// "select", "heap", "tile", "lanes".
 std::string_view name_of(EstimateStrategy strategy);
 
 struct EstimateTuning {
   EstimateStrategy strategy = EstimateStrategy::select;
-  int vector_width = 1;   ///< floats per vector: 1, 4, 8 or 16
-  int hits_per_item = 1;  ///< neighbouring hits that a work-item estimates in turn; `select` only
-  int work_group_size = 64;  ///< work-items; fewer where their private memory would be too much
+  int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16; of `lanes` 16, 32 or 64 work-items
+  /// Neighbouring hits that a work-item, or a group of `lanes`, estimates in turn; `select` and
+  /// `lanes` only.
+  int hits_per_item = 1;
+  /// Work-items; fewer where their private memory would be too much. That of `lanes` is the width.
+  int work_group_size = 64;
   /// The grids that go with it, for PhotonMapParameters; the estimate itself does not use it.
   float photons_per_cell = defaults::photons_per_cell;
 
@@ -42,8 +47,8 @@ struct EstimateTuning {
 };
 
 /// What is used unless the user asks for another: vector width 16 on every CPU, whatever its own
-/// width, so that pictures agree in every bit between CPUs; scalar elsewhere, where work-items are
-/// the lanes.
+/// width, so that pictures agree in every bit between CPUs; scalar elsewhere. Lanes
+/// are for the tuner to find: not all that they run has been tested.
 EstimateTuning shipped_tuning(const DeviceInfo& device);
 
 /// One measurement of the tuner.

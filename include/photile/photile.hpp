@@ -6,6 +6,7 @@
 #include "photile/defaults.hpp"
 #include "photile/density_kernel.hpp"
 #include "photile/device.hpp"
+#include "photile/device_test.hpp"
 #include "photile/environment_map.hpp"
 #include "photile/errors.hpp"
 #include "photile/estimate_tuning.hpp"

@@ -1,8 +1,13 @@
 // Build, step 6: bring the photons of each cell into ascending order. Work-items scatter in any
 // order; sorted, the map is the same on every run and runtime.
 
-// Cells up to this size are sorted by insertion, larger ones by heap sort (a million photons may
-// lie in one point).
+// Symbols the host defines:
+//   IN_GROUPS   work-items of a group sort a crowded cell together: on a GPU one alone takes
+//   minutes
+//               for a crowd
+
+// Cells up to this size are sorted by insertion, larger ones by heap sort, or by a group (a million
+// photons may lie in one point).
 #ifndef INSERTION_LIMIT
 #define INSERTION_LIMIT 48  // (16 - 64)
 #endif
@@ -15,6 +20,60 @@ void insertion_sort(__global uint* values, uint count) {
     values[j] = value;
   }
 }
+
+#ifdef IN_GROUPS
+
+// One work-item per cell: sorts it, or lists it in crowded_cell. Before: crowded[0] is zero.
+__kernel void sort_cells(uint cell_count, __global const uint* cell_start,
+                         __global uint* entry_photon, __global uint* crowded,
+                         __global uint* crowded_cell) {
+  for (uint cell = get_global_id(0); cell < cell_count; cell += get_global_size(0)) {
+    const uint start = cell_start[cell];
+    const uint count = cell_start[cell + 1] - start;
+    if (count <= INSERTION_LIMIT) {
+      insertion_sort(entry_photon + start, count);
+    } else {
+      crowded_cell[atomic_inc(crowded)] = cell;
+    }
+  }
+}
+
+#define SORT_GROUP 256
+
+// One group per crowded cell, in turn. The order of the list does not matter: the exchanges of a
+// cell are those of Batcher's merge exchange (Knuth, "The Art of Computer Programming", 5.2.2,
+// algorithm M), for any number of values.
+__kernel __attribute__((reqd_work_group_size(SORT_GROUP, 1, 1))) void sort_crowded(
+    __global const uint* cell_start, __global uint* entry_photon, __global const uint* crowded,
+    __global const uint* crowded_cell) {
+  const uint cells = crowded[0];
+  for (uint i = get_group_id(0); i < cells; i += get_num_groups(0)) {
+    const uint cell = crowded_cell[i];
+    __global uint* values = entry_photon + cell_start[cell];
+    const uint count = cell_start[cell + 1] - cell_start[cell];
+    const uint top = 1u << (31 - clz(count - 1u));  // the largest power of two below count
+    for (uint p = top; p > 0; p /= 2) {
+      uint q = top, rest = 0, distance = p;
+      for (;;) {
+        for (uint at = get_local_id(0); at + distance < count; at += SORT_GROUP) {
+          if ((at & p) != rest) continue;
+          const uint low = values[at], high = values[at + distance];
+          if (low > high) {
+            values[at] = high;
+            values[at + distance] = low;
+          }
+        }
+        barrier(CLK_GLOBAL_MEM_FENCE);
+        if (q == p) break;
+        distance = q - p;
+        q /= 2;
+        rest = p;
+      }
+    }
+  }
+}
+
+#else
 
 // Moves values[root] down until the max-heap below it is restored.
 void sift_down(__global uint* values, uint root, uint count) {
@@ -53,3 +112,5 @@ __kernel void sort_cells(uint cell_count, __global const uint* cell_start,
     }
   }
 }
+
+#endif

@@ -6,6 +6,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "estimate/tuning_store.hpp"
+#include "file_bytes.hpp"
 #include "file_folder.hpp"
 #include "source_folder.hpp"
 
@@ -185,6 +186,27 @@ TEST_CASE("PHOTILE_DEVICE chooses the device where --device does not") {
   CHECK_THAT(only_error(run_photile(run), no_device), Contains("no-such-device"));
   run.arguments = {"devices", "--device", "0:0"};
   CHECK(run_photile(run).exit_code == 0);
+}
+
+TEST_CASE("the test of devices passes, and not with kernels that compute wrong areas", "[slow]") {
+  const FileFolder folder;
+  Run run;
+  run.arguments = {"devices", "--test"};
+  const Outcome right = run_photile(run);
+  CHECK(right.exit_code == 0);
+  CHECK_THAT(right.output, Contains("passed ("));
+
+  const auto file = std::filesystem::path("surface/clipped_disc.clh");
+  std::string text = bytes_of(source_folder() / "kernels" / file);
+  const std::string area = "disc->area = whole_disc";
+  REQUIRE(text.find(area) != std::string::npos);
+  text.insert(text.find(area) + std::string("disc->area = ").size(), "1.01f * ");
+  std::filesystem::create_directories(folder / "kernels/surface");
+  std::ofstream(folder / "kernels/surface/clipped_disc.clh") << text;
+  run.environment["PHOTILE_KERNEL_DIR"] = folder / "kernels";
+  const Outcome wrong = run_photile(run);
+  CHECK_THAT(wrong.output, Contains("not passed: the irradiance of hit"));
+  CHECK_THAT(last_error(wrong, no_device), Contains("computes wrong results"));
 }
 
 }  // namespace photile::test

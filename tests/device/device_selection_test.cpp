@@ -12,6 +12,7 @@ using photile::DeviceInfo;
 using photile::DeviceType;
 using photile::device::DeviceChoice;
 using photile::device::select_devices;
+using photile::device::untested_gpu;
 using Choices = std::vector<DeviceChoice>;
 
 DeviceInfo make(const char* id, const char* name, const char* platform, DeviceType type,
@@ -26,12 +27,17 @@ DeviceInfo make(const char* id, const char* name, const char* platform, DeviceTy
   return info;
 }
 
+DeviceInfo passed(DeviceInfo device) {
+  device.test_result = "passed";
+  return device;
+}
+
 const std::vector<DeviceInfo> machine = {
     make("0:0", "Oclgrind Simulator", "Oclgrind", DeviceType::cpu),
     make("2:0", "Xeon", "Intel(R) OpenCL", DeviceType::cpu),
     make("3:0", "pthread-skylake", "Portable Computing Language", DeviceType::cpu, true),
-    make("4:0", "GeForce 1", "NVIDIA CUDA", DeviceType::gpu),
-    make("4:1", "GeForce 2", "NVIDIA CUDA", DeviceType::gpu),
+    passed(make("4:0", "GeForce 1", "NVIDIA CUDA", DeviceType::gpu)),
+    passed(make("4:1", "GeForce 2", "NVIDIA CUDA", DeviceType::gpu)),
     make("5:0", "R9 200 / HD 7900", "AMD", DeviceType::accelerator),
 };
 
@@ -58,6 +64,28 @@ TEST_CASE("without a selector a GPU comes first, then PoCL, other CPUs, the simu
   CHECK(select_device(std::span(machine).first(3), "") == 2);
   CHECK(select_device(std::span(machine).first(2), "") == 1);
   CHECK(select_device(std::span(machine).first(1), "") == 0);
+}
+
+TEST_CASE("a GPU that has not passed its test is taken by default only where it is alone") {
+  const Variable none("");
+  std::vector<DeviceInfo> devices = machine;
+  for (const char* result : {"", "the mean irradiance is 2 where 1 is right"}) {
+    devices[3].test_result = devices[4].test_result = result;
+    CHECK(select_device(devices, "") == 2);
+    CHECK(select_device(devices, "gpu") == 3);
+    const auto why = untested_gpu(devices, devices[2]);
+    CHECK_THAT(why,
+               Catch::Contains("4:0 GeForce 1 is not used") && Catch::Contains("--device 4:0"));
+    CHECK_THAT(why, Catch::Contains(*result == '\0' ? "photile devices --test" : result));
+    CHECK(select_device(std::span(devices).subspan(3, 2), "") == 0);
+    CHECK_THAT(untested_gpu(std::span(devices).subspan(3, 2), devices[3]),
+               Catch::Contains("no other device"));
+  }
+  devices[3].test_result = "";
+  devices[4].test_result = "passed";
+  CHECK(select_device(devices, "") == 4);
+  CHECK(untested_gpu(devices, devices[4]).empty());
+  CHECK(untested_gpu(std::span(devices).first(3), devices[2]).empty());
 }
 
 TEST_CASE("a selector is platform:device, an index, a type or a part of a name") {

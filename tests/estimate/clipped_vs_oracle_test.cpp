@@ -9,6 +9,7 @@
 #include "photon_sets.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"
+#include "test_tunings.hpp"
 
 namespace photile::test {
 namespace {
@@ -37,18 +38,19 @@ void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits
   const auto expected = expected_clipped(scene, photons, hits, k, radius, kernel);
   const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
   for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_3d}) {
-    for (const EstimateStrategy strategy : all_estimate_strategies) {
-      if (structure != MapStructure::uniform_grid && strategy != EstimateStrategy::select) continue;
+    for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
+      if (structure != MapStructure::uniform_grid && tuning.strategy != EstimateStrategy::select) {
+        continue;
+      }
       const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
       EstimateParameters parameters;
       parameters.neighbours = k;
       parameters.kernel = kernel;
-      parameters.tuning = shipped_tuning(test::device().info());
-      parameters.tuning->strategy = strategy;
+      parameters.tuning = tuning;
       const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
       const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
       REQUIRE(irradiance.size() == hits.size() * lights);
-      CAPTURE(name_of(structure), static_cast<int>(strategy), name_of(kernel), k, radius, lights);
+      CAPTURE(name_of(structure), name_of(tuning.strategy), name_of(kernel), k, radius, lights);
       CHECK(test::worst_difference(irradiance, expected) <= area_tolerance);
     }
   }

@@ -5,6 +5,7 @@
 #include "estimates_comparison.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
+#include "test_tunings.hpp"
 
 namespace photile::test {
 namespace {
@@ -116,10 +117,8 @@ TEST_CASE("radiance under normal maps equals the BSDF summed over the oracle's n
                         {radius, 4});
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius);
-  for (const EstimateStrategy strategy : all_estimate_strategies) {
-    CAPTURE(static_cast<int>(strategy));
-    EstimateTuning tuning = shipped_tuning(test::device().info());
-    tuning.strategy = strategy;
+  for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
+    CAPTURE(name_of(tuning.strategy));
     const Estimates estimates =
         Estimator(maps, scene, {.neighbours = k, .tuning = tuning, .area = AreaMode::disc})
             .estimate(hits);

@@ -5,6 +5,7 @@
 #include "estimates_comparison.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
+#include "test_tunings.hpp"
 
 namespace photile::test {
 namespace {
@@ -25,12 +26,11 @@ struct Subject {
   }
 
   Estimates estimate(DensityKernel kernel, int k, MapStructure structure = {},
-                     EstimateStrategy strategy = EstimateStrategy::select) const {
+                     const std::optional<EstimateTuning>& tuning = std::nullopt) const {
     const PhotonMaps maps(test::device(), scene, photons,
                           find_neighbour_groups(scene, {radius, 60}), {radius, 4, structure});
     EstimateParameters parameters{.neighbours = k, .area = AreaMode::disc, .kernel = kernel};
-    parameters.tuning = shipped_tuning(test::device().info());
-    parameters.tuning->strategy = strategy;
+    parameters.tuning = tuning;
     return Estimator(maps, scene, parameters).estimate(hits);
   }
 };
@@ -70,9 +70,9 @@ TEST_CASE("weighted irradiance equals the oracle's for every structure and strat
     const Estimates estimates = subject.estimate(kernel, k, structure);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
-  for (const EstimateStrategy strategy : all_estimate_strategies) {
-    CAPTURE(static_cast<int>(strategy));
-    const Estimates estimates = subject.estimate(kernel, k, MapStructure::uniform_grid, strategy);
+  for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
+    CAPTURE(name_of(tuning.strategy));
+    const Estimates estimates = subject.estimate(kernel, k, MapStructure::uniform_grid, tuning);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
 }
@@ -91,9 +91,9 @@ TEST_CASE("with fewer than k photons within the radius weights go by the full ra
   const Subject subject(1, 400);
   const DensityKernel kernel = GENERATE(from_range(weighting));
   constexpr int k = 50;
-  for (const EstimateStrategy strategy : all_estimate_strategies) {
-    CAPTURE(name_of(kernel), static_cast<int>(strategy));
-    const Estimates estimates = subject.estimate(kernel, k, MapStructure::uniform_grid, strategy);
+  for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
+    CAPTURE(name_of(kernel), name_of(tuning.strategy));
+    const Estimates estimates = subject.estimate(kernel, k, MapStructure::uniform_grid, tuning);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
 }

@@ -132,10 +132,11 @@ TEST_CASE("kernels hold no text of lobes or lights that the scene does not have"
   const std::vector<std::string> light_words{"entry_light"};
   const std::vector<std::string> many_words{"slot_light", "slots_taken"};
   for (const EstimateStrategy strategy : all_estimate_strategies) {
+    const bool lanes = strategy == EstimateStrategy::lanes;
     for (const SceneNeeds& needs : {diffuse_of(1), diffuse_of(5), diffuse_of(300), glossy_of(1),
                                     glossy_of(5), glossy_of(300)}) {
       const estimate::Specialisation choice =
-          estimate::specialise({.strategy = strategy}, needs, 50);
+          estimate::specialise({.strategy = strategy, .vector_width = lanes ? 32 : 1}, needs, 50);
       CAPTURE(choice.kernel_file(), needs.glossy, needs.light_count);
       const std::string text = preprocessed(choice.kernel_file(), choice.defines());
       CHECK(found(text, glossy_words) == (needs.glossy ? "all" : "none"));

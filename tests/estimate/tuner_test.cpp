@@ -30,6 +30,7 @@ constexpr SceneNeeds glossy{.glossy = true, .light_count = 5};
 DeviceInfo device_of_type(DeviceType type) {
   DeviceInfo info;
   info.type = type;
+  info.max_work_group_size = 1024;
   return info;
 }
 
@@ -122,6 +123,7 @@ TEST_CASE("a tuning file that cannot be written is an error that names it") {
 
 TEST_CASE("no work-group uses more private memory than allowed, whatever the tuning and k") {
   for (const EstimateStrategy strategy : all_estimate_strategies) {
+    if (strategy == EstimateStrategy::lanes) continue;  // keeps it in local memory
     for (const int width : vector_widths) {
       for (const int group : {1, 16, 64, 256}) {
         for (const int k : {1, 50, 256, 257, 1008, limits::max_neighbours}) {
@@ -132,6 +134,24 @@ TEST_CASE("no work-group uses more private memory than allowed, whatever the tun
             CHECK(choice.work_group_size * choice.private_bytes() <= 512u * 1024);
           }
         }
+      }
+    }
+  }
+}
+
+TEST_CASE("groups of lanes keep to the local memory that every device has, or are none") {
+  const SceneNeeds many_lights{.glossy = true, .light_count = 300};
+  for (const int width : lane_widths) {
+    for (const int k : {1, 50, 1000, 3000, 10'000, limits::max_neighbours}) {
+      for (const SceneNeeds& needs : {one_light, several_lights, glossy, many_lights}) {
+        const Specialisation choice =
+            specialise({EstimateStrategy::lanes, width, 4, width}, needs, k);
+        CAPTURE(width, k, needs.light_count);
+        CHECK(choice.local_bytes() <= 32u * 1024);
+        const bool lanes = choice.strategy == EstimateStrategy::lanes;
+        if (lanes) CHECK(choice.work_group_size == static_cast<std::size_t>(width));
+        if (k <= 1000) CHECK(lanes);
+        if (lanes) CHECK(choice.capacity % width == 0);
       }
     }
   }
@@ -226,7 +246,9 @@ TEST_CASE(
     CHECK(trial.microseconds_per_hit > 0);
     if (std::isfinite(trial.microseconds_per_hit)) strategies.insert(trial.tuning.strategy);
   }
-  CHECK(strategies.size() == all_estimate_strategies.size());
+  // A CPU's vectors are no lanes, and their kernels are not compiled for it.
+  CHECK(strategies == std::set<EstimateStrategy>{EstimateStrategy::select, EstimateStrategy::heap,
+                                                 EstimateStrategy::tile});
 }
 
 TEST_CASE("the tuner's sample holds what it says and is the same every time") {

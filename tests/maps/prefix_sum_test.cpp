@@ -4,12 +4,16 @@
 #include <numeric>
 #include <random>
 
+#include "maps/map_store.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
 namespace {
 
-device::KernelSet kernels() { return {device::context_of(test::device()), "shared/scan.clh", {}}; }
+device::KernelSet kernels() {
+  return {device::context_of(test::device()), "shared/scan.clh",
+          maps::group_defines(test::device().info())};
+}
 
 }  // namespace
 

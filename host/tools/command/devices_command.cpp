@@ -9,8 +9,10 @@
 
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
+#include "photile/device_test.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/statistics.hpp"
 #include "render/kernel_preparation.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/number_format.hpp"
@@ -29,6 +31,7 @@ struct DevicesOptions {
   bool json = false;
   bool tune = false;
   bool compile = false;
+  bool test = false;
   int neighbours = defaults::neighbours;
 };
 
@@ -61,6 +64,10 @@ json device_json(const DeviceInfo& device, bool selected) {
           {"local_memory_bytes", device.local_memory_bytes},
           {"max_work_group_size", device.max_work_group_size},
           {"native_float_width", device.native_float_width},
+          {"lanes", device.lanes},
+          {"denormals", device.denormals},
+          {"exact_division", device.exact_division},
+          {"test_result", device.test_result},
           {"selected", selected}};
 }
 
@@ -89,7 +96,30 @@ void run_compilation(const DevicesOptions& options) {
   }
 }
 
+/// Of the devices that the selector means, or of all but the simulator. Errors: DeviceError where
+/// one does not pass.
+void run_tests(const DevicesOptions& options) {
+  handle_signals();
+  const std::string selector = options.selector.empty() ? "all" : options.selector;
+  std::size_t failed = 0;
+  for (Device& device : open_devices({.selector = selector})) {
+    const Stopwatch stopwatch;
+    const std::string problem = test_device_and_remember(device);
+    failed += !problem.empty();
+    std::cout << fmt::format("{:<5} {}: {} ({:.1f} s)", device.info().id, device.info().name,
+                             problem.empty() ? "passed" : "not passed: " + problem,
+                             stopwatch.seconds())
+              << std::endl;
+  }
+  if (failed > 0) {
+    throw DeviceError(
+        "a device computes wrong results; choose another one by --device, or update "
+        "its driver");
+  }
+}
+
 void run_devices(const DevicesOptions& options) {
+  if (options.test) return run_tests(options);
   if (options.tune) return run_tuning(options);
   if (options.compile) return run_compilation(options);
   // Opening the device asks the very code that `render` asks; without any device it says so.
@@ -135,6 +165,12 @@ void add_devices_command(CLI::App& photile) {
       ->add_flag("--compile", options->compile,
                  "compile the kernels of usual scenes ahead, so that the first picture of each is "
                  "as quick as later ones")
+      ->excludes(json)
+      ->excludes(tune);
+  command
+      ->add_flag("--test", options->test,
+                 "test what each device computes, which decides if a GPU is taken by default; "
+                 "takes seconds")
       ->excludes(json)
       ->excludes(tune);
   command->add_option("-k,--neighbours", options->neighbours, "photons of an estimate to tune for")

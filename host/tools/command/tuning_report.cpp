@@ -34,6 +34,9 @@ std::string tuning_words(const EstimateTuning& tuning) {
   if (tuning.strategy == EstimateStrategy::select) {
     words += fmt::format(", {} hits a work-item", tuning.hits_per_item);
   }
+  if (tuning.strategy == EstimateStrategy::lanes) {
+    words += fmt::format(", {} hits a group", tuning.hits_per_item);
+  }
   return words + fmt::format(", work-groups of {}, {:g} photons a cell", tuning.work_group_size,
                              tuning.photons_per_cell);
 }
