@@ -51,9 +51,15 @@ void add_options(CLI::App& command, BenchOptions& options) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command.add_option("--device", options.device, "OpenCL device, as for photile --device");
+  command
+      .add_option("--kernel", options.kernels,
+                  "folder of kernel files, as kernels/: those that it has are compiled in place of "
+                  "the built-in ones")
+      ->type_name("DIR");
   command.add_option("-o,--output", options.output, "JSON file");
   command.callback([&options, repeats] {
     if (options.quick && repeats->empty()) options.repeats.most = 1;
+    if (!options.kernels.empty()) setenv("PHOTILE_KERNEL_DIR", options.kernels.c_str(), 1);
   });
 }
 
@@ -74,7 +80,8 @@ BenchRecord::BenchRecord(const std::string& bench, const BenchOptions& options)
   json_["versions"] = {{"photile", PHOTILE_VERSION}, {"compiler", __VERSION__}};
   json_["settings"] = {{"quick", options.quick},
                        {"repeats", options.repeats.most},
-                       {"seconds per case", options.repeats.seconds_per_case}};
+                       {"seconds per case", options.repeats.seconds_per_case},
+                       {"kernels", options.kernels}};
   json_["results"] = nlohmann::json::array();
 }
 

@@ -15,7 +15,8 @@ struct BenchOptions {
   bool quick = false;  ///< tiny sizes: shows that the bench works, times nothing
   Repeats repeats;
   std::filesystem::path output;  ///< JSON file; empty = none
-  std::string device;  ///< selector as for `photile --device`; "" = PHOTILE_DEVICE or best
+  std::string device;   ///< selector as for `photile --device`; "" = PHOTILE_DEVICE or best
+  std::string kernels;  ///< folder of kernel files in place of the built-in ones; "" = none
 };
 
 /// Adds the options that every bench has. With --quick there is one repeat, unless --repeats says

@@ -1,0 +1,60 @@
+"""bench/compare.py: what it calls a change, and what it refuses."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench/compare.py"
+
+
+def row(structure, times, k=50):
+    return {"workload": "plane", "structure": structure, "k": k, "references": 7,
+            "seconds": {"median": sorted(times)[len(times) // 2], "min": min(times),
+                        "max": max(times), "samples": times}}
+
+
+def record(rows, bench="knn", driver="1"):
+    return {"bench": bench, "device": {"driver": driver}, "results": rows}
+
+
+class CompareTest(unittest.TestCase):
+    def run_on(self, before, after):
+        with tempfile.TemporaryDirectory() as folder:
+            files = []
+            for name, content in (("before", before), ("after", after)):
+                files.append(pathlib.Path(folder, name + ".json"))
+                files[-1].write_text(content if isinstance(content, str) else json.dumps(content))
+            return subprocess.run([sys.executable, SCRIPT, *files], capture_output=True, text=True)
+
+    def test_ranges_that_overlap_are_noise(self):
+        result = self.run_on(record([row("grid", [1.0, 1.1, 1.3])]),
+                             record([row("grid", [1.2, 1.4, 1.5])]))
+        self.assertEqual(result.stdout, "0 of 1 times changed beyond the noise\n")
+
+    def test_slower_and_faster_have_the_factor_of_the_medians(self):
+        result = self.run_on(record([row("grid", [1.0, 1.1, 1.2]), row("tree", [4, 5, 6])]),
+                             record([row("tree", [2, 2.5, 3]), row("grid", [2.1, 2.2, 2.3])]))
+        self.assertIn("2.00 x slower: k 50, grid, plane, seconds 1.1 -> 2.2 s", result.stdout)
+        self.assertIn("2.00 x faster: k 50, tree, plane", result.stdout)
+        self.assertIn("2 of 2 times", result.stdout)
+
+    def test_rows_of_one_file_and_other_drivers_are_named(self):
+        result = self.run_on(record([row("grid", [1]), row("grid", [1], k=16)]),
+                             record([row("grid", [1]), row("tree", [1])], driver="2"))
+        self.assertIn("only before: k 16, grid, plane", result.stdout)
+        self.assertIn("only after: k 50, tree, plane", result.stdout)
+        self.assertIn("not the same: device, driver: 1 -> 2", result.stdout)
+
+    def test_other_files_are_refused_in_a_line(self):
+        for before in ("{", "[]", record([], bench="build")):
+            result = self.run_on(before, record([]))
+            self.assertNotEqual(result.returncode, 0)
+            self.assertTrue(result.stderr.startswith("compare.py: error: "))
+            self.assertEqual(result.stderr.count("\n"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
