@@ -175,7 +175,9 @@ def table(header, rows):
 
 def cost_row(name, run):
     photons = run.get("photons")
-    return [name, f"{run['processor']:.2f} ({run['least']:.2f}-{run['most']:.2f})",
+    several = run["least"] < run["most"]
+    scatter = f" ({run['least']:.2f}-{run['most']:.2f})" if several else ""
+    return [name, f"{run['processor']:.2f}{scatter}",
             f"{run['seconds']:.2f}", f"{run['bytes'] / 1e6:.0f}",
             f"{run['bytes'] / photons:.0f}" if photons else "-", told(run)]
 
