@@ -7,7 +7,7 @@
 namespace photile {
 namespace {
 
-constexpr int rows_per_read = 256;
+constexpr int rows_per_channel_read = 256;
 
 }  // namespace
 
@@ -19,8 +19,8 @@ void check_pixels(const std::filesystem::path& file) {
   image::PictureFile source(file);
   const int height = source.header().height;
   for (const std::size_t channel : source.first_channels()) {
-    for (int first = 0; first < height; first += rows_per_read) {
-      source.read(channel, first, std::min(first + rows_per_read, height));
+    for (int first = 0; first < height; first += rows_per_channel_read) {
+      source.read(channel, first, std::min(first + rows_per_channel_read, height));
     }
   }
 }
@@ -34,8 +34,8 @@ Image read_image(const std::filesystem::path& file) {
     image.channels.resize(image.channel_names.size());
     for (std::vector<float>& plane : image.channels) plane.reserve(image.pixels());
     // All channels of some rows, so that what is decoded at a time is little.
-    for (int first = 0; first < image.height; first += rows_per_read) {
-      const int end = std::min(first + rows_per_read, image.height);
+    for (int first = 0; first < image.height; first += rows_per_channel_read) {
+      const int end = std::min(first + rows_per_channel_read, image.height);
       for (std::size_t i = 0; i < image.channels.size(); ++i) {
         const std::vector<float> rows = source.read(i, first, end);
         image.channels[i].insert(image.channels[i].end(), rows.begin(), rows.end());
