@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/input_file.hpp"
 #include "image/layer_set.hpp"
 #include "image/light_change.hpp"
 #include "image/picture_file.hpp"
@@ -143,16 +144,6 @@ class RelitPicture : public LayeredPicture {
   std::vector<Factors> factors_;  ///< per light
 };
 
-/// Whatever is wrong with what a file holds, by its name.
-template <class Work>
-auto about(const std::filesystem::path& file, const Work& work) {
-  try {
-    return work();
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
-  }
-}
-
 }  // namespace
 
 Image relight(const Image& layered, const std::vector<LightChange>& changes) {
@@ -169,10 +160,11 @@ std::unique_ptr<LayeredPicture> relit_picture(const std::filesystem::path& file,
   const std::size_t channels = source->header().channel_names.size();
   const bool much = channels > few || source->header().pixels() * channels > little / sizeof(float);
   if (much && source->channels_of_largest_part() <= few) {
-    return about(file, [&] { return std::make_unique<RelitPicture>(std::move(source), changes); });
+    return about_file(file,
+                      [&] { return std::make_unique<RelitPicture>(std::move(source), changes); });
   }
   auto image = std::make_shared<const Image>(read_image(file));
-  return about(file, [&] {
+  return about_file(file, [&] {
     return std::make_unique<RelitPicture>(std::make_unique<image::ImageRows>(std::move(image)),
                                           changes);
   });
@@ -180,7 +172,7 @@ std::unique_ptr<LayeredPicture> relit_picture(const std::filesystem::path& file,
 
 LightMix read_light_mix(const std::filesystem::path& file) {
   const PictureHeader header = read_header(file);
-  return about(file, [&] { return read_light_mix(header); });
+  return about_file(file, [&] { return read_light_mix(header); });
 }
 
 LightMix read_light_mix(const PictureHeader& layered) {

@@ -159,6 +159,23 @@ TEST_CASE("relight names the picture that lacks what it needs") {
                Contains("plain.exr: ") && Contains("no light layers"));
   }
   CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
+  // Layers of another program.
+  for (const char* channel : {".R", ".G", ".B"}) {
+    plain.add("Combined_lamp" + std::string(channel)).assign(16, 0.5f);
+  }
+  write_exr(folder / "layers.exr", plain);
+  const std::string out = folder / "out.exr", drawing = folder / "l.png";
+  const auto [more, code, reason] =
+      GENERATE_COPY(table<std::vector<std::string>, int, std::string>({
+          {{"--illuminance", drawing}, bad_input, "no illuminance"},
+          {{"--luminance", drawing}, bad_input, "cd/m2"},
+          {{"-o", out, "--light", "lamp=3W"}, usage, "does not say its power"},
+          {{"-o", out, "--light", "sun=off"}, usage, "no light 'sun'"},
+      }));
+  std::vector<std::string> arguments{"relight", folder / "layers.exr"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  CHECK_THAT(last_error(run_photile(arguments), code),
+             Contains("layers.exr: ") && Contains(reason));
 }
 
 TEST_CASE("a lamp turned up beyond what files hold is told with its name and its pixels") {

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/ascii_text.hpp"
+#include "common/input_file.hpp"
 #include "photile/errors.hpp"
 #include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"
@@ -63,7 +64,8 @@ std::vector<std::filesystem::path> PictureOutputs::files() const {
   return all;
 }
 
-void PictureOutputs::write(const LayeredPicture& picture, Progress& notes) const {
+void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
+                           const std::filesystem::path& source) const {
   // First, for the picture may lack them.
   std::vector<float> lux, candela;
   Image root, displayed;
@@ -71,8 +73,10 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes) const
     root = picture.root();
     displayed = tone_map(root, tone_mapping_);
   }
-  if (!illuminance_.empty()) lux = measuring::illuminance_of(picture);
-  if (!luminance_.empty()) candela = measuring::luminance_of(root);
+  about_file(source, [&] {
+    if (!illuminance_.empty()) lux = measuring::illuminance_of(picture);
+    if (!luminance_.empty()) candela = measuring::luminance_of(root);
+  });
 
   for (const auto& file : exr_) write_exr(file, picture);
   for (const auto& file : png_) write_png(file, displayed);

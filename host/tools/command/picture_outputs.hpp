@@ -41,7 +41,9 @@ class PictureOutputs {
   /// luminance in false colour. `notes` are told what a drawing lacks.
   /// Errors: OutputError; the file that it names is then as it was before. Those of `picture`, of
   /// measuring::illuminance_of and luminance_of; then nothing is written.
-  void write(const LayeredPicture& picture, Progress& notes = Progress::none()) const;
+  ///   source   the file that the picture is from, named where it lacks something
+  void write(const LayeredPicture& picture, Progress& notes = Progress::none(),
+             const std::filesystem::path& source = {}) const;
 
  private:
   std::vector<std::filesystem::path> exr_, png_;

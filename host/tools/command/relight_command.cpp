@@ -48,7 +48,7 @@ void run_relight(const RelightOptions& options) {
   const std::unique_ptr<LayeredPicture> picture = relit_picture(options.input, changes);
   throw_if_stop_requested();
   TerminalProgress notes(false);
-  outputs.write(*picture, notes);
+  outputs.write(*picture, notes, options.input);
 }
 
 }  // namespace
