@@ -43,7 +43,7 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
                                             plan.maps(0, radius), progress),
                          levels, layer_powers_);
   };
-  ends_ = plan.ends(0, radius, traced.photons, layer_powers_);
+  ends_ = plan.ends(0, radius, scene, traced.photons, layer_powers_);
   photons_.emplace(estimators_of(std::move(traced.photons)));
   if (traced.caustics.size() > 0) caustics_.emplace(estimators_of(std::move(traced.caustics)));
 }

@@ -36,6 +36,18 @@ double mean_photon(const Photons& photons, std::span<const double> powers) {
   return photons.size() == 0 ? 0 : sum / static_cast<double>(photons.size());
 }
 
+/// Metres, 0 without photons: a sixteenth of the distance of photons that are spread evenly over
+/// the triangles that have some. Estimates that find a photon take more surface.
+double least_spacing(const Scene& scene, const Photons& photons) {
+  double area = 0;
+  for (std::uint32_t sided = 0; sided + 1 < photons.first_of.size(); ++sided) {
+    if (photons.first_of[sided + 1] > photons.first_of[sided]) {
+      area += triangle_area(scene, sided / 2);
+    }
+  }
+  return photons.size() == 0 ? 0 : std::sqrt(area / static_cast<double>(photons.size())) / 16;
+}
+
 /// Writes the light of hits, or its errors, one after another, from nodes or from their own
 /// estimates.
 class Blend {
@@ -107,13 +119,15 @@ class Blend {
 
 }  // namespace
 
-LightMapParameters light_map_parameters(const Photons& photons, int neighbours, double radius,
-                                        double angle_degrees, double detail,
+LightMapParameters light_map_parameters(const Scene& scene, const Photons& photons, int neighbours,
+                                        double radius, double angle_degrees, double detail,
                                         std::span<const double> powers) {
   // The radius is so many times the distance to the k-th photon of a typical estimate.
   const double reach = radius / defaults::radius_over_median_kth_distance;
   LightMapParameters parameters;
-  const double steps = std::round(std::log2(reach / defaults::light_map_spacing));
+  const double steps =
+      std::max(std::round(std::log2(reach / defaults::light_map_spacing)),
+               std::ceil(std::log2(least_spacing(scene, photons) / defaults::light_map_spacing)));
   parameters.spacing = defaults::light_map_spacing * std::exp2(steps);
   if (detail > 0) {
     // One more where the division is a rounding above a power of two would halve the detail again.

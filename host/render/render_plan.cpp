@@ -141,18 +141,19 @@ std::vector<EstimateParameters> RenderPlan::estimates(
   return levels;
 }
 
-LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const Photons& photons,
+LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const Scene& scene,
+                                          const Photons& photons,
                                           std::span<const double> powers) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
-  return light_map_parameters(photons, estimate.neighbours, estimate.radius, used_.angle_degrees,
-                              used_.light_map_detail, powers);
+  return light_map_parameters(scene, photons, estimate.neighbours, estimate.radius,
+                              used_.angle_degrees, used_.light_map_detail, powers);
 }
 
-LightMapParameters RenderPlan::ends(int pass, double first_radius, const Photons& photons,
-                                    std::span<const double> powers) const {
+LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& scene,
+                                    const Photons& photons, std::span<const double> powers) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
   LightMapParameters parameters = light_map_parameters(
-      photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0, powers);
+      scene, photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0, powers);
   // A point sees many ends: what their nodes are wrong by between each other cancels out.
   parameters.spacing *= 2;
   parameters.levels = 1;

@@ -33,8 +33,8 @@ class RenderPlan {
   const RenderParameters& used() const { return used_; }
 
   int passes() const { return used_.passes; }
-  /// Whether the photons of all passes may be kept at once: their number was asked for, and does not
-  /// follow from the memory.
+  /// Whether the photons of all passes may be kept at once: their number was asked for, and does
+  /// not follow from the memory.
   bool may_keep_passes() const { return passes() == 1 || asked_passes_ > 0; }
   bool gathers() const { return used_.final_gather_rays > 0; }
   bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
@@ -65,11 +65,11 @@ class RenderPlan {
 
   /// Of light maps from the photons of this pass.
   ///   powers   per layer
-  LightMapParameters light_maps(int pass, double first_radius, const Photons& photons,
-                                std::span<const double> powers) const;
+  LightMapParameters light_maps(int pass, double first_radius, const Scene& scene,
+                                const Photons& photons, std::span<const double> powers) const;
 
   /// Of light maps where gathering rays end.
-  LightMapParameters ends(int pass, double first_radius, const Photons& photons,
+  LightMapParameters ends(int pass, double first_radius, const Scene& scene, const Photons& photons,
                           std::span<const double> powers) const;
   /// At nodes of light maps.
   ///   first_radius   of the first pass, metres

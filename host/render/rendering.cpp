@@ -153,8 +153,8 @@ void Rendering::wait_with(PreparedPhotons& prepared, const KeepPhotons* keep) {
 }
 
 void Rendering::choose_light_maps(int pass, const Photons& photons) {
-  light_map_parameters_ = plan_.light_maps(pass, radius_, photons, layer_powers_);
-  end_parameters_ = plan_.ends(pass, radius_, photons, layer_powers_);
+  light_map_parameters_ = plan_.light_maps(pass, radius_, scene_, photons, layer_powers_);
+  end_parameters_ = plan_.ends(pass, radius_, scene_, photons, layer_powers_);
 }
 
 std::optional<LightMapContents> Rendering::light_map_contents() const {

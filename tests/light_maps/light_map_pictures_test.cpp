@@ -9,10 +9,13 @@
 #include <memory>
 
 #include "photile/light_groups.hpp"
+#include "photile/photon_tracer.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene_needs.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
+#include "render/light_map_estimates.hpp"
+#include "render/neighbour_choice.hpp"
 #include "render/pictures.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -76,6 +79,24 @@ TEST_CASE("Light maps are no farther from a lamp's closed form than estimates at
   CAPTURE(by_maps, at_hits);
   CHECK(at_hits < 2.0 / 200);  // noise of k photons, and some bias
   CHECK(by_maps <= 1.02 * at_hits);
+}
+
+TEST_CASE("Nodes are as far apart as the radius asks, and no more than 512 to a photon",
+          "[light_map_pictures]") {
+  const Scene scene = test::furnished_room(2);
+  const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 2'000}).photons;
+  const std::vector<double> powers = layer_powers(scene);
+  const auto spacing = [&](double radius) {
+    return light_map_parameters(scene, photons, 100, radius, 60, 0, powers).spacing;
+  };
+  CHECK(spacing(0.4) == 2 * spacing(0.2));
+  CHECK(spacing(0.4) < 0.4);
+  double area = 0;
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) area += triangle_area(scene, t);
+  for (const double radius : {1e-4, 1e-8, 1e-12}) {
+    CAPTURE(radius);
+    CHECK(area / (spacing(radius) * spacing(radius)) < 512.0 * static_cast<double>(photons.size()));
+  }
 }
 
 TEST_CASE("Pictures that read light maps are the same bits on one, two and three threads",
