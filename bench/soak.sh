@@ -41,7 +41,7 @@ for target in "${targets[@]}"; do
   fi
   corpus=build/soak/$target
   mkdir -p "$corpus"
-  options=(-timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=65536 -use_value_profile=1)
+  options=(-timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=256 -max_len=65536 -use_value_profile=1)
   [[ -f tests/fuzz/$target.dict ]] && options+=("-dict=tests/fuzz/$target.dict")
   PHOTILE_FUZZ_TARGET=$target nice -n 19 build/fuzzers/tests/fuzz/photile_fuzz "${options[@]}" \
     -max_total_time="$seconds" -print_final_stats=1 -artifact_prefix="build/soak/$target-" \

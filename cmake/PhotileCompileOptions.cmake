@@ -7,7 +7,7 @@ target_compile_options(photile_compile_options INTERFACE
 # The many executables of the tests are linked in a tenth of the time by GNU gold (of binutils).
 include(CheckLinkerFlag)
 check_linker_flag(CXX -fuse-ld=gold PHOTILE_HAS_GOLD)
-if(PHOTILE_HAS_GOLD AND NOT PHOTILE_SANITIZE)
+if(PHOTILE_HAS_GOLD AND NOT PHOTILE_SANITIZE AND NOT PHOTILE_SANITIZE_THREADS)
   add_link_options(-fuse-ld=gold)
 endif()
 if(PHOTILE_SANITIZE)
@@ -15,4 +15,8 @@ if(PHOTILE_SANITIZE)
     -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all
     -fno-omit-frame-pointer)
   target_link_options(photile_compile_options INTERFACE -fsanitize=address,undefined)
+endif()
+if(PHOTILE_SANITIZE_THREADS)
+  target_compile_options(photile_compile_options INTERFACE -fsanitize=thread)
+  target_link_options(photile_compile_options INTERFACE -fsanitize=thread)
 endif()

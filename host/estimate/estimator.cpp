@@ -143,20 +143,6 @@ Estimator::Estimator(const PhotonMaps& maps, const Scene& scene,
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 
-void Estimates::append(Estimates part) {
-  if (irradiance.empty() && first.size() <= 1) {
-    *this = std::move(part);
-    return;
-  }
-  const std::uint64_t before = irradiance.size();
-  irradiance.insert(irradiance.end(), part.irradiance.begin(), part.irradiance.end());
-  radiance.insert(radiance.end(), part.radiance.begin(), part.radiance.end());
-  light.insert(light.end(), part.light.begin(), part.light.end());
-  for (std::size_t hit = 1; hit < part.first.size(); ++hit) {
-    first.push_back(before + part.first[hit]);
-  }
-}
-
 Estimates Estimator::estimate(const PrimaryHits& hits) { return estimate(hits, 0, hits.size()); }
 
 Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count) {

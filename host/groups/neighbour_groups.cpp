@@ -61,10 +61,6 @@ class Search {
 
 }  // namespace
 
-bool normals_agree(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
-  return (agreeing_sides(a, b, cos_angle) & equal_sides) != 0;
-}
-
 NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       const NeighbourGroupParameters& parameters,
                                       Progress& progress, std::span<const std::uint8_t> landed) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/triangle_distance.hpp"
+#include "groups/group_lists.hpp"
 #include "photile/neighbour_groups.hpp"
 
 namespace photile::groups {
@@ -108,3 +109,11 @@ bool ProximityTest::within_by_corners(const TriangleBound& a, const TriangleBoun
 }
 
 }  // namespace photile::groups
+
+namespace photile {
+
+bool normals_agree(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
+  return (groups::agreeing_sides(a, b, cos_angle) & groups::equal_sides) != 0;
+}
+
+}  // namespace photile

@@ -117,6 +117,7 @@ const std::map<std::string_view, FuzzTarget>& fuzz_targets() {
                                                               {"points", fuzz_points},
                                                               {"radiance", fuzz_radiance},
                                                               {"relight", fuzz_relight},
+                                                              {"saved_maps", fuzz_saved_maps},
                                                               {"texture", fuzz_texture}};
   return targets;
 }

@@ -36,6 +36,8 @@ bool fuzz_points(Bytes bytes);
 bool fuzz_planes(Bytes bytes);
 bool fuzz_moods(Bytes bytes);
 
+bool fuzz_saved_maps(Bytes bytes);  ///< photons and light maps, whose digests are put right
+
 bool fuzz_options(Bytes bytes);  ///< values of options: the first byte says of which
 
 }  // namespace photile::test

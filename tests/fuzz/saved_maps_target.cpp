@@ -1,0 +1,102 @@
+// Saved maps. Their digests would refuse nearly all that a fuzzer changes, so that the target puts
+// them right: what is behind them is read as if a program had written it.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "common/content_hash.hpp"
+#include "fuzz_files.hpp"
+#include "photile/light_maps.hpp"
+#include "saved_maps/saved_maps.hpp"
+#include "scene/scene_hash.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+/// As docs/saved-maps.md has it: 96 bytes.
+struct Head {
+  std::array<char, 8> magic;
+  std::uint32_t version, byte_order;
+  ContentHash::Digest scene;
+  std::uint64_t photon_bytes;
+  ContentHash::Digest photons;
+  std::uint64_t light_map_bytes;
+  ContentHash::Digest light_maps, head;
+};
+static_assert(sizeof(Head) == 96);
+
+/// A floor of two triangles with a lamp above.
+const Scene& floor_scene() {
+  static const Scene scene = [] {
+    SceneBuilder builder("floor");
+    builder.grid(glm::vec3(0.0f), {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+    builder.add(point_light("lamp", {0.4f, 0.5f, 0.7f}));
+    return builder.build();
+  }();
+  return scene;
+}
+
+ContentHash::Digest digest_of(Bytes bytes) {
+  ContentHash hash;
+  hash.add_bytes(bytes.data(), bytes.size());
+  return hash.digest();
+}
+
+/// The file with the digests of what it holds, and with lengths that fit.
+std::vector<unsigned char> sealed(Bytes bytes) {
+  std::vector<unsigned char> file(bytes.begin(), bytes.end());
+  if (file.size() < sizeof(Head)) return file;
+  Head head;
+  std::memcpy(&head, file.data(), sizeof head);
+  const std::uint64_t body = file.size() - sizeof head;
+  head.photon_bytes = std::min(head.photon_bytes, body);
+  head.light_map_bytes = body - head.photon_bytes;
+  ContentHash scene;
+  add_scene(floor_scene(), scene);
+  head.scene = scene.digest();
+  const Bytes parts = Bytes(file).subspan(sizeof head);
+  head.photons = digest_of(parts.first(head.photon_bytes));
+  head.light_maps = digest_of(parts.subspan(head.photon_bytes));
+  std::memcpy(file.data(), &head, sizeof head);
+  head.head = digest_of(Bytes(file).first(sizeof head - sizeof head.head));
+  std::memcpy(file.data(), &head, sizeof head);
+  return file;
+}
+
+/// Takes light maps in, as a render does, and looks something up in them.
+void use_light_maps(LightMapContents contents) {
+  LightMapParameters parameters;
+  parameters.spacing = 0.25;
+  parameters.levels = 3;
+  parameters.powers = {1.0};
+  LightMaps maps(floor_scene(), parameters);
+  maps.restore(std::move(contents));
+  for (const float x : {0.0f, 0.3f, 1.0f}) {
+    NodeBlend blend{};
+    if (!maps.find(0, {x, 0.5f * x, 0}, blend)) continue;
+    for (const std::uint32_t node : blend.node) {
+      require(node < maps.values().irradiance.size(), "a node that is not there");
+    }
+    require(maps.relative_error(blend) >= 0, "an error that is no number");
+  }
+  const std::vector<std::uint8_t> all(maps.statistics().nodes, 1);
+  maps.forget(all);
+}
+
+}  // namespace
+
+bool fuzz_saved_maps(Bytes bytes) {
+  const auto file = file_of("room.maps", sealed(bytes));
+  return accepts([&] {
+    PreparedPhotons photons = saved_maps::load(file, floor_scene(), "words");
+    require(photons.photons.first_of.size() == 2 * floor_scene().triangle_count() + 1,
+            "rows that lack");
+    if (photons.light_maps) use_light_maps(std::move(*photons.light_maps));
+  });
+}
+
+}  // namespace photile::test
