@@ -135,6 +135,9 @@ class Generator {
                                         "uniform=1e300", "grey=1", "uniform=-1"})});
     maybe(0.02, {"--environment", dice_.chance(0.5) ? place_.picture.string() : "/dev/null"});
     maybe(0.04, {"--emissive-scale", dice_.one_of({"2", "683", "1e38", "0", "1e-30"})});
+    maybe(0.03, {"--lumen-per-watt", dice_.one_of({"683", "100", "0", "nan", "1e30"})});
+    maybe(0.02, {"--environment-scale", dice_.one_of({"2", "0", "1e30", "-1"})});
+    maybe(0.02, {"--environment-rotation", dice_.one_of({"90", "-720", "nan"})});
     maybe(0.02, {"--ies", light() + "=/dev/null"});
     maybe(0.02, {"--area-light", light() + dice_.one_of({"=1x0.5,800", "=1x,3", "=0x1,1"})});
   }
@@ -145,7 +148,7 @@ class Generator {
                        : fmt::format("{}x{}", dice_.whole(1, 9), dice_.whole(1, 9))});
     maybe(0.03, {"--camera", dice_.one_of({"0", "1", "default", "nobody"})});
     maybe(0.04, {"--direct", dice_.one_of({"rays", "photons"})});
-    add({"--quality", "draft"});  // nodes that gather come with --light-map-rays
+    add({"--quality", dice_.chance(0.7) ? "draft" : "good"});
   }
 
   void false_colour() {
@@ -184,6 +187,8 @@ class Generator {
     if (dice_.chance(0.3)) output("--png", "picture.png");
     if (dice_.chance(0.15)) output("--stats", "stats.json");
     if (dice_.chance(0.05)) output("--glare", "glare.png");
+    if (dice_.chance(0.1)) output("--errors", "errors.exr");
+    maybe(0.03, {"--glare-limit", dice_.one_of({"1000", "0", "nan"})});
     drawings(0.1);
     film();
     lights();
@@ -193,6 +198,17 @@ class Generator {
     }
     settings();
     if (dice_.chance(0.06)) output("--save-maps", "photons.maps");
+    if (dice_.chance(0.04)) {  // as many passes as there is time for
+      command_.timed = true;
+      add({"--for", dice_.one_of({"300ms", "0.5s", "0", "-1s", "1ns"})});
+      if (dice_.chance(0.3)) {  // which chooses photons and rays itself
+        std::erase_if(command_.arguments, [](const std::string& argument) {
+          return argument.starts_with("--photons") || argument == "draft" || argument == "good" ||
+                 argument == "--quality";
+        });
+        add({"--target-error", dice_.one_of({"30%", "5%", "0.1", "0%", "nan", "1e30"})});
+      }
+    }
     maybe(0.02, {"--load-maps", "/dev/null"});
     maybe(0.02, {"--preview", dice_.one_of({"localhost:1", "localhost:99999", ":", "x"})});
     run();
@@ -226,23 +242,32 @@ class Generator {
     maybe(0.1, {"--maintenance", dice_.one_of({"0.8", "0", "2", "nan"})});
     maybe(0.1, {"--cylindrical"});
     maybe(0.1, {"--clearance", fmt::format("{:g}", 0.1 * s)});
+    maybe(0.05, {"--up", dice_.one_of({"y", "z", "x", "-y"})});
+    false_colour();
     lights();
     if (dice_.chance(0.3)) {
       add({"--integrator", "path"});
     } else {
-      settings({"samples_per_pixel", "final_gather_rays", "light_maps", "light_map_rays",
-                "light_map_detail", "gloss", "least_neighbours", "direct_rays"});
+      settings({"samples_per_pixel", "final_gather_rays", "gloss", "direct_rays"});
     }
   }
 
   void walk() {
     add({"walk"});
     scene();
-    for (int frame = 1; frame <= 2; ++frame) {
+    const int first = dice_.chance(0.9) ? 1 : dice_.whole(-1, 2);
+    for (int frame = first; frame < first + 2; ++frame) {
       command_.outputs.push_back(place_.folder / fmt::format("frame.{}.exr", frame));
     }
     add({"-o", (place_.folder / "frame.#.exr").string()});
     if (dice_.chance(0.2)) output("--contact-sheet", "sheet.png");
+    if (dice_.chance(0.2)) {
+      for (int frame = first; frame < first + 2; ++frame) {
+        command_.outputs.push_back(place_.folder / fmt::format("shown.{}.png", frame));
+      }
+      add({"--png", (place_.folder / "shown.#.png").string()});
+    }
+    if (dice_.chance(0.1)) output("--save-maps", "photons.maps");
     const double s = place_.scene.size;
     const std::string path = (place_.folder / "path.json").string();
     std::ofstream(path) << fmt::format(
@@ -251,7 +276,7 @@ class Generator {
         0.5 * s, dice_.chance(0.1) ? 300 : 60);
     command_.inputs.emplace_back(path);
     add({"--camera-path", path, "--fps", "1"});
-    maybe(0.1, {"--first-number", dice_.one_of({"1", "-1", "0"})});
+    if (first != 1) add({"--first-number", std::to_string(first)});
     maybe(0.3, {"--quick"});
     film();
     light_changes(0.25);
@@ -274,6 +299,7 @@ class Generator {
     command_.inputs.push_back(place_.picture);
     if (dice_.chance(0.7)) output("-o", "difference.png");
     if (dice_.chance(0.5)) output("--json", "errors.json");
+    maybe(0.1, {"--scale", dice_.one_of({"auto", "10", "nan", "0"})});
     tone_mapping();
   }
 
@@ -283,7 +309,8 @@ class Generator {
     add({"-o", (place_.folder / "baked.gltf").string(), "--most-texels", "64", "--texel",
          fmt::format("{:g}", 0.2 * place_.scene.size)});
     light_changes(0.2);
-    settings({"samples_per_pixel", "light_map_detail", "passes", "least_neighbours"});
+    settings({"samples_per_pixel", "passes", "direct_rays", "final_gather_rays", "light_maps"});
+    if (dice_.chance(0.1)) output("--save-maps", "photons.maps");
   }
 
   const Workplace& place_;

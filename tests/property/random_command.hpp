@@ -13,6 +13,7 @@ struct RandomCommand {
   std::vector<std::string> arguments;          ///< without the program's name
   std::vector<std::filesystem::path> inputs;   ///< files that it may read
   std::vector<std::filesystem::path> outputs;  ///< files that it is to write
+  bool timed = false;                          ///< what comes out depends on the time it takes
 };
 
 /// What commands work on.
