@@ -17,10 +17,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Runs photile in a folder of a disk of 64 KB, which no other process sees; tells what is left
-/// there.
-Outcome run_on_small_disk(const FileFolder& folder, const std::string& arguments) {
-  const std::string script = "mount -t tmpfs -o size=64k none '" + (folder / "disk") +
+/// Runs photile in a folder of a disk of such a size, which no other process sees; tells what is
+/// left there.
+Outcome run_on_small_disk(const FileFolder& folder, const std::string& arguments,
+                          const std::string& size = "64k") {
+  const std::string script = "mount -t tmpfs -o size=" + size + " none '" + (folder / "disk") +
                              "' && '" PHOTILE_COMMAND "' " + arguments + "; code=$?; ls -A '" +
                              (folder / "disk") + "'; exit $code";
   const std::string file = folder.write("run.sh", script);
@@ -70,7 +71,7 @@ TEST_CASE("killed a hundred times at any moment, a render leaves the old picture
   CHECK(folder.file_count() == 4);  // the scene's, and the pictures: nothing of killed runs
 }
 
-TEST_CASE("on a disk of 64 KB every kind of output fails by its name and leaves nothing",
+TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name and leaves nothing",
           "[slow]") {
   const FileFolder folder;
   const std::string scene = "'" + write_box(folder) + "'";
@@ -87,26 +88,45 @@ TEST_CASE("on a disk of 64 KB every kind of output fails by its name and leaves 
   folder.write("many.pts", points);
   const std::string disk = folder / "disk", large = folder / "large.exr",
                     many = folder / "many.pts", few = " --photons 5k -q ",
-                    draft = " --quality draft";
+                    draft = " --quality draft",
+                    tiny = "render " + scene + draft + few + "--size 4x4 -o /dev/shm/a.exr ",
+                    measure = "measure " + scene + few + "--rays 1 --repeats 2 --points '" + many +
+                              "' -o '" + disk;
+  const std::string path = folder.write("path.json", R"([{"time": 0, "position": [0, 0, 0.5],
+    "look_at": [0, 0, 0], "fov": 60}])");
+  const std::string walk = "walk " + scene + draft + few + "--camera-path '" + path + "' ";
+  const std::string view = "render " + scene + draft + few + "--size 200x150 -o /dev/shm/a.exr ";
   const auto [command, name] = GENERATE_COPY(table<std::string, std::string>({
+      {"4k " + view + "--illuminance '" + disk + "/lux.png'", "lux.png"},
+      {"4k " + view + "--luminance '" + disk + "/cd.png'", "cd.png"},
+      {"4k " + view + "--glare '" + disk + "/glare.png'", "glare.png"},
+      {"4k " + tiny + "--stats '" + disk + "/a.json'", "a.json"},
+      {"4k compare '" + large + "' '" + large + "' -o '" + disk + "/same.png'", "same.png"},
+      {"4k " + walk + "--size 40x30 -o /dev/shm/frame.#.exr --contact-sheet '" + disk + "/s.png'",
+       "s.png"},
       {"render " + scene + draft + few + "--size 200x150 -o '" + disk + "/a.exr'", "a.exr"},
       {"render " + scene + draft + few + "--size 400x300 -o '" + disk + "/a.png'", "a.png"},
       {"render " + scene + draft + few + "--size 4x4 --save-maps '" + disk +
            "/a.maps' -o /dev/shm/a.exr",
        "a.maps"},
       {"relight '" + large + "' -o '" + disk + "/a.exr'", "a.exr"},
-      {"measure " + scene + few + "--rays 1 --repeats 2 --points '" + many + "' -o '" + disk +
-           "/a.csv'",
-       "a.csv"},
-      {"measure " + scene + few + "--rays 1 --repeats 2 --points '" + many + "' -o '" + disk +
-           "/a.json'",
-       "a.json"},
+      {measure + "/a.csv'", "a.csv"},
+      {measure + "/a.json'", "a.json"},
+      {measure + "/a.html'", "a.html"},
+      {"render " + scene + few + "--size 200x150 -o /dev/shm/a.exr --errors '" + disk + "/e.exr'",
+       "e.exr"},
+      {walk + "--size 200x150 -o '" + disk + "/frame.#.exr'", "frame.1.exr"},
+      {"bake " + scene + few + "--texel 0.01 -o '" + disk + "/room.gltf'", "room"},
   }));
   CAPTURE(command);
-  const Outcome outcome = run_on_small_disk(folder, command);
+  const bool tiny_disk = command.starts_with("4k ");
+  const Outcome outcome = tiny_disk ? run_on_small_disk(folder, command.substr(3), "4k")
+                                    : run_on_small_disk(folder, command);
   CHECK_THAT(last_error(outcome, failure), Catch::Contains(name));
   CHECK(outcome.output.empty());
-  std::filesystem::remove("/dev/shm/a.exr");
+  for (const char* other : {"/dev/shm/a.exr", "/dev/shm/frame.1.exr"}) {
+    std::filesystem::remove(other);
+  }
 }
 
 }  // namespace photile::test

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <tuple>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
@@ -21,12 +23,17 @@ struct Failure {
   const char* name;
 };
 
+/// What renders are made with: the estimate at each hit, or at nodes that gather, which read
+/// photons where their rays end.
+enum class Light { estimated, gathered };
+
 /// A small render with the failing layer set up by `layer`.
 Run small_render(const FileFolder& folder, std::map<std::string, std::string> layer,
-                 const std::vector<std::string>& options = {}) {
+                 const std::vector<std::string>& options = {}, Light light = Light::estimated) {
   Run run;
   run.arguments = {"render", write_box(folder),  "--photons", "2000", "--size", "16x12",
-                   "-o",     folder / "out.exr", "--quality", "draft"};
+                   "-o",     folder / "out.exr", "--quality"};
+  run.arguments.emplace_back(light == Light::gathered ? "good" : "draft");
   run.arguments.insert(run.arguments.end(), options.begin(), options.end());
   run.environment = std::move(layer);
   run.environment["OPENCL_LAYERS"] = PHOTILE_FAILING_LAYER;
@@ -46,13 +53,13 @@ std::map<std::string, std::string> failing(const Failure& failure, long at, bool
 }
 
 /// How often an undisturbed render makes the call; each is counted once.
-long count_calls(const Failure& failure, const char* device = "") {
-  static std::map<std::pair<std::string, std::string>, long> counted;
-  long& count = counted[{failure.call, device}];
+long count_calls(const Failure& failure, Light light, const char* device = "") {
+  static std::map<std::tuple<std::string, Light, std::string>, long> counted;
+  long& count = counted[{failure.call, light, device}];
   if (count > 0) return count;
   const FileFolder folder;
   const Outcome outcome =
-      run_photile(small_render(folder, failing(failure, 0, false, folder, device)));
+      run_photile(small_render(folder, failing(failure, 0, false, folder, device), {}, light));
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == success);
   std::ifstream(folder / "count") >> count;
@@ -61,10 +68,10 @@ long count_calls(const Failure& failure, const char* device = "") {
 }
 
 /// The one message of a render whose `at`-th call fails.
-void check_failure(const Failure& failure, long at, bool on, const char* device = "") {
+void check_failure(const Failure& failure, Light light, long at, bool on, const char* device = "") {
   const FileFolder folder;
   const Outcome outcome =
-      run_photile(small_render(folder, failing(failure, at, on, folder, device)));
+      run_photile(small_render(folder, failing(failure, at, on, folder, device), {}, light));
   CAPTURE(failure.call, at, on);
   CHECK_THAT(last_error(outcome, device_error), Catch::Contains(failure.name));
   for (const auto& entry : std::filesystem::directory_iterator(folder / ".")) {
@@ -80,19 +87,21 @@ std::vector<std::vector<float>> picture_of(const FileFolder& folder, const Run& 
   return read_image(folder / "out.exr").channels;
 }
 
-const std::vector<std::vector<float>>& undisturbed_picture() {
-  static const auto picture = [] {
+const std::vector<std::vector<float>>& undisturbed_picture(Light light = Light::estimated) {
+  static std::map<Light, std::vector<std::vector<float>>> pictures;
+  auto& picture = pictures[light];
+  if (picture.empty()) {
     const FileFolder folder;
-    return picture_of(folder, small_render(folder, {}));
-  }();
+    picture = picture_of(folder, small_render(folder, {}, {}, light));
+  }
   return picture;
 }
 
-void check_same_picture(const Failure& failure, long at) {
+void check_same_picture(const Failure& failure, Light light, long at) {
   const FileFolder folder;
   CAPTURE(failure.call, failure.name, at);
-  const Run run = small_render(folder, failing(failure, at, false, folder));
-  CHECK(picture_of(folder, run) == undisturbed_picture());
+  const Run run = small_render(folder, failing(failure, at, false, folder), {}, light);
+  CHECK(picture_of(folder, run) == undisturbed_picture(light));
 }
 
 Failure out_of_memory() {
@@ -108,39 +117,34 @@ constexpr Failure other_failure{"clCreateKernel", -46, "CL_INVALID_KERNEL_NAME"}
 
 }  // namespace
 
-TEST_CASE("a render in which any allocation fails once gives the same picture") {
-  const Failure failure{"clCreateBuffer", -4, "CL_MEM_OBJECT_ALLOCATION_FAILURE"};
-  for (long at = 1, calls = count_calls(failure); at <= calls; ++at)
-    check_same_picture(failure, at);
-}
-
 TEST_CASE("a render whose 1st, 2nd, 4th, 8th ... call of a kind runs out of memory is the same") {
   const Failure failure = out_of_memory();
-  if (failure.call == std::string("clCreateBuffer")) return;  // each of them fails above
-  for (long at = 1, calls = count_calls(failure); at <= calls; at *= 2) {
-    check_same_picture(failure, at);
+  for (long at = 1, calls = count_calls(failure, Light::gathered); at <= calls; at *= 2) {
+    check_same_picture(failure, Light::gathered, at);
   }
 }
 
 TEST_CASE("a render whose 1st, 2nd, 4th, 8th ... OpenCL call of a kind fails says so once") {
-  for (long at = 1, calls = count_calls(other_failure); at <= calls; at *= 2) {
-    check_failure(other_failure, at, false);
+  for (long at = 1, calls = count_calls(other_failure, Light::gathered); at <= calls; at *= 2) {
+    check_failure(other_failure, Light::gathered, at, false);
   }
 }
 
 TEST_CASE("a device that is lost in the middle of a render is reported once") {
   const Failure failure = out_of_memory();
-  check_failure(failure, (count_calls(failure) + 1) / 2, true);
+  const Light light = GENERATE(Light::estimated, Light::gathered);
+  check_failure(failure, light, (count_calls(failure, light) + 1) / 2, true);
 }
 
 TEST_CASE("a call that fails on one of two devices ends the render on both, and is told once",
           "[slow]") {
   const char* const halves = "/2";
+  const Light light = GENERATE(Light::estimated, Light::gathered);
   const Failure failure = out_of_memory();
-  const long calls = count_calls(failure, halves);
-  check_failure(failure, (calls + 1) / 2, true, halves);
+  const long calls = count_calls(failure, light, halves);
+  check_failure(failure, light, (calls + 1) / 2, true, halves);
   for (const bool on : {false, true}) {
-    check_failure(other_failure, count_calls(other_failure, halves), on, halves);
+    check_failure(other_failure, light, count_calls(other_failure, light, halves), on, halves);
   }
 }
 
@@ -149,8 +153,10 @@ TEST_CASE("a device that allocates no large buffer renders the same picture from
   for (const char* const most : {"60000", "30000", "15000"}) {
     const FileFolder folder;
     CAPTURE(most);
-    const Run run = small_render(folder, {{"PHOTILE_FAIL_ABOVE", most}});
-    CHECK(picture_of(folder, run) == undisturbed_picture());
+    for (const Light light : {Light::estimated, Light::gathered}) {
+      const Run run = small_render(folder, {{"PHOTILE_FAIL_ABOVE", most}}, {}, light);
+      CHECK(picture_of(folder, run) == undisturbed_picture(light));
+    }
   }
 }
 
@@ -187,11 +193,12 @@ TEST_CASE("PoCL with 256 MiB a buffer renders the same picture", "[slow]") {
 }
 
 TEST_CASE("a render in which any OpenCL call of a kind runs out of memory", "[slow]") {
+  const Light light = GENERATE(Light::estimated, Light::gathered);
   const Failure failure = out_of_memory();
-  const long calls = count_calls(failure);
+  const long calls = count_calls(failure, light);
   for (long at = 1; at <= calls; ++at) {
-    check_same_picture(failure, at);
-    check_failure(failure, at, true);
+    check_same_picture(failure, light, at);
+    check_failure(failure, light, at, true);
   }
 }
 

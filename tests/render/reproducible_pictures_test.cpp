@@ -47,6 +47,18 @@ TEST_CASE("one, two and three threads render the same bits of many lights") {
   CHECK(same_bits(pictures[0], pictures[2]));
 }
 
+TEST_CASE("lamps of twice the power render the same bits per unit of power") {
+  Scene scene = test::furnished_room(2);
+  RenderParameters parameters = small_parameters();
+  if (GENERATE(false, true)) {  // nodes are refined where light at the lamps' powers varies
+    parameters.light_maps = LightMapMode::on;
+    parameters.light_map_rays = 8;
+  }
+  const auto once = render(scene, room_camera(), test::device(), parameters).layers;
+  for (Light& light : scene.lights) light.power *= 2;
+  CHECK(same_bits(once, render(scene, room_camera(), test::device(), parameters).layers));
+}
+
 TEST_CASE("another seed renders another picture") {
   const Scene scene = test::furnished_room(2);
   RenderParameters parameters = small_parameters();
