@@ -27,6 +27,7 @@ from report_section import replace_section
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs/testing/mutants.json"
 SECONDS = None  # that a program of tests may take; one that takes longer counts as a crash
+CATCH_OPTIONS = ()
 
 
 class CannotRun(Exception):
@@ -71,7 +72,8 @@ def run_tests(build, folder, specification, kernels=None):
         raise CannotRun(f"{program} is missing; build the target photile_tests_{folder}")
     with tempfile.NamedTemporaryFile(suffix=".xml") as report:
         try:
-            done = subprocess.run([program, specification, "--reporter", "xml", "--out", report.name],
+            done = subprocess.run([program, specification, *CATCH_OPTIONS, "--reporter", "xml",
+                                   "--out", report.name],
                                   env=environment, capture_output=True, text=True, check=False,
                                   timeout=SECONDS)
         except subprocess.TimeoutExpired:

@@ -41,6 +41,16 @@ class Drawn(unittest.TestCase):
             self.assertNotEqual(mutant.find, mutant.replace)
             self.assertFalse(mutant.find.splitlines()[-1].strip().startswith("//"))
 
+    def test_the_tests_of_kernels_are_there(self):
+        for folder, specification in drawn_mutants.KERNEL_TESTS:
+            sources = "".join(file.read_text(encoding="utf-8")
+                              for file in (ROOT / "tests" / folder).glob("*.cpp"))
+            for pattern in specification.split(","):
+                name = pattern.rpartition("]")[2]
+                self.assertNotIn("~", name)  # behind a name, it excludes nothing: no test matches
+                if name:
+                    self.assertTrue(f'TEST_CASE("{name.rstrip("*")}' in sources, name)
+
     def test_operators_and_numbers_become_others(self):
         for before, after in (("<", "<="), ("max", "min"), ("16", "17"), ("0.5f", "0.55f"),
                               ("0.0f", "0.1f"), ("&&", "||")):
