@@ -40,8 +40,13 @@ step "quick tests" ctest --preset release --parallel "$jobs"
 step "slow tests" ctest --preset slow --parallel "$jobs"
 step "build sanitizers" cmake/build.sh sanitizers "${readers[@]/#/photile_tests_}"
 step "sanitizers" ctest --preset sanitizers -R "^($(IFS='|'; echo "${readers[*]}"))/"
+step "build thread sanitizer" cmake/build.sh threads photile_tests_{view,render}
+# On one processor, where oneTBB has no threads of its own: docs/testing.md.
+step "thread sanitizer" taskset -c 0 ctest --preset threads -R "^(view|render/several)"
 step "build fuzzers" cmake/build.sh fuzzers photile_fuzz
 step "soak" bench/soak.sh "$hours"
+step "build coverage" cmake/build.sh coverage photile_fuzz
+step "coverage" bench/fuzz_coverage.py --more build/soak
 step "drawn mutants" bench/drawn_mutants.py --count "$mutants" --seed "$(date -u +%Y%m%d)"
 step "quick benches" ctest --test-dir build/release -L bench
 
