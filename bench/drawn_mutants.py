@@ -32,7 +32,7 @@ SECONDS = 1200  # of a program of tests, ten times what it takes; a mutant beyon
 ESTIMATE_TESTS = ",".join(
     f"~[slow]{name}*" for name in (
         "the exact law", "every strategy", "neighbours equal", "irradiance equals", "tiles find",
-        "maps of patches", "clipped irradiance", "extremes"))
+        "maps of patches", "clipped irradiance", "tiles on a floor", "thin plates", "extremes"))
 KERNEL_TESTS = (("maps", "~[slow]~[long]"), ("estimate", ESTIMATE_TESTS))
 HOST_FOLDERS = ("groups", "surface", "trace")
 

@@ -173,6 +173,17 @@ TEST_CASE(
   check_clipped(scene, photons, hits, 0.2, 50, DensityKernel::constant);
 }
 
+TEST_CASE("clipped irradiance where surfaces bend out of the slab equals the oracle's", "[long]") {
+  Scene scene = test::empty_scene();
+  const glm::vec3 along(1, 0, 0);
+  test::add_plate(scene, {0, 0, 0}, along, {0, 1, 0}, 4);
+  test::add_plate(scene, {0, 1, 0}, along, {0, 0.9f, 0.4f}, 4);          // 24 degrees up
+  test::add_plate(scene, {0, -0.6f, -0.8f}, along, {0, 0.6f, 0.8f}, 4);  // 53 degrees down
+  const Photons photons = test::uniform_photons(scene, 6'000, 57);
+  const DensityKernel kernel = GENERATE(DensityKernel::constant, DensityKernel::cone);
+  check_clipped(scene, photons, test::uniform_hits(scene, 150, 58), 0.3, 50, kernel);
+}
+
 TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode",
           "[slow]") {
   const auto [mode, kernel] =

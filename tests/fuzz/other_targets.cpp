@@ -100,6 +100,7 @@ bool fuzz_options(Bytes bytes) {
   if (bytes.empty()) return false;
   std::string text(bytes.begin() + 1, bytes.end());
   std::replace(text.begin(), text.end(), '\n', ' ');  // as the command does where it tells one
+  std::replace(text.begin(), text.end(), '\0', ' ');  // no argument has one
   return accepts([&] { parse_option(bytes[0], text); });
 }
 

@@ -1,5 +1,6 @@
 #include <png.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -11,6 +12,9 @@ namespace {
 // libpng's frames hold nothing that an exception on its way through them would leave behind.
 [[noreturn]] void png_failure(png_structp, png_const_charp reason) { throw DecodeError(reason); }
 void png_warning(png_structp, png_const_charp) {}
+
+/// Bytes that a chunk may fill in memory where the file is shorter: texts and profiles are compressed.
+constexpr std::size_t least_chunk_limit = 8'000'000;
 
 /// libpng's state.
 struct PngReader {
@@ -32,6 +36,8 @@ class PngDecoder : public Decoder {
       static_cast<PngDecoder*>(png_get_io_ptr(png))->take(to, count);
     });
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // the caller has its own
+    // Debian's libpng would take two gigabytes for a text that is said to be so long.
+    png_set_chunk_malloc_max(png_, std::max(bytes.size(), least_chunk_limit));
     png_read_info(png_, info_);
     png_set_expand(png_);  // palettes, 1 to 4 bits, a transparent colour
     if constexpr (std::endian::native == std::endian::little) png_set_swap(png_);
