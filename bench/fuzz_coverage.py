@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""The lines of each reader that the corpus of the fuzzer reaches, into docs/testing.md.
+"""The lines of each reader that the corpus of the fuzzer reaches.
 
     cmake --preset coverage && cmake --build --preset coverage
     bench/fuzz_coverage.py [--more FOLDER]
 
 Runs each target of tests/fuzz once on its corpus, counting lines by Clang (llvm-profdata and llvm-cov of
 its version are needed). FOLDER holds folders of further inputs by the names of the targets, such as
-build/soak; then nothing is written into the docs.
+build/soak.
 """
 
 import argparse
@@ -15,8 +15,6 @@ import os
 import pathlib
 import subprocess
 import sys
-
-from report_section import replace_section
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FUZZER = ROOT / "build/coverage/tests/fuzz/photile_fuzz"
@@ -72,11 +70,7 @@ def main():
         if options.more and (options.more / corpus.name).is_dir():
             folders.append(options.more / corpus.name)
         run(corpus.name, folders)
-    text = table(lines_by_file())
-    if options.more:
-        print(text)
-    else:
-        replace_section(ROOT / "docs/testing.md", "fuzz_coverage.py", text)
+    print(table(lines_by_file()))
 
 
 if __name__ == "__main__":

@@ -164,16 +164,17 @@ TEST_CASE("relight names the picture that lacks what it needs") {
     plain.add("Combined_lamp" + std::string(channel)).assign(16, 0.5f);
   }
   write_exr(folder / "layers.exr", plain);
-  const std::string out = folder / "out.exr", drawing = folder / "l.png";
-  const auto [more, code, reason] =
-      GENERATE_COPY(table<std::vector<std::string>, int, std::string>({
-          {{"--illuminance", drawing}, bad_input, "no illuminance"},
-          {{"--luminance", drawing}, bad_input, "cd/m2"},
-          {{"-o", out, "--light", "lamp=3W"}, usage, "does not say its power"},
-          {{"-o", out, "--light", "sun=off"}, usage, "no light 'sun'"},
+  const auto [option, value, code, reason] =
+      GENERATE(table<std::string, std::string, int, std::string>({
+          {"--illuminance", "", bad_input, "no illuminance"},
+          {"--luminance", "", bad_input, "cd/m2"},
+          {"--light", "lamp=3W", usage, "does not say its power"},
+          {"--light", "sun=off", usage, "no light 'sun'"},
       }));
-  std::vector<std::string> arguments{"relight", folder / "layers.exr"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
+  const std::vector<std::string> arguments{
+      "relight", folder / "layers.exr",
+      "-o",      folder / "out.exr",
+      option,    value.empty() ? folder / "drawing.png" : value};
   CHECK_THAT(last_error(run_photile(arguments), code),
              Contains("layers.exr: ") && Contains(reason));
 }
