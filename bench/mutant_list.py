@@ -173,8 +173,7 @@ MUTANTS = (
            (("walk", "smooth paths have the velocity*"),)),
     # Paths
     Mutant("density of looking at lamps 2% off", "host/trace/light_sampler.cpp",
-           "return cosine > 0.0f ? chance(light) *", "return cosine > 0.0f ? 1.02f * chance(light) *",
-           PATHS),
+           "chosen = chance(light, chances) *", "chosen = 1.02f * chance(light, chances) *", PATHS),
     Mutant("weight of looking at lamps dropped", "host/render/surface_path.cpp",
            "arrives *= power_heuristic(lamp->density, density(lamp->direction));", "", PATHS),
     Mutant("paths' roulette uncompensated", "host/render/surface_path.cpp",
@@ -192,8 +191,10 @@ MUTANTS = (
            "keep_caustics && specular && !straight", "keep_caustics && !straight",
            (("render", "final gathering*"),)),
     Mutant("photons of all light for those of caustics", "host/render/rendering.cpp",
-           "maps.caustics = build(traced.caustics, parameters)",
-           "maps.caustics = build(traced.photons, parameters)", (("render", "final gathering*"),)),
+           "  Maps maps{build(std::move(traced.photons), parameters), {}};",
+           "  traced.caustics = traced.photons;\n"
+           "  Maps maps{build(std::move(traced.photons), parameters), {}};",
+           (("render", "final gathering*"),)),
     Mutant("radiance seen through water as bright as in it", "host/trace/scatter_specular.cpp",
            "if (material.thin) return 1;", "return 1;",
            (("render", "a pool shows*"), ("trace", "A lamp under water*"))),
