@@ -42,7 +42,7 @@ MUTANTS = (
 
     # Physics of photons
     Mutant("k for k - 1", "kernels/estimate/estimate_hit.clh",
-           "if (k > 1) return smallest_lane(beyond);", "",
+           "if (k > 1) return SMALLEST_LANE(candidates, beyond);", "",
            (("validation", "few neighbours are as unbiased as many*"), EXACT_LAW)),
     Mutant("area 1% off", "kernels/estimate/area.clh",
            "*area = disc.area;", "*area = 1.01f * disc.area;", (EVEN_LIGHT, EXACT_LAW)),
@@ -50,10 +50,10 @@ MUTANTS = (
            "*area = disc.area;", "*area = 3.14159265f * squared;",
            (("estimate", "the exact law of the estimate at an edge"),)),
     Mutant("corners without an angle", "kernels/surface/facet_border.clh",
-           "const int8 at_end = at_a | at_b;", "const int8 at_end = 0;",
+           "const octet_int at_end = at_a | at_b;", "const octet_int at_end = 0;",
            (("estimate", "clipped irradiance on vertices*"),)),
     Mutant("edges of other triangles without a side", "kernels/surface/facet_border.clh",
-           "const int8 within = own_triangle | (side > 0.0f);", "const int8 within = own_triangle;",
+           "const octet_int within = own_triangle | (side > 0.0f);", "const octet_int within = own_triangle;",
            (("estimate", "slits, T-junctions and needles*"),)),
     Mutant("all heights in the slab", "kernels/estimate/estimate_hit.clh",
            "return fabs((x + y) + z) <= height;", "return fabs((x + y) + z) <= INFINITY;",
