@@ -1,5 +1,6 @@
 #include "gather/end_light.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -17,6 +18,9 @@ namespace {
 
 /// What is known of the cells of the light maps.
 constexpr std::uint8_t unknown_cell = 0, open_cell = 1, crossed_cell = 2;
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t hits_per_task = 1024;
 
 }  // namespace
 
@@ -47,6 +51,25 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
   costs_.ends += ends.hits.size();
   costs_.rays += ends.rays;
   return light;
+}
+
+std::vector<NodeBlend> EndLight::nodes_around(const PrimaryHits& hits, const Progress& progress) {
+  if (!maps_) maps_.emplace(rays_, parameters_);
+  maps_->maps.fill(hits, *this, progress);
+  maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
+  std::vector<NodeBlend> nodes(hits.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_task),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      const trace::FlushDenormals flush_denormals;
+                      for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
+                        const std::uint32_t sided = hits.sided_triangle[hit];
+                        maps_->maps.find(sided, hits.position[hit], nodes[hit]);
+                        if (!is_open(nodes[hit])) {
+                          maps_->sight.look(sided, hits.position[hit], nodes[hit]);
+                        }
+                      }
+                    });
+  return nodes;
 }
 
 std::uint64_t EndLight::bytes() const {

@@ -52,6 +52,14 @@ class EndLight : private PointSource {
   void add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
                  std::uint32_t rays_per_batch, BatchSums& sums) const;
 
+  /// The nodes around hits, and what nodes hold, in the form of estimates: node n is hit n. They
+  /// are valued where none did so yet. Errors: as DeviceEstimators; Interrupted.
+  std::vector<NodeBlend> nodes_around(const PrimaryHits& hits, const Progress& progress);
+  const Estimates& values() const { return maps_->maps.values(); }
+
+  /// Metres, from node to node: as wide as the estimates that value them.
+  double spacing() const { return parameters_.spacing; }
+
   /// Of the light maps; `forget` empties them.
   std::uint64_t bytes() const;
   void forget() { maps_.reset(); }

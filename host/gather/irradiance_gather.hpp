@@ -78,6 +78,9 @@ class IrradianceGather {
   GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
                             const Progress& progress = Progress::none());
 
+  /// What rays find where they end.
+  gathering::EndLight& ends() { return ends_; }
+
   /// Of the light maps where rays end; `forget` empties them.
   std::uint64_t bytes() const { return ends_.bytes(); }
   void forget() { ends_.forget(); }

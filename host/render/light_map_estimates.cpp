@@ -9,11 +9,11 @@
 
 #include "estimate/estimate_writer.hpp"
 #include "estimate/map_order.hpp"
+#include "light_maps/charts.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 #include "render/reflected_radiance.hpp"
 #include "trace/flush_denormals.hpp"
-#include "trace/largest.hpp"
 
 namespace photile {
 namespace {
@@ -21,9 +21,13 @@ namespace {
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t hits_per_blend_task = 1024;
 
-/// Levels of light maps that serve a hit.
-int levels_for(const PrimaryHits& hits, std::size_t hit, float faint) {
-  return trace::largest(hits.throughput[hit]) < faint ? 1 : LightMaps::all_rounds;
+/// Hits of these levels.
+std::vector<std::uint32_t> places_of(std::span<const int> levels, int level) {
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t hit = 0; hit < levels.size(); ++hit) {
+    if (levels[hit] == level) places.push_back(hit);
+  }
+  return places;
 }
 
 /// Mean flux of a photon at the powers, luminance.
@@ -48,16 +52,22 @@ double least_spacing(const Scene& scene, const Photons& photons) {
   return photons.size() == 0 ? 0 : std::sqrt(area / static_cast<double>(photons.size())) / 16;
 }
 
-/// Writes the light of hits, or its errors, one after another, from nodes or from their own
-/// estimates.
+/// Writes the light of hits, or its errors, one after another, from nodes, from ends of rays or
+/// from their own estimates.
 class Blend {
  public:
   ///   place    per hit: that of its own estimate, or none
-  ///   blends   per hit, where it has none
-  Blend(const SceneNeeds& needs, const Estimates& nodes, const PrimaryHits& hits,
-        const Estimates& alone, std::span<const std::uint32_t> place,
-        std::span<const NodeBlend> blends)
-      : needs_(needs), nodes_(nodes), hits_(hits), alone_(alone), place_(place), blends_(blends) {}
+  ///   ends     null where no hit reads them
+  Blend(const SceneNeeds& needs, const PrimaryHits& hits, const HitReading& reading,
+        const Estimates& nodes, const Estimates* ends, const Estimates& alone,
+        std::span<const std::uint32_t> place)
+      : needs_(needs),
+        hits_(hits),
+        reading_(reading),
+        nodes_(nodes),
+        ends_(ends),
+        alone_(alone),
+        place_(place) {}
 
   /// Of hits [first, last).
   Estimates of(std::size_t first, std::size_t last) const {
@@ -65,7 +75,7 @@ class Blend {
     estimate::EstimateWriter writer(needs_, estimates);
     for (std::size_t hit = first; hit < last; ++hit) {
       if (place_[hit] == none) {
-        add_from_maps(hit, writer);
+        add_from_maps(hit, reading_.levels[hit] == HitReading::ends ? *ends_ : nodes_, writer);
       } else {
         add_alone(hit, place_[hit], writer);
       }
@@ -74,26 +84,27 @@ class Blend {
     return estimates;
   }
 
-  /// Sum of the squares of relative standard errors of hits [first, last) that maps serve.
+  /// Sum of the squares of relative standard errors of hits [first, last) that nodes serve.
   double squared_errors(const LightMaps& maps, std::size_t first, std::size_t last) const {
     double sum = 0;
     for (std::size_t hit = first; hit < last; ++hit) {
-      if (place_[hit] != none) continue;
-      const double error = maps.relative_error(blends_[hit]);
+      if (reading_.levels[hit] <= 0) continue;
+      const double error = maps.relative_error(reading_.blends[hit]);
       sum += error * error;
     }
     return sum;
   }
 
  private:
-  void add_from_maps(std::size_t hit, estimate::EstimateWriter& writer) const {
-    const NodeBlend& blend = blends_[hit];
+  void add_from_maps(std::size_t hit, const Estimates& nodes,
+                     estimate::EstimateWriter& writer) const {
+    const NodeBlend& blend = reading_.blends[hit];
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
     for (std::size_t i = 0; i < blend.node.size(); ++i) {
       if (blend.weight[i] == 0.0f) continue;
-      for_each_estimate(nodes_, blend.node[i], needs_.light_count,
+      for_each_estimate(nodes, blend.node[i], needs_.light_count,
                         [&](std::size_t layer, std::size_t value) {
-                          const glm::vec3 light = blend.weight[i] * nodes_.irradiance[value];
+                          const glm::vec3 light = blend.weight[i] * nodes.irradiance[value];
                           writer.add(static_cast<std::uint32_t>(layer), light, reflects * light);
                         });
     }
@@ -110,11 +121,12 @@ class Blend {
   }
 
   const SceneNeeds& needs_;
-  const Estimates& nodes_;
   const PrimaryHits& hits_;
+  const HitReading& reading_;
+  const Estimates& nodes_;
+  const Estimates* ends_;
   const Estimates& alone_;
   std::span<const std::uint32_t> place_;
-  std::span<const NodeBlend> blends_;
 };
 
 }  // namespace
@@ -145,18 +157,19 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 }
 
 LightMapEstimates::LightMapEstimates(const RayScene& rays, const LightMapParameters& parameters,
-                                     MapEstimators& photons, NodeSource* nodes)
+                                     MapEstimators& photons, const GatheringPass& gathering)
     : scene_(rays.scene()),
       needs_(rays.needs()),
-      gathered_(nodes != nullptr),
+      gathered_(gathering.nodes != nullptr),
       maps_(scene_, parameters),
       sight_(rays, maps_) {
-  add_pass(photons, nodes);
+  add_pass(photons, gathering);
 }
 
-void LightMapEstimates::add_pass(MapEstimators& photons, NodeSource* nodes) {
+void LightMapEstimates::add_pass(MapEstimators& photons, const GatheringPass& gathering) {
   photons_.push_back(&photons);
-  source_.add(nodes ? *nodes : photon_nodes_.emplace_back(photons));
+  ends_.push_back(gathering.ends);
+  source_.add(gathered_ ? *gathering.nodes : photon_nodes_.emplace_back(photons));
 }
 
 std::uint64_t LightMapEstimates::Passes::bytes() const {
@@ -171,38 +184,21 @@ void LightMapEstimates::Passes::forget() {
 }
 
 Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress,
-                                      std::size_t pass, float faint) {
-  std::vector<std::uint8_t> is_alone(hits.size(), 0);
-  std::vector<std::uint32_t> served, served_faint;
-  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (serves(hits, hit)) {
-      (levels_for(hits, hit, faint) > 1 ? served : served_faint).push_back(hit);
-    } else {
-      is_alone[hit] = 1;
-    }
-  }
-  const Stopwatch stopwatch;
-  if (served.size() == hits.size()) {
-    maps_.fill(hits, source_, progress);
-  } else {
-    maps_.fill(estimate::reordered(hits, 0, served), source_, progress);
-    maps_.fill(estimate::reordered(hits, 0, served_faint), source_, progress, LightMaps::all_rounds,
-               1);
-  }
-  maps_.refine(source_, progress);
-  fill_time_ += stopwatch.taken();
-  const std::vector<NodeBlend> blends = blends_of(hits, faint, is_alone);
+                                      std::size_t pass, std::span<const std::uint8_t> by_photons) {
+  const HitReading reading = read(hits, by_photons, progress, pass);
   std::vector<std::uint32_t> alone, place(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (is_alone[hit] == 0) continue;
+    if (reading.levels[hit] != HitReading::own_estimate) continue;
     place[hit] = static_cast<std::uint32_t>(alone.size());
     alone.push_back(hit);
   }
   hits_alone_ += alone.size();
-  hits_read_ += hits.size() - alone.size();
   const Estimates own =
       alone.empty() ? Estimates{} : photons_[pass]->estimate(estimate::reordered(hits, 0, alone));
-  const Blend blend(needs_, maps_.values(), hits, own, place, blends);
+  const bool reads_ends = std::find(reading.levels.begin(), reading.levels.end(),
+                                    int{HitReading::ends}) != reading.levels.end();
+  const Estimates* ends = reads_ends ? &ends_[pass]->values() : nullptr;
+  const Blend blend(needs_, hits, reading, maps_.values(), ends, own, place);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
   std::vector<double> squared_errors(parts.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
@@ -212,23 +208,24 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
     squared_errors[part] = blend.squared_errors(maps_, first, last);
   });
   for (const double part : squared_errors) squared_errors_ += part;
+  hits_read_ += static_cast<std::uint64_t>(
+      std::count_if(reading.levels.begin(), reading.levels.end(), [](int l) { return l > 0; }));
   return joined(std::move(parts));
 }
 
 Estimates LightMapEstimates::errors(const PrimaryHits& hits, const Estimates& estimates,
-                                    const Estimates& of_nodes, float faint) const {
-  std::vector<std::uint8_t> is_alone(hits.size(), 0);
-  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) is_alone[hit] = serves(hits, hit) ? 0 : 1;
-  const std::vector<NodeBlend> blends = blends_of(hits, faint, is_alone);
+                                    const Estimates& of_nodes,
+                                    std::span<const std::uint8_t> by_photons) {
+  const HitReading reading = read(hits, by_photons, Progress::none(), 0);
   std::vector<std::uint32_t> place(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (is_alone[hit] != 0) place[hit] = hit;
+    if (reading.levels[hit] <= 0) place[hit] = hit;  // photons
   }
   Estimates own = estimates;
-  const float relative = 1 / std::sqrt(static_cast<float>(photons_.front()->neighbours()));
+  const auto relative = static_cast<float>(blotches().noise);
   for (glm::vec3& light : own.irradiance) light *= relative;
   for (glm::vec3& light : own.radiance) light *= relative;
-  const Blend blend(needs_, of_nodes, hits, own, place, blends);
+  const Blend blend(needs_, hits, reading, of_nodes, nullptr, own, place);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::size_t first = part * hits_per_blend_task;
@@ -244,24 +241,71 @@ Estimates LightMapEstimates::joined(std::vector<Estimates> parts) const {
   return all;
 }
 
-std::vector<NodeBlend> LightMapEstimates::blends_of(const PrimaryHits& hits, float faint,
-                                                    std::vector<std::uint8_t>& alone) const {
-  std::vector<NodeBlend> blends(hits.size());
+HitReading LightMapEstimates::read(const PrimaryHits& hits,
+                                   std::span<const std::uint8_t> by_photons,
+                                   const Progress& progress, std::size_t pass) {
+  HitReading reading{std::vector<int>(hits.size(), LightMaps::all_rounds),
+                     std::vector<NodeBlend>(hits.size())};
+  for (std::size_t hit = 0; hit < hits.size(); ++hit) {
+    if (!serves(hits, hit)) {
+      reading.levels[hit] = HitReading::own_estimate;
+    } else if (!by_photons.empty() && by_photons[hit] != 0) {
+      reading.levels[hit] = gathered_ ? HitReading::ends : 1;
+    }
+  }
+  const Stopwatch stopwatch;
+  fill(hits, reading.levels, progress);
+  find_ends(hits, progress, pass, reading);
+  maps_.refine(source_, progress);
+  fill_time_ += stopwatch.taken();
+  find_nodes(hits, reading);
+  return reading;
+}
+
+/// Values the nodes that hits read.
+void LightMapEstimates::fill(const PrimaryHits& hits, std::span<const int> levels,
+                             const Progress& progress) {
+  if (std::all_of(levels.begin(), levels.end(), [](int l) { return l == LightMaps::all_rounds; })) {
+    maps_.fill(hits, source_, progress);
+    return;
+  }
+  for (const int level : {LightMaps::all_rounds, 1}) {
+    maps_.fill(estimate::reordered(hits, 0, places_of(levels, level)), source_, progress,
+               LightMaps::all_rounds, level);
+  }
+}
+
+void LightMapEstimates::find_ends(const PrimaryHits& hits, const Progress& progress,
+                                  std::size_t pass, HitReading& reading) {
+  const std::vector<std::uint32_t> chosen = places_of(reading.levels, HitReading::ends);
+  if (chosen.empty()) return;
+  const std::vector<NodeBlend> blends =
+      ends_[pass]->nodes_around(estimate::reordered(hits, 0, chosen), progress);
+  for (std::size_t i = 0; i < chosen.size(); ++i) reading.blends[chosen[i]] = blends[i];
+}
+
+/// Hits that no node sees are to have estimates of their own.
+void LightMapEstimates::find_nodes(const PrimaryHits& hits, HitReading& reading) const {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_blend_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
                       for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
-                        if (alone[hit] != 0) continue;
+                        int& levels = reading.levels[hit];
+                        if (levels <= 0) continue;
                         const std::uint32_t sided = hits.sided_triangle[hit];
-                        const int levels = levels_for(hits, hit, faint);
-                        maps_.find(sided, hits.position[hit], blends[hit], levels);
-                        const bool seen = sight_.look(sided, hits.position[hit], blends[hit]);
+                        NodeBlend& blend = reading.blends[hit];
+                        maps_.find(sided, hits.position[hit], blend, levels);
+                        const bool seen = sight_.look(sided, hits.position[hit], blend);
                         // Where photons value nodes they would say no more at the hit, and may
                         // have to be traced first.
-                        alone[hit] = gathered_ && !seen && levels > 1 ? 1 : 0;
+                        if (gathered_ && !seen && levels > 1) levels = HitReading::own_estimate;
                       }
                     });
-  return blends;
+}
+
+PhotonBlotches LightMapEstimates::blotches() const {
+  return {gathered_ ? ends_.front()->spacing() : maps_.charts().spacing(),
+          1 / std::sqrt(static_cast<double>(photons_.front()->neighbours()))};
 }
 
 double LightMapEstimates::error() const {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "gather/end_light.hpp"
 #include "light_maps/node_sight.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
@@ -13,6 +14,7 @@
 #include "photile/ray_scene.hpp"
 #include "photile/statistics.hpp"
 #include "render/map_estimators.hpp"
+#include "render/reflection_noise.hpp"
 
 namespace photile {
 
@@ -28,32 +30,47 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
                                         double radius, double angle_degrees, double detail,
                                         std::span<const double> powers);
 
+/// What a photon pass needs where rays value nodes. Both null where photons do.
+struct GatheringPass {
+  NodeSource* nodes = nullptr;
+  gathering::EndLight* ends = nullptr;  ///< read where photons alone serve
+};
+
+/// What the light of hits is read from.
+struct HitReading {
+  static constexpr int own_estimate = -1, ends = 0;
+  std::vector<int> levels;        ///< of nodes; or `ends`, or `own_estimate`
+  std::vector<NodeBlend> blends;  ///< of nodes or ends
+};
+
 class LightMapEstimates {
  public:
   /// References are kept.
   ///   photons   whose estimates of hits do not depend on the hits beside them
-  ///   nodes     what values nodes; null: photons do
   LightMapEstimates(const RayScene& rays, const LightMapParameters& parameters,
-                    MapEstimators& photons, NodeSource* nodes = nullptr);
+                    MapEstimators& photons, const GatheringPass& gathering = {});
 
   /// A further photon pass: from now on nodes hold the mean of all. As the constructor.
-  void add_pass(MapEstimators& photons, NodeSource* nodes);
+  void add_pass(MapEstimators& photons, const GatheringPass& gathering);
 
   /// Of hits in any order. Those with a specular lobe or a normal map are estimated where they are.
-  ///   pass    whose photons do that
-  ///   faint   hits that count less in their pixel are read from the coarsest nodes alone, which
-  ///           rays along lobes would otherwise have refined wherever they end
+  ///   pass         whose photons do that
+  ///   by_photons   of each hit: whether photons alone may say its light (reflection_noise.hpp), so
+  ///                that no nodes are gathered, or refined, for it; empty: of none
   /// Errors: as DeviceEstimators; Interrupted.
   Estimates estimate(const PrimaryHits& hits, const Progress& progress, std::size_t pass = 0,
-                     float faint = 0);
+                     std::span<const std::uint8_t> by_photons = {});
 
   /// Standard errors of what `estimate` found at these hits, in the same form. Nodes around a hit
   /// are taken to err alike; where photons served, theirs is that of a density from k of them.
   ///   estimates   that were found
   ///   of_nodes    as GatheredNodes::errors
-  ///   faint       as there
+  ///   by_photons   as there
   Estimates errors(const PrimaryHits& hits, const Estimates& estimates, const Estimates& of_nodes,
-                   float faint) const;
+                   std::span<const std::uint8_t> by_photons);
+
+  /// Of the light that photons alone say.
+  PhotonBlotches blotches() const;
 
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
@@ -100,18 +117,23 @@ class LightMapEstimates {
   /// where light comes from.
   bool serves(const PrimaryHits& hits, std::size_t hit) const;
 
+  /// Values what the hits read, as a pass does.
+  HitReading read(const PrimaryHits& hits, std::span<const std::uint8_t> by_photons,
+                  const Progress& progress, std::size_t pass);
+  void fill(const PrimaryHits& hits, std::span<const int> levels, const Progress& progress);
+  void find_ends(const PrimaryHits& hits, const Progress& progress, std::size_t pass,
+                 HitReading& reading);
+  void find_nodes(const PrimaryHits& hits, HitReading& reading) const;
+
   /// Estimates of hits that follow each other.
   Estimates joined(std::vector<Estimates> parts) const;
 
-  /// The nodes around hits that are not `alone`. Makes those alone that none of their nodes sees.
-  std::vector<NodeBlend> blends_of(const PrimaryHits& hits, float faint,
-                                   std::vector<std::uint8_t>& alone) const;
-
   const Scene& scene_;
   const SceneNeeds needs_;
-  const bool gathered_;                   ///< rays value nodes, not photons
-  std::vector<MapEstimators*> photons_;   ///< of each pass
-  std::deque<PhotonNodes> photon_nodes_;  ///< where photons value nodes
+  const bool gathered_;                     ///< rays value nodes, not photons
+  std::vector<MapEstimators*> photons_;     ///< of each pass
+  std::vector<gathering::EndLight*> ends_;  ///< of each pass, where rays value nodes
+  std::deque<PhotonNodes> photon_nodes_;    ///< where photons value nodes
   Passes source_;
   LightMaps maps_;
   light_maps::NodeSight sight_;

@@ -23,10 +23,6 @@ std::int64_t hits_per_batch(int neighbours) {
          std::max(defaults::neighbours, neighbours);
 }
 
-/// What a lobe reflects and counts less in its sample, as a dielectric seen from the front, shows
-/// no more than the coarsest nodes know.
-constexpr float faint_reflection = 0.1f;
-
 /// What nodes depend on beside the scene and the photons: the settings of estimates and of rays
 /// that gather, and the kind of device, whose sums may have another order.
 std::string light_map_settings(const RenderParameters& used, std::span<Device> devices) {
@@ -114,7 +110,7 @@ void Rendering::follow(const Rendering& first, int pass) {
 void Rendering::add(Rendering& further) {
   further_.push_back(&further);
   costs_.add_pass(further.costs_);
-  if (light_maps_) light_maps_->add_pass(*further.photons_, further.node_source());
+  if (light_maps_) light_maps_->add_pass(*further.photons_, further.gathering());
 }
 
 MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps) const {
@@ -330,8 +326,9 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
   PrimaryHitBatch batch = source.trace(rays_, film_, first, last, map_of);
   costs_.hits.add(hit_watch.taken());
   costs_.rays += batch.rays;
-  const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight, float faint) {
-    const Estimates estimates = reads_light_maps(source) ? read_light_maps(seen.hits, faint)
+  const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight,
+                       std::span<const std::uint8_t> by_photons) {
+    const Estimates estimates = reads_light_maps(source) ? read_light_maps(seen.hits, by_photons)
                                                          : estimate(seen.hits, first, last);
     const Stopwatch film_watch;
     add_to_film(layers_, seen, estimates, illuminance_weight);
@@ -339,15 +336,18 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
     if (!source.errors() || !gathered_nodes_) return;
     seen.emission.clear();  // is exact
     add_to_film(*source.errors(), seen,
-                light_maps_->errors(seen.hits, estimates, gathered_nodes_->errors(), faint),
+                light_maps_->errors(seen.hits, estimates, gathered_nodes_->errors(), by_photons),
                 illuminance_weight);
   };
-  const float of_sample = 1.0f / static_cast<float>(film_.samples_per_pixel);
-  add(batch, of_sample, 0.0f);
-  if (batch.reflected.size() == 0) return;
+  std::vector<std::uint8_t> by_photons;
+  if (batch.reflected.size() > 0 && reads_light_maps(source)) {
+    by_photons = suits_photons(batch.hits, batch.reflected, light_maps().blotches());
+  }
   PrimaryHitBatch reflected;
   reflected.hits = std::move(batch.reflected);
-  add(reflected, 0.0f, faint_reflection * of_sample);  // the pixel's illuminance is not theirs
+  add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel), {});
+  if (reflected.hits.size() == 0) return;
+  add(reflected, 0.0f, by_photons);  // the pixel's illuminance is not theirs
 }
 
 /// Of the hits of rows [first_row, last_row).
@@ -376,15 +376,15 @@ Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_r
 
 LightMapEstimates& Rendering::light_maps() {
   if (light_maps_) return *light_maps_;
-  light_maps_.emplace(rays_, light_map_parameters_, *photons_, node_source());
+  light_maps_.emplace(rays_, light_map_parameters_, *photons_, gathering());
   for (Rendering* further : further_) {
-    light_maps_->add_pass(*further->photons_, further->node_source());
+    light_maps_->add_pass(*further->photons_, further->gathering());
   }
   return *light_maps_;
 }
 
-NodeSource* Rendering::node_source() {
-  if (!plan_.gathers_at_nodes()) return nullptr;
+GatheringPass Rendering::gathering() {
+  if (!plan_.gathers_at_nodes()) return {};
   if (!gathered_nodes_) {
     node_gather_.emplace(rays_, *photons_, end_parameters_, caustics_ ? &*caustics_ : nullptr,
                          plan_.node_gathering(pass_, radius_));
@@ -393,7 +393,7 @@ NodeSource* Rendering::node_source() {
                             rays_of_nodes(plan_.used().light_map_rays,
                                           inset_of_spacing * light_map_parameters_.spacing));
   }
-  return &*gathered_nodes_;
+  return {&*gathered_nodes_, &node_gather_->ends()};
 }
 
 LightMapFrames& Rendering::frames() {
@@ -401,13 +401,14 @@ LightMapFrames& Rendering::frames() {
   return *frames_;
 }
 
-Estimates Rendering::read_light_maps(const PrimaryHits& hits, float faint) {
+Estimates Rendering::read_light_maps(const PrimaryHits& hits,
+                                     std::span<const std::uint8_t> by_photons) {
   const Stopwatch stopwatch;
   LightMapEstimates& light_maps = this->light_maps();
   const std::uint64_t alone_before = light_maps.hits_alone();
   const std::uint64_t nodes_before = light_maps.maps().statistics().nodes;
   const TimeTaken filled_before = light_maps.fill_time();
-  Estimates estimates = light_maps.estimate(hits, *progress_, at_hand_, faint);
+  Estimates estimates = light_maps.estimate(hits, *progress_, at_hand_, by_photons);
   const LightMapStatistics maps = light_maps.maps().statistics();
   const TimeTaken filling = light_maps.fill_time() - filled_before;
   costs_.light_maps.add(filling, maps.value_bytes + maps.index_bytes);

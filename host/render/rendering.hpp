@@ -87,8 +87,8 @@ class Rendering {
 
   /// Whose photons are at hand.
   Rendering& at_hand() { return at_hand_ == 0 ? *this : *further_[at_hand_ - 1]; }
-  /// What values nodes by the prepared pass; null: its photons alone do.
-  NodeSource* node_source();
+  /// What values nodes by the prepared pass.
+  GatheringPass gathering();
 
   /// Whether light maps that are kept with the photons are those of this rendering.
   bool reads_light_maps_of(const PreparedPhotons& prepared);
@@ -108,7 +108,7 @@ class Rendering {
   bool reads_light_maps(const HitSource& source) const {
     return plan_.reads_light_maps() && (source.dense() || plan_.asks_for_light_maps());
   }
-  Estimates read_light_maps(const PrimaryHits& hits, float faint);
+  Estimates read_light_maps(const PrimaryHits& hits, std::span<const std::uint8_t> by_photons);
   void drop_maps();
   double compile_seconds() const;
 
