@@ -54,19 +54,20 @@ double relative_variance(const PrimaryHits& hits, std::span<const std::uint32_t>
 }  // namespace
 
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
-                                        const PhotonBlotches& blotches) {
+                                        int runs, const PhotonBlotches& blotches) {
   std::vector<std::uint8_t> suits(reflected.size(), 0);
   if (reflected.size() == 0) return suits;
   const auto [low, high] = std::minmax_element(reflected.pixel.begin(), reflected.pixel.end());
-  const std::size_t first = *low, pixels = *high - *low + 1;
+  const auto count = static_cast<std::size_t>(runs);
+  const std::size_t first = *low / count, pixels = *high / count - first + 1;
   std::vector<double> seen_weight(pixels, 0.0);
   for (std::size_t hit = 0; hit < seen.size(); ++hit) {
-    const std::size_t pixel = seen.pixel[hit];
+    const std::size_t pixel = seen.pixel[hit] / count;
     if (pixel >= first && pixel < first + pixels)
       seen_weight[pixel - first] += weight_of(seen, hit);
   }
   const ByPixel by_pixel(reflected.size(), first, pixels,
-                         [&](std::size_t i) { return reflected.pixel[i]; });
+                         [&](std::size_t i) { return reflected.pixel[i] / count; });
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, pixels, pixels_per_task),
       [&](const tbb::blocked_range<std::size_t>& range) {

@@ -20,8 +20,9 @@ struct PhotonBlotches {
 /// of a pixel alone; so the same number of a pixel's samples must be there.
 ///   seen        hits of the pixels themselves
 ///   reflected   those that lobes reflect
+///   runs        of the samples of a pixel, as PrimaryHitParameters has them
 /// Returns 1 or 0 for each of `reflected`.
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
-                                        const PhotonBlotches& blotches);
+                                        int runs, const PhotonBlotches& blotches);
 
 }  // namespace photile

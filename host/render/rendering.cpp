@@ -11,6 +11,7 @@
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/path_numbers.hpp"
+#include "render/sample_errors.hpp"
 #include "render/setting.hpp"
 
 namespace photile {
@@ -33,6 +34,16 @@ std::string light_map_settings(const RenderParameters& used, std::span<Device> d
     }
   }
   return words;
+}
+
+/// Runs of a pixel's samples, whose scatter is their error.
+constexpr int runs_of_samples = 4;
+
+/// What runs of samples see becomes that of their pixels.
+void join_runs(PrimaryHitBatch& batch, int runs) {
+  const auto count = static_cast<std::uint32_t>(runs);
+  for (std::uint32_t& pixel : batch.hits.pixel) pixel /= count;
+  for (SeenEmission& seen : batch.emission) seen.pixel /= count;
 }
 
 /// Least number of batches of a picture that somebody watches.
@@ -163,8 +174,11 @@ std::optional<LightMapContents> Rendering::light_map_contents() const {
 void Rendering::add_pass(const HitSource& source, std::size_t after) {
   at_hand_ = after;
   film_.pass = pass_ + static_cast<int>(after);
-  if (LightLayers* errors = source.errors(); errors && film_.pass == 0) {
+  LightLayers* const errors = source.errors();
+  if (errors && film_.pass == 0) {
     *errors = LightLayers(film_.width, film_.height, scene_);
+    film_.runs = std::min(runs_of_samples, film_.samples_per_pixel);
+    runs_ = LightLayers(film_.width * film_.runs, film_.height, scene_);
   }
   const int rows = rows_per_batch(source);
   progress_->begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
@@ -176,6 +190,10 @@ void Rendering::add_pass(const HitSource& source, std::size_t after) {
     progress_->advance(static_cast<std::uint64_t>(last - first));
   }
   progress_->end();
+  if (errors && film_.pass + 1 == film_.passes) {
+    add_sample_errors(*errors, runs_);
+    runs_ = {};
+  }
   const std::vector<double> shares = at_hand().photons_->shares();
   for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / film_.passes;
 }
@@ -331,17 +349,21 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
     const Estimates estimates = reads_light_maps(source) ? read_light_maps(seen.hits, by_photons)
                                                          : estimate(seen.hits, first, last);
     const Stopwatch film_watch;
+    if (source.errors()) {
+      add_to_film(runs_, seen, estimates, illuminance_weight);
+      join_runs(seen, film_.runs);
+    }
     add_to_film(layers_, seen, estimates, illuminance_weight);
     costs_.film.add(film_watch.taken());
     if (!source.errors() || !gathered_nodes_) return;
-    seen.emission.clear();  // is exact
+    seen.emission.clear();  // its samples alone err
     add_to_film(*source.errors(), seen,
                 light_maps_->errors(seen.hits, estimates, gathered_nodes_->errors(), by_photons),
                 illuminance_weight);
   };
   std::vector<std::uint8_t> by_photons;
   if (batch.reflected.size() > 0 && reads_light_maps(source)) {
-    by_photons = suits_photons(batch.hits, batch.reflected, light_maps().blotches());
+    by_photons = suits_photons(batch.hits, batch.reflected, film_.runs, light_maps().blotches());
   }
   PrimaryHitBatch reflected;
   reflected.hits = std::move(batch.reflected);

@@ -120,6 +120,7 @@ class Rendering {
   std::optional<KernelPreparation> kernels_;  ///< begun where photons are needed
   PrimaryHitParameters film_;
   LightLayers layers_;
+  LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples
   std::vector<std::uint64_t> paths_before_;  ///< per light
   double radius_ = 0;                        ///< of the first pass, metres
   NeighbourGroups groups_;

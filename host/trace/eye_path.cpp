@@ -139,8 +139,10 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   const RandomStream of_pixel(film.seed, pixel, 0);
   const auto index = static_cast<std::uint32_t>(sample);
   const glm::dvec2 offset = sobol_point(index, of_pixel.block(Purpose::film_position, 0));
+  const auto place = static_cast<std::uint32_t>(sample * film.runs / film.samples_per_pixel) +
+                     pixel * static_cast<std::uint32_t>(film.runs);
   const EyeRay ray{setup.eye, glm::vec3((*setup.film)(x + offset.x, y + offset.y)),
-                   glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), pixel};
+                   glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), place};
   std::optional<LookSamples> looks;
   if (setup.direct) {
     looks.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));

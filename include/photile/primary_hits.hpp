@@ -60,6 +60,10 @@ struct PrimaryHitParameters {
   /// Lobes that are narrow, or reflect little, are left out of hits: a ray of each hit follows them
   /// to the surfaces that they reflect (PrimaryHitBatch::reflected).
   bool lobe_rays = false;
+  /// > 1: samples of a pixel belong to so many runs, and the pixel of what they see is that of a
+  /// film so many times as wide, y * width * runs + x * runs + run. Runs follow each other in the
+  /// sequence of the pixel.
+  int runs = 1;
 };
 
 struct PrimaryHitBatch {
