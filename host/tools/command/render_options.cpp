@@ -142,7 +142,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_preview_option(command, options, "Output");
   command
       .add_option("--errors", options.errors,
-                  "standard errors of the picture, a layer per light: the noise of nodes")
+                  "standard errors of the picture, a layer per light: the noise of nodes and samples")
       ->type_name("FILE.exr")
       ->check(file_ending_in({".exr"}))
       ->group("Quality");
