@@ -15,7 +15,7 @@ namespace photile {
 namespace {
 
 /// Noise of photons in a pixel, relative, that is not seen: less than rays of lobes leave.
-constexpr double tolerated_noise = 0.02;
+constexpr double tolerated_noise = 0.04;
 
 /// Hits of a pixel that are compared with each other, at most.
 constexpr std::size_t most_compared = 64;
