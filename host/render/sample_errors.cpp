@@ -19,9 +19,12 @@ struct Scatter {
     sum += value;
     squares += value * value;
   }
-  /// Variance of `sum` over so many runs, those that were not added being black.
+  /// Variance of `sum` over so many runs, those that were not added being black: of independent
+  /// runs, less what comes of their being strata of one sequence.
   glm::dvec4 variance(double runs) const {
-    return glm::max(squares - sum * sum / runs, glm::dvec4(0.0)) * (runs / (runs - 1));
+    const glm::dvec4 independent =
+        glm::max(squares - sum * sum / runs, glm::dvec4(0.0)) * (runs / (runs - 1));
+    return independent / std::sqrt(runs);
   }
 };
 

@@ -6,9 +6,11 @@
 namespace photile {
 
 /// Adds, in squares, the standard error of the samples of each pixel, by light, to that of what
-/// they see. Runs of samples that follow each other in a pixel's sequence are spread over the pixel
-/// and its lobes much as all are: the scatter of their sums is taken for that of independent ones,
-/// which is a little more than what is left.
+/// they see. It is told from the scatter of runs of samples that follow each other in a pixel's
+/// sequence. The variance of well-spread samples falls as N^-1 where they are noise, as N^-3/2 at
+/// an edge and as N^-2 where light changes evenly (Mitchell, "Consequences of stratified sampling
+/// in graphics", 1996). Here it is that of an edge: of R runs, that of independent ones over
+/// sqrt(R).
 ///   errors   of the picture
 ///   runs     as many times as wide as there are runs: column x * count + run has the sum of that
 ///            run of samples of pixel x

@@ -188,7 +188,7 @@ TEST_CASE("gloss by rays: nodes that gather, and photons where they suffice, see
           "[long][slow]") {
   RenderParameters parameters = with_rays();
   parameters.light_map_rays = 16;
-  check_room(glossy(glm::vec3(0.0f), glm::vec3(0.7f), 0.2f), parameters, 0.06);
+  check_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), parameters, 0.06);
   check_room(glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.5f), parameters, 0.06);
 }
 

@@ -28,14 +28,15 @@ TEST_CASE("errors of samples are those of the mean of runs, and add up in square
     runs.layers[0].illuminance[run_count + run] = run == 0 ? 8.0f : 0.0f;
   }
   add_sample_errors(errors, runs);
-  // The sum of four values that scatter by s varies by 4 s^2; of 0, 1, 2, 3 s^2 is 5 / 3.
-  const double of_steps = 4.0 * 5 / 3;
+  // The sum of four independent values that scatter by s varies by 4 s^2; that of strata at an edge
+  // by half of it. Of 0, 1, 2, 3 s^2 is 5 / 3.
+  const double of_steps = 2.0 * 5 / 3;
   const LightLayers::Layer& found = errors.layers[0];
   CHECK(found.radiance[0] == glm::vec3(0.0f));
   CHECK(found.radiance[1].r == Approx(0.3));
   CHECK(found.radiance[1].g == Approx(std::sqrt(0.09 + 0.25 * of_steps)));
   CHECK(found.radiance[1].b == Approx(std::sqrt(0.09 + 100 * of_steps)));
-  CHECK(found.illuminance[1] == Approx(std::sqrt(4.0 + 4.0 * 16)));  // of 8, 0, 0, 0 s^2 is 16
+  CHECK(found.illuminance[1] == Approx(std::sqrt(4.0 + 2.0 * 16)));  // of 8, 0, 0, 0 s^2 is 16
 }
 
 TEST_CASE("errors of samples are the same in sparse layers") {
@@ -50,9 +51,9 @@ TEST_CASE("errors of samples are the same in sparse layers") {
                   {0.0f, 0.0f, 4.0f}};
   add_sample_errors(errors, runs);
   const LightLayers dense = errors.dense();
-  CHECK(dense.layers[3].radiance[0].r == Approx(std::sqrt(0.09 + 4.0 / 3)));  // 1, 1, 0, 0
-  CHECK(dense.layers[5].radiance[1].r == Approx(2.0));                        // 2, 0, 0, 0
-  CHECK(dense.layers[5].illuminance[1] == Approx(4.0));
+  CHECK(dense.layers[3].radiance[0].r == Approx(std::sqrt(0.09 + 2.0 / 3)));  // 1, 1, 0, 0
+  CHECK(dense.layers[5].radiance[1].r == Approx(std::sqrt(2.0)));             // 2, 0, 0, 0
+  CHECK(dense.layers[5].illuminance[1] == Approx(std::sqrt(8.0)));
   CHECK(dense.layers[3].radiance[1].r == 0.0f);
 }
 
