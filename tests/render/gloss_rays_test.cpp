@@ -184,14 +184,6 @@ TEST_CASE("gloss by rays: lobes and light maps together see what paths see", "[l
   check_room(glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.5f), with_rays(), 0.06);
 }
 
-TEST_CASE("gloss by rays: nodes that gather, and photons where they suffice, see what paths see",
-          "[long][slow]") {
-  RenderParameters parameters = with_rays();
-  parameters.light_map_rays = 16;
-  check_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), parameters, 0.06);
-  check_room(glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.5f), parameters, 0.06);
-}
-
 TEST_CASE("gloss by rays: with looks at lamps from each hit they see what paths see, too",
           "[long][slow]") {
   RenderParameters parameters = with_rays();
