@@ -161,6 +161,7 @@ LightMapEstimates::LightMapEstimates(const RayScene& rays, const LightMapParamet
     : scene_(rays.scene()),
       needs_(rays.needs()),
       gathered_(gathering.nodes != nullptr),
+      neighbours_(parameters.neighbours),
       maps_(scene_, parameters),
       sight_(rays, maps_) {
   add_pass(photons, gathering);
@@ -305,7 +306,7 @@ void LightMapEstimates::find_nodes(const PrimaryHits& hits, HitReading& reading)
 
 PhotonBlotches LightMapEstimates::blotches() const {
   return {gathered_ ? ends_.front()->spacing() : maps_.charts().spacing(),
-          1 / std::sqrt(static_cast<double>(photons_.front()->neighbours()))};
+          1 / std::sqrt(neighbours_)};
 }
 
 double LightMapEstimates::error() const {

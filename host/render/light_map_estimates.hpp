@@ -130,7 +130,8 @@ class LightMapEstimates {
 
   const Scene& scene_;
   const SceneNeeds needs_;
-  const bool gathered_;                     ///< rays value nodes, not photons
+  const bool gathered_;      ///< rays value nodes, not photons
+  const double neighbours_;  ///< of an estimate; maps of photons need not be there to tell it
   std::vector<MapEstimators*> photons_;     ///< of each pass
   std::vector<gathering::EndLight*> ends_;  ///< of each pass, where rays value nodes
   std::deque<PhotonNodes> photon_nodes_;    ///< where photons value nodes
