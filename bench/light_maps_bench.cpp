@@ -125,9 +125,9 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   maps.emplace_back(device, scene, photons, groups, PhotonMapParameters{.radius = radius});
   MapEstimators estimators(std::span(&device, 1), scene, std::move(maps), std::span(&estimate, 1),
                            powers);
-  LightMapParameters light_maps = light_map_parameters(
-      scene, photons, settings.neighbours, radius, defaults::group_angle_degrees, settings.detail,
-      powers);
+  LightMapParameters light_maps =
+      light_map_parameters(scene, photons, settings.neighbours, radius,
+                           defaults::group_angle_degrees, settings.detail, powers);
   if (settings.coarsest > 0) {
     light_maps.levels +=
         static_cast<int>(std::lround(std::log2(settings.coarsest / light_maps.spacing)));

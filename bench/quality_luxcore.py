@@ -24,6 +24,7 @@ import pyluxcore
 
 from gltf_meshes import read_gltf
 
+BEHIND = 1e-4  # metres
 PHOTONS = 1_000_000  # LuxCore's default of 20 million traces for minutes
 
 
@@ -47,7 +48,7 @@ def properties(values):
 
 
 def materials(meshes):
-    """Reflect on the front alone unless they are double-sided or lamps."""
+    """Reflect on the front alone unless they are double-sided; of lamps `backs` covers the back."""
     values = {"scene.materials.black.type": "matte", "scene.materials.black.kd": [0.0, 0.0, 0.0]}
     for i, mesh in enumerate(meshes):
         lit = any(mesh.radiance)
@@ -61,6 +62,22 @@ def materials(meshes):
         if lit:
             values[f"scene.materials.m{i}.emission"] = [float(k) for k in mesh.radiance]
     return values
+
+
+def backs(mesh):
+    """Vertices and triangles of a black sheet behind a lamp: what has two sides emits on both."""
+    corners = mesh.positions[mesh.triangles].astype(float)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    behind = corners - BEHIND * normals[:, None]
+    return behind.reshape(-1, 3), np.arange(3 * len(behind)).reshape(-1, 3)
+
+
+def add_mesh(scene, name, positions, triangles, material):
+    scene.DefineMesh(name, [tuple(map(float, p)) for p in positions],
+                     [tuple(map(int, t)) for t in triangles], None, None, None, None)
+    scene.Parse(properties({f"scene.objects.{name}.shape": name,
+                            f"scene.objects.{name}.material": material}))
 
 
 def seen_scene(meshes, view, width, height):
@@ -77,10 +94,9 @@ def seen_scene(meshes, view, width, height):
          "scene.camera.screenwindow": [-aspect, aspect, -1.0, 1.0],
          "scene.camera.autovolume.enable": False} | materials(meshes)))
     for i, mesh in enumerate(meshes):
-        scene.DefineMesh(f"mesh{i}", [tuple(map(float, p)) for p in mesh.positions],
-                         [tuple(map(int, t)) for t in mesh.triangles], None, None, None, None)
-        scene.Parse(properties({f"scene.objects.o{i}.shape": f"mesh{i}",
-                                f"scene.objects.o{i}.material": f"m{i}"}))
+        add_mesh(scene, f"mesh{i}", mesh.positions, mesh.triangles, f"m{i}")
+        if any(mesh.radiance) and not mesh.double_sided:
+            add_mesh(scene, f"back{i}", *backs(mesh), "black")
     return scene
 
 

@@ -29,9 +29,9 @@ class KernelPreparation {
   std::future<void> done_;
 };
 
-/// Has the kernels compiled that scenes of many triangles want in pictures of the qualities draft and
-/// good: of matt and glossy surfaces, with and without normal maps, and of up to max_dense_lights
-/// layers. Where kernels are kept between runs, they are there from now on.
+/// Has the kernels compiled that scenes of many triangles want in pictures of the qualities draft
+/// and good: of matt and glossy surfaces, with and without normal maps, and of up to
+/// max_dense_lights layers. Where kernels are kept between runs, they are there from now on.
 void compile_usual_kernels(Device& device, Progress& progress);
 
 }  // namespace photile

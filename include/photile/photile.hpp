@@ -4,6 +4,7 @@
 #include "photile/camera.hpp"
 #include "photile/camera_attributes.hpp"
 #include "photile/defaults.hpp"
+#include "photile/denoiser.hpp"
 #include "photile/density_kernel.hpp"
 #include "photile/device.hpp"
 #include "photile/device_test.hpp"

@@ -70,17 +70,20 @@ class Settings(unittest.TestCase):
 
 class Results(unittest.TestCase):
     def test_a_row_measured_anew_takes_the_place_of_its_own_and_leaves_the_others(self):
+        kitchen, classroom = quality.VIEWS[:2]
+
         def made(view, tool, setting, processor):
             return {**row(tool, processor, 0.1), "view": view, "setting": setting}
 
-        known = [made("kitchen", "photile", "good", 20), made("kitchen", "Mitsuba", "1 spp", 1),
-                 made("classroom", "photile", "good", 15)]
-        merged = quality.merged(known, [made("kitchen", "photile", "good", 18),
-                                        made("kitchen", "photile", "draft", 5)])
+        known = [made(kitchen, "photile", "good", 20), made(kitchen, "Mitsuba", "1 spp", 1),
+                 made(classroom, "photile", "good", 15),
+                 made("a view of an older script", "photile", "good", 3)]
+        merged = quality.merged(known, [made(kitchen, "photile", "good", 18),
+                                        made(kitchen, "photile", "draft", 5)])
         self.assertEqual([(one["view"], one["setting"], one["first"]["processor"])
                           for one in merged],
-                         [("kitchen", "draft", 5), ("kitchen", "good", 18), ("kitchen", "1 spp", 1),
-                          ("classroom", "good", 15)])
+                         [(kitchen, "draft", 5), (kitchen, "good", 18), (kitchen, "1 spp", 1),
+                          (classroom, "good", 15)])
 
 
 class Meshes(unittest.TestCase):

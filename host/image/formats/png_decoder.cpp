@@ -13,7 +13,8 @@ namespace {
 [[noreturn]] void png_failure(png_structp, png_const_charp reason) { throw DecodeError(reason); }
 void png_warning(png_structp, png_const_charp) {}
 
-/// Bytes that a chunk may fill in memory where the file is shorter: texts and profiles are compressed.
+/// Bytes that a chunk may fill in memory where the file is shorter: texts and profiles are
+/// compressed.
 constexpr std::size_t least_chunk_limit = 8'000'000;
 
 /// libpng's state.

@@ -141,8 +141,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   exclude_chosen(command);
   add_preview_option(command, options, "Output");
   command
-      .add_option("--errors", options.errors,
-                  "standard errors of the picture, a layer per light: the noise of nodes and samples")
+      .add_option(
+          "--errors", options.errors,
+          "standard errors of the picture, a layer per light: the noise of nodes and samples")
       ->type_name("FILE.exr")
       ->check(file_ending_in({".exr"}))
       ->group("Quality");
