@@ -10,6 +10,7 @@
 #include "photile/errors.hpp"
 
 namespace photile {
+
 // What the library's C interface (oidn.h of version 2) declares of what is used here.
 struct OidnDevice;
 struct OidnFilter;

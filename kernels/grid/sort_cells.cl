@@ -2,9 +2,7 @@
 // order; sorted, the map is the same on every run and runtime.
 
 // Symbols the host defines:
-//   IN_GROUPS   work-items of a group sort a crowded cell together: on a GPU one alone takes
-//   minutes
-//               for a crowd
+//   IN_GROUPS   work-items of a group sort a crowded cell together: on a GPU one alone takes minutes
 
 // Cells up to this size are sorted by insertion, larger ones by heap sort, or by a group (a million
 // photons may lie in one point).

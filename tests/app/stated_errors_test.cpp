@@ -17,15 +17,34 @@ using Catch::Contains;
 
 constexpr int seeds = 6;
 
+void render_picture(const FileFolder& folder, const std::string& file, const std::string& seed,
+                    const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"render",
+                                     write_box(folder),
+                                     "-o",
+                                     file,
+                                     "--size",
+                                     "24x18",
+                                     "--samples",
+                                     "4",
+                                     "--photons",
+                                     "50k",
+                                     "-k",
+                                     "50",
+                                     "--light-map-rays",
+                                     "16",
+                                     "--seed",
+                                     seed};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome outcome = run_photile(arguments);
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+}
+
 /// A picture and its errors, of this seed.
 void render(const FileFolder& folder, int seed) {
   const std::string name = std::to_string(seed);
-  const Outcome outcome =
-      run_photile({"render", write_box(folder), "-o", folder / name + ".exr", "--errors",
-                   folder / name + "-errors.exr", "--size", "24x18", "--samples", "4", "--photons",
-                   "50k", "-k", "50", "--light-map-rays", "16", "--seed", name});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  render_picture(folder, folder / name + ".exr", name, {"--errors", folder / name + "-errors.exr"});
 }
 
 }  // namespace
@@ -56,6 +75,13 @@ TEST_CASE("the stated errors of a light are the scatter of its layer from seed t
     CHECK(stated / measured > 0.4);
     CHECK(stated / measured < 2.0);
   }
+}
+
+TEST_CASE("stating errors changes no bit of the picture") {
+  const FileFolder folder;
+  render(folder, 1);
+  render_picture(folder, folder / "alone.exr", "1", {});
+  CHECK(read_image(folder / "1.exr").channels == read_image(folder / "alone.exr").channels);
 }
 
 TEST_CASE("errors are relit as pictures are: a light's own in proportion to its power") {
