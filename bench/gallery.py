@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Renders the scenes of scenes/gallery by the default and by paths and writes docs/gallery.md.
 
-    bench/gallery.py [--photile COMMAND] [--only SCENE] [--quick --results FOLDER]
+    bench/gallery.py [--photile COMMAND] [--only SCENE] [--references FOLDER] [--quick --results FOLDER]
 
-Takes about half an hour. Needs the built command and the Debian packages python3-numpy and
+Takes about an hour, nearly all of it for the paths, which FOLDER keeps. Needs the built command and the Debian packages python3-numpy and
 python3-openimageio.
 """
 
@@ -21,10 +21,11 @@ packages.require("numpy", "OpenImageIO")
 
 import numpy as np
 
+import path_references
 import picture_error
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SIZE, REFERENCE_SAMPLES = "480x360", 1024
+SIZE, REFERENCE_PATHS = "480x360", 512
 
 
 @dataclasses.dataclass
@@ -52,28 +53,25 @@ def arguments():
     parser.add_argument("--photile", type=pathlib.Path, default=ROOT / "build/release/photile")
     parser.add_argument("--only", choices=[subject.name for subject in SUBJECTS],
                         help="render this alone, the results keep the others")
+    parser.add_argument("--references", type=pathlib.Path, default=ROOT / "build/gallery",
+                        metavar="FOLDER", help="pictures by paths; default: %(default)s")
     parser.add_argument("--quick", action="store_true", help="tiny pictures: a smoke test")
     parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/pictures/gallery",
                         help="where pictures and figures go; default: %(default)s")
     return parser.parse_args()
 
 
-def render(given, subject, options, picture):
-    """The pixels of a picture, by way of an EXR file, and the processor seconds that it took."""
-    _, seconds, _ = timed([given.photile, "render", ROOT / f"scenes/gallery/{subject.name}.gltf",
-                           *subject.lights, *options, "-o", picture, "--quiet"])
-    return picture_error.read_picture(picture), seconds
-
-
 def measure(given, subject, folder):
     """Renders a scene both ways, writes the two side by side, and returns the figures."""
     size = "32x24" if given.quick else SIZE
     few = ["--quality", "draft", "--photons", "20k", "-k", "20"] if given.quick else []
-    samples = "4" if given.quick else str(REFERENCE_SAMPLES)
-    own, seconds = render(given, subject, [*few, "--size", size], folder / "photons.exr")
-    paths, _ = render(given, subject,
-                      ["--integrator", "path", "--samples", samples, "--size", size],
-                      folder / "paths.exr")
+    scene, picture = ROOT / f"scenes/gallery/{subject.name}.gltf", folder / "photons.exr"
+    _, seconds, _ = timed([given.photile, "render", scene, *subject.lights, *few, "--size", size,
+                           "-o", picture, "--quiet"])
+    own = picture_error.read_picture(picture)
+    paths, noise = path_references.mean_and_noise(path_references.pictures(
+        given.photile, scene, size, 4 if given.quick else REFERENCE_PATHS,
+        folder if given.quick else given.references, subject.lights))
     factor = picture_error.exposure(paths)
     both = [picture_error.displayed(own, factor), np.ones((own.shape[0], 4, 3)),
             picture_error.displayed(paths, factor)]
@@ -81,7 +79,7 @@ def measure(given, subject, folder):
     figures = picture_error.measure(own, paths)
     return {"scene": subject.name, "processor seconds": seconds,
             "mean ratio": figures["mean_ratio"],
-            "relMSE": figures["rel_mse"],
+            "relMSE": figures["rel_mse"], "noise of the reference": noise,
             "relMSE without the worst 5%": figures["rel_mse_without_worst"]}
 
 
@@ -95,10 +93,11 @@ def section(results):
                             "--size", SIZE])
         text += (f"## {subject.name.replace('-', ' ').capitalize()}\n\n{subject.caption}\n\n"
                  f"![By the default, and by paths](pictures/gallery/{subject.name}.png)\n\n"
-                 f"Mean ratio {row['mean ratio']:.3f}, relMSE {row['relMSE']:.4f}, without the worst "
-                 f"5% of the pixels {row['relMSE without the worst 5%']:.4f}, after "
+                 f"Mean ratio {row['mean ratio']:.3f}, relMSE {row['relMSE']:.4f}, of which the noise of the "
+                 f"reference is {row['noise of the reference']:.4f}; without the worst 5% of the pixels "
+                 f"{row['relMSE without the worst 5%']:.4f}, after "
                  f"{row['processor seconds']:.0f} processor seconds: `{options}` beside "
-                 f"{REFERENCE_SAMPLES} paths a pixel.\n\n")
+                 f"{REFERENCE_PATHS} paths a pixel.\n\n")
     return text.rstrip()
 
 

@@ -13,7 +13,6 @@ python3-openimageio.
 import argparse
 import json
 import pathlib
-import subprocess
 import tempfile
 
 import packages
@@ -22,36 +21,16 @@ from processes import timed
 
 packages.require("numpy", "OpenImageIO")
 
-import numpy as np
-
+import path_references
 import picture_error
 
 SIZE = "256x192"
-PATHS_OF_PICTURE = 64
-
-
-def reference_halves(given, scene):
-    """Two independent means, each of half of the paths."""
-    halves = [[], []]
-    for seed in range(1, max(2, given.paths // PATHS_OF_PICTURE) + 1):
-        kept = given.references / f"{scene.stem}-{seed}.npy"
-        if not kept.exists():
-            with tempfile.TemporaryDirectory() as name:
-                picture = pathlib.Path(name) / "paths.exr"
-                subprocess.run([given.photile, "render", scene, "--integrator", "path", "--size",
-                                SIZE, "--samples", str(PATHS_OF_PICTURE), "--seed", str(seed),
-                                "--quiet", "-o", picture], check=True)
-                np.save(kept, picture_error.read_picture(picture))
-        halves[seed % 2].append(np.load(kept))
-    return [np.mean(half, axis=0) for half in halves]
 
 
 def measured(given, scene, folder):
     """A row of the table."""
-    halves = reference_halves(given, scene)
-    reference = np.mean(halves, axis=0)
-    # A half is off the mean of both by half of their difference, which is as noisy as that mean.
-    noise = picture_error.measure(halves[0], reference)["rel_mse"]
+    reference, noise = path_references.mean_and_noise(
+        path_references.pictures(given.photile, scene, SIZE, given.paths, given.references))
     _, seconds, _ = timed([given.photile, "render", scene, "--size", SIZE, *given.options.split(),
                            "--quiet", "-o", folder / "picture.exr", "--stats",
                            folder / "stats.json"])
@@ -73,7 +52,6 @@ def main():
                         default=scene_arguments.ROOT / "build/release/photile")
     parser.add_argument("--options", default="--quality good")
     given = parser.parse_args()
-    given.references.mkdir(parents=True, exist_ok=True)
     print("| | relMSE | of it the reference's noise | mean | nodes | processor s |")
     print("|---|--:|--:|--:|--:|--:|")
     with tempfile.TemporaryDirectory() as name:

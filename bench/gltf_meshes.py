@@ -1,6 +1,6 @@
 """Reads triangles, diffuse colours and the camera of a glTF 2.0 file, for renderers that cannot.
 
-Knows flat, untextured, diffuse meshes of one primitive at the root of the scene, one camera and one
+Knows flat, untextured, opaque meshes of one primitive at the root of the scene, one camera and one
 binary file. Raises ValueError where a file has more, so that no renderer gets another scene than
 photile.
 """
@@ -25,6 +25,9 @@ class Mesh:
     reflectance: list
     radiance: list
     double_sided: bool
+    metallic: float = 0
+    roughness: float = 1
+    specular: float = 0  # of dielectrics: 0 is diffuse, 1 reflects 4%
 
 
 @dataclasses.dataclass
@@ -45,13 +48,14 @@ def read_accessor(file, binary, index):
     return values.reshape(-1, columns)
 
 
-def read_mesh(file, binary, node):
+def read_mesh(file, binary, node, diffuse):
     (primitive,) = file["meshes"][node["mesh"]]["primitives"]
     material = file["materials"][primitive["material"]]
     surface, extensions = material["pbrMetallicRoughness"], material.get("extensions", {})
     specular = extensions.get("KHR_materials_specular", {}).get("specularFactor", 1)
-    if surface.get("metallicFactor", 1) != 0 or specular != 0 or "baseColorTexture" in surface:
-        raise ValueError(f"material {material.get('name')}: not of one diffuse colour")
+    metallic, textures = surface.get("metallicFactor", 1), {key for key in surface if "Texture" in key}
+    if textures or (diffuse and (metallic != 0 or specular != 0)):
+        raise ValueError(f"material {material.get('name')}: not of one {'diffuse ' * diffuse}colour")
     strength = extensions.get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1)
     return Mesh(name=node.get("name", ""),
                 positions=read_accessor(file, binary, primitive["attributes"]["POSITION"]),
@@ -59,7 +63,8 @@ def read_mesh(file, binary, node):
                 .reshape(-1, 3).astype(np.uint32),
                 reflectance=surface.get("baseColorFactor", [1, 1, 1, 1])[:3],
                 radiance=[strength * value for value in material.get("emissiveFactor", [0, 0, 0])],
-                double_sided=material.get("doubleSided", False))
+                double_sided=material.get("doubleSided", False), metallic=metallic,
+                roughness=surface.get("roughnessFactor", 1), specular=specular)
 
 
 def matrix_of(node):
@@ -75,8 +80,8 @@ def matrix_of(node):
     return matrix
 
 
-def read_gltf(path):
-    """(list of Mesh, View) of the file."""
+def read_gltf(path, diffuse=True):
+    """(list of Mesh, View) of the file, which must be diffuse throughout unless told otherwise."""
     file = json.loads(path.read_text(encoding="utf-8"))
     (buffer,) = file["buffers"]
     binary = (path.parent / buffer["uri"]).read_bytes()
@@ -84,7 +89,7 @@ def read_gltf(path):
     for index in file["scenes"][file.get("scene", 0)]["nodes"]:
         node = file["nodes"][index]
         if "mesh" in node and not TRANSFORM & set(node):
-            meshes.append(read_mesh(file, binary, node))
+            meshes.append(read_mesh(file, binary, node, diffuse))
         elif "camera" in node:
             camera = file["cameras"][node["camera"]]["perspective"]
             views.append(View(matrix_of(node), camera["yfov"]))

@@ -4,10 +4,10 @@
     bench/quality.py [SCENES] [--only VIEW] [--tool TOOL] [--redraw] [--quick] [--results FOLDER]
 
 Renders the two diffuse interiors of SCENES in two sizes with photile, by its qualities, by photons alone
-and by denoised paths, and with Mitsuba 3's path tracer with and without Open Image Denoise; compares with
-the path-traced references of SCENES by relMSE, mottle and FLIP. Needs the built command, and numpy,
-matplotlib and OpenImageIO. The rivals are those that the interpreter finds: the packages mitsuba, pyoidn
-and flip-evaluator of PyPI, for example in an environment made with `/usr/bin/python3 -m venv --system-site-packages`. Mitsuba wants LLVM, which
+and by denoised paths, with Mitsuba 3's path tracer with and without Open Image Denoise, and with LuxCore
+and its PhotonGI; compares with the path-traced references of SCENES by relMSE, mottle and FLIP. Needs the
+built command, and numpy, matplotlib and OpenImageIO. The rivals are those that the interpreter finds: the
+packages mitsuba, pyoidn, pyluxcore and flip-evaluator of PyPI, for example in an environment made with `/usr/bin/python3 -m venv --system-site-packages`. Mitsuba wants LLVM, which
 DRJIT_LIBLLVM_PATH names. What is not there becomes a row that says so.
 """
 
@@ -44,7 +44,7 @@ LEAST_NEIGHBOURS = "12"
 PATHS = (1, 4, 16, 64, 128)  # of a pixel
 FEW_PATHS = (4, 16, 64)  # in large pictures, and of the tools with less to show
 MOST_PATHS_OF_FRAMES = 16  # beyond, a further frame takes what the first takes
-PACKAGES = ("mitsuba", "pyoidn", "flip-evaluator")
+PACKAGES = ("mitsuba", "pyoidn", "pyluxcore", "flip-evaluator")
 
 
 def arguments():
@@ -175,7 +175,9 @@ TOOLS = {"photile": ("photile", ()),
          "photile, paths denoised": ("photile", ("pyoidn",)),
          "Mitsuba": ("quality_mitsuba.py", ("mitsuba",)),
          "Mitsuba, low discrepancy": ("quality_mitsuba.py", ("mitsuba",)),
-         "Mitsuba, denoised": ("quality_mitsuba.py", ("mitsuba", "pyoidn"))}
+         "Mitsuba, denoised": ("quality_mitsuba.py", ("mitsuba", "pyoidn")),
+         "LuxCore, PhotonGI": ("quality_luxcore.py", ("pyluxcore",)),
+         "LuxCore, PhotonGI, denoised": ("quality_luxcore.py", ("pyluxcore",))}
 
 
 def points(tool, qualities, large, quick):
@@ -207,6 +209,11 @@ def points(tool, qualities, large, quick):
         "Mitsuba, low discrepancy": lambda: by_paths(
             few_paths, lambda n: ["--samples", str(n), "--sampler", "multijitter"]),
         "Mitsuba, denoised": lambda: by_paths(paths, lambda n: [*path_settings(n), "--denoise"]),
+        # Its photons alone take a minute, and nothing of it gains by more pixels.
+        "LuxCore, PhotonGI": lambda: by_paths([] if large else few_paths,
+                                              lambda n: ["--samples", str(n)]),
+        "LuxCore, PhotonGI, denoised": lambda: by_paths([] if large else few_paths, lambda n: [
+            "--samples", str(n), "--denoise"]),
     }[tool]()
 
 

@@ -41,12 +41,16 @@ def arguments():
     return parser.parse_args()
 
 
-def mitsuba_mesh(mesh):
-    """A mesh with flat normals. Single-sided materials reflect on their front only."""
-    diffuse = {"type": "diffuse", "reflectance": {"type": "rgb", "value": mesh.reflectance}}
+def diffuse(mesh):
+    """Its material. Single-sided ones reflect on their front only."""
+    matt = {"type": "diffuse", "reflectance": {"type": "rgb", "value": mesh.reflectance}}
+    return mitsuba.load_dict({"type": "twosided", "bsdf": matt} if mesh.double_sided else matt)
+
+
+def mitsuba_mesh(mesh, material):
+    """A mesh with flat normals."""
     properties = mitsuba.Properties()
-    properties["bsdf"] = mitsuba.load_dict({"type": "twosided", "bsdf": diffuse}
-                                           if mesh.double_sided else diffuse)
+    properties["bsdf"] = material
     if any(mesh.radiance):
         properties["emitter"] = mitsuba.load_dict(
             {"type": "area", "radiance": {"type": "rgb", "value": mesh.radiance}})
@@ -73,7 +77,7 @@ def seen_scene(meshes, view, width, height, sampler="independent"):
 
 def mitsuba_scene(path, width, height, sampler="independent"):
     meshes, view = read_gltf(path)
-    return seen_scene([mitsuba_mesh(mesh) for mesh in meshes], view, width, height, sampler)
+    return seen_scene([mitsuba_mesh(mesh, diffuse(mesh)) for mesh in meshes], view, width, height, sampler)
 
 
 def integrator(denoise):

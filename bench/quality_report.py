@@ -14,7 +14,8 @@ STYLES = {"photile": ("#009E73", "D"), "photile, photons alone": ("#D55E00", "o"
           "photile, photons in passes": ("#E69F00", "s"),
           "photile, paths denoised": ("#009E73", "x"),
           "Mitsuba": ("#56B4E9", "^"), "Mitsuba, low discrepancy": ("#56B4E9", "<"),
-          "Mitsuba, denoised": ("#0072B2", "v")}
+          "Mitsuba, denoised": ("#0072B2", "v"),
+          "LuxCore, PhotonGI": ("#CC79A7", "+"), "LuxCore, PhotonGI, denoised": ("#CC79A7", "*")}
 MEASURES = {"rel_mse": "relMSE", "flip": "FLIP"}
 
 

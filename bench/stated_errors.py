@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Standard errors that photile states beside those measured; prints the tables of docs/light-maps.md.
+"""Errors that photile states, and is asked for, beside those measured: the tables of docs/light-maps.md.
 
     bench/stated_errors.py SCENES [--photile FILE] [--only NAME] [--seeds N] [--size WxH]
 
 SCENES is the folder of the interiors and their references, which are not part of this repository, as
 for bench/quality.py. Renders each room with several seeds: what differs between them is noise, which is
 what photile states. The error beside the reference holds blur and the reference's noise, too. Takes
-about ten minutes. Needs the built command and the Debian packages python3-numpy and python3-openimageio.
+about half an hour. Needs the built command and the Debian packages python3-numpy and python3-openimageio.
 """
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 import scene_arguments
+from processes import timed
 
 try:
     import numpy as np
@@ -26,7 +26,8 @@ except ImportError as missing:
              "python3-openimageio, and run it with /usr/bin/python3")
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-OPTIONS = ("--quality good --photons 125k --light-map-rays 16", "--quality good")
+OPTIONS = ("--target-error 5%", "--quality good", "--target-error 2%")
+OPTIONS_OF_LIGHTS = "--quality good"
 
 
 def luminances(file):
@@ -44,15 +45,16 @@ def rms(values):
 
 
 def rendered(given, scene, options, seed, folder):
-    """Lights, their stated errors, the stated error of the picture in percent, its pixels."""
+    """Lights, their stated errors, the stated error of the picture in percent, its pixels, what it took."""
     picture, errors, stats = (folder / name for name in ("a.exr", "errors.exr", "a.json"))
-    subprocess.run([given.photile, "render", scene, "--size", given.size, "--quota", "power",
+    _, seconds, _ = timed([given.photile, "render", scene, "--size", given.size, "--quota", "power",
                     *options.split(), "--seed", str(seed), "--quiet", "-o", picture, "--errors",
-                    errors, "--stats", stats], check=True)
+                    errors, "--stats", stats])
     stages = json.loads(stats.read_text())["stages"]
     stated = next(stage["figures"]["standard error percent"] for stage in stages
                   if stage["stage"] == "light maps")
-    return luminances(picture), luminances(errors), stated, picture_error.read_picture(picture)
+    return (luminances(picture), luminances(errors), stated, picture_error.read_picture(picture),
+            seconds)
 
 
 def rows(given, name, scene, reference, options, folder):
@@ -73,7 +75,8 @@ def rows(given, name, scene, reference, options, folder):
     said = np.sqrt(sum(np.mean([run[1][layer] ** 2 for run in runs], axis=0) for layer in runs[0][1]))
     ratios = said[mask] / np.maximum(pictures.std(0, ddof=1)[mask], 1e-30)
     near = np.mean((ratios > 0.5) & (ratios < 1.5))
-    picture_row += f" {np.median(ratios):.2f}, {100 * near:.0f}% |"
+    picture_row += (f" {np.median(ratios):.2f}, {100 * near:.0f}% | "
+                    f"{np.mean([run[4] for run in runs]):.1f} |")
     for layer in runs[0][0]:
         shown = np.array([run[0][layer] for run in runs])
         said = rms(np.array([run[1][layer] for run in runs])[:, mask])
@@ -91,24 +94,23 @@ def main():
     parser.add_argument("--size", default="256x192", help="default: %(default)s")
     parser.add_argument("--only", metavar="ROOM", help="as the table names it")
     given = parser.parse_args()
-    scenes = [("living-room", ROOT / "scenes/living-room/living-room.gltf", None)]
+    scenes = [(name, ROOT / f"scenes/{name}/{name}.gltf", None) for name in ("cornell-box", "living-room")]
     for room in ("classroom", "kitchen"):
         scenes.append((f"{room}, glossy", given.scenes / room / f"{room}.gltf", None))
     for room in ("classroom", "kitchen"):
-        reference = given.scenes / "references" / f"{room}-diffuse-{given.size}.exr"
-        scenes.append((room, given.scenes / room / f"{room}-diffuse.gltf",
-                       picture_error.read_picture(reference)))
+        scenes.append((room, *scene_arguments.interior(given.scenes, room, given.size)))
     lights = []
     print("| | settings | stated | scatter | beside the reference | stated / scatter: median, "
-          "pixels within 0.5 to 1.5 |\n|---|---|--:|--:|--:|--:|")
+          "pixels within 0.5 to 1.5 | processor s |\n|---|---|--:|--:|--:|--:|--:|")
     with tempfile.TemporaryDirectory() as folder:
         for name, scene, reference in scenes:
             if given.only not in (None, name):
                 continue
+            reference = reference and picture_error.read_picture(reference)
             for options in OPTIONS:
                 row, of_lights = rows(given, name, scene, reference, options, pathlib.Path(folder))
                 print(row, flush=True)
-                if options == OPTIONS[-1]:
+                if options == OPTIONS_OF_LIGHTS:
                     lights += of_lights
     print("\n| | light | stated | measured |\n|---|---|--:|--:|", *lights, sep="\n")
 
