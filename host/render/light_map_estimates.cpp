@@ -10,7 +10,9 @@
 #include "estimate/estimate_writer.hpp"
 #include "estimate/map_order.hpp"
 #include "light_maps/charts.hpp"
+#include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/neighbour_groups.hpp"
 #include "photile/statistics.hpp"
 #include "render/reflected_radiance.hpp"
 #include "trace/flush_denormals.hpp"
@@ -40,16 +42,33 @@ double mean_photon(const Photons& photons, std::span<const double> powers) {
   return photons.size() == 0 ? 0 : sum / static_cast<double>(photons.size());
 }
 
-/// Metres, 0 without photons: a sixteenth of the distance of photons that are spread evenly over
-/// the triangles that have some. Estimates that find a photon take more surface.
-double least_spacing(const Scene& scene, const Photons& photons) {
+/// Metres: that of photons spread evenly over the triangles that have some; 0 without photons.
+double mean_distance(const Scene& scene, const Photons& photons) {
   double area = 0;
   for (std::uint32_t sided = 0; sided + 1 < photons.first_of.size(); ++sided) {
     if (photons.first_of[sided + 1] > photons.first_of[sided]) {
       area += triangle_area(scene, sided / 2);
     }
   }
-  return photons.size() == 0 ? 0 : std::sqrt(area / static_cast<double>(photons.size())) / 16;
+  return photons.size() == 0 ? 0 : std::sqrt(area / static_cast<double>(photons.size()));
+}
+
+/// Metres: half the median distance from a photon to its nearest; 0 where most lie in the same
+/// points.
+double near_photons(const Photons& photons) {
+  if (photons.size() < 2) return 0;
+  try {
+    return automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance / 2;
+  } catch (const UsageError&) {
+    return 0;
+  }
+}
+
+/// Metres, for estimates that reach so far. Photons know light no finer than they lie apart: most
+/// may lie close together, up to a sixteenth of the mean, which is looked up where it counts.
+double least_spacing(const Scene& scene, const Photons& photons, double reach) {
+  const double distance = mean_distance(scene, photons);
+  return reach > distance ? 0 : std::max(distance / 16, near_photons(photons));
 }
 
 /// Writes the light of hits, or its errors, one after another, from nodes, from ends of rays or
@@ -137,9 +156,9 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
   // The radius is so many times the distance to the k-th photon of a typical estimate.
   const double reach = radius / defaults::radius_over_median_kth_distance;
   LightMapParameters parameters;
-  const double steps =
-      std::max(std::round(std::log2(reach / defaults::light_map_spacing)),
-               std::ceil(std::log2(least_spacing(scene, photons) / defaults::light_map_spacing)));
+  const double steps = std::max(
+      std::round(std::log2(reach / defaults::light_map_spacing)),
+      std::ceil(std::log2(least_spacing(scene, photons, reach) / defaults::light_map_spacing)));
   parameters.spacing = defaults::light_map_spacing * std::exp2(steps);
   if (detail > 0) {
     // One more where the division is a rounding above a power of two would halve the detail again.

@@ -21,9 +21,8 @@ namespace photile {
 /// Light maps for photons of this density: nodes lie as far apart as the photons that a typical
 /// estimate takes, at the coarsest level, in steps of two.
 ///   neighbours   k
-///   radius       of the photon maps, metres. One so small that estimates find no photon does not
-///   make
-///                nodes many times as many as photons
+///   radius       of the photon maps, metres. One so small that estimates find no photon makes
+///                nodes no closer than photons
 ///   detail       metres, > 0: spacing of the finest nodes, at most; 0 = an eighth of the coarsest
 ///   powers       per layer of the scene
 LightMapParameters light_map_parameters(const Scene& scene, const Photons& photons, int neighbours,

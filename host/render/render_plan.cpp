@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "geometry/radius_range.hpp"
+#include "photile/errors.hpp"
+#include "photile/neighbour_groups.hpp"
 #include "render/light_map_estimates.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/pass_count.hpp"
@@ -29,6 +31,20 @@ PhotonTracerParameters all_photons(const RenderParameters& used) {
           .roulette_start = used.photons.roulette_start,
           .store_direct = used.direct_rays == 0 || gathers,
           .keep_caustics = gathers || used.light_map_rays > 0};
+}
+
+/// Says so where most photons have no other within the radius: most places then read nothing.
+void note_lonely_photons(const Photons& photons, double radius, Progress& progress) {
+  try {
+    const double nearest = automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance;
+    if (radius >= nearest) return;
+    progress.note(
+        fmt::format("radius {:.3g} m: half of the photons have no other within {:.3g} m; "
+                    "most places read no light; give a larger radius, or none",
+                    radius, nearest));
+  } catch (const UsageError&) {
+    // Most photons lie in the same points.
+  }
 }
 
 }  // namespace
@@ -94,7 +110,10 @@ PhotonTracerParameters RenderPlan::tracing(int pass,
 }
 
 double RenderPlan::radius(const Photons& photons, Progress& progress) const {
-  if (used_.radius > 0) return used_.radius;
+  if (used_.radius > 0) {
+    if (photons.size() >= 2) note_lonely_photons(photons, used_.radius, progress);
+    return used_.radius;
+  }
   if (photons.size() < 2) {
     // Nothing but lamps, mirrors and glass is seen, or rays bring all the light there is.
     if (all_photons(used_).store_direct) {

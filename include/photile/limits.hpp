@@ -47,7 +47,8 @@ inline constexpr std::uint64_t max_materials = 1'000'000;
 inline constexpr std::uint64_t max_lights = 10'000;
 inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulation is quadratic
 inline constexpr int max_node_depth = 512;
-inline constexpr std::uint64_t max_nodes = 1'000'000;
+/// Each takes 600 bytes and 2 us before a triangle of it is seen.
+inline constexpr std::uint64_t max_nodes = 250'000;
 /// Places of nodes beyond their number: shared children multiply. The format has none.
 inline constexpr std::uint64_t max_repeated_visits = 100'000;
 inline constexpr std::uint64_t max_node_visits = max_nodes + max_repeated_visits;
@@ -94,6 +95,9 @@ inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
 /// picture of a few kilobytes must not fill the memory.
 inline constexpr std::uint64_t max_image_expansion = 1'000;
 inline constexpr std::uint64_t unchecked_image_bytes = 64ull << 20;
+/// Pixels of an EXR above that size for each encoded byte. Photons' noise takes 20 bytes a pixel and
+/// more: of such a picture a pixel in 300 would show something.
+inline constexpr std::uint64_t max_exr_pixels_per_byte = 16;
 /// A tile or a strip of rows, decoded, of which a decoder keeps some at a time.
 inline constexpr std::uint64_t max_image_block_bytes = 256ull << 20;
 inline constexpr int max_samples_per_pixel = 65'536;

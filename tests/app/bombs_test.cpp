@@ -1,10 +1,15 @@
 // Small files that ask for much: refused, and in little memory. (Time is no matter of assertions;
 // each of these takes less than a second.)
 #include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
+#include "photile/image.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::test {
@@ -38,6 +43,7 @@ TEST_CASE("scenes that ask for more than they hold are refused in little memory"
   }
   const auto [name, text] = GENERATE_COPY(table<std::string, std::string>({
       {"graph.gltf", square(graph + R"({"mesh": 0}], "meshes": [{"primitives": []}])")},
+      {"most_nodes.gltf", gltf(R"("nodes": [{})" + repeated(",{}", limits::max_nodes - 1) + "]")},
       {"nodes.gltf", gltf(R"("nodes": [{})" + repeated(",{}", limits::max_nodes) + "]")},
       {"deep.gltf", gltf(R"("extras": )" + std::string(1'000'000, '['))},
       {"accessor.gltf", square(R"("nodes": [{"mesh": 0}],
@@ -71,6 +77,35 @@ TEST_CASE("a PNG of a kilobyte that says that it is huge is refused in little me
   const Outcome taken = run_photile({"compare", folder.write("a.png", png), folder / "a.png"});
   CHECK(taken.exit_code == bad_input);
   CHECK(taken.kilobytes < most_kilobytes);
+}
+
+TEST_CASE("an EXR of two megabytes that says that it is huge is refused in little memory") {
+  // A header of 9,000 x 9,000 pixels of six channels: zeros would compress to so many bytes.
+  Image row;
+  row.width = 9'000;
+  row.height = 1;
+  for (const char* name :
+       {"R", "G", "B", "Combined_lamp.R", "Combined_lamp.G", "Combined_lamp.B"}) {
+    row.add(name);
+  }
+  const FileFolder folder;
+  write_exr(folder / "row.exr", row);
+  std::ifstream stream(folder / "row.exr", std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::string window("dataWindow\0box2i\0", 17);
+  const std::int32_t last = 8'999;
+  std::memcpy(&bytes[bytes.find(window) + window.size() + 4 * sizeof last], &last, sizeof last);
+  bytes.resize(2'100'000);
+  const std::string file = folder.write("a.exr", bytes);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"relight", file, "-o", folder / "b.exr"},
+        std::vector<std::string>{"compare", file, file}}) {
+    const Outcome taken = run_photile(command);
+    CHECK_THAT(last_error(taken, bad_input), Catch::Contains("a.exr: ") &&
+                                                 Catch::Contains("pixels a byte") &&
+                                                 Catch::Contains("scale it down"));
+    CHECK(taken.kilobytes < most_kilobytes);
+  }
 }
 
 }  // namespace photile::test

@@ -81,7 +81,7 @@ TEST_CASE("Light maps are no farther from a lamp's closed form than estimates at
   CHECK(by_maps <= 1.02 * at_hits);
 }
 
-TEST_CASE("Nodes are as far apart as the radius asks, and no more than 512 to a photon",
+TEST_CASE("Nodes are as far apart as the radius asks, and no closer than half the photons are",
           "[light_map_pictures]") {
   const Scene scene = test::furnished_room(2);
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 2'000}).photons;
@@ -91,12 +91,14 @@ TEST_CASE("Nodes are as far apart as the radius asks, and no more than 512 to a 
   };
   CHECK(spacing(0.4) == 2 * spacing(0.2));
   CHECK(spacing(0.4) < 0.4);
-  double area = 0;
-  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) area += triangle_area(scene, t);
+  // Half the median distance to the nearest photon, in steps of two.
+  const double nearest = automatic_radius(photons, 1) / 2;
   for (const double radius : {1e-4, 1e-8, 1e-12}) {
     CAPTURE(radius);
-    CHECK(area / (spacing(radius) * spacing(radius)) < 512.0 * static_cast<double>(photons.size()));
+    CHECK(spacing(radius) >= nearest / 2);
+    CHECK(spacing(radius) < nearest);
   }
+  CHECK(spacing(2 * nearest) < 1.5 * nearest);  // which is not held back
 }
 
 TEST_CASE("Pictures that read light maps are the same bits on one, two and three threads",

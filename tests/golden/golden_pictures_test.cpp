@@ -1,0 +1,162 @@
+// The bundled scenes look as they did when golden.csv was made, but for the noise of 16 seeds. The
+// truth of pictures is told elsewhere (tests/validation, tests/reference): these tell that a change
+// changes what it is meant to.
+//
+// PHOTILE_RENEW_GOLDEN=1 writes golden.csv anew, and says what has changed.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "photile/path_tracer.hpp"
+#include "photile/renderer.hpp"
+#include "render/neighbour_choice.hpp"
+#include "render/quality.hpp"
+#include "source_folder.hpp"
+#include "test_device.hpp"
+#include "tile_means.hpp"
+
+namespace photile::test {
+namespace {
+
+constexpr int width = 32, height = 24, tile_side = 8;  ///< pixels
+
+enum class Method {
+  photons,  ///< the estimate at each hit, as the quality draft
+  nodes,    ///< light maps whose nodes gather, as the quality good
+  paths
+};
+
+struct Golden {
+  std::string scene;  ///< below scenes/
+  Method method;
+  std::string name() const {
+    const std::string file = std::filesystem::path(scene).stem().string();
+    return file + (method == Method::photons ? " by photons"
+                   : method == Method::nodes ? " by nodes"
+                                             : " by paths");
+  }
+};
+
+/// Every bundled scene, and every method where it has most to do.
+std::vector<Golden> golden_pictures() {
+  std::vector<Golden> all;
+  for (const char* scene :
+       {"cornell-box/cornell-box.gltf", "cornell-box/cornell-box-specular.gltf",
+        "living-room/living-room.gltf", "gallery/coloured-lamps.gltf", "gallery/downlights.gltf",
+        "gallery/glass-sphere.gltf", "gallery/glossy-floor.gltf", "gallery/metal-ring.gltf",
+        "gallery/sun-and-sky.gltf"}) {
+    all.push_back({scene, Method::photons});
+  }
+  for (const char* scene :
+       {"cornell-box/cornell-box.gltf", "gallery/glossy-floor.gltf", "gallery/sun-and-sky.gltf"}) {
+    all.push_back({scene, Method::nodes});
+    all.push_back({scene, Method::paths});
+  }
+  return all;
+}
+
+RenderParameters parameters_of(Method method, std::uint64_t seed) {
+  RenderParameters parameters;
+  set_quality(parameters, method == Method::nodes ? Quality::good : Quality::draft);
+  parameters.seed = seed;
+  const int samples = method == Method::nodes ? 2 : method == Method::photons ? 8 : 32;
+  parameters.film = {width, height, samples};
+  parameters.photons.emitted_photons = 30'000;
+  return parameters;
+}
+
+/// The sum of all lights.
+Pixels picture_of(const Scene& scene, Method method, std::uint64_t seed) {
+  const RenderParameters parameters = parameters_of(method, seed);
+  const Camera& camera = scene.cameras.front();
+  const LightLayers layers =
+      (method == Method::paths ? trace_paths(scene, camera, eye_rays(parameters)).layers
+                               : render(scene, camera, test::device(), parameters).layers)
+          .dense();
+  const std::vector<double> powers = layer_powers(scene);
+  Pixels pixels(static_cast<std::size_t>(width * height), glm::dvec4(0));
+  for (std::size_t layer = 0; layer < powers.size(); ++layer) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const LightLayers::Layer& light = layers.layers[layer];
+      pixels[i] += powers[layer] * glm::dvec4(light.radiance[i], light.illuminance[i]);
+    }
+  }
+  return pixels;
+}
+
+TileMeans rendered(const Golden& golden) {
+  SceneLoadOptions options;
+  if (golden.scene == "gallery/sun-and-sky.gltf") {
+    options.sun = Sun::parse("60,40,40000");
+    options.sky = Sky::parse("clear=12000");
+  }
+  const Scene scene = load_scene(test::source_folder() / "scenes" / golden.scene, options);
+  std::vector<Pixels> seeds;
+  for (std::uint64_t seed = 1; seed <= golden_seeds; ++seed) {
+    seeds.push_back(picture_of(scene, golden.method, seed));
+  }
+  return tile_means(golden.name(), seeds, width, tile_side);
+}
+
+const TileMeans* find(const std::vector<TileMeans>& pictures, const std::string& name) {
+  for (const TileMeans& picture : pictures) {
+    if (picture.picture == name) return &picture;
+  }
+  return nullptr;
+}
+
+/// A picture as if its lamps were that much brighter.
+TileMeans brighter(TileMeans means, double factor) {
+  for (TileMean& tile : means.tiles) {
+    tile.mean *= factor;
+    tile.deviation *= factor;
+  }
+  return means;
+}
+
+}  // namespace
+
+TEST_CASE("the bundled scenes look as they did, but for the noise of 16 seeds") {
+  const auto file = test::source_folder() / "tests/golden/golden.csv";
+  std::ifstream stream(file);
+  const std::vector<TileMeans> before = from_csv({std::istreambuf_iterator<char>(stream), {}});
+  stream.close();
+  const bool renew = std::getenv("PHOTILE_RENEW_GOLDEN") != nullptr;
+  std::vector<TileMeans> all;
+  for (const Golden& golden : golden_pictures()) {
+    all.push_back(rendered(golden));
+    const TileMeans& now = all.back();
+    const TileMeans* const known = find(before, now.picture);
+    if (known == nullptr) {
+      if (!renew)
+        FAIL("golden.csv lacks " << now.picture << "; renew it with PHOTILE_RENEW_GOLDEN=1");
+      std::cout << now.picture << ": new\n";
+      continue;
+    }
+    const TileComparison found = compare(*known, now);
+    const std::string line =
+        fmt::format("{}: {:+.2f}% (seen from {:.1f}% on); most: {}, {:.2f} of what is allowed",
+                    now.picture, 100 * found.change, 100 * found.visible,
+                    found.where.empty() ? "nothing" : found.where, found.most);
+    if (renew) {
+      std::cout << line << "\n";
+      continue;
+    }
+    INFO(line);
+    CHECK(found.most <= 1);
+    // Otherwise the test would prove little: lamps so much brighter have to be seen.
+    CHECK(found.visible < 0.15);
+    CHECK(compare(*known, brighter(now, 1.01 + found.visible + std::abs(found.change))).most > 1);
+  }
+  if (renew) {
+    std::ofstream(file) << to_csv(all);
+  } else {
+    CHECK(before.size() == all.size());
+  }
+}
+
+}  // namespace photile::test
