@@ -166,9 +166,9 @@ bool LampPieces::cut(const Scene& scene, std::size_t index) {
   const glm::dvec3 size = box.high - box.low;
   const int axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
   const double place = 0.5 * (box.low[axis] + box.high[axis]);
+  const double whole_area = area(static_cast<std::uint32_t>(index));  // while its order stands
   const auto second = std::stable_partition(
       begin, end, [&](const Triangle& triangle) { return middle(triangle)[axis] < place; });
-  const double whole_area = area(static_cast<std::uint32_t>(index));
   sum_areas(scene, piece);
   Piece rest = piece;
   piece.last = rest.first = static_cast<std::uint32_t>(second - triangles_.begin());

@@ -101,6 +101,40 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "lamp pieces: a disc of many triangles gives its form factor, and each its share of looks") {
+  // Slices of unequal angles, so that their areas differ.
+  constexpr int slices = 64;
+  constexpr double radius = 0.06, height = 0.7;
+  const auto rim = [](int slice) {
+    const double turn = double(slice) / slices;
+    const double angle = glm::two_pi<double>() * turn * (0.5 + 0.5 * turn);
+    return glm::vec3(radius * std::cos(angle), radius * std::sin(angle), height);
+  };
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, black);
+  const std::uint32_t disc = builder.add(area_light("disc", 1.0));
+  for (int slice = 0; slice < slices; ++slice) {  // fronts look down
+    builder.triangle({0, 0, height}, rim(slice + 1), rim(slice), black, disc);
+  }
+  const Scene scene = builder.build();
+  const LightSampler lamps(scene);
+  const glm::vec3 point(0.0f);
+  LampChances near;
+  lamps.weigh(point, {0, 0, 1}, near);
+  constexpr int count = 100'000;
+  const Looked looked = look(lamps, point, near, count);
+  // A lumen over the area, times the disc's form factor; the polygon lacks little of the disc.
+  const double expected = 1 / (glm::pi<double>() * (radius * radius + height * height));
+  const double error = std::sqrt(looked.variance / count);
+  CAPTURE(looked.mean[0], expected, error);
+  CHECK(std::abs(looked.mean[0] - expected) < 4 * error + 2e-4 * expected);
+  // All of it is seen from there under nearly the same angle, so that each look finds nearly the
+  // same.
+  CHECK(looked.variance < 0.02 * expected * expected);
+}
+
 TEST_CASE("lamp pieces: densities of directions towards lamps integrate to one") {
   const Scene scene = floor_under_row().build();
   const LightSampler lamps(scene);
