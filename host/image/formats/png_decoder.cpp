@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 
 #include "image/formats/formats.hpp"
@@ -13,17 +14,28 @@ namespace {
 [[noreturn]] void png_failure(png_structp, png_const_charp reason) { throw DecodeError(reason); }
 void png_warning(png_structp, png_const_charp) {}
 
-/// Bytes that a chunk may fill in memory where the file is shorter: texts and profiles are
-/// compressed.
-constexpr std::size_t least_chunk_limit = 8'000'000;
+/// Bytes that libpng may take at once where the file is shorter: texts and profiles are compressed,
+/// rows are long.
+constexpr std::size_t least_memory_limit = 8'000'000;
+
+/// libpng's own limit is none for texts: it warns, and takes the two gigabytes that one is said to
+/// have.
+png_voidp limited_memory(png_structp png, png_alloc_size_t bytes) {
+  const std::size_t most = *static_cast<const std::size_t*>(png_get_mem_ptr(png));
+  return bytes > most ? nullptr : std::malloc(bytes);
+}
+void free_memory(png_structp, png_voidp memory) { std::free(memory); }
 
 /// libpng's state.
 struct PngReader {
+  std::size_t most_memory;  ///< bytes, at once
   png_structp png =
-      png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failure, png_warning);
+      png_create_read_struct_2(PNG_LIBPNG_VER_STRING, nullptr, png_failure, png_warning,
+                               &most_memory, limited_memory, free_memory);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
 
-  PngReader() = default;
+  explicit PngReader(std::size_t file_bytes)
+      : most_memory(std::max(file_bytes, least_memory_limit)) {}
   PngReader(const PngReader&) = delete;
   PngReader& operator=(const PngReader&) = delete;
   ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -31,14 +43,13 @@ struct PngReader {
 
 class PngDecoder : public Decoder {
  public:
-  explicit PngDecoder(Encoded bytes) : rest_(bytes) {
+  explicit PngDecoder(Encoded bytes) : rest_(bytes), reader_(bytes.size()) {
     if (info_ == nullptr) throw std::bad_alloc();
     png_set_read_fn(png_, this, [](png_structp png, png_bytep to, std::size_t count) {
       static_cast<PngDecoder*>(png_get_io_ptr(png))->take(to, count);
     });
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // the caller has its own
-    // Debian's libpng would take two gigabytes for a text that is said to be so long.
-    png_set_chunk_malloc_max(png_, std::max(bytes.size(), least_chunk_limit));
+    png_set_chunk_malloc_max(png_, reader_.most_memory);
     png_read_info(png_, info_);
     png_set_expand(png_);  // palettes, 1 to 4 bits, a transparent colour
     if constexpr (std::endian::native == std::endian::little) png_set_swap(png_);
