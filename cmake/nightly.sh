@@ -1,31 +1,43 @@
 #!/bin/bash
 # Everything that is too long for every change, and a page of what came out: build/nightly/page.md.
 #
-#   cmake/nightly.sh [HOURS OF SOAK] [DRAWN MUTANTS]      1 and 30 if not given
+#   cmake/nightly.sh [--steps REGEX] [HOURS OF SOAK] [DRAWN MUTANTS]
 #
-# A step that fails is told, and the next one runs. The exit code is 1 where one did.
+# 1 hour and 30 mutants if not given, and all steps, of whose names REGEX chooses. A step that fails is
+# told, and the next one runs. The exit code is 1 where one did, or none was chosen.
 set -uo pipefail
 cd "$(dirname "$0")/.."
+steps=.
+if [[ ${1:-} == --steps && $# -ge 2 ]]; then
+  steps=$2
+  shift 2
+elif [[ ${1:-} == -* ]]; then
+  sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2
+  exit 2
+fi
 hours=${1:-1} mutants=${2:-30}
 folder=build/nightly
 mkdir -p "$folder"
 page=$folder/page.md
 jobs=$(nproc)
-failed=0
+failed=0 chosen=0
 
 # step NAME COMMAND...: a row of the page, with the last line that it printed.
 step() {
   local name=$1 log start=$SECONDS verdict=passed
   shift
+  [[ $name =~ $steps ]] || return 0
+  chosen=1
   log=$folder/${name// /-}.log
   if ! "$@" > "$log" 2>&1; then
     verdict="**failed**"
     failed=1
   fi
-  local last
-  last=$(grep -v '^[[:space:]]*$' "$log" | tail -n 1 | tr '|' '/' | cut -c 1-160)
-  printf '| %s | %s | %d min | %s |\n' "$name" "$verdict" $(((SECONDS - start + 59) / 60)) "$last" \
-    >> "$page"
+  # Tests end in a table of their labels.
+  local told
+  told=$(grep -E 'tests (passed|failed)' "$log" || grep -v '^[[:space:]]*$' "$log" | tail -n 1)
+  printf '| %s | %s | %d min | %s |\n' "$name" "$verdict" $(((SECONDS - start + 59) / 60)) \
+    "$(tail -n 1 <<< "$told" | tr '|' '/' | cut -c 1-160)" >> "$page"
 }
 
 {
@@ -51,4 +63,8 @@ step "drawn mutants" bench/drawn_mutants.py --count "$mutants" --seed "$(date -u
 step "quick benches" ctest --test-dir build/release -L bench
 
 cat "$page"
+if ((!chosen)); then
+  echo "nightly.sh: error: no step matches '$steps'" >&2
+  failed=1
+fi
 exit $failed
