@@ -82,25 +82,38 @@ struct RunLight {
            static_cast<std::uint32_t>(parameters.batches);
   }
   void look(std::size_t point, BatchSums& sums) const {
-    thread_local std::vector<trace::ReceivedLight> found;
-    thread_local trace::LampChances chances;
     const trace::SurfacePoint where = trace::point_of(rays.scene(), points, point);
-    if (traced) lamps.weigh(where.position, where.normal, chances);
-    for (std::uint32_t batch = 0; batch < static_cast<std::uint32_t>(parameters.batches); ++batch) {
-      found.clear();
-      const trace::LookSamples samples(trace::RandomStream(parameters.seed, number[point], batch),
-                                       0);
-      if (traced) {
-        trace::look_at_lamps(
-            rays, lamps, where, looks_per_batch,
-            static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch), samples,
-            chances, found);
-      } else {
-        trace::find_direct_light(rays, lamps, where, -where.normal, trace::ReflectedPart::all,
-                                 looks_per_batch, samples, found);
+    const auto batches = static_cast<std::uint32_t>(parameters.batches);
+    const auto samples_of = [&](std::uint32_t batch) {
+      return trace::LookSamples(trace::RandomStream(parameters.seed, number[point], batch), 0);
+    };
+    if (traced) {
+      thread_local trace::LampChances chances;
+      thread_local trace::LampLooks looks;
+      lamps.weigh(where.position, where.normal, chances);
+      const auto count = static_cast<std::uint32_t>(looks_per_batch);
+      const auto rays_per_look =
+          static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch);
+      const glm::vec3 weight(1.0f / static_cast<float>(looks_per_batch));
+      looks.clear();
+      for (std::uint32_t batch = 0; batch < batches; ++batch) {
+        const trace::LookSamples samples = samples_of(batch);
+        for (std::uint32_t i = 0; i < count; ++i) {
+          looks.add(lamps, where, samples.lamp(i), weight, rays_per_look, chances, batch);
+        }
       }
-      for (const trace::ReceivedLight& light : found)
+      for (const auto& light : looks.found(rays))
+        sums.add(light.layer, light.tag, light.irradiance);
+      return;
+    }
+    thread_local std::vector<trace::ReceivedLight> found;
+    for (std::uint32_t batch = 0; batch < batches; ++batch) {
+      found.clear();
+      trace::find_direct_light(rays, lamps, where, -where.normal, trace::ReflectedPart::all,
+                               looks_per_batch, samples_of(batch), found);
+      for (const trace::ReceivedLight& light : found) {
         sums.add(light.layer, batch, light.irradiance);
+      }
     }
   }
   void add_seen_lamps(std::size_t i, BatchSums& sums) const {

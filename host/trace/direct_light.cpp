@@ -99,14 +99,19 @@ LookSamples::LookSamples(const RandomStream& sequences, std::uint32_t first, std
                  sequences.block(Purpose::direct_light, 4 * surface + 3)},
       first_(first) {}
 
+LampNumbers LookSamples::lamp(std::uint32_t number) const {
+  const glm::uvec2 choices = sobol_words(first_ + number, scrambles_[0]);
+  const glm::uvec2 place = sobol_words(first_ + number, scrambles_[1]);
+  // A choice among many takes more than 32 bits: all looks share what follows.
+  return {RandomBlock({choices.x, scrambles_[0].word(3), 0, 0}),
+          RandomBlock({choices.y, scrambles_[1].word(3), place.x, place.y})};
+}
+
 LookSamples::Look LookSamples::look(std::uint32_t number) const {
-  const auto pair = [&](std::size_t i) { return sobol_words(first_ + number, scrambles_[i]); };
-  const glm::uvec2 choices = pair(0), lamp_place = pair(1), direction = pair(2), lobe = pair(3);
-  // A choice among many takes more than 32 bits: the direction's serve, for a look at a lamp has
-  // no use for it.
-  return {RandomBlock({choices.x, direction.y, 0, 0}),
-          RandomBlock({choices.y, direction.x, lamp_place.x, lamp_place.y}),
-          RandomBlock({lobe.x, 0, 0, 0}), RandomBlock({lobe.y, direction.x, direction.y, 0})};
+  const glm::uvec2 direction = sobol_words(first_ + number, scrambles_[2]);
+  const glm::uvec2 lobe = sobol_words(first_ + number, scrambles_[3]);
+  return {lamp(number), RandomBlock({lobe.x, 0, 0, 0}),
+          RandomBlock({lobe.y, direction.x, direction.y, 0})};
 }
 
 void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
@@ -124,41 +129,41 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
   }
 }
 
-void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
-                   int count, float directions, const LookSamples& samples,
-                   const LampChances& chances, std::vector<ReceivedLight>& found) {
-  const float share = 1.0f / static_cast<float>(count);
-  thread_local std::vector<LineOfSight> lines;
-  thread_local std::vector<std::uint8_t> hidden;
-  lines.clear();
-  const std::size_t before = found.size();
-  for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {
-    const LookSamples::Look look = samples.look(number);
-    const auto lamp = lamps.sample(point.position, look.lamp, look.place, chances);
-    if (!lamp) continue;
-    const float cosine = glm::dot(lamp->direction, point.normal);
-    if (!(cosine > 0.0f)) continue;
-    glm::vec3 arrives = share * cosine * lamp->received;
-    if (lamp->density > 0.0f) {
-      arrives *= power_heuristic(lamp->density, directions * cosine * glm::one_over_pi<float>());
-    }
-    if (arrives == glm::vec3(0.0f)) continue;
-    lines.push_back({point.origin_towards(lamp->direction), lamp->target});
-    found.push_back({lamp->layer, arrives, glm::vec3(0.0f)});
+void LampLooks::clear() {
+  lines_.clear();
+  found_.clear();
+}
+
+void LampLooks::add(const LightSampler& lamps, const SurfacePoint& point,
+                    const LampNumbers& numbers, const glm::vec3& weight, float directions,
+                    const LampChances& chances, std::uint32_t tag) {
+  const auto lamp = lamps.sample(point.position, numbers.lamp, numbers.place, chances);
+  if (!lamp) return;
+  const float cosine = glm::dot(lamp->direction, point.normal);
+  if (!(cosine > 0.0f)) return;
+  glm::vec3 arrives = cosine * weight * lamp->received;
+  if (lamp->density > 0.0f) {
+    arrives *= power_heuristic(lamp->density, directions * cosine * glm::one_over_pi<float>());
   }
-  hidden.resize(lines.size());
-  occluded(rays, lines, hidden);
-  std::size_t left = before;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    ReceivedLight light = found[before + i];
-    if (hidden[i] != 0) {
+  if (arrives == glm::vec3(0.0f)) return;
+  lines_.push_back({point.origin_towards(lamp->direction), lamp->target});
+  found_.push_back({tag, lamp->layer, arrives});
+}
+
+std::span<const LampLooks::Found> LampLooks::found(const RayScene& rays) {
+  hidden_.resize(lines_.size());
+  occluded(rays, lines_, hidden_);
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    Found light = found_[i];
+    if (hidden_[i] != 0) {
       if (!rays.needs().see_through) continue;
-      light.irradiance *= transmittance(rays, lines[i].from, lines[i].to);
+      light.irradiance *= transmittance(rays, lines_[i].from, lines_[i].to);
       if (light.irradiance == glm::vec3(0.0f)) continue;
     }
-    found[left++] = light;
+    found_[left++] = light;
   }
-  found.resize(left);
+  return std::span(found_).first(left);
 }
 
 }  // namespace photile::trace

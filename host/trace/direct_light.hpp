@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "photile/ray_scene.hpp"
 #include "trace/light_sampler.hpp"
 #include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
@@ -20,6 +22,11 @@ struct ReceivedLight {
   glm::vec3 radiance;    ///< reflected against the ray that arrived at the receiver
 };
 
+/// Random numbers for a look at a lamp.
+struct LampNumbers {
+  RandomBlock lamp, place;  ///< which lamp, and where on it
+};
+
 /// The places of scrambled sequences (sobol.hpp) that a receiver's looks take: point `first` and
 /// those after it.
 class LookSamples {
@@ -29,13 +36,13 @@ class LookSamples {
   ///   surface   of a path, counted from 0: each has sequences of its own
   LookSamples(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface = 0);
 
-  /// Random numbers of one look. All words of a block may be used; the blocks of a direction and
-  /// of a lamp share some, so that no estimate may multiply what is found by both.
-  struct Look {
-    RandomBlock lamp, place;      ///< which lamp, and where on it
+  /// Random numbers of one look, at a lamp and in a direction of the receiver's own.
+  struct Look : LampNumbers {
     RandomBlock lobe, direction;  ///< of the receiver
   };
   Look look(std::uint32_t number) const;
+  /// Its numbers for the lamp alone.
+  LampNumbers lamp(std::uint32_t number) const;
 
  private:
   std::array<RandomBlock, 4> scrambles_;  ///< of pairs of dimensions
@@ -60,12 +67,33 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
                        const glm::vec3& direction, ReflectedPart part, int count,
                        const LookSamples& samples, std::vector<ReceivedLight>& found);
 
-/// The part of the irradiance that looks at lamps find where directions with the density of the
-/// cosine are followed as well: both together are what find_direct_light finds.
-///   directions   followed for each look; what both would find is weighed
-///   chances      of lamps at the point
-void look_at_lamps(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
-                   int count, float directions, const LookSamples& samples,
-                   const LampChances& chances, std::vector<ReceivedLight>& found);
+/// Looks at lamps from surfaces that lie close together, for irradiance: the part that looks find
+/// where directions with the density of the cosine are followed as well. Lines of sight are traced
+/// sixteen at a time.
+class LampLooks {
+ public:
+  void clear();
+
+  /// Looks once.
+  ///   weight       of what the look finds
+  ///   directions   followed for each look; what both would find is weighed
+  ///   chances      of lamps at the point
+  ///   tag          that is found again with the light
+  void add(const LightSampler& lamps, const SurfacePoint& point, const LampNumbers& numbers,
+           const glm::vec3& weight, float directions, const LampChances& chances,
+           std::uint32_t tag);
+
+  struct Found {
+    std::uint32_t tag, layer;
+    glm::vec3 irradiance;  ///< weighed, lm/m2
+  };
+  /// Of all looks, in their order, those that nothing hides.
+  std::span<const Found> found(const RayScene& rays);
+
+ private:
+  std::vector<LineOfSight> lines_;
+  std::vector<Found> found_;  ///< one for each line
+  std::vector<std::uint8_t> hidden_;
+};
 
 }  // namespace photile::trace

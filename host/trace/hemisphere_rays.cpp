@@ -22,6 +22,9 @@ constexpr std::size_t points_per_task = 16;
 /// Near surfaces in a row that a ray goes on from.
 constexpr std::uint32_t most_near = 3;
 
+/// From near surface that reflects less than the inverse of this, rays go on by chance.
+constexpr float survival_of_reflectance = 1.5f;
+
 /// Lobes that reflect more of the light towards the ray need directions.
 constexpr float strong_lobe = 0.2f;
 
@@ -44,12 +47,12 @@ struct RunSetup {
 ///   from     the point
 ///   before   ends of the rays before
 ///   stream   of the ray; those of later ones are `streams` apart
+///   looks    at lamps, to which those from near surface are added; their tag is the pixel
 void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_t number,
                      std::size_t before, std::uint32_t stream, std::uint32_t streams,
-                     EyeRecord& ends) {
+                     LampLooks& looks, EyeRecord& ends) {
   const Scene& scene = run.rays.scene();
   const LightSampler& lamps = *run.parameters.lamps;
-  thread_local std::vector<ReceivedLight> found;
   for (std::uint32_t bounce = 1; bounce <= most_near && ends.hits.size() > before; ++bounce) {
     const EyeHit hit = ends.hits.back();
     if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
@@ -61,15 +64,15 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
     const SurfacePoint point =
         surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
                       side_of(hit.sided_triangle));
-    const glm::vec3 throughput = hit.throughput * reflection.reflectance;
     const RandomStream random(run.parameters.seed, number, stream + bounce * streams);
-    found.clear();
-    look_at_lamps(run.rays, lamps, point, 1, 1.0f, LookSamples(random, 0), by_shares_alone, found);
-    for (const ReceivedLight& light : found) {
-      ends.direct.push_back(
-          {hit.pixel, light.layer, throughput * glm::one_over_pi<float>() * light.irradiance});
-    }
     const RandomBlock numbers = random.block(Purpose::hemisphere_direction, 0);
+    const float survival =
+        std::min(1.0f, survival_of_reflectance * largest(reflection.reflectance));
+    if (!(numbers.uniform(2) < survival)) return;
+    const glm::vec3 throughput = hit.throughput * reflection.reflectance / survival;
+    looks.add(lamps, point,
+              {random.block(Purpose::direct_light, 0), random.block(Purpose::direct_light, 1)},
+              glm::one_over_pi<float>() * throughput, 1.0f, by_shares_alone, hit.pixel);
     const glm::vec3 direction =
         Frame(point.normal)
             .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
@@ -97,6 +100,8 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
   const Frame frame(point.normal);
   const glm::vec3 throughput(glm::pi<float>() / static_cast<float>(rays));
   thread_local LampChances chances;
+  thread_local LampLooks near_looks;
+  near_looks.clear();
   if (parameters.rays_per_look > 0) parameters.lamps->weigh(point.position, point.normal, chances);
   float inverse_distances = 0;
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
@@ -121,9 +126,12 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
       inverse_distances +=
           1 / std::max(1e-6f, glm::distance(point.position, ends.hits.back().position));
       if (parameters.near > 0) {
-        go_on_from_near(run, point, number, before, stream, batches * rays, ends);
+        go_on_from_near(run, point, number, before, stream, batches * rays, near_looks, ends);
       }
     }
+  }
+  for (const LampLooks::Found& light : near_looks.found(run.rays)) {
+    ends.direct.push_back({light.tag, light.layer, light.irradiance});
   }
   return inverse_distances;
 }
