@@ -56,9 +56,10 @@ double likeness(const GatheredIrradiance::Total& a, const GatheredIrradiance::To
   const double variance = a.error * a.error + b.error * b.error;
   const double like =
       std::exp(-difference * difference / (tolerated.errors * tolerated.errors * variance));
-  const auto [low, high] = std::minmax(a.error, b.error);
-  if (!(tolerated.ratio * low < high)) return like;
-  const double part = tolerated.ratio * low / high;
+  const auto [calm, noisy] = a.error < b.error ? std::pair(a, b) : std::pair(b, a);
+  if (!(tolerated.ratio * calm.error < noisy.error)) return like;
+  if (!(calm.error < tolerated.known * calm.luminance)) return like;
+  const double part = tolerated.ratio * calm.error / noisy.error;
   return like * part * part;
 }
 

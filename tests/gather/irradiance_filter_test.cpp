@@ -128,6 +128,36 @@ TEST_CASE("filter: without noise nothing changes, and what is dark stays dark") 
   }
 }
 
+TEST_CASE("filter: light that few rays find is spread over the points that found none of it") {
+  // As of a sky through a small window: a batch finds it in one of ten times, so that two points of
+  // five found nothing, and do not know that they err.
+  constexpr double found = 0.1;
+  const Truth even = [](int, int) { return 1.0; };
+  GatheredIrradiance rare = noisy(even, 0, 1);
+  for (std::size_t point = 0; point < rare.mean.irradiance.size(); ++point) {
+    double sum = 0;
+    for (std::size_t b = 0; b < batches; ++b) {
+      const auto random = trace::RandomStream(5, point, b).block(trace::Purpose::emission, 0);
+      const double value = random.uniform_double(0) < found ? 1 / found : 0;
+      rare.batch[point * batches + b] = static_cast<float>(value);
+      sum += value;
+    }
+    rare.mean.irradiance[point] = glm::vec3(static_cast<float>(sum / batches));
+  }
+  const double before = rms_error(rare, even, border, side - border);
+  const NoiseTolerance of_looks{.errors = 3, .ratio = 2};
+  const GatheredIrradiance after =
+      filter_irradiance(rare, lattice(), one_light, {.rounds = 8, .tolerated = of_looks});
+  double mean = 0, of_found = 0;
+  for (std::size_t point = 0; point < after.mean.irradiance.size(); ++point) {
+    mean += double{after.mean.irradiance[point].g};
+    of_found += double{rare.mean.irradiance[point].g};
+  }
+  CAPTURE(before, mean / of_found);
+  CHECK(mean / of_found == Approx(1).margin(0.05));
+  CHECK(rms_error(after, even, border, side - border) < 0.35 * before);
+}
+
 TEST_CASE("filter: layers have common weights, so that their mix is the filtered mix") {
   const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 1.6; };
   const std::vector<double> powers{3, 0.5};
