@@ -15,11 +15,15 @@ constexpr int raster_side = 64;
 /// the normal of the largest triangle: the dominant eigenvector, blind to winding.
 glm::dvec3 shared_axis(const TriangleFacts& facts, std::span<const std::uint32_t> triangles,
                        std::uint32_t largest) {
-  glm::dmat3 moments(0.0);
+  glm::dvec3 squares(0.0), products(0.0);  // of coordinates of normals
   for (const std::uint32_t t : triangles) {
     const glm::dvec3 normal(facts.normal[t]);
-    moments += double{facts.area[t]} * glm::outerProduct(normal, normal);
+    const double area = facts.area[t];
+    squares += area * (normal * normal);
+    products += area * glm::dvec3(normal.y * normal.z, normal.z * normal.x, normal.x * normal.y);
   }
+  const glm::dmat3 moments(squares.x, products.z, products.y, products.z, squares.y, products.x,
+                           products.y, products.x, squares.z);
   glm::dvec3 axis(facts.normal[largest]);
   for (int step = 0; step < 12; ++step) {
     const glm::dvec3 next = moments * axis;

@@ -20,6 +20,8 @@ Imf::Header exr_header(const PictureHeader& header, const std::vector<std::strin
                        Imf::Compression compression) {
   Imf::Header part(header.width, header.height);
   part.compression() = compression;
+  // Planes of floats take no more room by it than by OpenEXR's own 4, and less time.
+  part.zipCompressionLevel() = 3;
   part.setType(Imf::SCANLINEIMAGE);
   for (const std::string& name : channels) part.channels().insert(name, Imf::Channel(Imf::FLOAT));
   Imf::addChromaticities(part, Imf::Chromaticities({0.64f, 0.33f}, {0.30f, 0.60f}, {0.15f, 0.06f},

@@ -1,6 +1,7 @@
 // Charts of the light maps: planes with lattices, and the surface that lies under each.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -77,6 +78,19 @@ class Charts {
   /// an edge, or in a hole, stands for the surface at the edge. `prepare` has been called.
   ///   levels   of refinement: spacing / 2^(levels - 1) is the finest
   Owner owner(const NodePlace& node, int levels) const;
+
+  /// The cell of the coarsest lattice that a place lies in, or the nearest one.
+  glm::uvec2 cell_at(std::uint32_t chart, const glm::vec2& place) const {
+    const auto along = [](float at, std::uint32_t cells) {
+      return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), cells - 1);
+    };
+    return {along(place.x, charts_[chart].columns), along(place.y, charts_[chart].rows)};
+  }
+
+  /// Appends the sided triangles that nodes in a cell of the coarsest lattice, or on its border,
+  /// may stand for where surface lies in the cell, and some more. `prepare` has been called.
+  void append_owners(std::uint32_t chart, const glm::uvec2& cell,
+                     std::vector<std::uint32_t>& sided) const;
 
  private:
   void frame(std::uint32_t chart, std::uint32_t seed);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -280,6 +281,31 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     }
     impl_->cells += cells.size();
   }
+}
+
+std::vector<std::uint32_t> LightMaps::owners_around(const PrimaryHits& hits) {
+  struct Cell {
+    std::uint32_t chart, y, x;
+    auto operator<=>(const Cell&) const = default;
+  };
+  Charts& charts = impl_->charts;
+  std::vector<Cell> cells(hits.size());
+  tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t hit) {
+    const std::uint32_t chart = charts.chart_of()[hits.sided_triangle[hit]];
+    const glm::uvec2 cell = charts.cell_at(chart, charts.place(chart).of(hits.position[hit]));
+    cells[hit] = {chart, cell.y, cell.x};
+  });
+  tbb::parallel_sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  std::vector<std::uint32_t> owners;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto [chart, y, x] = cells[i];
+    if (i == 0 || cells[i - 1].chart != chart) charts.prepare(chart);
+    charts.append_owners(chart, {x, y}, owners);
+  }
+  std::sort(owners.begin(), owners.end());
+  owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+  return owners;
 }
 
 bool LightMaps::find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend,

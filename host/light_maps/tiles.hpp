@@ -50,10 +50,8 @@ class Tiles {
                                   int levels = std::numeric_limits<int>::max()) const {
     const Chart& lattice = charts_[chart];
     const glm::vec2 place = charts_.place(chart).of(position);
-    const auto cell_at = [](float at, std::uint32_t cells) {
-      return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), cells - 1);
-    };
-    std::uint32_t x = cell_at(place.x, lattice.columns), y = cell_at(place.y, lattice.rows);
+    const glm::uvec2 coarse = charts_.cell_at(chart, place);
+    std::uint32_t x = coarse.x, y = coarse.y;
     glm::vec2 within = glm::clamp(place - glm::vec2(x, y), 0.0f, 1.0f);
     const std::uint32_t root = lattice.first_root + (y >> 3) * lattice.root_columns() + (x >> 3);
     x &= 7, y &= 7;

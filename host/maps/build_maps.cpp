@@ -189,20 +189,23 @@ void build_pages(MapStore& store, const Build& build, const Photons& photons,
 
 std::vector<glm::vec3> sided_normals(const Scene& scene) {
   std::vector<glm::vec3> normals(2 * scene.triangle_count());
-  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t s) {
-    normals[s] = glm::vec3(sided_normal(scene, static_cast<std::uint32_t>(s)));
+  tbb::parallel_for(std::size_t{0}, scene.triangle_count(), [&](std::size_t triangle) {
+    const std::uint32_t front = sided(static_cast<std::uint32_t>(triangle), 0);
+    normals[front] = glm::vec3(sided_normal(scene, front));
+    normals[front + 1] = -normals[front];
   });
   return normals;
 }
 
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
-                          Photons* spent, const NeighbourGroups& groups, Progress& progress) {
+                          Photons* spent, const NeighbourGroups& groups,
+                          std::span<const std::uint8_t> wanted, Progress& progress) {
   const Patches& patches = groups.patches;
   MapPlan plan;
   plan.reach = reach_of(scene, store.parameters.radius);
   plan.normals = !patches.empty();
   if (plan.normals) store.normals = sided_normals(scene);
-  plan.candidates = find_candidate_maps(scene, photons, groups, plan.reach);
+  plan.candidates = find_candidate_maps(scene, photons, groups, plan.reach, wanted);
   MapNumbers numbers = number_maps(plan.candidates, patches, 2 * scene.triangle_count());
   store.map_of = std::move(numbers.map_of);
   plan.surfaces = map_shapes(scene, patches, numbers.pairs, glm::radians(groups.angle_degrees));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,11 @@ namespace photile::maps {
 
 /// Builds one map per sided triangle or side of a patch: uniform grids, kd-trees, or plain lists of
 /// photons. Fills the pages and statistics of `store`, whose device, needs and parameters are set.
-///   spent   the same photons where their arrays may be given back on the way, else null
+///   spent    the same photons where their arrays may be given back on the way, else null
+///   wanted   as PhotonMaps has it
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
-                          Photons* spent, const NeighbourGroups& groups, Progress& progress);
+                          Photons* spent, const NeighbourGroups& groups,
+                          std::span<const std::uint8_t> wanted, Progress& progress);
 
 /// Where maps lie, and which photons may enter them.
 struct MapPlan {

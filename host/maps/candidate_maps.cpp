@@ -25,14 +25,19 @@ struct Lists {
   std::vector<std::uint32_t> members;
 };
 
+bool is_wanted(std::span<const std::uint8_t> wanted, std::uint32_t map) {
+  return wanted.empty() || wanted[map] != 0;
+}
+
 class Splitter {
  public:
   /// `positions`: of the photons that the next lists are for; the last of `lists.list_of_photon`.
   Splitter(const std::vector<geometry::Box>& map_boxes, std::span<const glm::vec3> positions,
-           float reach, Lists& lists)
+           float reach, std::span<const std::uint8_t> wanted, Lists& lists)
       : boxes_(map_boxes),
         positions_(positions),
         reach_(reach),
+        wanted_(wanted),
         lists_(lists),
         first_photon_(lists.list_of_photon.size() - positions.size()) {}
 
@@ -64,7 +69,8 @@ class Splitter {
   }
 
  private:
-  void add_list(std::span<const std::uint32_t> photons, const std::vector<std::uint32_t>& members) {
+  void add_list(std::span<const std::uint32_t> photons, std::vector<std::uint32_t>& members) {
+    std::erase_if(members, [&](std::uint32_t map) { return !is_wanted(wanted_, map); });
     for (const std::uint32_t photon : photons) {
       lists_.list_of_photon[first_photon_ + photon] =
           static_cast<std::uint32_t>(lists_.sizes.size());
@@ -76,6 +82,7 @@ class Splitter {
   const std::vector<geometry::Box>& boxes_;
   std::span<const glm::vec3> positions_;
   float reach_;
+  std::span<const std::uint8_t> wanted_;
   Lists& lists_;
   std::size_t first_photon_;
 };
@@ -93,7 +100,8 @@ std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches)
 }  // namespace
 
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
-                                  const NeighbourGroups& groups, float reach) {
+                                  const NeighbourGroups& groups, float reach,
+                                  std::span<const std::uint8_t> wanted) {
   const std::vector<geometry::Box> boxes = map_boxes(scene, groups.patches);
   const std::size_t triangle_total = groups.offsets.size() - 1;
   std::vector<Lists> chunks((triangle_total + triangles_per_chunk - 1) / triangles_per_chunk);
@@ -110,8 +118,12 @@ CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
         lists.list_of_photon.resize(lists.list_of_photon.size() + count);
         order.resize(count);
         std::iota(order.begin(), order.end(), 0u);
-        Splitter(boxes, {photons.position.data() + first_photon, count}, reach, lists)
-            .split(order, groups.of(static_cast<std::uint32_t>(triangle)));
+        std::span<const std::uint32_t> group = groups.of(static_cast<std::uint32_t>(triangle));
+        const bool any = std::any_of(group.begin(), group.end(),
+                                     [&](std::uint32_t map) { return is_wanted(wanted, map); });
+        if (!any) group = {};  // one list without members for all
+        Splitter(boxes, {photons.position.data() + first_photon, count}, reach, wanted, lists)
+            .split(order, group);
       }
       lists.lists_of_triangle.push_back(
           static_cast<std::uint32_t>(lists.sizes.size() - lists_before));

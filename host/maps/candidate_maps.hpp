@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "photile/neighbour_groups.hpp"
@@ -24,7 +25,11 @@ struct CandidateMaps {
 /// Every list of a photon holds each member of its group whose surface lies within `reach` metres
 /// of the photon, and seldom many more. Splits the photons of a sided triangle in halves until the
 /// members near each half are few. Parallel; the result does not depend on the number of threads.
+///   wanted   per map of the groups: 1 for those that lists name; empty: all. Which photons a list
+///   is
+///            for, and so which of them enter a map, does not depend on it
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
-                                  const NeighbourGroups& groups, float reach);
+                                  const NeighbourGroups& groups, float reach,
+                                  std::span<const std::uint8_t> wanted = {});
 
 }  // namespace photile::maps

@@ -56,20 +56,20 @@ std::string_view name_of(MapStructure structure) {
 
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-                       Progress& progress) {
-  build(device, scene, photons, nullptr, groups, parameters, progress);
+                       Progress& progress, std::span<const std::uint8_t> wanted) {
+  build(device, scene, photons, nullptr, groups, parameters, wanted, progress);
 }
 
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, Photons&& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-                       Progress& progress) {
+                       Progress& progress, std::span<const std::uint8_t> wanted) {
   Photons own = std::move(photons);
-  build(device, scene, own, &own, groups, parameters, progress);
+  build(device, scene, own, &own, groups, parameters, wanted, progress);
 }
 
 void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photons, Photons* spent,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-                       Progress& progress) {
+                       std::span<const std::uint8_t> wanted, Progress& progress) {
   check_scene(scene);
   check(scene, photons, groups, parameters);
   const Stopwatch stopwatch;
@@ -93,7 +93,7 @@ void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photon
       throw InputError(
           fmt::format("neighbour groups of {}: those of another scene", scene.source.string()));
     }
-    maps::build_maps_of_groups(*store_, scene, photons, spent, groups, progress);
+    maps::build_maps_of_groups(*store_, scene, photons, spent, groups, wanted, progress);
   }
 
   store_->statistics.spilled_bytes = store_->pages.spilled_bytes();

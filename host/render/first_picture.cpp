@@ -36,6 +36,7 @@ TimeTaken draw_first_picture(const PreparedScene& scene, const HitSource& hits, 
   progress.begin("first picture", 0, "");
   try {
     Rendering rendering(scene, devices, first_picture_parameters(asked), quiet);
+    rendering.expect_one_picture();
     rendering.prepare(0, nullptr, nullptr);
     hits.draw_first(rendering.frames(), film, quiet);
   } catch (const Interrupted&) {

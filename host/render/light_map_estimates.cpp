@@ -233,6 +233,16 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   return joined(std::move(parts));
 }
 
+std::vector<std::uint32_t> LightMapEstimates::looked_at(const PrimaryHits& hits) {
+  std::vector<std::uint32_t> served;
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
+    if (serves(hits, hit)) served.push_back(hit);
+  }
+  std::vector<std::uint32_t> triangles = maps_.owners_around(estimate::reordered(hits, 0, served));
+  triangles.insert(triangles.end(), hits.sided_triangle.begin(), hits.sided_triangle.end());
+  return triangles;
+}
+
 Estimates LightMapEstimates::errors(const PrimaryHits& hits, const Estimates& estimates,
                                     const Estimates& of_nodes,
                                     std::span<const std::uint8_t> by_photons) {

@@ -60,6 +60,9 @@ class LightMapEstimates {
   Estimates estimate(const PrimaryHits& hits, const Progress& progress, std::size_t pass = 0,
                      std::span<const std::uint8_t> by_photons = {});
 
+  /// The sided triangles whose photons `estimate` may look at for these hits, and some more.
+  std::vector<std::uint32_t> looked_at(const PrimaryHits& hits);
+
   /// Standard errors of what `estimate` found at these hits, in the same form. Nodes around a hit
   /// are taken to err alike; where photons served, theirs is that of a density from k of them.
   ///   estimates   that were found

@@ -35,11 +35,26 @@ class MapEstimators {
   MapEstimators(std::span<Device> devices, const Scene& scene, std::function<Parts()> make,
                 std::span<const double> layer_powers);
 
+  /// Makes those maps of neighbour groups that are 1.
+  using MakeSome = std::function<Parts(std::span<const std::uint8_t> wanted)>;
+  /// The same of maps of these patches, a reference to which is kept, as they are looked at. What
+  /// is looked at first is made alone, and what is looked at next; from then on, all that is left.
+  MapEstimators(std::span<Device> devices, const Scene& scene, const Patches& patches,
+                MakeSome make, std::span<const double> layer_powers);
+
+  bool makes_maps_in_sight() const { return patches_ != nullptr; }
+
+  /// Makes the maps that serve these sided triangles. Errors: those of making them.
+  void look_at(std::span<const std::uint32_t> sided_triangles);
+
   /// Of hits in any order. Errors: as DeviceEstimators.
   Estimates estimate(const PrimaryHits& hits);
 
-  /// Per sided triangle, as PhotonMaps has it: the order of hits.
-  std::span<const std::uint32_t> map_of() const { return built().maps.front().map_of(); }
+  /// Per sided triangle, as PhotonMaps has it: the order of hits. Empty where maps are made as they
+  /// are looked at.
+  std::span<const std::uint32_t> map_of() const {
+    return patches_ ? std::span<const std::uint32_t>() : built().maps.front().map_of();
+  }
 
   /// k, or the most that a hit has where it has its own.
   int neighbours() const { return built().neighbours.back(); }
@@ -48,7 +63,8 @@ class MapEstimators {
 
   /// Each device's part of all hits so far; none without any.
   std::vector<double> shares() const {
-    return built_ ? built_->estimators.back().shares() : std::vector<double>(devices_.size(), 0.0);
+    return built_.empty() ? std::vector<double>(devices_.size(), 0.0)
+                          : built_.front()->estimators.back().shares();
   }
 
  private:
@@ -58,14 +74,19 @@ class MapEstimators {
     std::vector<DeviceEstimators> estimators;  ///< of each level; they keep references to the maps
   };
 
-  Estimates estimate_in_order(const PrimaryHits& hits);
+  std::unique_ptr<Built> built_of(Parts parts) const;
+  static Estimates estimate_by(Built& built, const PrimaryHits& hits,
+                               std::span<const double> layer_powers);
   Built& built() const;
 
   std::span<Device> devices_;
   const Scene& scene_;
   std::span<const double> layer_powers_;
   mutable std::function<Parts()> make_;
-  mutable std::unique_ptr<Built> built_;
+  const Patches* patches_ = nullptr;  ///< where maps are made as they are looked at
+  MakeSome make_some_;
+  std::vector<std::uint32_t> part_of_;  ///< per map of the groups: in built_; or none
+  mutable std::vector<std::unique_ptr<Built>> built_;  ///< one, but where make_some_ made several
 };
 
 }  // namespace photile

@@ -24,6 +24,7 @@ RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& 
     return with_first(maps.render(hits, film, progress));
   }
   Rendering rendering(*prepared, devices, parameters, progress);
+  rendering.expect_one_picture();
   rendering.start(film);
   for (int pass = 0; pass < rendering.plan().passes(); ++pass) {
     rendering.prepare(pass, nullptr, nullptr);

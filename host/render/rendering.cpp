@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "photile/errors.hpp"
+#include "photile/quiet_progress.hpp"
 #include "render/film.hpp"
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
@@ -49,6 +50,9 @@ void join_runs(PrimaryHitBatch& batch, int runs) {
 /// Least number of batches of a picture that somebody watches.
 constexpr int watched_batches = 16;
 
+/// Pixels from one look to the next by which it is foreseen what a large picture shows.
+constexpr int look_step = 4;
+
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene) : rays(scene) {
@@ -83,6 +87,7 @@ void Rendering::drop_maps() {
   photons_.reset();
   caustics_.reset();
   late_maps_.reset();
+  seen_ = {};
 }
 
 void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {
@@ -91,6 +96,14 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   pass_ = pass;
   if (prepared && reads_light_maps_of(*prepared)) {
     wait_with(*prepared, keep);
+    return;
+  }
+  if (!prepared && !keep && makes_maps_in_sight()) {
+    seen_ = trace(pass, nullptr, nullptr).photons;
+    costs_.maps = costs_.mixed_maps = 0;
+    photons_.emplace(
+        devices_, scene_, groups_.patches,
+        [this](std::span<const std::uint8_t> wanted) { return build_some(wanted); }, layer_powers_);
     return;
   }
   Maps maps = trace_and_build(pass, prepared, keep);
@@ -181,11 +194,14 @@ void Rendering::add_pass(const HitSource& source, std::size_t after) {
     runs_ = LightLayers(film_.width * film_.runs, film_.height, scene_);
   }
   const int rows = rows_per_batch(source);
+  PrimaryHitBatch batch = trace_rows(source, 0, std::min(rows, film_.height));
+  make_maps(source, batch, rows);
   progress_->begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
   for (int first = 0; first < film_.height; first += rows) {
     progress_->throw_if_cancelled();
     const int last = std::min(first + rows, film_.height);
-    add_rows(source, first, last);
+    if (first > 0) batch = trace_rows(source, first, last);
+    add_rows(source, std::move(batch), first, last);
     source.show(layers_, first, last, (film_.pass + 1.0) / film_.passes);
     progress_->advance(static_cast<std::uint64_t>(last - first));
   }
@@ -234,9 +250,7 @@ RenderResult Rendering::finish() {
           .device_shares = shares_};
 }
 
-/// The photons are gone when this returns: the maps hold copies.
-Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
-                                           const KeepPhotons* keep) {
+PhotonTracerResult Rendering::trace(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {
   if (!kernels_) kernels_.emplace(scene_, devices_, plan_.used());  // while photons are traced
   const Stopwatch trace_watch;
   PhotonTracerResult traced;
@@ -264,6 +278,13 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
     groups_ = std::move(own.groups);
     if (own.caustics) traced.caustics = std::move(*own.caustics);
   }
+  return traced;
+}
+
+/// The photons are gone when this returns: the maps hold copies.
+Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
+                                           const KeepPhotons* keep) {
+  PhotonTracerResult traced = trace(pass, prepared, keep);
   const PhotonMapParameters parameters = plan_.maps(pass, radius_);
   Maps maps{build(std::move(traced.photons), parameters), {}};
   costs_.maps = maps.photons.front().statistics().maps;
@@ -287,10 +308,74 @@ std::vector<PhotonMaps> Rendering::build(Photons photons, const PhotonMapParamet
     spilled_bytes += one.statistics().spilled_bytes;
   }
   costs_.build.add(stopwatch.taken(), spilled_bytes, device_bytes);
-  const PhotonMapStatistics& built = maps.front().statistics();
+  note_maps(maps.front().statistics());
+  return maps;
+}
+
+void Rendering::note_maps(const PhotonMapStatistics& built) {
   costs_.references += built.references;
   costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
-  return maps;
+}
+
+bool Rendering::makes_maps_in_sight() const {
+  return one_picture_ && plan_.passes() == 1 && plan_.reads_light_maps() &&
+         !plan_.keeps_caustics() && devices_.size() == 1 &&
+         plan_.used().structure != MapStructure::kdtree_global;
+}
+
+MapEstimators::Parts Rendering::build_some(std::span<const std::uint8_t> wanted) {
+  const Stopwatch stopwatch;
+  QuietProgress quiet(*progress_);
+  if (seen_.first_of.empty()) seen_ = trace_photons(rays_, plan_.tracing(pass_, {}), quiet).photons;
+  kernels_->wait();
+  const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
+  std::vector<PhotonMaps> maps;
+  if (seen_whole_) {
+    maps.emplace_back(devices_.front(), scene_, std::move(seen_), groups_, parameters, quiet,
+                      wanted);
+    seen_ = {};
+  } else {
+    maps.emplace_back(devices_.front(), scene_, std::as_const(seen_), groups_, parameters, quiet,
+                      wanted);
+  }
+  const PhotonMapStatistics& built = maps.front().statistics();
+  costs_.build.add(stopwatch.taken());
+  costs_.build.host_bytes += built.spilled_bytes;
+  costs_.build.device_bytes += built.device_bytes - built.spilled_bytes;
+  costs_.maps += built.maps;
+  costs_.mixed_maps += built.mixed_maps;
+  note_maps(built);
+  return parts_of(std::move(maps));
+}
+
+void Rendering::make_maps(const HitSource& source, const PrimaryHitBatch& batch, int rows) {
+  if (!photons_->makes_maps_in_sight()) return;
+  progress_->begin("build photon maps", 0, "");
+  const Stopwatch sight_watch;
+  std::vector<std::uint32_t> triangles;
+  const auto look_at = [&](const PrimaryHits& hits) {
+    const std::vector<std::uint32_t> more =
+        reads_light_maps(source) ? light_maps().looked_at(hits) : hits.sided_triangle;
+    triangles.insert(triangles.end(), more.begin(), more.end());
+  };
+  look_at(batch.hits);
+  look_at(batch.reflected);
+  seen_whole_ = rows >= film_.height;
+  if (!seen_whole_) {  // what a small picture of the same shows
+    PrimaryHitParameters small = film_;
+    small.width = (film_.width - 1) / look_step + 1;
+    small.height = (film_.height - 1) / look_step + 1;
+    small.samples_per_pixel = small.runs = 1;
+    const PrimaryHitBatch looks = source.trace(rays_, small, 0, small.height, {});
+    look_at(looks.hits);
+    look_at(looks.reflected);
+  }
+  costs_.light_maps.add(sight_watch.taken());
+  const Stopwatch stopwatch;
+  const TimeTaken built_before = costs_.build.time;
+  photons_->look_at(triangles);
+  costs_.estimators.add(stopwatch.taken() - (costs_.build.time - built_before));
+  progress_->end();
 }
 
 void Rendering::count(const PhotonTracerResult& traced) {
@@ -336,7 +421,7 @@ int Rendering::rows_per_batch(const HitSource& source) const {
       std::clamp<std::int64_t>(hits_per_batch(neighbours) / hits_per_row, 1, most));
 }
 
-void Rendering::add_rows(const HitSource& source, int first, int last) {
+PrimaryHitBatch Rendering::trace_rows(const HitSource& source, int first, int last) {
   const Stopwatch hit_watch;
   // Light maps ask for no order, and those of a file for no photons.
   const auto map_of =
@@ -344,6 +429,10 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
   PrimaryHitBatch batch = source.trace(rays_, film_, first, last, map_of);
   costs_.hits.add(hit_watch.taken());
   costs_.rays += batch.rays;
+  return batch;
+}
+
+void Rendering::add_rows(const HitSource& source, PrimaryHitBatch batch, int first, int last) {
   const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight,
                        std::span<const std::uint8_t> by_photons) {
     const Estimates estimates = reads_light_maps(source) ? read_light_maps(seen.hits, by_photons)
@@ -376,10 +465,11 @@ void Rendering::add_rows(const HitSource& source, int first, int last) {
 Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_row) {
   const Stopwatch stopwatch;
   const double compiled = compile_seconds();
+  const TimeTaken built_before = costs_.build.time;
   Rendering& pass = at_hand();
   if (!plan_.gathers()) {
     Estimates estimates = pass.photons_->estimate(hits);
-    costs_.estimate.add(stopwatch.taken());
+    costs_.estimate.add(stopwatch.taken() - (costs_.build.time - built_before));
     costs_.estimate_compile_seconds += compile_seconds() - compiled;
     costs_.hit_count += hits.size();
     return estimates;
@@ -430,10 +520,13 @@ Estimates Rendering::read_light_maps(const PrimaryHits& hits,
   const std::uint64_t alone_before = light_maps.hits_alone();
   const std::uint64_t nodes_before = light_maps.maps().statistics().nodes;
   const TimeTaken filled_before = light_maps.fill_time();
+  const TimeTaken built_before = costs_.build.time;
   Estimates estimates = light_maps.estimate(hits, *progress_, at_hand_, by_photons);
   const LightMapStatistics maps = light_maps.maps().statistics();
   const TimeTaken filling = light_maps.fill_time() - filled_before;
-  costs_.light_maps.add(filling, maps.value_bytes + maps.index_bytes);
+  // Nodes may be the first to look at some maps of photons.
+  costs_.light_maps.add(filling - (costs_.build.time - built_before),
+                        maps.value_bytes + maps.index_bytes);
   costs_.light_map_nodes += maps.nodes - nodes_before;
   costs_.light_map_error = light_maps.error();
   costs_.estimate.add(stopwatch.taken() - filling);

@@ -42,6 +42,10 @@ class Rendering {
   /// From now on.
   void report_to(Progress& progress) { progress_ = &progress; }
 
+  /// Maps are made of what is looked at alone where that saves some: for one picture, whose
+  /// light is not gathered from all around. To be called before `prepare`.
+  void expect_one_picture() { one_picture_ = true; }
+
   /// Begins a picture of so many passes; 0: of all there will be.
   void start(const Film& film, int passes = 0);
 
@@ -97,13 +101,24 @@ class Rendering {
   /// Chooses nodes for the photons of a pass.
   void choose_light_maps(int pass, const Photons& photons);
   MapEstimators::Parts parts_of(std::vector<PhotonMaps> maps) const;
+  /// Photons of a pass, with all that is found before there are maps.
+  PhotonTracerResult trace(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
   Maps trace_and_build(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
   std::vector<PhotonMaps> build(Photons photons, const PhotonMapParameters& parameters);
+  /// Whether maps are made as they are looked at.
+  bool makes_maps_in_sight() const;
+  /// Of the photons in `seen_`, which are given up where the whole picture was looked at, and
+  /// traced anew should more be looked at after all.
+  MapEstimators::Parts build_some(std::span<const std::uint8_t> wanted);
+  /// Makes those that the hits of rows look at, unless they are there; `batch` has the first.
+  void make_maps(const HitSource& source, const PrimaryHitBatch& batch, int rows);
+  void note_maps(const PhotonMapStatistics& built);
   void count(const PhotonTracerResult& traced);
   void find_groups(const Photons& photons, PreparedPhotons* prepared);
   void find_surface(const Photons& photons);
   int rows_per_batch(const HitSource& source) const;
-  void add_rows(const HitSource& source, int first, int last);
+  PrimaryHitBatch trace_rows(const HitSource& source, int first, int last);
+  void add_rows(const HitSource& source, PrimaryHitBatch batch, int first, int last);
   Estimates estimate(const PrimaryHits& hits, int first_row, int last_row);
   bool reads_light_maps(const HitSource& source) const {
     return plan_.reads_light_maps() && (source.dense() || plan_.asks_for_light_maps());
@@ -124,6 +139,9 @@ class Rendering {
   std::vector<std::uint64_t> paths_before_;  ///< per light
   double radius_ = 0;                        ///< of the first pass, metres
   NeighbourGroups groups_;
+  bool one_picture_ = false;
+  bool seen_whole_ = false;
+  Photons seen_;                   ///< where maps are made as they are looked at
   PreparedPhotons waiting_;        ///< with light maps of their own: what has no maps yet
   std::optional<Maps> late_maps_;  ///< of what was waiting
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped

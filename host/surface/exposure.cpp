@@ -84,6 +84,49 @@ class Projection {
   std::array<double, 3> border_;
 };
 
+/// Boxes by coordinate, so that several are compared with one at a time.
+class BoxColumns {
+ public:
+  BoxColumns(std::span<const geometry::Box> boxes, std::span<const std::uint32_t> chosen)
+      : chosen_(chosen) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const std::uint32_t i : chosen) {
+        low_[axis].push_back(boxes[i].lower[axis]);
+        high_[axis].push_back(boxes[i].upper[axis]);
+      }
+    }
+  }
+
+  /// Calls visit(index of a box) for those of the chosen that overlap `box`.
+  template <class Visit>
+  void visit_overlapping(const geometry::Box& box, const Visit& visit) const {
+    constexpr std::size_t at_a_time = 256;
+    std::array<std::uint32_t, at_a_time> overlap, found;
+    for (std::size_t first = 0; first < chosen_.size(); first += at_a_time) {
+      const std::size_t count = std::min(at_a_time, chosen_.size() - first);
+      overlap.fill(1);
+      for (int axis = 0; axis < 3; ++axis) {
+        const float *low = low_[axis].data() + first, *high = high_[axis].data() + first;
+        const float begin = box.lower[axis], end = box.upper[axis];
+        for (std::size_t i = 0; i < count; ++i) {
+          overlap[i] &= static_cast<std::uint32_t>(low[i] <= end) &
+                        static_cast<std::uint32_t>(begin <= high[i]);
+        }
+      }
+      std::size_t found_count = 0;  // without branches: which overlap cannot be foreseen
+      for (std::size_t i = 0; i < count; ++i) {
+        found[found_count] = chosen_[first + i];
+        found_count += overlap[i];
+      }
+      for (std::size_t i = 0; i < found_count; ++i) visit(found[i]);
+    }
+  }
+
+ private:
+  std::span<const std::uint32_t> chosen_;
+  std::array<std::vector<float>, 3> low_, high_;
+};
+
 class ExposureFinder {
  public:
   ExposureFinder(const SurfaceMesh& mesh, const Facets& facets, const Sheets& sheets,
@@ -95,8 +138,9 @@ class ExposureFinder {
         radius_(radius),
         cos_angle_(std::cos(glm::radians(angle_degrees))) {
     for (std::uint32_t t = 0; t < mesh.corner.size(); ++t) {
-      if (!mesh.counts(t) || (!is_dark(sided(t, 0)) && !is_dark(sided(t, 1)))) continue;
-      dark_.push_back(t);
+      const bool front = is_dark(sided(t, 0)), back = is_dark(sided(t, 1));
+      if (!mesh.counts(t) || (!front && !back)) continue;
+      dark_.push_back({mesh.normal[t], mesh.scene.corners(t), facets.plane[t], front, back});
       dark_boxes_.push_back(geometry::triangle_box(mesh.scene, t));
     }
     dark_tree_ = geometry::BoxTree(dark_boxes_);
@@ -120,14 +164,13 @@ class ExposureFinder {
     if (together) {
       dark_tree_.visit_overlapping(dark_boxes_, all, [&](std::uint32_t i) { near.push_back(i); });
     }
+    const BoxColumns near_boxes(dark_boxes_, near);
     for (const LitSide& side : sides) {
       std::vector<Projection> covers;
       const Projection outline(side.corners, side.normal);
-      const auto look_at = [&](std::uint32_t i) { add_cover(side, outline, i, covers); };
+      const auto look_at = [&](std::uint32_t i) { add_cover(side, outline, dark_[i], covers); };
       if (together) {
-        for (const std::uint32_t i : near) {
-          if (geometry::overlap(dark_boxes_[i], side.prism)) look_at(i);
-        }
+        near_boxes.visit_overlapping(side.prism, look_at);
       } else {
         dark_tree_.visit_overlapping(dark_boxes_, side.prism, look_at);
       }
@@ -136,8 +179,16 @@ class ExposureFinder {
   }
 
  private:
+  /// A triangle with a side that no light reaches.
+  struct DarkTriangle {
+    glm::dvec3 normal;  ///< of side 0
+    std::array<glm::vec3, 3> corners;
+    std::uint32_t plane;
+    bool front, back;  ///< which sides are dark
+  };
+
   struct LitSide {
-    std::uint32_t own;
+    std::uint32_t own, plane;
     glm::dvec3 normal;
     Corners corners;
     geometry::Box prism;  ///< covers lie within it
@@ -150,9 +201,9 @@ class ExposureFinder {
 
   LitSide lit_side(std::uint32_t s) const {
     const glm::dvec3 normal = normal_of(s);
-    const Corners corners = corners_of(triangle_of(s));
+    const Corners corners = corners_of(mesh_.scene.corners(triangle_of(s)));
     // A cover lies within the slab, and so where it covers within the prism over the triangle.
-    return {s, normal, corners,
+    return {s, facets_.plane[triangle_of(s)], normal, corners,
             box_of_prism(corners, -coincident * radius_ * normal, reach * radius_ * normal)};
   }
 
@@ -173,28 +224,24 @@ class ExposureFinder {
     return side_of(s) == 0 ? mesh_.normal[triangle_of(s)] : -mesh_.normal[triangle_of(s)];
   }
 
-  Corners corners_of(std::uint32_t triangle) const {
-    const auto corners = mesh_.scene.corners(triangle);
+  static Corners corners_of(const std::array<glm::vec3, 3>& corners) {
     return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
   }
 
   /// Whether a side of the triangle that no light reaches looks against `normal`.
-  bool faces_in_the_dark(std::uint32_t triangle, const glm::dvec3& normal) const {
-    const std::uint32_t sides = groups::agreeing_sides(mesh_.normal[triangle], -normal, cos_angle_);
-    return ((sides & groups::equal_sides) != 0 && is_dark(sided(triangle, 0))) ||
-           ((sides & groups::opposite_sides) != 0 && is_dark(sided(triangle, 1)));
+  bool faces_in_the_dark(const DarkTriangle& dark, const glm::dvec3& normal) const {
+    const std::uint32_t sides = groups::agreeing_sides(dark.normal, -normal, cos_angle_);
+    return ((sides & groups::equal_sides) != 0 && dark.front) ||
+           ((sides & groups::opposite_sides) != 0 && dark.back);
   }
 
   bool is_dark(std::uint32_t s) const { return lit_[sheets_.of[s]] == 0; }
 
   /// Appends a dark triangle that lies above a side, close to it, as seen along its normal.
-  void add_cover(const LitSide& side, const Projection& outline, std::uint32_t dark,
+  void add_cover(const LitSide& side, const Projection& outline, const DarkTriangle& dark,
                  std::vector<Projection>& covers) const {
-    const std::uint32_t triangle = dark_[dark];
-    if (facets_.plane[triangle] == facets_.plane[triangle_of(side.own)]) return;
-    if (!faces_in_the_dark(triangle, side.normal)) return;
-    const Corners corners = corners_of(triangle);
-    if (outline.is_apart_from(corners)) return;
+    if (dark.plane == side.plane || !faces_in_the_dark(dark, side.normal)) return;
+    const Corners corners = corners_of(dark.corners);
     double lowest = reach * radius_, highest = 0;
     for (const glm::dvec3& corner : corners) {
       const double height = glm::dot(corner - side.corners[0], side.normal);
@@ -202,6 +249,7 @@ class ExposureFinder {
       highest = std::max(highest, height);
     }
     if (lowest < -coincident * radius_ || highest >= reach * radius_) return;
+    if (outline.is_apart_from(corners)) return;
     const Projection cover(corners, side.normal);
     if (!cover.is_apart_from(side.corners)) covers.push_back(cover);
   }
@@ -212,7 +260,7 @@ class ExposureFinder {
   const std::vector<std::uint8_t>& lit_;
   double radius_, cos_angle_;
   const std::array<glm::dvec2, samples> weights_ = sample_weights();
-  std::vector<std::uint32_t> dark_;  ///< triangles with a side that no light reaches
+  std::vector<DarkTriangle> dark_;
   std::vector<geometry::Box> dark_boxes_;
   geometry::BoxTree dark_tree_;
 };

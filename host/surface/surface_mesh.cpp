@@ -4,8 +4,11 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <tuple>
+
+#include "geometry/radix_sort.hpp"
 
 namespace photile::surface {
 namespace {
@@ -89,9 +92,10 @@ SurfaceMesh::SurfaceMesh(const Scene& from)
                        from_corner < to_corner});
     }
   }
-  tbb::parallel_sort(edges.begin(), edges.end(), [](const MeshEdge& a, const MeshEdge& b) {
-    return std::tie(a.low, a.high, a.triangle, a.index) <
-           std::tie(b.low, b.high, b.triangle, b.index);
+  // Those of equal corners are in the order of their triangles, and stay so.
+  const int bits = std::bit_width(scene.vertices.size());
+  geometry::radix_sort(edges, 2 * bits, [bits](const MeshEdge& edge) {
+    return std::uint64_t{edge.low} << bits | edge.high;
   });
 }
 

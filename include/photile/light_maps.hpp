@@ -169,6 +169,10 @@ class LightMaps {
             int rounds = all_rounds, int levels = all_rounds);
   static constexpr int all_rounds = 1 << 30;
 
+  /// The sided triangles that nodes may lie on which these hits on opaque surfaces need, at any
+  /// level, and some more.
+  std::vector<std::uint32_t> owners_around(const PrimaryHits& hits);
+
   /// Makes nodes hold the mean over all passes of their source, as far as so many values go: pass
   /// by pass, in the order in which nodes came to be. What is seen first later gets the passes in
   /// the same order, and the first alone says which cells are split: what nodes hold in the end

@@ -71,13 +71,16 @@ class PhotonMaps {
   /// Builds on the device (kd-trees on the host). Errors: UsageError for a radius beyond the
   /// groups', or a global tree with naive groups; DeviceMemoryError when the device's memory does
   /// not suffice even page by page; Interrupted.
+  ///   wanted   per map of the groups: 1 for those to make, which hold what they would among all;
+  ///            empty: all, as a global tree always does
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-             Progress& progress = Progress::none());
+             Progress& progress = Progress::none(), std::span<const std::uint8_t> wanted = {});
   /// The same of photons that nobody else needs: their arrays are given back as soon as the maps
   /// hold copies, so that they do not lie in memory beside all of those.
   PhotonMaps(Device& device, const Scene& scene, Photons&& photons, const NeighbourGroups& groups,
-             const PhotonMapParameters& parameters, Progress& progress = Progress::none());
+             const PhotonMapParameters& parameters, Progress& progress = Progress::none(),
+             std::span<const std::uint8_t> wanted = {});
   ~PhotonMaps();
   PhotonMaps(PhotonMaps&&) noexcept;
   PhotonMaps& operator=(PhotonMaps&&) noexcept;
@@ -96,7 +99,7 @@ class PhotonMaps {
   /// `spent`: the same photons where they may be given back, else null.
   void build(Device& device, const Scene& scene, const Photons& photons, Photons* spent,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-             Progress& progress);
+             std::span<const std::uint8_t> wanted, Progress& progress);
 
   std::unique_ptr<maps::MapStore> store_;
 };
