@@ -22,7 +22,8 @@ if [[ ${#targets[@]} -eq 0 ]]; then
   targets=(commands)
   for folder in tests/fuzz/corpus/*/; do targets+=("$(basename "$folder")"); done
 fi
-seconds=$(awk "BEGIN { print int($hours * 3600 / ${#targets[@]}) }")
+# Rounded up: 0 would be no end.
+seconds=$(awk "BEGIN { print 1 + int($hours * 3600 / ${#targets[@]}) }")
 
 mkdir -p build/soak
 [[ -d /dev/shm ]] && export TMPDIR=/dev/shm # each input becomes a file, which no disk needs to see
