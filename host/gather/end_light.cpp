@@ -35,9 +35,7 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
     served.position.push_back(ends.hits[end].position);
     served.sided_triangle.push_back(ends.hits[end].sided_triangle);
   }
-  if (!maps_) maps_.emplace(rays_, parameters_);
-  maps_->maps.fill(served, *this, progress);
-  maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
+  fill(served, progress);
   find_nodes(light, has_own);
   light.own_of.assign(ends.hits.size(), none);
   std::vector<std::uint32_t> own;
@@ -54,19 +52,13 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
 }
 
 std::vector<NodeBlend> EndLight::nodes_around(const PrimaryHits& hits, const Progress& progress) {
-  if (!maps_) maps_.emplace(rays_, parameters_);
-  maps_->maps.fill(hits, *this, progress);
-  maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
+  fill(hits, progress);
   std::vector<NodeBlend> nodes(hits.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
                       for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
-                        const std::uint32_t sided = hits.sided_triangle[hit];
-                        maps_->maps.find(sided, hits.position[hit], nodes[hit]);
-                        if (!is_open(nodes[hit])) {
-                          maps_->sight.look(sided, hits.position[hit], nodes[hit]);
-                        }
+                        find(hits.sided_triangle[hit], hits.position[hit], nodes[hit]);
                       }
                     });
   return nodes;
@@ -128,6 +120,20 @@ void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own
   });
 }
 
+/// Values the nodes that hits need.
+void EndLight::fill(const PrimaryHits& hits, const Progress& progress) {
+  if (!maps_) maps_.emplace(rays_, parameters_);
+  maps_->maps.fill(hits, *this, progress);
+  maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
+}
+
+/// The nodes around a place, of those that it sees. Returns false where it sees none; then all.
+bool EndLight::find(std::uint32_t sided_triangle, const glm::vec3& position,
+                    NodeBlend& blend) const {
+  maps_->maps.find(sided_triangle, position, blend);
+  return is_open(blend) || maps_->sight.look(sided_triangle, position, blend);
+}
+
 /// Whether the middle of a cell sees all of its nodes. All who ask at once find the same.
 bool EndLight::is_open(const NodeBlend& cell) const {
   const std::atomic_ref<std::uint8_t> known(maps_->cells[cell.node[0]]);
@@ -147,9 +153,7 @@ void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_o
     for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
       if (has_own[end]) continue;
       const trace::EyeHit& hit = light.rays.ends.hits[end];
-      maps_->maps.find(hit.sided_triangle, hit.position, light.nodes[end]);
-      if (is_open(light.nodes[end])) continue;
-      if (maps_->sight.look(hit.sided_triangle, hit.position, light.nodes[end])) continue;
+      if (find(hit.sided_triangle, hit.position, light.nodes[end])) continue;
       has_own[end] = 1;
       // Estimates of ends are radiance.
       light.weight[end] = hit.throughput;

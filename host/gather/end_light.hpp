@@ -76,6 +76,8 @@ class EndLight : private PointSource {
   Estimates irradiance(const PrimaryHits& nodes) override;
   void classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   void find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
+  void fill(const PrimaryHits& hits, const Progress& progress);
+  bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
   bool is_open(const NodeBlend& cell) const;
   EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen);
 

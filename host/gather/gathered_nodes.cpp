@@ -10,19 +10,20 @@
 #include "estimate/map_order.hpp"
 #include "gather/irradiance_filter.hpp"
 #include "gather/weighted_points.hpp"
+#include "photile/defaults.hpp"
 
 namespace photile {
 namespace {
 
-/// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
-/// where light changes from one place to the next.
-constexpr NodeSource::Surroundings averaged{.window = 2, .rounds = 2, .fine_window = 1};
+/// Places that a place is averaged with.
+constexpr NodeSource::Surroundings averaged{.window = defaults::averaged_window,
+                                            .rounds = defaults::averaged_rounds,
+                                            .fine_window = defaults::averaged_fine_window};
 /// Differences that may be noise. Light straight from lamps ends at borders: beyond the horizon of
 /// a lamp that is near, places know that they are dark, and those before it are not sure of much.
-constexpr NoiseTolerance of_indirect{.errors = 3}, of_direct{.errors = 3, .ratio = 2};
-/// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
-/// mean over many.
-constexpr double weight_of_parents = 3;
+constexpr NoiseTolerance of_indirect{.errors = defaults::tolerated_errors};
+constexpr NoiseTolerance of_direct{.errors = defaults::tolerated_errors,
+                                   .ratio = defaults::tolerated_error_ratio};
 
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t nodes_per_task = 256;
@@ -262,7 +263,7 @@ GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
     }
     expected.error = std::sqrt(variance);
     const double weight =
-        weight_of_parents * likeness(found.total(i, layer_powers_), expected, tolerated);
+        defaults::weight_of_parents * likeness(found.total(i, layer_powers_), expected, tolerated);
     means.add(found, i, 1.0);
     if (weight <= 0) return;
     for (const std::uint32_t row : rows) means.add(known, row, 0.25 * weight);

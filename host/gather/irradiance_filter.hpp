@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gather/gathered_irradiance.hpp"
+#include "photile/defaults.hpp"
 
 namespace photile {
 
@@ -23,7 +24,8 @@ struct PointLinks {
 
 /// What may be noise.
 struct NoiseTolerance {
-  double errors = 3;  ///< differences of so many standard errors count less by e
+  double errors =
+      defaults::tolerated_errors;  ///< differences of so many standard errors count less by e
   /// Where one standard error is larger than this many times the other, the two count less, by the
   /// square of what is more: they do not see the same light.
   double ratio = std::numeric_limits<double>::infinity();

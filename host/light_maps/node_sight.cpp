@@ -8,12 +8,6 @@
 namespace photile::light_maps {
 namespace {
 
-/// Lines of sight run above the surface by this part of their length: roundings and what lies flat
-/// on it hide nothing.
-constexpr float lift_of_length = 0x1p-9f;
-/// They end so much short of the node, which may lie on the foot of a wall.
-constexpr float left_out = 0x1p-5f;
-
 struct Place {
   glm::vec3 position, normal;
 };
@@ -28,17 +22,17 @@ bool see_each_other(const RayScene& rays, const Place& from, const Place& to) {
   const glm::vec3 way = to.position - from.position;
   const float turn =
       std::max(std::abs(glm::dot(way, from.normal)), std::abs(glm::dot(way, to.normal)));
-  const float lift = lift_of_length * glm::length(way) + 0.5f * turn;
+  const float lift = defaults::sight_lift * glm::length(way) + 0.5f * turn;
   const glm::vec3 start = from.position + lift * from.normal;
   const glm::vec3 end = to.position + lift * to.normal;
-  return !trace::occluded(rays, start, end + left_out * (start - end));
+  return !trace::occluded(rays, start, end + defaults::sight_left_out * (start - end));
 }
 
 /// Whether something lies in front of a place, nearer than this. The edge that it may lie on is
 /// left out by a step to a point of the surface.
 bool is_covered(const RayScene& rays, const Place& place, const glm::vec3& beside, float reach) {
-  const glm::vec3 foot = place.position + left_out * (beside - place.position);
-  return trace::occluded(rays, foot + lift_of_length * reach * place.normal,
+  const glm::vec3 foot = place.position + defaults::sight_left_out * (beside - place.position);
+  return trace::occluded(rays, foot + defaults::sight_lift * reach * place.normal,
                          foot + reach * place.normal);
 }
 

@@ -8,14 +8,12 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "photile/defaults.hpp"
 #include "photile/scene.hpp"
 #include "render/by_pixel.hpp"
 
 namespace photile {
 namespace {
-
-/// Noise of photons in a pixel, relative, that is not seen: less than rays of lobes leave.
-constexpr double tolerated_noise = 0.04;
 
 /// Hits of a pixel that are compared with each other, at most.
 constexpr std::size_t most_compared = 64;
@@ -74,7 +72,8 @@ std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHi
         for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
           const std::span<const std::uint32_t> hits = by_pixel.of(pixel);
           const double weight = sum_of_weights(reflected, hits);
-          const double tolerated = tolerated_noise * (weight + seen_weight[pixel]);
+          const double tolerated =
+              defaults::tolerated_reflection_noise * (weight + seen_weight[pixel]);
           const double noise = weight * blotches.noise;
           if (noise > tolerated &&
               noise * std::sqrt(relative_variance(reflected, hits, blotches.width)) > tolerated) {

@@ -17,10 +17,6 @@
 namespace photile {
 namespace {
 
-/// Of photon estimates, so near to a node that gathers: what they blur, and what hides within their
-/// radius, would show there.
-constexpr double near_radii = 2;
-
 /// Without those whose light rays bring; where rays gather, those see direct light, too.
 PhotonTracerParameters all_photons(const RenderParameters& used) {
   const bool gathers = used.final_gather_rays > 0;
@@ -182,7 +178,8 @@ LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& 
 IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {
   return {.rays = used_.light_map_rays,
           .looks = used_.light_map_rays,
-          .near = near_radii * estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
+          .near = defaults::near_radii *
+                  estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
           .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(pass)),
           .max_specular_depth = used_.max_specular_depth};
 }

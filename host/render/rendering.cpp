@@ -37,9 +37,6 @@ std::string light_map_settings(const RenderParameters& used, std::span<Device> d
   return words;
 }
 
-/// Runs of a pixel's samples, whose scatter is their error.
-constexpr int runs_of_samples = 4;
-
 /// What runs of samples see becomes that of their pixels.
 void join_runs(PrimaryHitBatch& batch, int runs) {
   const auto count = static_cast<std::uint32_t>(runs);
@@ -190,7 +187,7 @@ void Rendering::add_pass(const HitSource& source, std::size_t after) {
   LightLayers* const errors = source.errors();
   if (errors && film_.pass == 0) {
     *errors = LightLayers(film_.width, film_.height, scene_);
-    film_.runs = std::min(runs_of_samples, film_.samples_per_pixel);
+    film_.runs = std::min(defaults::runs_of_samples, film_.samples_per_pixel);
     runs_ = LightLayers(film_.width * film_.runs, film_.height, scene_);
   }
   const int rows = rows_per_batch(source);

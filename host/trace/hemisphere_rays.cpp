@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
+#include "photile/defaults.hpp"
 #include "trace/diffuse_part.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/flush_denormals.hpp"
@@ -18,15 +19,6 @@ namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t points_per_task = 16;
-
-/// Near surfaces in a row that a ray goes on from.
-constexpr std::uint32_t most_near = 3;
-
-/// From near surface that reflects less than the inverse of this, rays go on by chance.
-constexpr float survival_of_reflectance = 1.5f;
-
-/// Lobes that reflect more of the light towards the ray need directions.
-constexpr float strong_lobe = 0.2f;
 
 struct TaskEnds {
   EyeRecord ends;
@@ -53,7 +45,8 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
                      LampLooks& looks, EyeRecord& ends) {
   const Scene& scene = run.rays.scene();
   const LightSampler& lamps = *run.parameters.lamps;
-  for (std::uint32_t bounce = 1; bounce <= most_near && ends.hits.size() > before; ++bounce) {
+  for (int bounce = 1; bounce <= defaults::most_near_surfaces && ends.hits.size() > before;
+       ++bounce) {
     const EyeHit hit = ends.hits.back();
     if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
     const std::uint32_t triangle = triangle_of(hit.sided_triangle);
@@ -64,10 +57,11 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
     const SurfacePoint point =
         surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
                       side_of(hit.sided_triangle));
-    const RandomStream random(run.parameters.seed, number, stream + bounce * streams);
+    const RandomStream random(run.parameters.seed, number,
+                              stream + static_cast<std::uint32_t>(bounce) * streams);
     const RandomBlock numbers = random.block(Purpose::hemisphere_direction, 0);
     const float survival =
-        std::min(1.0f, survival_of_reflectance * largest(reflection.reflectance));
+        std::min(1.0f, defaults::survival_of_reflectance * largest(reflection.reflectance));
     if (!(numbers.uniform(2) < survival)) return;
     const glm::vec3 throughput = hit.throughput * reflection.reflectance / survival;
     looks.add(lamps, point,
@@ -186,7 +180,7 @@ EndReflection reflection_of(const EyeRecord& ends, std::size_t end) {
   photile_lobe_albedo(&fit, cosine, &f0_weight, &f90_weight);
   const glm::vec3 lobe = f0_weight * surface.f0 + f90_weight * surface.f90;
   return {lobe + diffuse_reflectance(diffuse_part(surface, cosine), surface.alpha),
-          largest(lobe) > strong_lobe};
+          largest(lobe) > defaults::strong_lobe};
 }
 
 HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points, std::size_t first,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "photile/defaults.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/largest.hpp"
 #include "trace/opaque_bsdf.hpp"
@@ -11,10 +12,6 @@
 
 namespace photile::trace {
 namespace {
-
-/// What counts less than this in its sample goes on by chance, and counts this much then. A smooth
-/// dielectric seen from the front reflects 0.04, and is always followed.
-constexpr float least_weight = 0.02f;
 
 /// A lamp as the lobe reflects it; also by how much the base reflects more or less of it than of
 /// light from all sides, for hits say no more of the base.
@@ -56,7 +53,7 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     const float density = lobe.density(*direction);
     if (!(density > 0.0f)) return;
     glm::vec3 weight = lobe.reflected(*direction) / density;
-    const float survival = std::min(1.0f, largest(left * weight) / least_weight);
+    const float survival = std::min(1.0f, largest(left * weight) / defaults::least_lobe_weight);
     if (!(look.direction.uniform(choice_word) < survival)) return;  // no other use for the word
     weight /= survival;
     left *= weight;

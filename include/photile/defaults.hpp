@@ -37,6 +37,38 @@ inline constexpr int light_map_levels = 4;          ///< the finest is an eighth
 inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
 inline constexpr double light_map_near = 0.5;       ///< cells larger than this part of the distance
 
+// Nodes that gather
+/// Radii of photon estimates, so near to a node that gathers: what they blur, and what hides within
+/// their radius, would show there.
+inline constexpr double near_radii = 2;
+inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on from
+/// From near surface that reflects less than the inverse of this, rays go on by chance.
+inline constexpr float survival_of_reflectance = 1.5f;
+/// Ends whose lobe reflects more of the light towards the ray ask where light comes from.
+inline constexpr float strong_lobe = 0.2f;
+/// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
+/// where light changes from one place to the next.
+inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
+/// Standard errors by which places may differ, and by which standard errors of direct light may.
+inline constexpr double tolerated_errors = 3, tolerated_error_ratio = 2;
+/// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
+/// mean over many.
+inline constexpr double weight_of_parents = 3;
+/// Lines of sight between places of one surface run above it by this part of their length:
+/// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
+/// on the foot of a wall.
+inline constexpr float sight_lift = 0x1p-9f, sight_left_out = 0x1p-5f;
+
+// Gloss by rays
+/// What counts less than this in its sample goes on by chance, and counts this much then. A smooth
+/// dielectric seen from the front reflects 0.04, and is always followed.
+inline constexpr float least_lobe_weight = 0.02f;
+/// Noise of photons in a pixel's reflections, relative, that is not seen: less than rays of lobes
+/// leave.
+inline constexpr double tolerated_reflection_noise = 0.04;
+/// Runs of a pixel's samples, whose scatter is their error.
+inline constexpr int runs_of_samples = 4;
+
 // Uniform grid
 inline constexpr float photons_per_cell = 4.0f;  ///< aimed at; about 4 is best for k = 50
 

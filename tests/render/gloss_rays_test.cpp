@@ -63,18 +63,23 @@ void check_room(const Material& floor, RenderParameters parameters, double delta
   }
 }
 
-/// A plate of this material in a black box whose walls all emit the same.
-Scene plate_in_furnace(const Material& material) {
-  SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+/// A box of 96 m2 whose walls reflect that part of the light, and all emit the same.
+void add_furnace(float albedo, SceneBuilder& builder) {
+  const std::uint32_t wall = builder.add(diffuse(glm::vec3(albedo)));
   const std::uint32_t walls = builder.add(area_light("walls"));
   const glm::vec3 low(-2.0f), x(4, 0, 0), y(0, 4, 0), z(0, 0, 4);
-  builder.grid(low, x, y, 1, black, walls);
-  builder.grid(low + z, y, x, 1, black, walls);
-  builder.grid(low, z, x, 1, black, walls);
-  builder.grid(low + y, x, z, 1, black, walls);
-  builder.grid(low, y, z, 1, black, walls);
-  builder.grid(low + x, z, y, 1, black, walls);
+  builder.grid(low, x, y, 1, wall, walls);
+  builder.grid(low + z, y, x, 1, wall, walls);
+  builder.grid(low, z, x, 1, wall, walls);
+  builder.grid(low + y, x, z, 1, wall, walls);
+  builder.grid(low, y, z, 1, wall, walls);
+  builder.grid(low + x, z, y, 1, wall, walls);
+}
+
+/// A plate of this material in a box whose black walls all emit the same.
+Scene plate_in_furnace(const Material& material) {
+  SceneBuilder builder;
+  add_furnace(0, builder);
   builder.grid({-1, -1, -1.5f}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(material));
   return builder.build();
 }
@@ -114,6 +119,33 @@ TEST_CASE("gloss by rays: uniform light from all sides is reflected as the BSDF'
     radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
   }
   CHECK_VERDICT(mean_is(radiance, 1.0, 0.06));
+}
+
+TEST_CASE("gloss by rays: lobes read at gathered nodes what walls reflect of their own light") {
+  const auto [albedo, f0, alpha] = GENERATE(
+      table<double, double, double>({{0.0, 0.9, 0.04}, {0.0, 0.9, 0.25}, {0.2, 0.2, 0.1}}));
+  CAPTURE(albedo, f0, alpha);
+  // Three quarters of the light in the box were reflected before; a plate of 10 cm takes 0.05% of
+  // it.
+  constexpr double wall_albedo = 0.75;
+  SceneBuilder builder;
+  add_furnace(wall_albedo, builder);
+  builder.grid({-0.05f, -0.05f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, 1,
+               builder.add(glossy(glm::vec3(static_cast<float>(albedo)),
+                                  glm::vec3(static_cast<float>(f0)), static_cast<float>(alpha))));
+  const Scene scene = builder.build();
+  const Camera camera = Camera::look_at({0, 0, 0.5}, {0, 0, 0}, {0, 1, 0}, 0.1);
+  const double truth =
+      validation::glossy_reflectance(albedo, f0, alpha) / (96 * pi * (1 - wall_albedo));
+  std::vector<double> radiance;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    RenderParameters parameters = with_rays(seed);
+    parameters.light_map_rays = 16;
+    parameters.film.samples_per_pixel = 64;
+    const RenderResult result = render(scene, camera, device(), parameters);
+    radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
+  }
+  CHECK_VERDICT(mean_is(radiance, 1.0, 0.03));
 }
 
 TEST_CASE(
