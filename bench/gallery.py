@@ -3,7 +3,7 @@
 
     bench/gallery.py [--photile COMMAND] [--only SCENE] [--references FOLDER] [--quick --results FOLDER]
 
-Takes about an hour, nearly all of it for the paths, which FOLDER keeps. Needs the built command and the Debian packages python3-numpy and
+Takes about half an hour, nearly all of it for the paths, which FOLDER keeps. Needs the built command and the Debian packages python3-numpy and
 python3-openimageio.
 """
 
@@ -25,7 +25,7 @@ import path_references
 import picture_error
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SIZE, REFERENCE_PATHS = "480x360", 512
+SIZE, REFERENCE_PATHS = "480x360", 256
 
 
 @dataclasses.dataclass

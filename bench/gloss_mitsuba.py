@@ -5,8 +5,8 @@
 
 No material of Mitsuba's is glTF's coat as photile has it, so the formulas at the head of
 include/photile/device/bsdf.h stand here once more, as a material of Mitsuba's: its camera, rays, lamps,
-sampling and path tracer decide what light they give. Prints the ratio of the means with the standard
-error of it, and the relMSE with the noise of both taken off. Needs the built command and the packages
+sampling and path tracer decide what light they give. Prints the ratio of the means, and by how many
+standard errors means of tiles differ: 1 where they differ by noise alone. Needs the built command and the packages
 numpy, OpenImageIO and mitsuba (DRJIT_LIBLLVM_PATH names LLVM 19).
 """
 
@@ -29,6 +29,7 @@ import quality_mitsuba
 
 SIZE = "256x192"
 PATHS_AT_A_TIME = 64
+TILE = 16  # pixels
 LEAST_ALPHA = 0.02
 
 
@@ -160,19 +161,28 @@ def pictures(scene, paths):
                      dtype=np.float64) for seed in range(max(2, paths // PATHS_AT_A_TIME))]
 
 
+def tile_means(found):
+    """Of each picture, (pictures, rows, columns): luminance means of tiles of 16x16 pixels."""
+    light = np.array(found) @ picture_error.LUMINANCE
+    count, height, width = light.shape
+    return light.reshape(count, height // TILE, TILE, width // TILE, TILE).mean(axis=(2, 4))
+
+
+def mean_and_error(values):
+    return np.mean(values, axis=0), np.std(values, axis=0, ddof=1) / math.sqrt(len(values))
+
+
 def compared(own, rival):
-    """A row: ratio of means, its standard error, and relMSE without noise."""
-    reference, _ = path_references.mean_and_noise(rival)
-    means = [[picture[picture_error.without_lamps(reference)].mean() for picture in pictures_of]
-             for pictures_of in (own, rival)]
-    ratio = np.mean(means[0]) / np.mean(means[1])
-    error = ratio * math.hypot(*(np.std(each, ddof=1) / math.sqrt(len(each)) / np.mean(each)
-                                 for each in means))
-    mask = picture_error.without_lamps(reference)
-    level = (reference**2 + 0.01 * reference[mask].mean() ** 2)[mask]
-    # What is alike in two differences that share no path is no noise.
-    first, second = (a - b for a, b in zip(path_references.halves(own), path_references.halves(rival)))
-    return f"{ratio:.4f} | {error:.4f} | {((first * second)[mask] / level).mean():.5f}"
+    """A row: ratio of means where no lamp is seen, its standard error, and how many of its standard
+    errors a tile's difference has, root mean square."""
+    seen = picture_error.without_lamps(path_references.mean_and_noise(rival)[0])
+    (mine, error), (other, other_error) = (
+        mean_and_error([picture[seen].mean() for picture in found]) for found in (own, rival))
+    (tiles, errors), (other_tiles, other_errors) = (
+        mean_and_error(tile_means(found)) for found in (own, rival))
+    deviations = (tiles - other_tiles) / np.hypot(errors, other_errors)
+    return (f"{mine / other:.4f} | {mine / other * math.hypot(error / mine, other_error / other):.4f} | "
+            f"{math.sqrt(np.mean(deviations**2)):.2f}")
 
 
 def main():
@@ -184,7 +194,7 @@ def main():
     parser.add_argument("--photile", type=pathlib.Path, metavar="COMMAND",
                         default=scene_arguments.ROOT / "build/release/photile")
     given = parser.parse_args()
-    print("| | photile's mean / Mitsuba's | standard error | relMSE without noise |")
+    print("| | photile's mean / Mitsuba's | standard error | rms of tiles, in standard errors |")
     print("|---|--:|--:|--:|")
     for scene in given.scenes:
         own = path_references.pictures(given.photile, scene, SIZE, given.paths, given.references)

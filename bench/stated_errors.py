@@ -26,8 +26,8 @@ except ImportError as missing:
              "python3-openimageio, and run it with /usr/bin/python3")
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-OPTIONS = ("--target-error 5%", "--quality good", "--target-error 2%")
-OPTIONS_OF_LIGHTS = "--quality good"
+OPTIONS = ("--quality good", "--target-error 1%")
+OPTIONS_OF_LIGHTS = OPTIONS[0]
 
 
 def luminances(file):
