@@ -140,8 +140,12 @@ TEST_CASE("gloss by rays: lobes read at gathered nodes what walls reflect of the
   std::vector<double> radiance;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     RenderParameters parameters = with_rays(seed);
-    parameters.light_map_rays = 32;
-    parameters.film.samples_per_pixel = 128;
+    parameters.light_map_rays = 16;
+    parameters.film.samples_per_pixel = 64;
+    if (albedo > 0) {  // few nodes lie on the plate, and share the photons that they see
+      parameters.light_map_rays = 64;
+      parameters.photons.emitted_photons = 200'000;
+    }
     const RenderResult result = render(scene, camera, device(), parameters);
     radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
   }
