@@ -181,6 +181,12 @@ def shows_illuminance(photile, scene, window):
     window.click(*PICTURE)
 
 
+def display_answers():
+    """xvfb-run may start its command a little before the screen in memory can be opened."""
+    return subprocess.run(["xdotool", "getdisplaygeometry"], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL, check=False).returncode == 0
+
+
 def refuses_without_a_display(photile, scene):
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     done = subprocess.run([photile, "view", scene, "--quiet"], env=environment, text=True,
@@ -198,6 +204,7 @@ def main():
         scene = folder / f"{NAME}.gltf"
         (folder / f"{NAME}.moods.json").write_text(json.dumps(MOOD))
         refuses_without_a_display(photile, scene)
+        until(display_answers, "the display")
         window = Window(photile, scene, folder)
 
         kept = window.keep("ctrl+s", "view-*.exr")
