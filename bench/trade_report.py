@@ -44,7 +44,7 @@ def subjects(scenes):
 
 
 def settings(point):
-    text = f"`--photons {point['photons']} -k {point['neighbours']} --samples {point['samples']}"
+    text = f"`--photons {point['photons_emitted']} -k {point['neighbours']} --samples {point['samples_per_pixel']}"
     if point["least_neighbours"]:
         text += f" --least-neighbours {point['least_neighbours']}"
     varied = {"radius": f" --radius {point['radius']:.3g}",
