@@ -24,14 +24,14 @@ struct PointLinks {
 
 /// What may be noise.
 struct NoiseTolerance {
-  double errors =
-      defaults::tolerated_errors;  ///< differences of so many standard errors count less by e
+  /// Differences of so many standard errors count less by e.
+  double errors = defaults::tolerated_errors;
   /// Where one standard error is larger than this many times the other, the two count less, by the
   /// square of what is more: they do not see the same light.
   double ratio = std::numeric_limits<double>::infinity();
   /// But only where the smaller error is at most this share of the light it is of: a point that few
   /// rays brought light to, or none, does not know its error.
-  double known = 0.5;
+  double known = defaults::known_error;
 };
 
 struct IrradianceFilterParameters {

@@ -341,7 +341,7 @@ void SceneBuilder::grid(const glm::vec3& origin, const glm::vec3& u, const glm::
 }
 
 void SceneBuilder::box(const glm::vec3& low, const glm::vec3& high, std::uint32_t material,
-                       bool inwards, int cells) {
+                       bool inwards, int cells, std::uint32_t light) {
   const glm::vec3 size = high - low;
   for (int axis = 0; axis < 3; ++axis) {
     glm::vec3 u(0.0f), v(0.0f), across(0.0f);
@@ -349,8 +349,8 @@ void SceneBuilder::box(const glm::vec3& low, const glm::vec3& high, std::uint32_
     v[(axis + 2) % 3] = size[(axis + 2) % 3];
     across[axis] = size[axis];
     // u x v points along +axis: into the box on the low face.
-    grid(low, inwards ? u : v, inwards ? v : u, cells, material);
-    grid(low + across, inwards ? v : u, inwards ? u : v, cells, material);
+    grid(low, inwards ? u : v, inwards ? v : u, cells, material, light);
+    grid(low + across, inwards ? v : u, inwards ? u : v, cells, material, light);
   }
 }
 

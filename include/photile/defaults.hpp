@@ -51,6 +51,8 @@ inline constexpr float strong_lobe = 0.2f;
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
 /// Standard errors by which places may differ, and by which standard errors of direct light may.
 inline constexpr double tolerated_errors = 3, tolerated_error_ratio = 2;
+/// Errors above this share of the light that they are of are not known: few rays found any.
+inline constexpr double known_error = 0.5;
 /// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
 /// mean over many.
 inline constexpr double weight_of_parents = 3;

@@ -95,8 +95,8 @@ inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
 /// picture of a few kilobytes must not fill the memory.
 inline constexpr std::uint64_t max_image_expansion = 1'000;
 inline constexpr std::uint64_t unchecked_image_bytes = 64ull << 20;
-/// Pixels of an EXR above that size for each encoded byte. Photons' noise takes 20 bytes a pixel and
-/// more: of such a picture a pixel in 300 would show something.
+/// Pixels of an EXR above that size for each encoded byte. Photons' noise takes 20 bytes a pixel
+/// and more: of such a picture a pixel in 300 would show something.
 inline constexpr std::uint64_t max_exr_pixels_per_byte = 16;
 /// A tile or a strip of rows, decoded, of which a decoder keeps some at a time.
 inline constexpr std::uint64_t max_image_block_bytes = 256ull << 20;

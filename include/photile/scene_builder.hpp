@@ -71,7 +71,7 @@ class SceneBuilder {
             std::uint32_t material, std::uint32_t light = none);
   /// A box along the axes with cells x cells quads a face. Fronts look into the box if `inwards`.
   void box(const glm::vec3& low, const glm::vec3& high, std::uint32_t material, bool inwards,
-           int cells = 1);
+           int cells = 1, std::uint32_t light = none);
 
   /// The scene so far, with a camera that shows it where none was added. Names of lights become
   /// unique and fit for layers of a picture. Errors: InputError without triangles, for an area

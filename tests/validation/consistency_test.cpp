@@ -121,13 +121,7 @@ TEST_CASE("interreflected light is read without bias in the middle of a wall", "
   test::SceneBuilder builder;
   const std::uint32_t wall = builder.add(test::diffuse(glm::vec3(0.8f)));
   const std::uint32_t lamp = builder.add(test::area_light("walls", pi * 6));
-  const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), low(-0.5f, -0.5f, 0);
-  builder.grid(low, x, y, 1, wall, lamp);
-  builder.grid(low + z, y, x, 1, wall, lamp);
-  builder.grid(low, y, z, 1, wall, lamp);
-  builder.grid(low + x, z, y, 1, wall, lamp);
-  builder.grid(low, z, x, 1, wall, lamp);
-  builder.grid(low + y, x, z, 1, wall, lamp);
+  builder.box({-0.5f, -0.5f, 0}, {0.5f, 0.5f, 1}, wall, true, 1, lamp);
   const Scene scene = builder.build();
   const std::vector<Sensor> sensors = square_of_sensors(10, 0.06, {0, 0, 1});
   std::vector<double> values;

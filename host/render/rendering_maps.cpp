@@ -1,0 +1,183 @@
+// What a rendering looks at: the photons of a pass, their groups and surface, and the maps of them.
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "photile/quiet_progress.hpp"
+#include "render/rendering.hpp"
+
+namespace photile {
+namespace {
+
+/// Pixels from one look to the next by which it is foreseen what a large picture shows.
+constexpr int look_step = 4;
+
+}  // namespace
+
+MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps) const {
+  MapEstimators::Parts parts{std::move(maps), plan_.estimates(pass_, surface_)};
+  if (plan_.reads_light_maps()) estimate_each_alone(parts.levels, devices_.front());
+  return parts;
+}
+
+PhotonTracerResult Rendering::trace(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {
+  if (!kernels_) kernels_.emplace(scene_, devices_, plan_.used());  // while photons are traced
+  const Stopwatch trace_watch;
+  PhotonTracerResult traced;
+  if (prepared) {
+    traced.photons = std::move(prepared->photons);
+    if (plan_.keeps_caustics()) traced.caustics = std::move(*prepared->caustics);
+  } else {
+    traced = trace_photons(rays_, plan_.tracing(pass, paths_before_), *progress_);
+  }
+  costs_.trace.add(trace_watch.taken(), traced.photons.bytes() + traced.caustics.bytes());
+  count(traced);
+  if (pass == 0) {
+    const Stopwatch radius_watch;
+    radius_ = prepared ? prepared->radius : plan_.radius(traced.photons, *progress_);
+    costs_.radius.add(radius_watch.taken());
+    find_groups(traced.photons, prepared);  // once: no later radius is larger
+    find_surface(traced.photons);
+  }
+  if (plan_.reads_light_maps()) choose_light_maps(pass, traced.photons);
+  if (keep) {
+    PreparedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
+    if (plan_.keeps_caustics()) own.caustics = std::move(traced.caustics);
+    (*keep)(own);
+    traced.photons = std::move(own.photons);
+    groups_ = std::move(own.groups);
+    if (own.caustics) traced.caustics = std::move(*own.caustics);
+  }
+  return traced;
+}
+
+/// The photons are gone when this returns: the maps hold copies.
+Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
+                                           const KeepPhotons* keep) {
+  PhotonTracerResult traced = trace(pass, prepared, keep);
+  const PhotonMapParameters parameters = plan_.maps(pass, radius_);
+  Maps maps{build(std::move(traced.photons), parameters), {}};
+  costs_.maps = maps.photons.front().statistics().maps;
+  costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
+  // Among the photons of all light, caustics have the same groups, lit surface and radius.
+  if (traced.caustics.size() > 0) maps.caustics = build(std::move(traced.caustics), parameters);
+  const Stopwatch release_watch;
+  traced = {};
+  costs_.release.add(release_watch.taken());
+  return maps;
+}
+
+std::vector<PhotonMaps> Rendering::build(Photons photons, const PhotonMapParameters& parameters) {
+  const Stopwatch stopwatch;
+  kernels_->wait();
+  std::vector<PhotonMaps> maps =
+      build_maps_on_each(devices_, scene_, std::move(photons), groups_, parameters, *progress_);
+  std::uint64_t device_bytes = 0, spilled_bytes = 0;
+  for (const PhotonMaps& one : maps) {
+    device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
+    spilled_bytes += one.statistics().spilled_bytes;
+  }
+  costs_.build.add(stopwatch.taken(), spilled_bytes, device_bytes);
+  note_maps(maps.front().statistics());
+  return maps;
+}
+
+void Rendering::note_maps(const PhotonMapStatistics& built) {
+  costs_.references += built.references;
+  costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
+}
+
+bool Rendering::makes_maps_in_sight() const {
+  return one_picture_ && plan_.passes() == 1 && plan_.reads_light_maps() &&
+         !plan_.keeps_caustics() && devices_.size() == 1 &&
+         plan_.used().structure != MapStructure::kdtree_global;
+}
+
+MapEstimators::Parts Rendering::build_some(std::span<const std::uint8_t> wanted) {
+  const Stopwatch stopwatch;
+  QuietProgress quiet(*progress_);
+  if (seen_.first_of.empty()) seen_ = trace_photons(rays_, plan_.tracing(pass_, {}), quiet).photons;
+  kernels_->wait();
+  const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
+  std::vector<PhotonMaps> maps;
+  if (seen_whole_) {
+    maps.emplace_back(devices_.front(), scene_, std::move(seen_), groups_, parameters, quiet,
+                      wanted);
+    seen_ = {};
+  } else {
+    maps.emplace_back(devices_.front(), scene_, std::as_const(seen_), groups_, parameters, quiet,
+                      wanted);
+  }
+  const PhotonMapStatistics& built = maps.front().statistics();
+  costs_.build.add(stopwatch.taken());
+  costs_.build.host_bytes += built.spilled_bytes;
+  costs_.build.device_bytes += built.device_bytes - built.spilled_bytes;
+  costs_.maps += built.maps;
+  costs_.mixed_maps += built.mixed_maps;
+  note_maps(built);
+  return parts_of(std::move(maps));
+}
+
+void Rendering::make_maps(const HitSource& source, const PrimaryHitBatch& batch, int rows) {
+  if (!photons_->makes_maps_in_sight()) return;
+  progress_->begin("build photon maps", 0, "");
+  const Stopwatch sight_watch;
+  std::vector<std::uint32_t> triangles;
+  const auto look_at = [&](const PrimaryHits& hits) {
+    const std::vector<std::uint32_t> more =
+        reads_light_maps(source) ? light_maps().looked_at(hits) : hits.sided_triangle;
+    triangles.insert(triangles.end(), more.begin(), more.end());
+  };
+  look_at(batch.hits);
+  look_at(batch.reflected);
+  seen_whole_ = rows >= film_.height;
+  if (!seen_whole_) {  // what a small picture of the same shows
+    PrimaryHitParameters small = film_;
+    small.width = (film_.width - 1) / look_step + 1;
+    small.height = (film_.height - 1) / look_step + 1;
+    small.samples_per_pixel = small.runs = 1;
+    const PrimaryHitBatch looks = source.trace(rays_, small, 0, small.height, {});
+    look_at(looks.hits);
+    look_at(looks.reflected);
+  }
+  costs_.light_maps.add(sight_watch.taken());
+  const Stopwatch stopwatch;
+  const TimeTaken built_before = costs_.build.time;
+  photons_->look_at(triangles);
+  costs_.estimators.add(stopwatch.taken() - (costs_.build.time - built_before));
+  progress_->end();
+}
+
+void Rendering::count(const PhotonTracerResult& traced) {
+  for (std::size_t light = 0; light < paths_before_.size(); ++light) {
+    const std::uint64_t paths = traced.photons.emitted_per_light[light];
+    paths_before_[light] += paths;
+    costs_.emitted_photons += paths;
+  }
+  costs_.stored_photons += traced.photons.size();
+  costs_.caustic_photons += traced.caustics.size();
+}
+
+void Rendering::find_groups(const Photons& photons, PreparedPhotons* prepared) {
+  const Stopwatch stopwatch;
+  groups_ = prepared ? std::move(prepared->groups)
+                     : find_map_groups(
+                           scene_, photons, plan_.map_mode(), plan_.groups(radius_), *progress_,
+                           plan_.passes() > 1 ? MapUsers::any_photons : MapUsers::these_photons);
+  costs_.group.add(stopwatch.taken(), groups_.bytes());
+  costs_.group_members = groups_.members.size();
+  costs_.groups = groups_.offsets.size() - 1;
+  costs_.patches = groups_.patches.count();
+}
+
+void Rendering::find_surface(const Photons& photons) {
+  if (!plan_.clips_areas()) return;
+  const Stopwatch stopwatch;
+  surface_ = std::make_shared<const SurfaceIndex>(
+      index_surface(scene_, photons, radius_, plan_.used().angle_degrees));
+  costs_.surface.add(stopwatch.taken(), surface_->bytes());
+  costs_.sheets = surface_->sheets;
+  costs_.surface_leaves = surface_->leaves.size();
+}
+
+}  // namespace photile
