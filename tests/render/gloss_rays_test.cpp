@@ -106,8 +106,8 @@ TEST_CASE("gloss by rays: uniform light from all sides is reflected as the BSDF'
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     RenderParameters parameters = with_rays(seed);
     if (albedo > 0) {
-      parameters.photons.emitted_photons = 180'000;
-      parameters.neighbours = 900;
+      parameters.photons.emitted_photons = 220'000;
+      parameters.neighbours = 1'100;
     }
     const RenderResult result = render(scene, above(0, 0, 0.5, 0.2), device(), parameters);
     radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
