@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "image/combine_rows.hpp"
 #include "image/light_change.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_mix.hpp"
@@ -100,14 +101,19 @@ void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<gl
     throw UsageError(fmt::format("combine_layers: a picture of {} pixels for layers of {} x {}",
                                  picture.size(), layers.width, layers.height));
   }
-  const std::vector<glm::vec3> scales = scales_of(layers, mix);
+  image::combine_rows(layers, scales_of(layers, mix), 0, picture);
+}
+
+void image::combine_rows(const LightLayers& layers, std::span<const glm::vec3> scales, int row,
+                         std::span<glm::vec3> picture) {
+  const auto width = static_cast<std::size_t>(layers.width), begin = static_cast<std::size_t>(row);
   if (layers.sparse()) {
-    const auto width = static_cast<std::size_t>(layers.width);
-    tbb::parallel_for(std::size_t{0}, layers.rows.size(), [&](std::size_t y) {
-      combine_row(layers.rows[y], scales, picture.subspan(y * width, width));
+    tbb::parallel_for(std::size_t{0}, picture.size() / width, [&](std::size_t y) {
+      combine_row(layers.rows[begin + y], scales, picture.subspan(y * width, width));
     });
     return;
   }
+  const std::size_t pixels = picture.size();
   const std::vector<ScaledLayer> entries = scaled_layers(layers, scales);
   const std::size_t blocks = (pixels + pixels_per_block - 1) / pixels_per_block;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
@@ -115,7 +121,7 @@ void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<gl
     const std::size_t count = std::min(pixels_per_block, pixels - first);
     std::fill_n(picture.begin() + static_cast<std::ptrdiff_t>(first), count, glm::vec3(0.0f));
     for (const ScaledLayer& layer : entries) {
-      add_scaled(layer, 3 * first, 3 * count, &picture[first].x);
+      add_scaled(layer, 3 * (begin * width + first), 3 * count, &picture[first].x);
     }
   });
 }

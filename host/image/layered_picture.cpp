@@ -42,15 +42,19 @@ LightRows LayeredPicture::read(std::size_t light, int first, int end) const {
     }
   }
   if (lost.empty()) return rows;
-  Overflow& overflow = overflows_[light];
-  if (first < overflow.counted) return rows;  // read once more, for another file
-  overflow.counted = end;
-  overflow.pixels += static_cast<std::uint64_t>(std::count(lost.begin(), lost.end(), true));
+  overflows_[light].add(first, end,
+                        static_cast<std::size_t>(std::count(lost.begin(), lost.end(), true)));
   return rows;
 }
 
-Image LayeredPicture::root() const {
-  Image image = sum_any();
+void LayeredPicture::Overflow::add(int first, int end, std::size_t lost) {
+  if (first < counted) return;  // read once more, for another file
+  counted = end;
+  pixels += lost;
+}
+
+Image LayeredPicture::root(int first, int end) const {
+  Image image = sum_any(first, end);
   for (float& alpha : image.channels[3]) alpha = finite(alpha);
   std::vector<std::size_t> lost;
   for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel) {
@@ -59,19 +63,19 @@ Image LayeredPicture::root() const {
       lost.push_back(pixel);
     }
   }
-  lost_sums_ = lost.size();
   if (lost.empty()) return image;
+  lost_sums_.add(first, end, lost.size());
   for (const std::size_t pixel : lost) {
     for (std::size_t i = 0; i < 3; ++i) image.channels[i][pixel] = 0.0f;
   }
   const auto width = static_cast<std::size_t>(image.width);
   for (std::size_t light = 0; light < lights(); ++light) {
     auto pixel = lost.begin();
-    for (int first = 0; first < image.height; first += rows_per_read) {
-      const int end = std::min(first + rows_per_read, image.height);
-      const LightRows rows = read(light, first, end);
-      const std::size_t begin = static_cast<std::size_t>(first) * width;
-      for (; pixel != lost.end() && *pixel < static_cast<std::size_t>(end) * width; ++pixel) {
+    for (int row = 0; row < image.height; row += rows_per_read) {
+      const int row_end = std::min(row + rows_per_read, image.height);
+      const LightRows rows = read(light, first + row, first + row_end);
+      const std::size_t begin = static_cast<std::size_t>(row) * width;
+      for (; pixel != lost.end() && *pixel < static_cast<std::size_t>(row_end) * width; ++pixel) {
         for (std::size_t i = 0; i < 3; ++i) {
           float& sum = image.channels[i][*pixel];
           sum = finite(sum + rows.rgb[i][*pixel - begin]);
@@ -93,7 +97,7 @@ std::vector<std::string> LayeredPicture::overflows() const {
   for (const auto& [light, overflow] : overflows_) {
     add(fmt::format("light '{}'", layers_[light].light), overflow.pixels);
   }
-  if (lines.empty() && lost_sums_ > 0) add("the sum of the lights", lost_sums_);
+  if (lines.empty() && lost_sums_.pixels > 0) add("the sum of the lights", lost_sums_.pixels);
   return lines;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "image/combine_rows.hpp"
 #include "image/light_change.hpp"
 #include "image/light_records.hpp"
 #include "photile/layered_picture.hpp"
@@ -11,26 +12,15 @@
 namespace photile {
 namespace {
 
-/// What a layer is multiplied with.
-struct Scale {
-  glm::vec3 radiance;
-  float illuminance;
-
-  Scale(const MixedLight& light, double lumen_per_watt)
-      : radiance(light.power * glm::dvec3(light.tint)),
-        // The tint is not in it: it leaves the luminance that the light emits as it was.
-        illuminance(static_cast<float>(light.power *
-                                       (light.unit == PowerUnit::lumen ? 1.0 : lumen_per_watt))) {}
-
-  /// Off means black, whatever the layer holds.
-  float component(const glm::vec3& value, int i) const {
-    return radiance[i] == 0.0f ? 0.0f : value[i] * radiance[i];
-  }
-};
+/// What a layer's illuminance is multiplied with. The tint is not in it: it leaves the luminance
+/// that the light emits as it was.
+float illuminance_scale(const MixedLight& light, double lumen_per_watt) {
+  return static_cast<float>(light.power * (light.unit == PowerUnit::lumen ? 1.0 : lumen_per_watt));
+}
 
 class MixedPicture : public LayeredPicture {
  public:
-  MixedPicture(const LightLayers& layers, const LightMix& mix) : source_(layers), mix_(mix) {
+  MixedPicture(const LightLayers& layers, const LightMix& mix) : source_(layers) {
     header_.width = layers.width;
     header_.height = layers.height;
     image::LightRecords records;
@@ -38,7 +28,8 @@ class MixedPicture : public LayeredPicture {
     for (const LightLayers::Layer& layer : layers.layers) {
       const MixedLight& light = mix.lights[image::index_of(mix, layer.light)];
       layers_.push_back({layer.light, true});
-      scales_.emplace_back(light, mix.lumen_per_watt);
+      scales_.emplace_back(light.power * glm::dvec3(light.tint));
+      illuminance_scales_.push_back(illuminance_scale(light, mix.lumen_per_watt));
       records.mix.lights.push_back(light);
     }
     image::write_light_records(header_, records);
@@ -60,26 +51,30 @@ class MixedPicture : public LayeredPicture {
     return rows;
   }
 
-  Image sum_any() const override {
-    std::vector<glm::vec3> sums(header_.pixels());
-    combine_layers(source_, mix_, sums);
+  Image sum_any(int first, int end) const override {
     Image image;
     static_cast<PictureHeader&>(image) = header_;
+    image.height = end - first;
+    std::vector<glm::vec3> sums(image.pixels());
+    image::combine_rows(source_, scales_, first, sums);
     for (int component = 0; component < 3; ++component) {
       std::vector<float>& plane = image.add(std::string(1, "RGB"[component]));
       for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = sums[i][component];
     }
-    image.add("A").assign(header_.pixels(), 1.0f);
+    image.add("A").assign(image.pixels(), 1.0f);
     return image;
   }
 
  private:
-  void set(LightRows& rows, std::size_t pixel, const Scale& scale, const glm::vec3& radiance,
+  /// Off means black, whatever the layer holds.
+  void set(LightRows& rows, std::size_t pixel, std::size_t light, const glm::vec3& radiance,
            float illuminance) const {
+    const glm::vec3& scale = scales_[light];
     for (int i = 0; i < 3; ++i) {
-      rows.rgb[static_cast<std::size_t>(i)][pixel] = scale.component(radiance, i);
+      rows.rgb[static_cast<std::size_t>(i)][pixel] =
+          scale[i] == 0.0f ? 0.0f : radiance[i] * scale[i];
     }
-    rows.illuminance[pixel] = illuminance * scale.illuminance;
+    rows.illuminance[pixel] = illuminance * illuminance_scales_[light];
   }
 
   void read_dense_row(std::size_t light, int y, std::size_t offset, LightRows& rows) const {
@@ -87,8 +82,7 @@ class MixedPicture : public LayeredPicture {
     const LightLayers::Layer& layer = source_.layers[light];
     const std::size_t first = static_cast<std::size_t>(y) * width;
     for (std::size_t x = 0; x < width; ++x) {
-      set(rows, offset + x, scales_[light], layer.radiance[first + x],
-          layer.illuminance[first + x]);
+      set(rows, offset + x, light, layer.radiance[first + x], layer.illuminance[first + x]);
     }
   }
 
@@ -101,13 +95,13 @@ class MixedPicture : public LayeredPicture {
       const auto found = std::lower_bound(begin, end, wanted);
       if (found == end || *found != wanted) continue;
       const auto i = static_cast<std::size_t>(found - row.light.begin());
-      set(rows, offset + x, scales_[light], row.radiance[i], row.illuminance[i]);
+      set(rows, offset + x, light, row.radiance[i], row.illuminance[i]);
     }
   }
 
   const LightLayers& source_;
-  const LightMix mix_;
-  std::vector<Scale> scales_;  ///< per layer
+  std::vector<glm::vec3> scales_;          ///< of radiance, per layer
+  std::vector<float> illuminance_scales_;  ///< per layer
 };
 
 }  // namespace

@@ -78,19 +78,21 @@ class RelitPicture : public LayeredPicture {
     return rows;
   }
 
-  Image sum_any() const override {
+  Image sum_any(int first, int end) const override {
     Image image;
     static_cast<PictureHeader&>(image) = header_;
+    image.height = end - first;
     for (const char* component : {"R", "G", "B"}) image.add(component);
     std::vector<float>& alpha = image.add("A");
     // All lights of some rows: those of one part are decoded together.
-    for (int first = 0; first < image.height; first += rows_per_read) {
-      const int end = std::min(first + rows_per_read, image.height);
+    for (int row = first; row < end; row += rows_per_read) {
+      const int row_end = std::min(row + rows_per_read, end);
       for (std::size_t light = 0; light < lights(); ++light) {
-        add_rows(read_rgb(light, first, end), first, image);
+        add_rows(read_rgb(light, row, row_end), row - first, image);
       }
-      const std::vector<float> rows = read_alpha(first, end);
-      std::copy(rows.begin(), rows.end(), alpha.begin() + std::ptrdiff_t{first} * image.width);
+      const std::vector<float> rows = read_alpha(row, row_end);
+      std::copy(rows.begin(), rows.end(),
+                alpha.begin() + std::ptrdiff_t{row - first} * image.width);
     }
     return image;
   }

@@ -12,6 +12,8 @@ namespace {
 /// Rows that are handed over at once; a multiple of the 16 rows of a ZIP block.
 constexpr int rows_per_write = 64;
 
+const std::vector<std::string> root_channels{"R", "G", "B", "A"};
+
 /// Gives work(first, end) all rows of a picture, in turn.
 template <class Work>
 void for_rows(int height, const Work& work) {
@@ -20,10 +22,8 @@ void for_rows(int height, const Work& work) {
   }
 }
 
-void check_pixels(const OutputFile& output, const Image& picture) {
-  if (picture.width < 1 || picture.height < 1 || picture.channel_names.empty()) {
-    output.fail("the picture has no pixels");
-  }
+void check_pixels(const OutputFile& output, const PictureHeader& picture) {
+  if (picture.pixels() == 0) output.fail("the picture has no pixels");
 }
 
 /// Adds the planes of a picture from a row on.
@@ -39,21 +39,22 @@ void add_planes(const LightRows& rows, std::vector<const float*>& planes) {
 }
 
 /// All channels in one part, which every program reads.
-void write_single_part(OutputFile& output, const LayeredPicture& picture, const Image& root) {
-  std::vector<std::string> names = root.channel_names;
+void write_single_part(OutputFile& output, const LayeredPicture& picture) {
+  std::vector<std::string> names = root_channels;
   for (std::size_t light = 0; light < picture.lights(); ++light) {
     for (std::string& name : picture.channel_names(light)) names.push_back(std::move(name));
   }
-  Imf::Header header = image::exr_header(root, names, Imf::ZIP_COMPRESSION);
-  image::add_attributes(root, header);
+  Imf::Header header = image::exr_header(picture.header(), names, Imf::ZIP_COMPRESSION);
+  image::add_attributes(picture.header(), header);
   image::ExrOutput file(output, {header});
-  for_rows(root.height, [&](int first, int end) {
+  for_rows(picture.header().height, [&](int first, int end) {
+    const Image root = picture.root(first, end);
     std::vector<LightRows> rows;
     for (std::size_t light = 0; light < picture.lights(); ++light) {
       rows.push_back(picture.read(light, first, end));
     }
     std::vector<const float*> planes;
-    add_planes(root, first, planes);
+    add_planes(root, 0, planes);
     for (const LightRows& light : rows) add_planes(light, planes);
     file.write(0, end - first, names, planes);
   });
@@ -61,23 +62,26 @@ void write_single_part(OutputFile& output, const LayeredPicture& picture, const 
 }
 
 /// The root as the first part, which has the picture's attributes, and each light as a part that
-/// bears the name of its layer. No more than a few rows of one light are in memory.
-void write_parts(OutputFile& output, const LayeredPicture& picture, const Image& root) {
+/// bears the name of its layer. Beside the root, which is little beside so many lights, no more
+/// than a few rows of one light are in memory.
+void write_parts(OutputFile& output, const LayeredPicture& picture) {
   // A row a block. OpenEXR keeps two blocks of each part for each thread until the file is closed:
   // the 16 rows of ZIP would add up to the picture.
-  std::vector<std::vector<std::string>> names{root.channel_names};
-  std::vector<Imf::Header> headers{image::exr_header(root, names.front(), Imf::ZIPS_COMPRESSION)};
-  image::add_attributes(root, headers.front());
+  std::vector<std::vector<std::string>> names{root_channels};
+  std::vector<Imf::Header> headers{
+      image::exr_header(picture.header(), names.front(), Imf::ZIPS_COMPRESSION)};
+  image::add_attributes(picture.header(), headers.front());
   headers.front().setName("Combined");
   for (std::size_t light = 0; light < picture.lights(); ++light) {
     names.push_back(picture.channel_names(light));
     const std::string& red = names.back().front();
-    headers.push_back(image::exr_header(root, names.back(), Imf::ZIPS_COMPRESSION));
+    headers.push_back(image::exr_header(picture.header(), names.back(), Imf::ZIPS_COMPRESSION));
     headers.back().setName(red.substr(0, red.rfind('.')));
   }
+  const Image root = picture.root();
   image::ExrOutput file(output, headers);
   for (std::size_t part = 0; part < headers.size(); ++part) {
-    for_rows(root.height, [&](int first, int end) {
+    for_rows(picture.header().height, [&](int first, int end) {
       std::vector<const float*> planes;
       LightRows rows;
       if (part == 0) {
@@ -97,6 +101,7 @@ void write_parts(OutputFile& output, const LayeredPicture& picture, const Image&
 void write_exr(const std::filesystem::path& file, const Image& image) {
   OutputFile output(file);
   check_pixels(output, image);
+  if (image.channels.empty()) output.fail("the picture has no channels");
   Imf::Header header = image::exr_header(image, image.channel_names, Imf::ZIP_COMPRESSION);
   image::add_attributes(image, header);
   image::ExrOutput writer(output, {header});
@@ -107,11 +112,10 @@ void write_exr(const std::filesystem::path& file, const Image& image) {
 }
 
 void write_exr(const std::filesystem::path& file, const LayeredPicture& picture) {
-  const Image root = picture.root();
   OutputFile output(file);
-  check_pixels(output, root);
+  check_pixels(output, picture.header());
   const bool single = picture.lights() <= limits::max_single_part_lights;
-  single ? write_single_part(output, picture, root) : write_parts(output, picture, root);
+  single ? write_single_part(output, picture) : write_parts(output, picture);
 }
 
 }  // namespace photile

@@ -41,7 +41,9 @@ class LayeredPicture {
   LightRows read(std::size_t light, int first, int end) const;
 
   /// The root R G B A: the float sum of all lights in order, finite as they are. Errors: as `read`.
-  Image root() const;
+  Image root() const { return root(0, header_.height); }
+  /// Rows [first, end) of it. To read them before those of the lights decodes a file once.
+  Image root(int first, int end) const;
 
   /// A line for each light of whose pixels some were not finite, among those that have been read,
   /// or for the root where only their sum was not: which, how many and the remedy.
@@ -50,7 +52,7 @@ class LayeredPicture {
  protected:
   /// As `read` and `root`, whatever the numbers.
   virtual LightRows read_any(std::size_t light, int first, int end) const = 0;
-  virtual Image sum_any() const = 0;
+  virtual Image sum_any(int first, int end) const = 0;
 
   struct Layer {
     std::string light;
@@ -63,9 +65,10 @@ class LayeredPicture {
   struct Overflow {
     int counted = 0;  ///< rows, from the top
     std::uint64_t pixels = 0;
+    void add(int first, int end, std::size_t lost);
   };
   mutable std::map<std::size_t, Overflow> overflows_;  ///< by light
-  mutable std::uint64_t lost_sums_ = 0;                ///< pixels of the root
+  mutable Overflow lost_sums_;                         ///< of the root
 };
 
 /// Layers x powers, as mix_layers gives them. Keeps a reference to the layers. Errors: UsageError

@@ -4,9 +4,13 @@
 #include <string>
 
 #include "fuzz_files.hpp"
+#include "import/finishing.hpp"
+#include "import/light_changes.hpp"
 #include "measuring/sensor_files.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/light_options.hpp"
+#include "photile/scene_builder.hpp"
+#include "test_scenes.hpp"
 #include "tools/command/validators.hpp"
 #include "tools/view/moods.hpp"
 #include "tools/walk/frame_names.hpp"
@@ -22,27 +26,56 @@ void check_sensors(const measuring::SensorGrid& grid) {
   }
 }
 
+/// A floor with a lamp above, to which options add.
+Scene lit_floor() {
+  SceneBuilder builder("floor");
+  builder.grid(glm::vec3(0.0f), {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.add(point_light("lamp", {0.4f, 0.5f, 0.7f}));
+  return builder.build();
+}
+
+/// What a command that was given them has as lights.
+void check_lights(const SceneLoadOptions& options) {
+  Scene scene = lit_floor();
+  scene_io::add_surroundings(scene, options);
+  scene_io::apply_temperatures(scene, options.temperatures);
+  scene_io::group_lights(scene, options.light_groups);
+  for (const Light& light : scene.lights) {
+    require(std::isfinite(light.power) && light.power >= 0, "a light without a power");
+    require(!light.name.empty(), "a light without a name");
+  }
+}
+
+/// Errors: UsageError where the validator refuses the text. What it leaves of it is a number.
+void validate(const CLI::Validator& validator, std::string text) {
+  const std::string refusal = validator(text);
+  if (!refusal.empty()) throw UsageError(refusal);
+  require(!text.empty() && text.find("nan") == std::string::npos, "no number");
+}
+
 /// Parses as a command does; throws UsageError where it refuses.
 void parse_option(unsigned char option, const std::string& text) {
   const auto finite = [](double value) { require(std::isfinite(value), "no number"); };
-  switch (option % 12) {
+  SceneLoadOptions options;
+  switch (option % 13) {
     case 0:
-      app::parse_count(text);
+      validate(app::count_between(1, 1'000'000), text);
       break;
     case 1:
-      app::parse_bytes(text);
+      validate(app::byte_size(), text);
       break;
     case 2:
-      if (const auto share = app::parse_share(text)) finite(*share);
+      validate(app::share_up_to(1), text);
       break;
     case 3:
-      if (const auto seconds = app::parse_duration(text)) finite(*seconds);
+      validate(app::duration(), text);
       break;
     case 4:
-      app::parse_size(text);
+      validate(app::picture_size(), text);
       break;
     case 5:
-      app::parse_value(text, PositiveNumbers{});
+      validate(app::positive_number(), text);
+      validate(app::number_between(-1, 1), text);
       break;
     case 6: {
       LightMix mix;
@@ -53,16 +86,24 @@ void parse_option(unsigned char option, const std::string& text) {
       break;
     }
     case 7:
-      finite(Sun::parse(text).illuminance);
+      options.sun = Sun::parse(text);
+      check_lights(options);
       break;
     case 8:
-      finite(Sky::parse(text).illuminance);
+      options.sun = Sun{135, 40, 80'000};
+      options.sky = Sky::parse(text);
+      check_lights(options);
       break;
     case 9:
       finite(LuminousPanel::parse(text).lumens);
       break;
     case 10:
-      finite(LightTemperature::parse(text).kelvin);
+      options.temperatures.push_back(LightTemperature::parse(text));
+      check_lights(options);
+      break;
+    case 12:
+      options.light_groups.push_back(LightGrouping::parse(text));
+      check_lights(options);
       break;
     default:
       walk::FrameNames(text).of(7);
@@ -93,6 +134,15 @@ bool fuzz_moods(Bytes bytes) {
       moods.apply(name, board);
       require(std::isfinite(board.controls()[0].power), "a power is no number");
     }
+    // What is kept of it is read again.
+    view::Moods kept = moods;
+    kept.keep("kept", board);
+    kept.keep("gone", board);
+    kept.remove("gone");
+    require(view::Moods(file).names() == kept.names(), "a mood that is lost");
+    view::LightBoard again(LightMix{{{.name = "ceiling", .members = {}, .power = 1}}});
+    view::Moods(file).apply("kept", again);
+    require(again.controls()[0].power == board.controls()[0].power, "a power that has changed");
   });
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fuzz_files.hpp"
@@ -7,16 +8,45 @@
 
 namespace photile::test {
 
+namespace {
+
+void check_plane(const std::vector<float>& plane, std::size_t pixels) {
+  require(plane.size() == pixels, "pixels that lack");
+  require(std::all_of(plane.begin(), plane.end(), [](float v) { return std::isfinite(v); }),
+          "a pixel that is no number");
+}
+
+/// As an EXR is written: the root and then the lights.
+void check_picture(const LayeredPicture& picture) {
+  const Image root = picture.root();
+  for (const std::vector<float>& plane : root.channels) check_plane(plane, root.pixels());
+  for (std::size_t light = 0; light < picture.lights(); ++light) {
+    const LightRows rows = picture.read(light, 0, root.height);
+    for (const std::vector<float>& plane : rows.rgb) check_plane(plane, root.pixels());
+    if (!rows.illuminance.empty()) check_plane(rows.illuminance, root.pixels());
+  }
+  for (const std::string& line : picture.overflows()) {
+    require(line.find('\n') == std::string::npos, "two lines");
+  }
+}
+
+/// Another of each light.
+std::vector<LightChange> changes_of(const LightMix& mix) {
+  constexpr std::array values{"x2", "#FFD8A0", "2700K", "50lm", "off", "x1e20", "3W"};
+  std::vector<LightChange> changes;
+  for (const MixedLight& light : mix.lights) {
+    changes.push_back({light.name, values[changes.size() % values.size()]});
+  }
+  return changes;
+}
+
+}  // namespace
+
 bool fuzz_relight(Bytes bytes) {
   const std::filesystem::path file = file_of("layers.exr", bytes);
   return accepts([&] {
-    const auto picture = relit_picture(file, {});
-    const Image root = picture->root();
-    for (const std::vector<float>& plane : root.channels) {
-      require(plane.size() == root.pixels(), "pixels that lack");
-      require(std::all_of(plane.begin(), plane.end(), [](float v) { return std::isfinite(v); }),
-              "a pixel that is no number");
-    }
+    check_picture(*relit_picture(file, {}));
+    check_picture(*relit_picture(file, changes_of(read_light_mix(file))));
   });
 }
 

@@ -95,6 +95,13 @@ bool fuzz_saved_maps(Bytes bytes) {
     PreparedPhotons photons = saved_maps::load(file, floor_scene(), "words");
     require(photons.photons.first_of.size() == 2 * floor_scene().triangle_count() + 1,
             "rows that lack");
+    // What was read can be written, and read again.
+    const auto again = file.parent_path() / "again.maps";
+    saved_maps::save(again, floor_scene(), "words", photons);
+    if (photons.light_maps) saved_maps::add_light_maps(again, *photons.light_maps);
+    const PreparedPhotons same = saved_maps::load(again, floor_scene(), "words");
+    require(same.photons.size() == photons.photons.size() && same.radius == photons.radius,
+            "saved again they are others");
     if (photons.light_maps) use_light_maps(std::move(*photons.light_maps));
   });
 }

@@ -241,4 +241,13 @@ TEST_CASE("the picture of 256 lights is never whole in memory, neither written n
   CHECK(meter.peak() < bound);
 }
 
+TEST_CASE("of few lights the root is never whole in memory either") {
+  const TemporaryFolder folder;
+  constexpr int width = 128, height = limits::max_image_side;
+  const LightLayers layers = local_layers(width, height, 2, 1);
+  const MemoryMeter meter;
+  write_exr(folder / "a.exr", *mixed_picture(layers, mix_of(layers)));
+  CHECK(meter.peak() < std::size_t{16} * width * height / 2);
+}
+
 }  // namespace photile::test
