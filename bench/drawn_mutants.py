@@ -33,7 +33,9 @@ ESTIMATE_TESTS = ",".join(
     f"~[slow]{name}*" for name in (
         "the exact law", "every strategy", "neighbours equal", "irradiance equals", "tiles find",
         "maps of patches", "clipped irradiance", "tiles on a floor", "thin plates", "extremes"))
-KERNEL_TESTS = (("maps", "~[slow]~[long]"), ("estimate", ESTIMATE_TESTS))
+# By the folder of kernels/, the likeliest to notice first: one that notices ends it.
+KERNEL_TESTS = (("estimate", ESTIMATE_TESTS), ("maps", "~[slow]~[long]"))
+GRID_TESTS = tuple(reversed(KERNEL_TESTS))
 HOST_FOLDERS = ("groups", "surface", "trace")
 
 OPERATORS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "+": "-", "-": "+",
@@ -82,7 +84,9 @@ def sites(files):
         lines = text.splitlines()
         name = str(file.relative_to(ROOT))
         folder = file.relative_to(ROOT).parts[1]
-        tests = KERNEL_TESTS if name.startswith("kernels/") else ((folder, "~[slow]"),)
+        tests = ((folder, "~[slow]"),)
+        if name.startswith("kernels/"):
+            tests = GRID_TESTS if folder == "grid" else KERNEL_TESTS
         for number, code in code_lines(text):
             for site in SITES.finditer(code):
                 first = unique_text(lines, number)

@@ -61,8 +61,8 @@ class EndLight : private PointSource {
   double spacing() const { return parameters_.spacing; }
 
   /// Of the light maps; `forget` empties them.
-  std::uint64_t bytes() const;
-  void forget() { maps_.reset(); }
+  std::uint64_t bytes() const override;
+  void forget() override { maps_.reset(); }
 
   /// What all calls took so far.
   struct Costs {

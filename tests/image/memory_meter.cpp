@@ -27,7 +27,12 @@ void release(void* memory) {
 
 }  // namespace
 
-// The other forms of new and delete call these.
+// The other forms of new and delete call these, but for those that sanitizers have of their own:
+// memory that std::stable_sort asks for, and may not get.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  void* const memory = std::malloc(std::max<std::size_t>(bytes, 1));
+  return memory == nullptr ? nullptr : counted(memory);
+}
 void* operator new(std::size_t bytes) {
   return counted(std::malloc(std::max<std::size_t>(bytes, 1)));
 }

@@ -14,7 +14,7 @@ nlohmann::json lit_by(const nlohmann::json& light, const nlohmann::json& node_me
   nlohmann::json document = square_document();
   document["materials"][0]["emissiveFactor"] = {0, 0, 0};
   document["extensionsUsed"] = {"KHR_lights_punctual"};
-  document["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+  document["extensions"]["KHR_lights_punctual"]["lights"] = nlohmann::json::array({light});
   nlohmann::json node = {{"name", "lamp"}, {"translation", {0, 0, 2}}};
   if (node_members.is_object()) node.update(node_members);
   node["extensions"]["KHR_lights_punctual"]["light"] = 0;

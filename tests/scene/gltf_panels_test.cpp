@@ -28,7 +28,7 @@ nlohmann::json with_extras(const nlohmann::json& extras) {
 nlohmann::json with_extension(const nlohmann::json& light) {
   nlohmann::json document = panel_document({{"extensions", {{"EXT_lights_area", {{"light", 0}}}}}});
   document["extensionsUsed"] = {"EXT_lights_area"};
-  document["extensions"]["EXT_lights_area"]["lights"] = {light};
+  document["extensions"]["EXT_lights_area"]["lights"] = nlohmann::json::array({light});
   return document;
 }
 
