@@ -17,14 +17,20 @@ TEST_CASE("hashes and printf's numbers become frame numbers, as wide as they say
       {"a%04d.exr", 7, "a0007.exr"},
       {"a%d.exr", 7, "a7.exr"},
       {"a%3d.exr", 7, "a  7.exr"},
+      {"a%%0d.exr", 7, "a%7.exr"},
       {"c#/b##.exr", 3, "c#/b03.exr"},
   }));
   CHECK(FrameNames(pattern).of(frame).string() == name);
 }
 
+TEST_CASE("a place of any width takes no more stack than another") {
+  const std::string hashes(200'000, '#');
+  CHECK(FrameNames(hashes + ".exr").of(7).string() == std::string(199'999, '0') + "7.exr");
+}
+
 TEST_CASE("a name without a place for the number, or with two, is refused") {
-  const std::string pattern =
-      GENERATE("frame.exr", "##-##.exr", "a%d#.exr", "####/frame.exr", "%s.exr");
+  const std::string pattern = GENERATE("frame.exr", "##-##.exr", "a%d#.exr", "####/frame.exr",
+                                       "%s.exr", "%0", "%00d", "%12d");
   INFO(pattern);
   CHECK_THROWS_AS(FrameNames(pattern), UsageError);
 }

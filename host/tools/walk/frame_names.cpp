@@ -2,29 +2,62 @@
 
 #include <fmt/format.h>
 
-#include <regex>
+#include <algorithm>
+#include <string_view>
 
 #include "photile/errors.hpp"
 
 namespace photile::walk {
+namespace {
+
+/// Of a number in a name.
+struct Place {
+  std::size_t length = 0;  ///< 0: none is there
+  int width = 1;
+  char fill = '0';
+};
+
+/// The place that a text begins with. Not by std::regex, whose stack grows with the text.
+Place place_at(std::string_view text) {
+  const std::size_t hashes = std::min(text.find_first_not_of('#'), text.size());
+  if (hashes > 0) return {hashes, static_cast<int>(hashes), '0'};
+  if (!text.starts_with('%')) return {};
+  Place place{1, 1, ' '};
+  if (text.substr(place.length).starts_with('0')) {
+    place.fill = '0';
+    ++place.length;
+  }
+  if (place.length < text.size() && text[place.length] >= '1' && text[place.length] <= '9') {
+    place.width = text[place.length] - '0';
+    ++place.length;
+  }
+  if (!text.substr(place.length).starts_with('d')) return {};
+  ++place.length;
+  return place;
+}
+
+}  // namespace
 
 FrameNames::FrameNames(const std::string& pattern) {
   // Only the name: a folder may be called C#.
   const std::string name = std::filesystem::path(pattern).filename().string();
   const std::string folder = pattern.substr(0, pattern.size() - name.size());
-  static const std::regex place("#+|%(0?)([1-9]?)d");
-  const std::sregex_iterator first(name.begin(), name.end(), place), none;
-  if (first == none || std::next(first) != none) {
+  int places = 0;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const Place place = place_at(std::string_view(name).substr(begin));
+    if (place.length > 0) {
+      ++places;
+      before_ = folder + name.substr(0, begin);
+      after_ = name.substr(begin + place.length);
+      width_ = place.width;
+      fill_ = place.fill;
+    }
+    begin += std::max<std::size_t>(place.length, 1);
+  }
+  if (places != 1) {
     throw UsageError(
         fmt::format("{}: needs one place for the number of a frame, #### or %04d", pattern));
   }
-  const std::smatch& found = *first;
-  const bool hashes = found.str().front() == '#';
-  before_ = folder + found.prefix().str();
-  after_ = found.suffix().str();
-  fill_ = hashes || found[1].length() > 0 ? '0' : ' ';
-  width_ = hashes ? static_cast<int>(found.length())
-                  : (found[2].length() > 0 ? std::stoi(found[2].str()) : 1);
 }
 
 std::filesystem::path FrameNames::of(int frame) const {
