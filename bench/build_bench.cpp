@@ -6,6 +6,7 @@
 #include "photile/photon_maps.hpp"
 #include "support/bench_record.hpp"
 #include "support/host_search.hpp"
+#include "support/naive_build.hpp"
 #include "support/workload.hpp"
 
 namespace {
@@ -53,8 +54,13 @@ void run_case(const Workload& workload, std::uint64_t photon_count, const BenchO
   Case c{workload, workload.photons(photon_count), 0};
   c.radius = automatic_radius(c.photons, defaults::neighbours);
   constexpr std::array grids{MapStructure::uniform_grid};
-  constexpr std::array grids_and_trees{MapStructure::uniform_grid, MapStructure::kdtree_2d,
-                                       MapStructure::kdtree_3d, MapStructure::kdtree_global};
+  constexpr std::array grids_and_trees{MapStructure::uniform_grid,
+                                       MapStructure::kdtree_2d,
+                                       MapStructure::kdtree_3d,
+                                       MapStructure::kdtree_global,
+                                       MapStructure::kdtree_left_balanced,
+                                       MapStructure::wide_bvh,
+                                       MapStructure::hashed_grid};
   nlohmann::json row = map_times(c, product_maps, grids_and_trees, options.repeats, device);
   const Photons& photons = c.photons;
   const NormalFilter filter(*workload.scene, defaults::group_angle_degrees);
@@ -62,7 +68,13 @@ void run_case(const Workload& workload, std::uint64_t photon_count, const BenchO
   row["nanoflann"] = to_json(measure(options.repeats, [&] { make_nanoflann_index(photons); }));
   row["embree"] = to_json(measure(options.repeats, [&] { make_embree_search(input); }));
   record.add(std::move(row));
-  record.add(map_times(c, paper_maps, grids, options.repeats, device));
+  row = map_times(c, paper_maps, grids, options.repeats, device);
+  const NaiveBuild naive = time_naive_build(*workload.scene, photons, c.radius,
+                                            defaults::group_angle_degrees, options.repeats);
+  row["naive"] = to_json(naive.timing);
+  row["naive photons tested"] = naive.tested;
+  row["naive references per photon"] = naive.references;
+  record.add(std::move(row));
 }
 
 bool run(BenchOptions& options, std::vector<std::uint64_t> counts) {

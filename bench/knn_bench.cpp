@@ -3,6 +3,8 @@
 // threads. Each result is checked against nanoflann's.
 //
 // Slow cases answer fewer queries, so that a case keeps to --seconds-per-case.
+//
+// With --points and --queries the photons and the queries are those of files: docs/bench-points.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +19,8 @@
 #include "support/hit_sample.hpp"
 #include "support/host_search.hpp"
 #include "support/morton_order.hpp"
+#include "support/point_bench.hpp"
+#include "support/visits.hpp"
 #include "support/workload.hpp"
 
 namespace {
@@ -36,7 +40,7 @@ struct Settings {
   void make_quick() {
     if (workloads.empty()) workloads = {"plane", "living-room"};
     if (photons.empty()) photons = {2'000};
-    if (neighbours.empty()) neighbours = {defaults::neighbours};
+    if (neighbours.empty()) neighbours = {defaults::neighbours, 200};
     plane_queries = 4'096;
     width = height = 32;
   }
@@ -56,9 +60,10 @@ struct Plan {
 
 const std::vector<Plan>& plans() {
   static const std::vector<std::uint64_t> powers{1'000, 10'000, 100'000, 1'000'000, 10'000'000};
-  static const std::vector<int> neighbours{16, 50, 100, 200};
+  static const std::vector<int> neighbours{16, 50, 100, 200, 500, 1000};
   static const std::vector<Plan> all{{"plane", powers, neighbours},
                                      {"living-room", powers, neighbours},
+                                     {"fine-mesh", powers, {16, 50, 200, 1000}},
                                      {"classroom", {1'000'000}, {50, 200}}};
   return all;
 }
@@ -125,6 +130,7 @@ class KnnBench {
       const auto heap = make_nanoflann_search(input, index, Candidates::heap);
       const auto embree = make_embree_search(input);
       for (const int k : plan.neighbours) {
+        if (static_cast<std::size_t>(k) >= photons.size()) continue;  // no k-th to find
         const double radius = automatic_radius(photons, k);
         NeighbourGroups groups = default_groups(*workload.scene, photons, radius);
         PrimaryHits hits = in_map_order(workload.hits, groups);
@@ -209,6 +215,11 @@ class KnnBench {
       row["references"] = maps.statistics().references;
       row["radii that differ"] =
           radii_that_differ(c, c.checked, estimator.nearest(c.checked.hits).squared_radius);
+      if (counts_visits(structure)) {
+        const Visits visits = count_visits(maps, c.checked.hits, c.k);
+        row["nodes visited"] = visits.nodes;
+        row["photons visited"] = visits.photons;
+      }
       add(c, std::move(row), asked, estimates.irradiance);
     } catch (const DeviceError& error) {
       nlohmann::json row = row_of(c, name, {});
@@ -288,6 +299,10 @@ std::optional<Workload> workload_of(const std::string& name, const Settings& set
   if (name == "living-room") {
     return interior_workload(name, living_room(), settings.width, settings.height);
   }
+  if (name == "fine-mesh") {
+    constexpr std::uint32_t cells = 100;  // 100,000 triangles, as in the paper's table
+    return interior_workload(name, waved_hall(cells), settings.width, settings.height);
+  }
   std::optional<Scene> scene = classroom();
   if (!scene) return std::nullopt;
   return interior_workload(name, std::move(*scene), settings.width, settings.height);
@@ -318,5 +333,21 @@ int main(int argument_count, char** arguments) {
   for (const Plan& plan : plans()) workloads.push_back(plan.workload);
   command.add_option("--workloads", settings.workloads, "what is measured; default: all")
       ->check(CLI::IsMember(workloads));
-  return run_bench(command, argument_count, arguments, [&] { return run(settings); });
+  PointBenchSettings points;
+  CLI::Option* const file =
+      command.add_option("--points", points.photons, "photons of a .npy or .csv file, no scene");
+  CLI::Option* const queries =
+      command.add_option("--queries", points.queries, "where they are searched: a file, too");
+  file->needs(queries)->excludes("--photons")->excludes("--workloads");
+  queries->needs(file);
+  command.add_option("--radius", points.radius, "metres, with --points; default: automatic")
+      ->check(CLI::PositiveNumber)
+      ->needs(file);
+  command.add_option("--csv", points.csv, "the rows as a table, with --points")->needs(file);
+  return run_bench(command, argument_count, arguments, [&] {
+    if (points.photons.empty()) return run(settings);
+    points.neighbours = settings.neighbours;
+    if (points.neighbours.empty()) points.neighbours = {defaults::neighbours};
+    return run_point_bench(settings.common, points);
+  });
 }

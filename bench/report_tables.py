@@ -111,7 +111,9 @@ def paper(result):
     return text + "\n\n" + table(header, rows)
 
 
-BUILD_COLUMNS = ("uniform-grid", "kdtree-2d", "kdtree-3d", "kdtree-global", "nanoflann", "embree")
+BUILD_COLUMNS = ("uniform-grid", "kdtree-2d", "kdtree-3d", "kdtree-global",
+                 "kdtree-left-balanced", "wide-bvh", "hashed-grid", "nanoflann", "embree",
+                 "naive")
 
 
 def build(result):
@@ -122,9 +124,11 @@ def build(result):
             for row in result["results"]]
     text = (f"Milliseconds, R for k = {result['settings']['k']}. References are entries of the "
             "uniform grids a photon, duplicates in neighbouring maps included; groups, in which "
-            "finding and joining patches is counted, come before all maps but the global tree's. "
+            "finding and joining patches is counted, come before all maps but the structures over all photons. "
             "Maps are those of `--maps auto`, the default, unless a row says otherwise. nanoflann "
-            "builds on one thread; the kd-trees of photile are built on the host.")
+            "builds on one thread; uniform and hashed grids are built on the device, the trees of photile on "
+            "the host. naive tests each photon with all triangles, on all threads of the host, and is "
+            "scaled from a sample of the photons.")
     return text + "\n\n" + table(["workload, photons", "references", "MB", "groups",
                                   *BUILD_COLUMNS], rows)
 

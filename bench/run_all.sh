@@ -1,6 +1,6 @@
 #!/bin/bash
 # Builds the benches, runs them all and rewrites docs/benchmarks.md with its tables and plots. Takes
-# half an hour on two cores; the machine should do nothing else.
+# about an hour on two cores; the machine should do nothing else.
 # Usage: bench/run_all.sh [option]...
 #   --quick                 tiny sizes: shows that everything works, times nothing
 #   --full                  scale up to 4 million triangles and 100 million photons (24 GB)
@@ -30,7 +30,7 @@ done
   echo "bench/run_all.sh: error: no matplotlib; install the Debian package python3-matplotlib" >&2
   exit 1
 }
-programs=(knn paper build frame relight lights kernels startup scale borders area)
+programs=(angle knn paper build frame relight lights kernels startup scale borders area)
 if [[ -z $benches ]]; then
   benches=build/release/bench
   cmake --preset release >/dev/null
@@ -43,5 +43,5 @@ for bench in "${programs[@]}"; do
   "$benches/photile_bench_$bench" --output "$results/$bench.json" "${options[@]}" "${extra[@]}"
 done
 bench/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
-[[ $results != docs/benchmarks ]] || { bench/report_borders.py && bench/report_area.py; }
+[[ $results != docs/benchmarks ]] || { bench/report_borders.py && bench/report_area.py && bench/report_angle.py; }
 exec /usr/bin/python3 bench/report.py --results "$results" --page "$results.md"

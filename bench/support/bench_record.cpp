@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <iostream>
 #include <thread>
+#include <vector>
 
 #include "photile/errors.hpp"
 
@@ -29,6 +31,27 @@ std::string date() {
   std::tm utc{};
   gmtime_r(&now, &utc);
   return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+}
+
+/// Of the sources that the bench was built from; "unknown" without git.
+std::string commit() {
+  std::string text;
+  if (FILE* const git =
+          popen("git -C '" PHOTILE_SOURCE_DIR "' describe --always --dirty 2>/dev/null", "r")) {
+    for (int c = std::fgetc(git); c != EOF && c != '\n'; c = std::fgetc(git))
+      text += static_cast<char>(c);
+    pclose(git);
+  }
+  return text.empty() ? "unknown" : text;
+}
+
+/// Of the process, without its name; empty on systems without /proc.
+std::vector<std::string> command_line() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  if (!words.empty()) words.erase(words.begin());
+  return words;
 }
 
 double load_average() {
@@ -74,6 +97,8 @@ BenchRecord::BenchRecord(const std::string& bench, const BenchOptions& options)
     : output_(options.output) {
   json_["bench"] = bench;
   json_["date"] = date();
+  json_["commit"] = commit();
+  json_["command line"] = command_line();
   json_["machine"] = {{"processor", processor()},
                       {"hardware threads", std::thread::hardware_concurrency()},
                       {"load average at start", load_average()}};

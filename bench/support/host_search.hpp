@@ -20,6 +20,8 @@ namespace photile::bench {
 class NormalFilter {
  public:
   NormalFilter(const Scene& scene, double angle_degrees);
+  /// Of given unit normals, one per sided triangle.
+  NormalFilter(std::vector<glm::vec3> normals, double angle_degrees);
   bool agree(std::uint32_t a, std::uint32_t b) const {
     return a == b || glm::dot(normals_[a], normals_[b]) >= least_cosine_;
   }

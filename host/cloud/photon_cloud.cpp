@@ -102,7 +102,7 @@ Photons as_stored(const CloudPhotons& cloud, const SceneNeeds& needs) {
 struct PhotonCloud::Impl {
   std::vector<glm::vec3> positions;
   bool has_normals;
-  bool is_global;  ///< one tree over all photons: there is one map
+  bool one_map;  ///< one structure over all photons
   cloud::Voxels voxels;
   maps::MapStore* store = nullptr;  ///< of `photon_maps`
   PhotonMaps photon_maps;
@@ -111,9 +111,9 @@ struct PhotonCloud::Impl {
        Progress& progress)
       : positions(photons.position.begin(), photons.position.end()),
         has_normals(!photons.normal.empty()),
-        is_global(parameters.structure == MapStructure::kdtree_global),
-        voxels(is_global ? std::span<const glm::vec3>() : photons.position,
-               is_global ? std::span<const glm::vec3>() : photons.normal, parameters.radius,
+        one_map(is_global(parameters.structure)),
+        voxels(one_map ? std::span<const glm::vec3>() : photons.position,
+               one_map ? std::span<const glm::vec3>() : photons.normal, parameters.radius,
                parameters.angle_degrees),
         photon_maps(build(device, photons, parameters, progress)) {}
 
@@ -139,11 +139,11 @@ PhotonMaps PhotonCloud::Impl::build(Device& device, const CloudPhotons& cloud,
   store->angle_degrees = has_normals ? parameters.angle_degrees : 180.0;
   store->cos_angle = has_normals ? std::cos(glm::radians(parameters.angle_degrees)) : -1.0;
   store->statistics.photons = photons.size();
-  if (is_global || has_normals) {
+  if (one_map || has_normals) {
     store->normals.assign(cloud.normal.begin(), cloud.normal.end());
     store->normals.resize(photons.size(), glm::vec3(0, 0, 1));
   }
-  if (is_global) {
+  if (one_map) {
     store->map_of.assign(photons.size(), 0);
     maps::build_global_map(*store, photons, 1);
   } else if (photons.size() > 0) {
@@ -180,7 +180,7 @@ PrimaryHits PhotonCloud::Impl::place(std::span<const glm::vec3> points,
             static_cast<std::uint32_t>(photons));
   store->map_of.resize(photons + points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    store->map_of[photons + i] = is_global ? 0 : voxels.map_at(points[i], normal_of(i));
+    store->map_of[photons + i] = one_map ? 0 : voxels.map_at(points[i], normal_of(i));
   }
   if (!store->normals.empty()) {
     store->normals.resize(photons + points.size());

@@ -54,8 +54,8 @@ struct QueryParameters {
 std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParameters& parameters);
 std::unique_ptr<Query> make_grid_query(const maps::MapStore& store,
                                        const QueryParameters& parameters);
-std::unique_ptr<Query> make_tree_query(const maps::MapStore& store,
-                                       const QueryParameters& parameters);
+std::unique_ptr<Query> make_structure_query(const maps::MapStore& store,
+                                            const QueryParameters& parameters);
 
 /// Sets the symbols that kernels/estimate/area.clh and kernels/shared/density_kernel.clh ask for.
 inline void set_density_defines(device::Defines& defines, const SurfaceBuffers* surface,

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t equal_sides = 1, opposite_sides = 2;
 inline constexpr double cosine_slack = 1e-6;
 
 /// The normal test of photile::normals_agree for both pairs of sides. In single precision, as
-/// kernels/kdtree/traverse.clh filters: facets of a cylinder may meet the angle within rounding,
+/// kernels/structures/search.clh filters: facets of a cylinder may meet the angle within rounding,
 /// and every structure must decide alike.
 inline std::uint32_t agreeing_sides(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
   const glm::vec3 u(a), v(b);

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "kdtree/kdtree_builder.hpp"
 #include "maps/build_steps.hpp"
 #include "maps/candidate_maps.hpp"
 #include "maps/entry_defines.hpp"
@@ -23,6 +22,8 @@
 #include "maps/page_queue.hpp"
 #include "maps/photon_crowding.hpp"
 #include "maps/photon_pages.hpp"
+#include "structures/global_structures.hpp"
+#include "structures/kdtree_builder.hpp"
 
 namespace photile::maps {
 namespace {
@@ -145,10 +146,19 @@ void add_page(MapStore& store, MapPage page) {
   PhotonMapStatistics& statistics = store.statistics;
   statistics.references += page.entry_count;
   statistics.cells += page.cell_count;
-  statistics.nodes += page.tree_nodes.size();
+  statistics.nodes += page.node_count;
   statistics.device_bytes += page.device_bytes();
   ++statistics.pages;
   store.pages.add(std::move(page));
+}
+
+/// `counts`: photons per map.
+void set_map_sizes(std::vector<std::uint32_t> counts, PhotonMapStatistics& statistics) {
+  std::erase(counts, 0u);
+  std::sort(counts.begin(), counts.end());
+  statistics.maps = counts.size();
+  statistics.largest_map = counts.empty() ? 0 : counts.back();
+  statistics.map_sizes = std::move(counts);
 }
 
 /// Gives the page of a tile a map of its own, numbered `map`.
@@ -221,7 +231,6 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
               .store = store,
               .kernels = build_kernels(store, plan.normals),
               .tile_kernels = tile_kernels(store),
-              .in_groups = works_in_groups(context.info()),
               .patches = plan.normals,
               .squared_reach = plan.reach * plan.reach,
               .radius = static_cast<float>(store.parameters.radius),
@@ -250,10 +259,7 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
                               [&] { give_back_records(*spent); }};
   build_pages(store, build, photons, counted, queue, spent ? &release : nullptr, progress);
   if (statistics.mixed_maps == 0) store.normals.clear();
-  const std::vector<std::uint32_t>& counts = counted.photons;
-  statistics.maps = static_cast<std::uint64_t>(
-      std::count_if(counts.begin(), counts.end(), [](std::uint32_t count) { return count > 0; }));
-  statistics.largest_map = counts.empty() ? 0 : *std::max_element(counts.begin(), counts.end());
+  set_map_sizes(counted.photons, statistics);
 }
 
 void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map_count) {
@@ -262,16 +268,16 @@ void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map
   Context& context = device::context_of(*store.device);
   const PageLimits limits{.largest_buffer = context.largest_buffer()};
   if (!limits.fit(count, 1)) {
-    throw DeviceError(fmt::format(
-        "a global kd-tree of {} photons, more than the {} that the device's largest buffer holds; "
-        "use fewer photons, more passes or another structure",
-        count, limits.most_entries()));
+    throw DeviceError(
+        fmt::format("{} of {} photons, more than the {} that the device's largest buffer holds; "
+                    "use fewer photons, more passes or another structure",
+                    name_of(store.parameters.structure), count, limits.most_entries()));
   }
   MapPage page;
   page.first_map = 0;
   page.last_map = map_count;
   page.entry_count = count;
-  build_global_tree(context, photons, page);
+  build_global_structure(store, photons, page);
 
   PhotonPages pages(
       context,
@@ -283,8 +289,7 @@ void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map
   const device::Buffer<float> normals = upload_normals(context, store);
   gather_entries(build_kernels(store, false), store.needs, pages, {.normals = &normals}, page);
   context.finish();
-  store.statistics.maps = 1;
-  store.statistics.largest_map = count;
+  set_map_sizes({count}, store.statistics);
   add_page(store, std::move(page));
 }
 

@@ -40,7 +40,7 @@ struct MapPlan {
 void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan plan,
                 Progress& progress);
 
-/// Builds one kd-tree over all photons for hits of `map_count` maps; `store.normals` is set.
+/// Builds one structure over all photons for hits of `map_count` maps; `store.normals` is set.
 /// Errors: DeviceError when they do not fit in one buffer.
 void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map_count);
 

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <span>
 
-#include "kdtree/kdtree_builder.hpp"
 #include "maps/entry_defines.hpp"
 #include "maps/prefix_sum.hpp"
 #include "photile/errors.hpp"
+#include "structures/kdtree_builder.hpp"
 
 namespace photile::maps {
 
@@ -35,30 +35,6 @@ constexpr std::uint32_t insertion_limit = 48;
 
 /// Groups that sort crowded cells: enough to fill any GPU with what there is of them.
 constexpr std::size_t sorting_groups = 1024;
-
-/// Brings the photons of each cell into ascending order.
-void sort_cells(const Build& build, const MapPage& page) {
-  device::Launch launch = build.kernels.launch("sort_cells");
-  launch.set("cell_count", page.cell_count)
-      .set("cell_start", page.cell_start)
-      .set("entry_photon", page.entry_photon);
-  if (!build.in_groups) {
-    launch.run(page.cell_count, work_group_size);
-    return;
-  }
-  auto crowded = build.context.allocate<std::uint32_t>(1, "number of crowded cells");
-  auto crowded_cell = build.context.allocate<std::uint32_t>(page.entry_count / insertion_limit + 1,
-                                                            "crowded cells");
-  build.context.fill(crowded, 0u);
-  launch.set("crowded", crowded).set("crowded_cell", crowded_cell);
-  launch.run(page.cell_count, work_group_size);
-  build.kernels.launch("sort_crowded")
-      .set("cell_start", page.cell_start)
-      .set("entry_photon", page.entry_photon)
-      .set("crowded", crowded)
-      .set("crowded_cell", crowded_cell)
-      .run_no_more(sorting_groups * group_size, group_size);
-}
 
 /// A launch over photons of a page, given what tells which maps they enter.
 device::Launch photon_launch(const Build& build, const device::KernelSet& kernels,
@@ -142,6 +118,30 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
 }
 
 }  // namespace
+
+void sort_cells(const device::KernelSet& kernels, const MapPage& page) {
+  device::Context& context = kernels.context();
+  device::Launch launch = kernels.launch("sort_cells");
+  launch.set("cell_count", page.cell_count)
+      .set("cell_start", page.cell_start)
+      .set("entry_photon", page.entry_photon);
+  if (!works_in_groups(context.info())) {
+    launch.run(page.cell_count, work_group_size);
+    return;
+  }
+  auto crowded = context.allocate<std::uint32_t>(1, "number of crowded cells");
+  auto crowded_cell =
+      context.allocate<std::uint32_t>(page.entry_count / insertion_limit + 1, "crowded cells");
+  context.fill(crowded, 0u);
+  launch.set("crowded", crowded).set("crowded_cell", crowded_cell);
+  launch.run(page.cell_count, work_group_size);
+  kernels.launch("sort_crowded")
+      .set("cell_start", page.cell_start)
+      .set("entry_photon", page.entry_photon)
+      .set("crowded", crowded)
+      .set("crowded_cell", crowded_cell)
+      .run_no_more(sorting_groups * group_size, group_size);
+}
 
 void find_entered(const Build& build, PhotonPage& page) {
   page.entered = build.context.allocate<std::uint32_t>(page.count, "maps that photons enter");
@@ -247,7 +247,7 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
         .run(photons.count, work_group_size);
   }
   // Trees bring them into an order of their own.
-  if (!is_tree(build.store.parameters.structure)) sort_cells(build, page);
+  if (!is_tree(build.store.parameters.structure)) sort_cells(build.kernels, page);
 }
 
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,

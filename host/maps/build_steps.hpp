@@ -36,7 +36,6 @@ struct Build {
   const MapStore& store;
   device::KernelSet kernels;
   device::KernelSet tile_kernels;
-  bool in_groups;       ///< see works_in_groups
   bool patches;         ///< maps may serve several triangles
   float squared_reach;  ///< square metres: within it of a triangle photons enter its map
   float radius;         ///< metres, of the search
@@ -71,6 +70,10 @@ void place_grids(const Build& build, MapPage& page);
 /// References to the photons of the page's cells: cell_start, entry_count and entry_photon.
 /// `tile`: cells that the page holds, where it holds a tile; else nothing.
 void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile);
+
+/// Brings the photons of each of page.cell_count cells into ascending order. `kernels`: of a
+/// program that holds grid/sort_cells.cl.
+void sort_cells(const device::KernelSet& kernels, const MapPage& page);
 
 /// What lets go of photons on the host, once their one page has let go of them.
 struct PhotonRelease {

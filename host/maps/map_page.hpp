@@ -19,6 +19,7 @@ struct PageExtent {
   std::uint32_t entry_count = 0;
   std::uint32_t entry_stride = 0;  ///< distance of planes: entry_count and padding
   std::uint32_t cell_count = 0;
+  std::uint32_t node_count = 0;
 };
 
 /// None is larger than the device's largest allocation. Which exist depends on the structure and on
@@ -39,9 +40,9 @@ struct PageBuffers {
   device::Buffer<PhotileGrid> grids;         ///< per map
   device::Buffer<std::uint32_t> cell_start;  ///< per cell, and the end of the last, twice
 
-  // Trees.
-  device::Buffer<std::uint32_t> tree_root;  ///< per map; none without photons
-  device::Buffer<PhotileTreeNode> tree_nodes;
+  // Structures other than grids.
+  device::Buffer<std::uint32_t> tree_root;  ///< of kd-trees, per map; none without photons
+  device::Buffer<std::uint32_t> nodes;      ///< words; what they are, kernels/structures say
 
   std::uint64_t device_bytes() const;
 };
@@ -58,7 +59,7 @@ void for_each_buffer(Buffers& buffers, Visit visit) {
   visit(buffers.grids);
   visit(buffers.cell_start);
   visit(buffers.tree_root);
-  visit(buffers.tree_nodes);
+  visit(buffers.nodes);
 }
 
 struct MapPage : PageExtent, PageBuffers {};

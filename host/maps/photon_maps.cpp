@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -27,8 +28,9 @@ void check(const Scene& scene, const Photons& photons, const NeighbourGroups& gr
                                  parameters.radius, groups.radius));
   }
   check_setting("photons_per_cell", setting_value(parameters.photons_per_cell));
-  if (parameters.structure == MapStructure::kdtree_global && std::isinf(groups.radius)) {
-    throw UsageError("a global kd-tree knows no triangles' maps: use other maps than naive");
+  if (is_global(parameters.structure) && std::isinf(groups.radius)) {
+    throw UsageError(fmt::format("{} knows no triangles' maps: use other maps than naive",
+                                 name_of(parameters.structure)));
   }
   if (photons.size() > limits::max_stored_photons) {
     throw UsageError(fmt::format("{} stored photons; at most {} can be indexed", photons.size(),
@@ -36,23 +38,16 @@ void check(const Scene& scene, const Photons& photons, const NeighbourGroups& gr
   }
 }
 
+const MapStructureRow& row_of(MapStructure structure) {
+  return *std::find_if(map_structure_table.begin(), map_structure_table.end(),
+                       [&](const MapStructureRow& row) { return row.structure == structure; });
+}
+
 }  // namespace
 
-std::string_view name_of(MapStructure structure) {
-  switch (structure) {
-    case MapStructure::uniform_grid:
-      return "uniform-grid";
-    case MapStructure::kdtree_2d:
-      return "kdtree-2d";
-    case MapStructure::kdtree_3d:
-      return "kdtree-3d";
-    case MapStructure::kdtree_global:
-      return "kdtree-global";
-    case MapStructure::brute_force:
-      return "brute-force";
-  }
-  return "unknown";
-}
+std::string_view name_of(MapStructure structure) { return row_of(structure).name; }
+
+bool is_global(MapStructure structure) { return row_of(structure).global; }
 
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
@@ -84,7 +79,7 @@ void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photon
   store_->naive = std::isinf(groups.radius);
   store_->landed = landed_on(scene, photons);
   store_->statistics.photons = photons.size();
-  if (parameters.structure == MapStructure::kdtree_global) {
+  if (is_global(parameters.structure)) {
     store_->normals = maps::sided_normals(scene);
     const auto maps = static_cast<std::uint32_t>(2 * scene.triangle_count());
     maps::build_global_map(*store_, photons, maps);

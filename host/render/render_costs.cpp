@@ -1,6 +1,7 @@
 #include "render/render_costs.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace photile {
@@ -8,6 +9,19 @@ namespace {
 
 double ratio(std::uint64_t a, std::uint64_t b) {
   return static_cast<double>(a) / static_cast<double>(std::max<std::uint64_t>(1, b));
+}
+
+double mean_of(const std::vector<std::uint32_t>& counts) {
+  return ratio(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}), counts.size());
+}
+
+/// Of an even number the mean of the two in the middle; 0 of none.
+double median_of(std::vector<std::uint32_t> counts) {
+  if (counts.empty()) return 0;
+  std::sort(counts.begin(), counts.end());
+  const std::size_t half = counts.size() / 2;
+  const std::uint64_t sum = std::uint64_t{counts[half]} + counts[(counts.size() - 1) / 2];
+  return 0.5 * static_cast<double>(sum);
 }
 
 }  // namespace
@@ -76,7 +90,9 @@ RunStatistics RenderCosts::statistics() const {
              {"mixed maps", number(mixed_maps)},
              {"references", number(references)},
              {"references per photon", ratio(references, stored_photons)},
-             {"largest map", number(largest_map)},
+             {"photons per map, mean", mean_of(map_sizes)},
+             {"photons per map, median", median_of(map_sizes)},
+             {"photons per map, largest", number(largest_map)},
              {"kernel compilation seconds", compile_seconds}}),
       stage("prepare estimates", estimators),
       stage("primary hits", hits,

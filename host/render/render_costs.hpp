@@ -36,6 +36,7 @@ struct RenderCosts {
   std::uint64_t light_map_nodes = 0;
   double light_map_error = 0;              ///< relative, of what was read from nodes that gather
   std::uint64_t maps = 0, mixed_maps = 0;  ///< of the last pass
+  std::vector<std::uint32_t> map_sizes;    ///< of the last pass, as PhotonMapStatistics
   std::uint64_t references = 0, largest_map = 0;
   std::uint64_t rays = 0, gather_rays = 0, hit_count = 0;
   double compile_seconds = 0;                          ///< of all kernels

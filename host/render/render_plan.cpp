@@ -125,7 +125,7 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
 }
 
 MapMode RenderPlan::map_mode() const {
-  const bool global = used_.structure == MapStructure::kdtree_global;  // no use for patches
+  const bool global = is_global(used_.structure);  // no use for patches
   return global ? MapMode::triangle : used_.maps;
 }
 

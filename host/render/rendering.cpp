@@ -94,6 +94,7 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   if (!prepared && !keep && makes_maps_in_sight()) {
     seen_ = trace(pass, nullptr, nullptr).photons;
     costs_.maps = costs_.mixed_maps = 0;
+    costs_.map_sizes.clear();
     photons_.emplace(
         devices_, scene_, groups_.patches,
         [this](std::span<const std::uint8_t> wanted) { return build_some(wanted); }, layer_powers_);

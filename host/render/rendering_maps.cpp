@@ -59,6 +59,7 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
   Maps maps{build(std::move(traced.photons), parameters), {}};
   costs_.maps = maps.photons.front().statistics().maps;
   costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
+  costs_.map_sizes = maps.photons.front().statistics().map_sizes;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
   if (traced.caustics.size() > 0) maps.caustics = build(std::move(traced.caustics), parameters);
   const Stopwatch release_watch;
@@ -89,8 +90,7 @@ void Rendering::note_maps(const PhotonMapStatistics& built) {
 
 bool Rendering::makes_maps_in_sight() const {
   return one_picture_ && plan_.passes() == 1 && plan_.reads_light_maps() &&
-         !plan_.keeps_caustics() && devices_.size() == 1 &&
-         plan_.used().structure != MapStructure::kdtree_global;
+         !plan_.keeps_caustics() && devices_.size() == 1 && !is_global(plan_.used().structure);
 }
 
 MapEstimators::Parts Rendering::build_some(std::span<const std::uint8_t> wanted) {
@@ -114,6 +114,7 @@ MapEstimators::Parts Rendering::build_some(std::span<const std::uint8_t> wanted)
   costs_.build.device_bytes += built.device_bytes - built.spilled_bytes;
   costs_.maps += built.maps;
   costs_.mixed_maps += built.mixed_maps;
+  costs_.map_sizes.insert(costs_.map_sizes.end(), built.map_sizes.begin(), built.map_sizes.end());
   note_maps(built);
   return parts_of(std::move(maps));
 }

@@ -103,10 +103,9 @@ std::string kept_for_radius(const Setting& setting, const RenderParameters& para
   return parameters.radius > 0 ? std::string() : kept_as_it_is(setting, parameters);
 }
 
-/// One tree has other groups than all other structures.
-std::string kept_for_tree(const Setting& setting, const RenderParameters& parameters) {
-  const bool global = parameters.structure == MapStructure::kdtree_global;
-  return global ? kept_as_it_is(setting, parameters) : std::string();
+/// Structures over all photons have other groups than those of triangles.
+std::string kept_for_structure(const Setting& setting, const RenderParameters& parameters) {
+  return is_global(parameters.structure) ? kept_as_it_is(setting, parameters) : std::string();
 }
 
 /// Rays leave no direct light to photons, however many there are; but rays that gather see it.
@@ -189,7 +188,7 @@ std::vector<Setting> estimate_rows() {
       row<&P::maps>("maps", "maps", groups, words_of(all_map_modes),
                     "naive: dark edges; patch: triangles share maps", kept_as_it_is),
       row<&P::structure>("structure", "structure", build, words_of(all_map_structures),
-                         "how photons are found; same neighbours", kept_for_tree),
+                         "how photons are found; same neighbours", kept_for_structure),
       row<&P::photons_per_cell>("photons_per_cell", "photons-per-cell", build, PositiveNumbers{},
                                 "fineness of the grids", not_kept),
       row<&P::direct_rays>(
@@ -287,10 +286,10 @@ void check(const RenderParameters& parameters) {
         parameters.final_gather_rays > 0) {
       throw SettingError(setting, "rays that gather follow lobes, too");
     }
-    if (setting.name == "structure" && parameters.structure == MapStructure::kdtree_global &&
+    if (setting.name == "structure" && is_global(parameters.structure) &&
         parameters.maps == MapMode::naive) {
-      throw SettingError(setting,
-                         "a global kd-tree knows no triangles' maps, and so no naive ones");
+      throw SettingError(setting, fmt::format("{} knows no triangles' maps, and so no naive ones",
+                                              name_of(parameters.structure)));
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
@@ -23,14 +24,39 @@ enum class MapStructure {
   kdtree_2d,      ///< a kd-tree in the plane of each triangle
   kdtree_3d,      ///< a kd-tree in space for each triangle
   kdtree_global,  ///< one kd-tree over all photons, filtered by normal: the classic photon map
-  brute_force     ///< every photon of the triangle's map
+  kdtree_left_balanced,  ///< such a tree without pointers, searched without a stack
+  wide_bvh,              ///< boxes in boxes over all photons, eight in each
+  hashed_grid,           ///< cubic cells over all photons, in a hash table
+  brute_force            ///< every photon of the triangle's map
 };
 
-/// "uniform-grid", "kdtree-2d", "kdtree-3d", "kdtree-global", "brute-force".
+/// What is known of a structure by its name.
+struct MapStructureRow {
+  MapStructure structure;
+  std::string_view name;  ///< of --structure
+  /// One for all photons, filtered by normal, in place of one for each triangle or patch.
+  bool global;
+};
+inline constexpr std::array map_structure_table = {
+    MapStructureRow{MapStructure::uniform_grid, "uniform-grid", false},
+    MapStructureRow{MapStructure::kdtree_2d, "kdtree-2d", false},
+    MapStructureRow{MapStructure::kdtree_3d, "kdtree-3d", false},
+    MapStructureRow{MapStructure::kdtree_global, "kdtree-global", true},
+    MapStructureRow{MapStructure::kdtree_left_balanced, "kdtree-left-balanced", true},
+    MapStructureRow{MapStructure::wide_bvh, "wide-bvh", true},
+    MapStructureRow{MapStructure::hashed_grid, "hashed-grid", true},
+    MapStructureRow{MapStructure::brute_force, "brute-force", false}};
+
+inline constexpr std::array all_map_structures = [] {
+  std::array<MapStructure, map_structure_table.size()> structures{};
+  for (std::size_t i = 0; i < structures.size(); ++i) {
+    structures[i] = map_structure_table[i].structure;
+  }
+  return structures;
+}();
+
 std::string_view name_of(MapStructure structure);
-inline constexpr std::array all_map_structures = {
-    MapStructure::uniform_grid, MapStructure::kdtree_2d, MapStructure::kdtree_3d,
-    MapStructure::kdtree_global, MapStructure::brute_force};
+bool is_global(MapStructure structure);
 
 struct PhotonMapParameters {
   double radius = 0;  ///< metres, > 0: no neighbour is farther; at most the groups' radius
@@ -47,8 +73,9 @@ struct PhotonMapStatistics {
   std::uint64_t maps = 0;           ///< that hold a photon
   std::uint64_t mixed_maps = 0;     ///< of them, those whose queries filter by normal
   std::uint64_t cells = 0;          ///< of grids
-  std::uint64_t nodes = 0;          ///< of kd-trees
+  std::uint64_t nodes = 0;          ///< of trees
   std::uint64_t largest_map = 0;    ///< entries
+  std::vector<std::uint32_t> map_sizes = {};  ///< photons of each map that holds one, ascending
   std::uint64_t pages = 0;          ///< runs of maps that are moved to and from the device
   std::uint64_t device_bytes = 0;   ///< of all pages, wherever they lie
   std::uint64_t spilled_bytes = 0;  ///< of these, on the host when the build was done

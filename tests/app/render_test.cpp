@@ -238,6 +238,20 @@ TEST_CASE("microseconds per hit leave out what compiling kernels took") {
   CHECK(figure->second == Approx(0.5));
 }
 
+TEST_CASE("the statistics tell the mean, median and largest number of photons a map") {
+  RenderCosts costs;
+  costs.map_sizes = {40, 3, 300, 5};
+  costs.largest_map = 300;
+  std::map<std::string, double> figures;
+  for (const StageStatistics& stage : costs.statistics()) {
+    if (stage.stage == "build photon maps")
+      figures.insert(stage.figures.begin(), stage.figures.end());
+  }
+  CHECK(figures.at("photons per map, mean") == Approx(87));
+  CHECK(figures.at("photons per map, median") == Approx(22.5));
+  CHECK(figures.at("photons per map, largest") == Approx(300));
+}
+
 TEST_CASE("where no surface stores photons the lamps are seen, and a line says that it is all") {
   const FileFolder folder;
   const std::string scene = folder.write(

@@ -57,7 +57,9 @@ TEST_CASE("neighbours equal the oracle's among 2^20 + 1 photons") {
   const double radius = 0.05;
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
-  for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_global}) {
+  for (const MapStructure structure :
+       {MapStructure::uniform_grid, MapStructure::kdtree_global, MapStructure::kdtree_left_balanced,
+        MapStructure::wide_bvh, MapStructure::hashed_grid}) {
     const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
     for (const int k : {1, 50, 100'000}) {
       Estimator estimator(maps, scene, {k, 0});

@@ -24,7 +24,7 @@ inline void check_against_oracle(const Scene& scene, const Photons& photons,
         mode == MapMode::naive ? reference::PhotonFilter::naive : reference::PhotonFilter::grouped,
         60);
     for (const MapStructure structure : all_map_structures) {
-      if (structure == MapStructure::kdtree_global && mode != MapMode::triangle) continue;
+      if (is_global(structure) && mode != MapMode::triangle) continue;
       const PhotonMaps maps(device(), scene, photons, groups, {radius, 4, structure});
       for (const int k : neighbour_counts) {
         CAPTURE(name_of(structure), static_cast<int>(mode), k, radius, photons.size());

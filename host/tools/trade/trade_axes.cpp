@@ -42,7 +42,10 @@ TradeAxes TradeAxes::around(const RenderParameters& parameters) {
   axes.node_rays = {16, 64, 256};
   axes.maps = {MapMode::naive, MapMode::triangle, MapMode::patch};
   for (const MapStructure structure : all_map_structures) {
-    if (structure != MapStructure::brute_force) axes.structures.push_back(structure);
+    // Of the structures over all photons the classic one stands for all.
+    const bool other_global = is_global(structure) && structure != MapStructure::kdtree_global;
+    if (structure != MapStructure::brute_force && !other_global)
+      axes.structures.push_back(structure);
   }
   return axes;
 }

@@ -1,7 +1,8 @@
-#include "kdtree/kdtree.hpp"
+#include "structures/kdtree.hpp"
 
 #include <algorithm>
-#include <limits>
+
+#include "structures/widest_axis.hpp"
 
 namespace photile::maps {
 namespace {
@@ -21,15 +22,9 @@ class Builder {
         {0, PHOTILE_TREE_LEAF, first, first + static_cast<std::uint32_t>(order.size())});
     if (order.size() <= leaf_size || depth == PHOTILE_TREE_DEPTH) return node;
 
-    glm::vec3 low(std::numeric_limits<float>::infinity()), high = -low;
-    for (const std::uint32_t i : order) {
-      low = glm::min(low, points_[i]);
-      high = glm::max(high, points_[i]);
-    }
-    int axis = 0;
-    for (int d = 1; d < dimensions_; ++d) {
-      if (high[d] - low[d] > high[axis] - low[axis]) axis = d;
-    }
+    const PointBox box = box_of(points_, order);
+    const glm::vec3 &low = box.low, &high = box.high;
+    const int axis = widest_axis(box, dimensions_);
     if (!(high[axis] > low[axis])) return node;  // all in one point
     // The lower child takes what lies below the plane. Rounded down to `low`, the middle would
     // leave it empty.

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "device/launch_pace.hpp"
 #include "estimate/query.hpp"
 #include "maps/entry_defines.hpp"
+#include "structures/structure_arguments.hpp"
 
 namespace photile::estimate {
 namespace {
@@ -14,9 +16,9 @@ constexpr std::uint32_t private_list_limit = 256;
 /// of the memory where that is less.
 constexpr std::uint64_t global_list_bytes = 64u << 20;
 
-class TreeQuery : public Query {
+class StructureQuery : public Query {
  public:
-  TreeQuery(const maps::MapStore& store, const QueryParameters& parameters)
+  StructureQuery(const maps::MapStore& store, const QueryParameters& parameters)
       : store_(store),
         context_(device::context_of(*store.device)),
         pace_(context_),
@@ -24,9 +26,11 @@ class TreeQuery : public Query {
         sums_(store.needs, parameters.compiled_neighbours) {
     const std::uint32_t neighbours = parameters.neighbours;
     const std::uint32_t compiled_neighbours = parameters.compiled_neighbours;
-    if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
+    maps::set_structure_defines(defines_, store.parameters.structure);
     if (compiled_neighbours <= private_list_limit) {
-      defines_.set("LIST_CAPACITY", static_cast<long long>(compiled_neighbours));
+      // Few sizes, so that few programs are compiled.
+      defines_.set("LIST_CAPACITY",
+                   static_cast<long long>(std::bit_ceil(std::max(compiled_neighbours, 16u))));
     } else {
       defines_.set("LIST_IN_GLOBAL_MEMORY");
       constexpr std::uint64_t group = maps::work_group_size;
@@ -46,15 +50,15 @@ class TreeQuery : public Query {
     sums_.set_defines(defines);
     if (store_.needs.normal_maps) defines.set("NORMAL_MAPS");
     set_density_defines(defines, parameters_.surface, parameters_.kernel);
-    device::Launch launch(context_, context_.kernel("kdtree/estimate.cl", "estimate", defines));
+    device::Launch launch(context_, context_.kernel("structures/estimate.cl", "estimate", defines));
     set_estimate_arguments(launch, store_, hits, parameters_, estimates);
     run(launch, hits);
   }
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
-    device::Launch launch(context_,
-                          context_.kernel("kdtree/nearest.cl", "nearest", page_defines(hits.page)));
+    device::Launch launch(
+        context_, context_.kernel("structures/nearest.cl", "nearest", page_defines(hits.page)));
     set_page_arguments(launch, hits, parameters_);
     set_normal_arguments(launch, store_, hits, nullptr);
     launch.set("neighbours", photons).set("squared_radius", squared_radius);
@@ -68,11 +72,9 @@ class TreeQuery : public Query {
     return defines;
   }
 
-  /// With the arguments of the trees.
+  /// With the arguments of the structure.
   void run(device::Launch& launch, const PageHits& hits) {
-    launch.set("root", hits.page.tree_root)
-        .set("frames", hits.page.grids)
-        .set("nodes", hits.page.tree_nodes);
+    maps::set_structure_arguments(launch, hits.page);
     if (list_entry_.size() > 0) {
       launch.set("list_distance", list_distance_).set("list_entry", list_entry_);
     }
@@ -95,22 +97,19 @@ class TreeQuery : public Query {
 
 }  // namespace
 
-std::unique_ptr<Query> make_tree_query(const maps::MapStore& store,
-                                       const QueryParameters& parameters) {
-  return std::make_unique<TreeQuery>(store, parameters);
+std::unique_ptr<Query> make_structure_query(const maps::MapStore& store,
+                                            const QueryParameters& parameters) {
+  return std::make_unique<StructureQuery>(store, parameters);
 }
 
 std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParameters& parameters) {
   switch (store.parameters.structure) {
-    case MapStructure::kdtree_2d:
-    case MapStructure::kdtree_3d:
-    case MapStructure::kdtree_global:
-      return make_tree_query(store, parameters);
     case MapStructure::uniform_grid:
     case MapStructure::brute_force:
-      break;
+      return make_grid_query(store, parameters);
+    default:
+      return make_structure_query(store, parameters);
   }
-  return make_grid_query(store, parameters);
 }
 
 }  // namespace photile::estimate

@@ -1,12 +1,12 @@
-#include "kdtree/kdtree_builder.hpp"
+#include "structures/kdtree_builder.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <numeric>
 
-#include "kdtree/kdtree.hpp"
 #include "maps/grid_cells.hpp"
+#include "structures/kdtree.hpp"
 
 namespace photile::maps {
 namespace {
@@ -28,6 +28,14 @@ void build_tree(MapStructure structure, const Photons& photons, const PhotileGri
   std::vector<std::uint32_t> sorted(entries.size());
   for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = entries[order[i]];
   std::copy(sorted.begin(), sorted.end(), entries.begin());
+}
+
+void set_nodes(device::Context& context, const std::vector<PhotileTreeNode>& nodes, MapPage& page) {
+  page.node_count = static_cast<std::uint32_t>(nodes.size());
+  constexpr std::size_t words = sizeof(PhotileTreeNode) / sizeof(std::uint32_t);
+  page.nodes = context.upload(
+      std::span(reinterpret_cast<const std::uint32_t*>(nodes.data()), words * nodes.size()),
+      "tree nodes");
 }
 
 }  // namespace
@@ -67,7 +75,7 @@ void build_trees(device::Context& context, MapStructure structure, const Photons
   }
   context.write(page.entry_photon, std::span<const std::uint32_t>(entries));
   page.tree_root = context.upload(std::span<const std::uint32_t>(root), "tree roots");
-  page.tree_nodes = context.upload(std::span<const PhotileTreeNode>(nodes), "tree nodes");
+  set_nodes(context, nodes, page);
 }
 
 void build_global_tree(device::Context& context, const Photons& photons, MapPage& page) {
@@ -78,7 +86,7 @@ void build_global_tree(device::Context& context, const Photons& photons, MapPage
   const std::vector<std::uint32_t> root(page.last_map - page.first_map, 0u);
   page.entry_photon = context.upload(std::span<const std::uint32_t>(order), "photon references");
   page.tree_root = context.upload(std::span<const std::uint32_t>(root), "tree roots");
-  page.tree_nodes = context.upload(std::span<const PhotileTreeNode>(nodes), "tree nodes");
+  set_nodes(context, nodes, page);
 }
 
 }  // namespace photile::maps

@@ -1,0 +1,260 @@
+#include "support/point_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <numeric>
+
+#include "photile/errors.hpp"
+#include "photile/photon_cloud.hpp"
+#include "photile/statistics.hpp"
+#include "support/agreement.hpp"
+#include "support/host_search.hpp"
+#include "support/kernel_seconds.hpp"
+#include "support/point_file.hpp"
+
+namespace photile::bench {
+namespace {
+
+/// Of rows and columns: raised when one changes its meaning or goes, not when one comes.
+constexpr int schema_version = 1;
+
+constexpr std::array csv_columns{"schema version", "structure", "device",     "driver",
+                                 "photons",        "queries",   "k",          "radius",
+                                 "median",         "min",       "max",        "kernel seconds",
+                                 "build",          "bytes",     "operations", "GB/s",
+                                 "GFLOP/s",        "map bytes", "references", "radii that differ",
+                                 "failure"};
+
+/// What no exact search of k photons a query can do without: their positions and fluxes and the
+/// query are read, the estimate is written; a distance takes eight operations and a sum three.
+struct LeastWork {
+  double bytes, operations;
+
+  LeastWork(std::size_t queries, int k)
+      : bytes(static_cast<double>(queries) * (24.0 * k + 24)),
+        operations(static_cast<double>(queries) * 11.0 * k) {}
+};
+
+/// Brute force over more photons would take minutes.
+bool worth_running(MapStructure structure, std::size_t photons) {
+  constexpr std::size_t most_for_brute_force = 15'000;
+  return structure != MapStructure::brute_force || photons <= most_for_brute_force;
+}
+
+class PointBench {
+ public:
+  PointBench(const BenchOptions& options, const PointBenchSettings& settings)
+      : repeats_(options.repeats),
+        settings_(settings),
+        record_("points", options),
+        photons_(read_points(settings.photons)),
+        queries_(read_points(settings.queries)),
+        filter_(normals(), defaults::group_angle_degrees) {
+    if (photons_.normal.empty() != queries_.normal.empty()) {
+      throw InputError(fmt::format("{} has {} and {} has {}: give both or neither",
+                                   settings.photons.string(), normals_of(photons_),
+                                   settings.queries.string(), normals_of(queries_)));
+    }
+    record_.set("schema version", schema_version);
+    record_.set("photons", settings.photons.filename().string());
+    record_.set("queries", settings.queries.filename().string());
+    record_.set_version("nanoflann", nanoflann_version());
+    record_.set_version("embree", embree_version());
+    stored_.position = photons_.position;
+    stored_.flux.assign(photons_.position.size(), glm::vec3(1.0f));
+    stored_.sided_triangle.resize(photons_.position.size());
+    std::iota(stored_.sided_triangle.begin(), stored_.sided_triangle.end(), 0u);
+    hits_.position = queries_.position;
+    hits_.sided_triangle.resize(queries_.position.size());
+    std::iota(hits_.sided_triangle.begin(), hits_.sided_triangle.end(),
+              static_cast<std::uint32_t>(stored_.size()));
+  }
+
+  bool run(std::vector<Device>& devices) {
+    for (const int k : settings_.neighbours) {
+      const double radius = settings_.radius > 0 ? settings_.radius : automatic_radius(stored_, k);
+      run_host(k, radius);
+      for (Device& device : devices) {
+        for (const MapStructure structure : all_map_structures) {
+          if (worth_running(structure, stored_.size())) run_device(device, structure, k, radius);
+        }
+      }
+    }
+    record_.write();
+    write_csv();
+    return disagreements_ == 0;
+  }
+
+ private:
+  static const char* normals_of(const PointFile& file) {
+    return file.normal.empty() ? "no normals" : "normals";
+  }
+
+  /// Of photons, then of queries; without any all agree.
+  std::vector<glm::vec3> normals() const {
+    std::vector<glm::vec3> all = photons_.normal;
+    all.insert(all.end(), queries_.normal.begin(), queries_.normal.end());
+    all.resize(photons_.position.size() + queries_.position.size(), glm::vec3(0, 0, 1));
+    return all;
+  }
+
+  void run_host(int k, double radius) {
+    const SearchInput input{stored_, filter_, 1};
+    const SearchParameters parameters{static_cast<std::size_t>(k), static_cast<float>(radius)};
+    std::vector<std::uint32_t> order(hits_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto time = [&](const char* name, const HostSearch& search, double build_seconds) {
+      DensityAnswers answers;
+      const Timing timing =
+          measure(repeats_, [&] { search.estimate(hits_, order, parameters, answers); });
+      if (reference_k_ != k) {
+        reference_ = answers.squared_radius;
+        reference_k_ = k;
+      }
+      nlohmann::json row = row_of(name, "host", "", k, radius, timing);
+      row["build"] = build_seconds;
+      add(std::move(row), answers.squared_radius);
+    };
+    const Stopwatch nanoflann_watch;
+    const auto index = make_nanoflann_index(stored_);
+    const double nanoflann_seconds = nanoflann_watch.seconds();
+    time("nanoflann-heap", *make_nanoflann_search(input, index, Candidates::heap),
+         nanoflann_seconds);
+    time("nanoflann", *make_nanoflann_search(input, index, Candidates::sorted_list),
+         nanoflann_seconds);
+    const Stopwatch embree_watch;
+    const auto embree = make_embree_search(input);
+    const double embree_seconds = embree_watch.seconds();
+    time("embree", *embree, embree_seconds);
+  }
+
+  void run_device(Device& device, MapStructure structure, int k, double radius) {
+    const DeviceInfo& info = device.info();
+    try {
+      const Stopwatch build_watch;
+      PhotonCloud cloud(device, {.position = photons_.position, .normal = photons_.normal},
+                        {.radius = radius, .structure = structure});
+      const double build_seconds = build_watch.seconds();
+      std::vector<double> kernel_seconds;
+      const Timing timing = measure_returned(repeats_, [&] {
+        const Stopwatch watch;
+        kernel_seconds.push_back(kernel_seconds_of(device, [&] {
+          cloud.irradiance(queries_.position, queries_.normal, {.neighbours = k});
+        }));
+        return watch.seconds();
+      });
+      kernel_seconds.erase(kernel_seconds.begin());  // of the call that is not timed
+      nlohmann::json row = row_of(std::string(name_of(structure)), info.name, info.driver_version,
+                                  k, radius, timing);
+      row["kernel seconds"] = Timing{kernel_seconds}.median();
+      row["build"] = build_seconds;
+      row["map bytes"] = cloud.statistics().device_bytes;
+      row["references"] = cloud.statistics().references;
+      const CloudNeighbours found = cloud.nearest(queries_.position, queries_.normal, k);
+      std::vector<float> squared_radius;
+      const auto width = static_cast<std::size_t>(k);
+      for (std::size_t i = 0; i < hits_.size(); ++i) {
+        const float farthest = found.squared_distance[(i + 1) * width - 1];
+        squared_radius.push_back(std::isinf(farthest)
+                                     ? static_cast<float>(radius) * static_cast<float>(radius)
+                                     : farthest);
+      }
+      add(std::move(row), squared_radius);
+    } catch (const DeviceError& error) {
+      record({{"structure", name_of(structure)},
+              {"device", info.name},
+              {"driver", info.driver_version},
+              {"k", k},
+              {"failure", error.what()}});
+    }
+  }
+
+  nlohmann::json row_of(const std::string& structure, const std::string& device,
+                        const std::string& driver, int k, double radius,
+                        const Timing& timing) const {
+    const LeastWork least(hits_.size(), k);
+    constexpr double giga = 1e9;
+    return {{"structure", structure},
+            {"device", device},
+            {"driver", driver},
+            {"photons", stored_.size()},
+            {"queries", hits_.size()},
+            {"k", k},
+            {"radius", radius},
+            {"seconds", to_json(timing)},
+            {"bytes", least.bytes},
+            {"operations", least.operations},
+            {"GB/s", least.bytes / timing.median() / giga},
+            {"GFLOP/s", least.operations / timing.median() / giga}};
+  }
+
+  void add(nlohmann::json row, const std::vector<float>& squared_radius) {
+    const std::uint64_t different = count_radius_differences(squared_radius, reference_, 1e-5);
+    row["radii that differ"] = different;
+    if (different > 0) {
+      std::cerr << fmt::format("k = {}: {} differs from nanoflann at {} queries\n",
+                               row["k"].get<int>(), row["structure"].get<std::string>(), different);
+    }
+    disagreements_ += different;
+    record(std::move(row));
+  }
+
+  void record(nlohmann::json row) {
+    rows_.push_back(row);
+    record_.add(std::move(row));
+  }
+
+  void write_csv() const {
+    if (settings_.csv.empty()) return;
+    std::ofstream file(settings_.csv);
+    const auto text = [](const nlohmann::json& value) {
+      if (value.is_null()) return std::string();
+      if (!value.is_string()) return value.dump();
+      std::string quoted = "\"";
+      for (const char c : value.get<std::string>()) quoted += c == '"' ? "\"\"" : std::string(1, c);
+      return quoted + '"';
+    };
+    for (const char* column : csv_columns) {
+      file << (column == csv_columns.front() ? "" : ",") << column;
+    }
+    file << '\n';
+    for (nlohmann::json row : rows_) {
+      row["schema version"] = schema_version;
+      if (row.contains("seconds")) row.update(row["seconds"]);
+      for (const char* column : csv_columns) {
+        file << (column == csv_columns.front() ? "" : ",")
+             << text(row.contains(column) ? row[column] : nlohmann::json());
+      }
+      file << '\n';
+    }
+    file.close();
+    if (!file) throw OutputError(settings_.csv.string() + ": cannot be written");
+  }
+
+  Repeats repeats_;
+  const PointBenchSettings& settings_;
+  BenchRecord record_;
+  PointFile photons_, queries_;
+  NormalFilter filter_;
+  Photons stored_;
+  PrimaryHits hits_;
+  std::vector<float> reference_;  ///< squared radii of nanoflann, for reference_k_
+  int reference_k_ = 0;
+  std::vector<nlohmann::json> rows_;
+  std::uint64_t disagreements_ = 0;
+};
+
+}  // namespace
+
+bool run_point_bench(const BenchOptions& options, const PointBenchSettings& settings) {
+  PointBench bench(options, settings);  // reads the files before devices are opened
+  std::vector<Device> devices =
+      open_devices({.selector = options.device.empty() ? "all" : options.device, .profile = true});
+  return bench.run(devices);
+}
+
+}  // namespace photile::bench

@@ -1,0 +1,23 @@
+// Times of all structures on photons and queries that a user brings, without a scene.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "support/bench_record.hpp"
+
+namespace photile::bench {
+
+struct PointBenchSettings {
+  std::filesystem::path photons, queries;  ///< see read_points
+  std::vector<int> neighbours;             ///< values of k
+  double radius = 0;                       ///< metres; 0 = automatic_radius for each k
+  std::filesystem::path csv;               ///< the rows once more as a table; empty = none
+};
+
+/// Times every structure on every device of options.device ("" = all), and nanoflann and Embree on
+/// the host. What the rows hold: docs/bench-points.md. Returns false where a k-th distance differs
+/// from nanoflann's. Errors: those of read_points, of PhotonCloud and of the devices.
+bool run_point_bench(const BenchOptions& options, const PointBenchSettings& settings);
+
+}  // namespace photile::bench

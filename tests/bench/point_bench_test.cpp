@@ -1,0 +1,71 @@
+// The bench on photons of files: every structure answers as nanoflann does, and rows are as
+// docs/bench-points.md says.
+#include "support/point_bench.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <random>
+#include <set>
+
+#include "photile/photon_maps.hpp"
+#include "temporary_folder.hpp"
+
+namespace photile::test {
+namespace {
+
+/// Points near a saddle, with or without a normal.
+void write_saddle(const std::filesystem::path& file, int count, unsigned seed, bool normals) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::ofstream out(file);
+  for (int i = 0; i < count; ++i) {
+    const double x = uniform(random), y = uniform(random);
+    out << x << ',' << y << ',' << 0.3 * x * y;
+    if (normals) out << ',' << -0.3 * y << ',' << -0.3 * x << ",1";
+    out << '\n';
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every structure answers queries of files, and each row says what its schema promises") {
+  const TemporaryFolder folder;
+  const bool normals = GENERATE(false, true);
+  write_saddle(folder.path / "photons.csv", 3000, 1, normals);
+  write_saddle(folder.path / "queries.csv", 200, 2, normals);
+  bench::BenchOptions options;
+  options.repeats.most = 1;
+  options.output = folder.path / "rows.json";
+  options.device = "cpu";
+  REQUIRE(bench::run_point_bench(options, {.photons = folder.path / "photons.csv",
+                                           .queries = folder.path / "queries.csv",
+                                           .neighbours = {20},
+                                           .csv = folder.path / "rows.csv"}));
+  const auto json = nlohmann::json::parse(std::ifstream(options.output));
+  CHECK(json["settings"]["schema version"] == 1);
+  CHECK(json.contains("commit"));
+  CHECK(json.contains("command line"));
+  std::set<std::string> structures;
+  for (const auto& row : json["results"]) {
+    structures.insert(row["structure"].get<std::string>());
+    CHECK(row["photons"] == 3000);
+    CHECK(row["queries"] == 200);
+    CHECK(row["radii that differ"] == 0);
+    CHECK(row["bytes"] == 200 * (24 * 20 + 24));
+    CHECK(row["GB/s"].get<double>() ==
+          Approx(row["bytes"].get<double>() / row["seconds"]["median"].get<double>() / 1e9));
+  }
+  std::set<std::string> expected{"nanoflann", "nanoflann-heap", "embree"};
+  for (const MapStructure structure : all_map_structures) expected.emplace(name_of(structure));
+  CHECK(structures == expected);
+  std::ifstream csv(folder.path / "rows.csv");
+  std::string line;
+  std::size_t lines = 0;
+  for (; std::getline(csv, line); ++lines) {
+    if (lines == 0) CHECK(line.starts_with("schema version,structure,device,driver,photons"));
+    if (lines > 0) CHECK(line.starts_with("1,\""));
+  }
+  CHECK(lines == expected.size() + 1);
+}
+
+}  // namespace photile::test

@@ -1,0 +1,46 @@
+"""bench/report_ratios.py: ratios of times a query, and what it refuses."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench/report_ratios.py"
+
+
+def row(structure, seconds, queries, photons=1000, **more):
+    return {"workload": "plane", "structure": structure, "k": 50, "photons": photons,
+            "queries": queries, "seconds": {"median": seconds}, **more}
+
+
+class RatiosTest(unittest.TestCase):
+    def run_on(self, content):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "knn.json")
+            file.write_text(content)
+            return subprocess.run([sys.executable, SCRIPT, file], capture_output=True, text=True)
+
+    def test_ratios_are_of_times_a_query_at_the_same_photons(self):
+        rows = [row("uniform-grid", 2.0, 100), row("uniform-grid", 9.0, 100, photons=10_000),
+                row("tree", 3.0, 50), row("tree", 4.5, 25, photons=10_000),
+                {"workload": "plane", "structure": "tree", "k": 50, "photons": 7, "failure": "memory"}]
+        text = self.run_on(json.dumps({"results": rows})).stdout
+        self.assertIn("| structure | 1,000 photons | 10,000 photons |", text)
+        self.assertIn("| tree | 3 | 2 |", text)
+
+    def test_visits_are_listed_where_they_are_counted(self):
+        rows = [row("tree", 3.0, 50, **{"nodes visited": 12.4, "photons visited": 99.6})]
+        self.assertIn("| tree | 12 | 100 |", self.run_on(json.dumps({"results": rows})).stdout)
+
+    def test_other_files_are_refused_in_a_line(self):
+        for content in ("{", "[]", "{}"):
+            result = self.run_on(content)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertTrue(result.stderr.startswith("report_ratios.py: error: "))
+            self.assertEqual(result.stderr.count("\n"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
