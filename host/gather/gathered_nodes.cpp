@@ -11,6 +11,7 @@
 #include "gather/irradiance_filter.hpp"
 #include "gather/weighted_points.hpp"
 #include "photile/defaults.hpp"
+#include "photile/limits.hpp"
 
 namespace photile {
 namespace {
@@ -108,10 +109,20 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 
 }  // namespace
 
-GatheredNodesParameters rays_of_nodes(int coarse, double inset) {
+GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset) {
   // Shadow borders stand at the finer levels: there looks at lamps matter more than other rays.
-  // Nine of these are averaged.
-  return {{coarse, 2 * coarse}, {(coarse + 3) / 4, (coarse + 1) / 2}, inset};
+  // Nine of these are averaged. Beside the sun a shadow has a hundredth of the light, and few
+  // looks find the sky through a window: there what single looks bring would show.
+  const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                [](const Light& light) { return light.is_distant(); });
+  const int fine = (coarse + 3) / 4;
+  if (open) {
+    const int looks =
+        std::min(defaults::looks_per_ray_in_the_open * coarse, limits::max_direct_rays);
+    return {{coarse, looks}, {fine, looks}, inset};
+  }
+  return {
+      {coarse, defaults::looks_per_ray * coarse}, {fine, defaults::looks_per_ray * fine}, inset};
 }
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }

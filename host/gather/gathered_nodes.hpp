@@ -26,8 +26,9 @@ struct GatheredNodesParameters {
   double inset = 0;
 };
 
-/// So many rays at the coarsest level and a quarter at others; twice and half as many looks.
-GatheredNodesParameters rays_of_nodes(int coarse, double inset);
+/// So many rays at the coarsest level and a quarter at others, and defaults::looks_per_ray; where
+/// the sun or a sky shines more looks, and as many at all levels.
+GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset);
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,

@@ -330,7 +330,7 @@ GatheringPass Rendering::gathering() {
                          plan_.node_gathering(pass_, radius_));
     constexpr double inset_of_spacing = 1.0 / 512;
     gathered_nodes_.emplace(scene_, *node_gather_, layer_powers_,
-                            rays_of_nodes(plan_.used().light_map_rays,
+                            rays_of_nodes(scene_, plan_.used().light_map_rays,
                                           inset_of_spacing * light_map_parameters_.spacing));
   }
   return {&*gathered_nodes_, &node_gather_->ends()};

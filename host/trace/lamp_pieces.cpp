@@ -50,7 +50,7 @@ LampPieces::LampPieces(const Scene& scene, std::span<const double> shares,
       add_area_light(scene, piece);
       continue;
     }
-    piece.is_far = lamp.kind == LightKind::directional || lamp.kind == LightKind::environment;
+    piece.is_far = lamp.is_distant();
     piece.center = lamp.position;
     whole_[light] = static_cast<std::uint32_t>(pieces_.size());
     pieces_.push_back(piece);

@@ -46,6 +46,9 @@ inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on 
 inline constexpr float survival_of_reflectance = 1.5f;
 /// Ends whose lobe reflects more of the light towards the ray ask where light comes from.
 inline constexpr float strong_lobe = 0.2f;
+/// Looks at lamps for each ray of a node; in the open, where light is bright beside dark and the
+/// sky may be seen through a window, more.
+inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;
 /// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one place to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;

@@ -152,6 +152,11 @@ struct Light {
     return kind == LightKind::area || kind == LightKind::environment ||
            (kind == LightKind::directional && angular_diameter > 0.0f);
   }
+
+  /// Whether it lies beyond the scene.
+  bool is_distant() const {
+    return kind == LightKind::directional || kind == LightKind::environment;
+  }
 };
 
 /// A mesh that several places of the scene repeat, in a space of its own around its centre.
