@@ -17,12 +17,12 @@ namespace {
 constexpr std::array<std::string_view, 4> without_effect{
     "POCL_CACHE_DIR=", "POCL_DEBUG", "POCL_MAX_PTHREAD_COUNT=", "POCL_CPU_MAX_CU_COUNT="};
 
-/// The "POCL_NAME=value" entries of the environment, sorted, but for those without effect.
-std::set<std::string> pocl_variables() {
+/// The entries of the environment that begin like this, sorted, but for those without effect.
+std::set<std::string> variables_of(std::string_view runtime) {
   std::set<std::string> entries;
   for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
-    if (text.starts_with("POCL_") &&
+    if (text.starts_with(runtime) &&
         std::none_of(without_effect.begin(), without_effect.end(),
                      [&](std::string_view variable) { return text.starts_with(variable); })) {
       entries.emplace(text);
@@ -63,9 +63,8 @@ CacheKey program_key(const DeviceInfo& device, std::string_view options, std::st
   add(device.driver_version);
   add(options);
   add(source);
-  if (device.is_pocl) {
-    for (const auto& variable : pocl_variables()) add(variable);
-  }
+  // Those of PoCL, or of Intel's runtime, which others ignore.
+  for (const auto& variable : variables_of(device.is_pocl ? "POCL_" : "CL_CONFIG_")) add(variable);
   return hash(text);
 }
 

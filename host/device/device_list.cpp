@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 #include "device/pocl_work_folder.hpp"
 #include "device/test_results.hpp"
@@ -105,10 +106,16 @@ std::vector<cl_platform_id> platforms() {
   return found;
 }
 
+/// Intel's runtime for CPUs would put several work-items into one vector, beside the vectors that
+/// kernels hold, and builds wrong photon maps that way (docs/testing.md). Call before the first
+/// OpenCL call. What the user set stays.
+void keep_intel_from_vectorizing() { ::setenv("CL_CONFIG_CPU_VECTORIZER_MODE", "1", 0); }
+
 }  // namespace
 
 DeviceList enumerate_devices() {
   prepare_pocl_work_folder();
+  keep_intel_from_vectorizing();
   DeviceList list;
   const auto found = platforms();
   for (std::size_t p = 0; p < found.size(); ++p) {

@@ -44,7 +44,7 @@ TEST_CASE("whatever may change a program's code changes its key") {
   CHECK(keys.size() == 10);
 }
 
-TEST_CASE("PoCL's code generation variables are in its keys, and in no other's") {
+TEST_CASE("Code generation variables of PoCL and of Intel's runtime are in their keys alone") {
   auto pocl = device();
   pocl.is_pocl = true;
   const auto plain = program_key(pocl, "", "s");
@@ -55,6 +55,12 @@ TEST_CASE("PoCL's code generation variables are in its keys, and in no other's")
   ::setenv("POCL_WORK_GROUP_METHOD", "cbs", 1);
   const auto cbs = program_key(pocl, "", "s");
   ::unsetenv("POCL_WORK_GROUP_METHOD");
+  ::setenv("CL_CONFIG_CPU_TARGET_ARCH", "core-avx2", 1);
+  const auto intel = program_key(device(), "", "s");
+  const auto intel_pocl = program_key(pocl, "", "s");
+  ::unsetenv("CL_CONFIG_CPU_TARGET_ARCH");
+  CHECK_FALSE(plain_other == intel);
+  CHECK(plain == intel_pocl);
   CHECK_FALSE(plain == loops);
   CHECK_FALSE(loops == cbs);
   CHECK(plain_other == loops_other);

@@ -24,7 +24,7 @@ run() {
   # device, share the kernels.
   local compiled='' variable name
   for variable in ${variables[@]+"${variables[@]}"}; do
-    case $variable in POCL_*) compiled+=" $variable" ;; esac
+    case $variable in POCL_* | CL_CONFIG_*) compiled+=" $variable" ;; esac
   done
   name=$(printf '%s' "$runtime$vendors$compiled" | cksum | cut -d' ' -f1)
   mkdir -p "$cache/$name"
