@@ -190,7 +190,7 @@ MUTANTS = (
     Mutant("scattered light among caustics, so counted twice", "host/trace/photon_path.cpp",
            "keep_caustics && specular && !straight", "keep_caustics && !straight",
            (("render", "final gathering*"),)),
-    Mutant("photons of all light for those of caustics", "host/render/rendering.cpp",
+    Mutant("photons of all light for those of caustics", "host/render/rendering_maps.cpp",
            "  Maps maps{build(std::move(traced.photons), parameters), {}};",
            "  traced.caustics = traced.photons;\n"
            "  Maps maps{build(std::move(traced.photons), parameters), {}};",
