@@ -159,7 +159,7 @@ MUTANTS = (
            "* sides / area_->density(point.where)", "* sides", (("scene", "[emission]"),)),
     # Measuring
     Mutant("lamps met by sensors' rays counted in full", "host/trace/eye_path.cpp",
-           "return straight ? power_heuristic(other->density, found) : 1.0f;", "return 1.0f;",
+           "return ray.straight ? power_heuristic(other->density, found) : 1.0f;", "return 1.0f;",
            (("measuring", "an area light gives*,in a furnace*"),)),
     Mutant("jackknife without its factor", "host/measuring/grid_statistics.cpp",
            "std::sqrt((count - 1) / count * squares)", "std::sqrt(squares / (count - 1))",

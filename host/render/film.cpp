@@ -57,11 +57,17 @@ void add_row(const LightLayers::Row& row, std::size_t x, PixelSums& sums) {
   }
 }
 
+/// What a hit counts in the illuminance of its pixel.
+float illuminance_weight(const PrimaryHits& hits, std::size_t hit, float sample_weight) {
+  return hits.share.empty() ? sample_weight : sample_weight * hits.share[hit];
+}
+
 void add_hit(const PrimaryHits& hits, std::size_t hit, const Estimates& estimates,
              float sample_weight, PixelSums& sums) {
+  const float weight = illuminance_weight(hits, hit, sample_weight);
   for (std::uint64_t i = estimates.first[hit]; i < estimates.first[hit + 1]; ++i) {
     sums.add(estimates.light[i], hits.throughput[hit] * reflected_radiance(hits, hit, estimates, i),
-             sample_weight * static_cast<float>(luminance(estimates.irradiance[i])));
+             weight * static_cast<float>(luminance(estimates.irradiance[i])));
   }
 }
 
@@ -115,13 +121,14 @@ void add_hits(LightLayers& layers, std::size_t first, std::size_t last, const Pr
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     const std::size_t pixel = hits.pixel[hit];
     if (pixel < first || pixel >= last) continue;
+    const float weight = illuminance_weight(hits, hit, sample_weight);
     for (std::size_t light = 0; light < light_count; ++light) {
       const std::size_t index = hit * light_count + light;
       LightLayers::Layer& layer = layers.layers[light];
       layer.radiance[pixel] +=
           hits.throughput[hit] * reflected_radiance(hits, hit, estimates, index);
       layer.illuminance[pixel] +=
-          sample_weight * static_cast<float>(luminance(estimates.irradiance[index]));
+          weight * static_cast<float>(luminance(estimates.irradiance[index]));
     }
   }
 }

@@ -13,7 +13,8 @@ namespace photile {
 /// Adds a batch to the layers. Each pixel's sums run in the order of the hits, so the picture does
 /// not depend on the number of threads. For layers of many lights it takes 16 bytes per light and
 /// thread.
-///   sample_weight   1 / samples per pixel: what a hit counts in the illuminance of its pixel
+///   sample_weight   1 / samples per pixel: what a whole sample counts in the illuminance of its
+///   pixel
 void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estimates& estimates,
                  float sample_weight);
 

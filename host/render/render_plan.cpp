@@ -192,6 +192,7 @@ PrimaryHitParameters RenderPlan::hits(const Film& film, int passes) const {
   hits.passes = passes;
   hits.direct_rays = used_.direct_rays;  // as the photons are traced
   hits.lobe_rays = used_.gloss == GlossMode::rays;
+  hits.part_at_glass = !gathers();  // which has a number for one hit of each sample
   return hits;
 }
 

@@ -1,7 +1,10 @@
 #include "trace/eye_path.hpp"
 
+#include <algorithm>
 #include <optional>
+#include <utility>
 
+#include "photile/defaults.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/holes.hpp"
 #include "trace/lobe_path.hpp"
@@ -21,10 +24,10 @@ void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const Ey
   found.clear();
   find_direct_light(setup.direct->rays, setup.direct->lamps, point, ray.direction, part,
                     setup.direct->count, samples, found);
-  const float sample_weight = 1.0f / static_cast<float>(setup.parameters->samples_per_pixel);
+  const float weight = ray.share / static_cast<float>(setup.parameters->samples_per_pixel);
   for (const ReceivedLight& light : found) {
     record.direct.push_back({ray.pixel, light.layer, ray.radiance_weight() * light.radiance,
-                             sample_weight * static_cast<float>(luminance(light.irradiance))});
+                             weight * static_cast<float>(luminance(light.irradiance))});
   }
 }
 
@@ -48,13 +51,26 @@ void drop_lobe(const glm::vec3& base, EyeRecord& record) {
   lobe.roughness = 1.0f;
 }
 
+/// Makes `ray` the one that leaves a mirror or glass with this share of its light.
+void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scattered, float share,
+           EyeRay& ray) {
+  ray.throughput *= share * scattered.weight;
+  ray.share *= share;
+  ray.radiance_factor *= scattered.radiance_factor;
+  ray.straight =
+      ray.straight && scattered.direction == ray.direction && material_of(scene, point).thin;
+  ray.direction = scattered.direction;
+  ray.origin = point.origin_towards(ray.direction);
+  ++ray.depth;
+}
+
 }  // namespace
 
 void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
                 EyeRecord& record) {
   const scene_io::Reflectance surface = reflectance(*rays.scene, point);
-  record.hits.push_back(
-      {point.position, point.sided_triangle(), ray.pixel, ray.radiance_weight(), surface.albedo});
+  record.hits.push_back({point.position, point.sided_triangle(), ray.pixel, ray.radiance_weight(),
+                         surface.albedo, ray.share});
   if (!rays.needs.glossy) return;
   const ShadingNormals normals = shading_normals(*rays.scene, point, ray.direction);
   record.glossy.push_back(
@@ -63,22 +79,20 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
 
 std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
                                      EyeRecord& record, const LampTechnique* other,
-                                     const LookSamples* looks) {
+                                     const LookSamples* looks, std::vector<EyeRay>* parted) {
   const Scene& scene = *setup.rays->scene;
   const glm::vec3 start = ray.origin;
-  std::uint32_t holes = 0;
-  bool straight = true;  // but for panes of thin glass, which looking at lamps sees through
   // Lamps seen in mirrors or through refracting glass are found by following alone.
   const auto weight_against = [&](float found) {
-    return straight ? power_heuristic(other->density, found) : 1.0f;
+    return ray.straight ? power_heuristic(other->density, found) : 1.0f;
   };
-  for (int depth = 0;; ++depth) {
-    const bool seen_directly = setup.reflections_only && straight;
+  for (;;) {
+    const bool seen_directly = setup.reflections_only && ray.straight;
     const bool sees_lamps = setup.emitted_radiance != nullptr && !seen_directly &&
-                            (straight || other == nullptr || !other->only);
+                            (ray.straight || other == nullptr || !other->only);
     ++record.rays;
     const auto met =
-        next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, holes);
+        next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, ray.holes);
     if (!met) {
       if (!sees_lamps) return std::nullopt;
       for (const DistantLight& light : *setup.distant) {
@@ -117,15 +131,23 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
       if (!lobe_left) return std::nullopt;
       return EyeEnd{point, ray};
     }
-    if (depth >= setup.parameters->max_specular_depth) return std::nullopt;
-    const RandomBlock numbers = random.block(Purpose::eye_scattering, depth);
-    const Scattered scattered =
-        scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word));
-    ray.throughput *= scattered.weight;
-    ray.radiance_factor *= scattered.radiance_factor;
-    straight = straight && scattered.direction == ray.direction && material_of(scene, point).thin;
-    ray.direction = scattered.direction;
-    ray.origin = point.origin_towards(ray.direction);
+    if (ray.depth >= setup.parameters->max_specular_depth) return std::nullopt;
+    if (parted) {
+      if (const auto parts = both_parts(scene, point, ray.direction)) {
+        const float lesser = std::min(parts->reflectance, 1.0f - parts->reflectance);
+        if (ray.share * lesser >= defaults::least_glass_share) {
+          EyeRay reflected = ray;
+          go_on(scene, point, parts->reflected, parts->reflectance, reflected);
+          go_on(scene, point, parts->transmitted, 1.0f - parts->reflectance, ray);
+          if (parts->reflectance > 0.5f) std::swap(ray, reflected);
+          parted->push_back(reflected);
+          continue;
+        }
+      }
+    }
+    const RandomBlock numbers = random.block(Purpose::eye_scattering, ray.depth);
+    go_on(scene, point, scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word)),
+          1.0f, ray);
   }
 }
 
@@ -141,19 +163,28 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   const glm::dvec2 offset = sobol_point(index, of_pixel.block(Purpose::film_position, 0));
   const auto place = static_cast<std::uint32_t>(sample * film.runs / film.samples_per_pixel) +
                      pixel * static_cast<std::uint32_t>(film.runs);
-  const EyeRay ray{setup.eye, glm::vec3((*setup.film)(x + offset.x, y + offset.y)),
-                   glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), place};
+  EyeRay ray{setup.eye, glm::vec3((*setup.film)(x + offset.x, y + offset.y)),
+             glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), place};
   std::optional<LookSamples> looks;
   if (setup.direct) {
     looks.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
   }
-  auto end = follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr);
-  if (!end) return;
-  const OpaqueBsdf bsdf(*setup.rays->scene, end->point, end->ray.direction);
-  const auto rays = static_cast<std::uint32_t>(bsdf.lobe_rays());
-  end->ray.throughput /= static_cast<float>(rays);
-  for (std::uint32_t i = 0; i < rays; ++i) {
-    follow_lobes(setup, *end, {of_pixel, index * rays + i, path, i}, reflected);
+  thread_local std::vector<EyeRay> waiting;  // empty but within this function
+  std::vector<EyeRay>* const parted = film.part_at_glass ? &waiting : nullptr;
+  for (;;) {
+    auto end =
+        follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr, parted);
+    if (end) {
+      const OpaqueBsdf bsdf(*setup.rays->scene, end->point, end->ray.direction);
+      const auto rays = static_cast<std::uint32_t>(bsdf.lobe_rays());
+      end->ray.throughput /= static_cast<float>(rays);
+      for (std::uint32_t i = 0; i < rays; ++i) {
+        follow_lobes(setup, *end, {of_pixel, index * rays + i, path, i}, reflected);
+      }
+    }
+    if (!parted || parted->empty()) return;
+    ray = parted->back();
+    parted->pop_back();
   }
 }
 

@@ -25,6 +25,7 @@ struct EyeHit {
   std::uint32_t pixel;
   glm::vec3 throughput;
   glm::vec3 diffuse_albedo;
+  float share;
 };
 
 /// And what more in scenes with a glossy surface.
@@ -78,6 +79,10 @@ struct EyeRay {
   glm::vec3 throughput;
   std::uint32_t pixel;
   double radiance_factor = 1;  ///< of Scattered, so far; not in `throughput`
+  int depth = 0;               ///< mirrors and glass so far
+  bool straight = true;        ///< but for panes of thin glass, which looking at lamps sees through
+  std::uint32_t holes = 0;     ///< that were looked at so far
+  float share = 1.0f;          ///< of its sample, where glass parted it
 
   /// What radiance that the ray meets counts at its start.
   glm::vec3 radiance_weight() const { return throughput * static_cast<float>(radiance_factor); }
@@ -106,9 +111,14 @@ struct LampTechnique {
 /// `record`. Lamps that `other` would find as well are weighed by the power heuristic. Returns the
 /// surface if it has a lobe that rays are to follow, which is not in the hit then.
 ///   looks   of the hit, where EyeSetup::direct is set
+///   parted  where given, glass whose lesser part counts enough (defaults::least_glass_share) does
+///           not choose between reflection and refraction: that part is appended here, to be
+///           followed as well ("splitting": Arvo and Kirk, "Particle transport and image
+///           synthesis", 1990)
 std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
                                      EyeRecord& record, const LampTechnique* other = nullptr,
-                                     const LookSamples* looks = nullptr);
+                                     const LookSamples* looks = nullptr,
+                                     std::vector<EyeRay>* parted = nullptr);
 
 /// Traces sample `sample` of pixel (x, y) and appends what it sees.
 ///   record      of the surface that the pixel sees

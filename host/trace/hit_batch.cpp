@@ -11,6 +11,10 @@ namespace photile::trace {
 PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace> places) {
   const bool glossy = std::any_of(records.begin(), records.end(),
                                   [](const EyeRecord& record) { return !record.glossy.empty(); });
+  const bool parted = std::any_of(records.begin(), records.end(), [](const EyeRecord& record) {
+    return std::any_of(record.hits.begin(), record.hits.end(),
+                       [](const EyeHit& hit) { return hit.share != 1.0f; });
+  });
   PrimaryHits hits;
   hits.position.resize(places.size());
   hits.sided_triangle.resize(places.size());
@@ -21,6 +25,7 @@ PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace
     hits.outgoing.resize(places.size());
     hits.lobe.resize(places.size());
   }
+  if (parted) hits.share.resize(places.size());
   tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
     const EyeRecord& record = records[places[i].record];
     const EyeHit& hit = record.hits[places[i].index];
@@ -29,6 +34,7 @@ PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace
     hits.pixel[i] = hit.pixel;
     hits.throughput[i] = hit.throughput;
     hits.diffuse_albedo[i] = hit.diffuse_albedo;
+    if (parted) hits.share[i] = hit.share;
     if (!glossy) return;
     hits.outgoing[i] = record.glossy[places[i].index].outgoing;
     hits.lobe[i] = record.glossy[places[i].index].lobe;

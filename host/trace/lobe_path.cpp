@@ -57,10 +57,8 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     if (!(look.direction.uniform(choice_word) < survival)) return;  // no other use for the word
     weight /= survival;
     left *= weight;
-    EyeRay ray = end.ray;
-    ray.origin = end.point.origin_towards(*direction);
-    ray.direction = *direction;
-    ray.throughput *= weight;
+    const EyeRay ray{end.point.origin_towards(*direction), *direction, end.ray.throughput * weight,
+                     end.ray.pixel, end.ray.radiance_factor};
     const LampTechnique other{setup.lobes->lamps, density};
     const LookSamples looks(sample.of_pixel, sample.index * looks_at_hits, surface);
     const RandomStream random(setup.parameters->seed, sample.path,

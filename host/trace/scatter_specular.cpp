@@ -26,16 +26,32 @@ glm::vec3 refract(const glm::vec3& direction, const glm::vec3& normal, float cos
 /// A pane has two faces and light bounces between them: R = F + (1 - F)^2 F / (1 - F^2).
 float pane_reflectance(float fresnel) { return 2.0f * fresnel / (1.0f + fresnel); }
 
+/// A smooth dielectric as a ray meets it.
+struct Boundary {
+  Boundary(const Material& material, bool entering, const glm::vec3& direction,
+           const glm::vec3& normal)
+      : cos_i(std::min(1.0f, -glm::dot(direction, normal))),
+        eta(entering || material.thin ? 1.0f / material.index_of_refraction
+                                      : material.index_of_refraction),
+        reflectance(fresnel_dielectric(cos_i, eta)) {
+    if (material.thin) reflectance = pane_reflectance(reflectance);
+  }
+  glm::vec3 transmitted(const Material& material, const glm::vec3& direction,
+                        const glm::vec3& normal) const {
+    return material.thin ? direction : refract(direction, normal, cos_i, eta);
+  }
+
+  float cos_i;
+  float eta;
+  float reflectance;
+};
+
 Deflected deflect(const Material& material, bool entering, const glm::vec3& direction,
                   const glm::vec3& normal, float choice) {
   if (material.interaction == Interaction::mirror) return {reflect(direction, normal), false};
-  const float cos_i = std::min(1.0f, -glm::dot(direction, normal));
-  const float eta = entering || material.thin ? 1.0f / material.index_of_refraction
-                                              : material.index_of_refraction;
-  const float fresnel = fresnel_dielectric(cos_i, eta);
-  if (choice < (material.thin ? pane_reflectance(fresnel) : fresnel))
-    return {reflect(direction, normal), false};
-  return {material.thin ? direction : refract(direction, normal, cos_i, eta), true};
+  const Boundary boundary(material, entering, direction, normal);
+  if (choice < boundary.reflectance) return {reflect(direction, normal), false};
+  return {boundary.transmitted(material, direction, normal), true};
 }
 
 /// Of a ray that the surface transmits: (index where it comes from / index beyond)^2.
@@ -77,6 +93,24 @@ Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
   if (material.interaction == Interaction::mirror) return {deflected.direction, material.specular};
   if (!deflected.transmitted) return {deflected.direction, glm::vec3(1.0f)};
   return {deflected.direction, material.transmission, radiance_factor(material, entering)};
+}
+
+std::optional<PartedLight> both_parts(const Scene& scene, const SurfacePoint& point,
+                                      const glm::vec3& direction) {
+  const Material& material = material_of(scene, point);
+  if (material.interaction == Interaction::mirror) return std::nullopt;
+  const bool entering = on_front(scene, point);
+  const glm::vec3 normal = shading_normals(scene, point, direction).seen;
+  const Boundary boundary(material, entering, direction, normal);
+  if (!(boundary.reflectance > 0.0f && boundary.reflectance < 1.0f)) return std::nullopt;
+  const glm::vec3 back = reflect(direction, normal);
+  const glm::vec3 on = boundary.transmitted(material, direction, normal);
+  if (glm::dot(back, point.normal) < 0.0f || !(glm::dot(on, point.normal) < 0.0f)) {
+    return std::nullopt;
+  }
+  return PartedLight{boundary.reflectance,
+                     {back, glm::vec3(1.0f)},
+                     {on, material.transmission, radiance_factor(material, entering)}};
 }
 
 }  // namespace photile::trace

@@ -64,6 +64,11 @@ inline constexpr double weight_of_parents = 3;
 /// on the foot of a wall.
 inline constexpr float sight_lift = 0x1p-9f, sight_left_out = 0x1p-5f;
 
+// Glass
+/// Share of a pixel's sample from which on reflection and refraction are both followed. Glass seen
+/// from the front reflects 0.04.
+inline constexpr float least_glass_share = 0.02f;
+
 // Gloss by rays
 /// What counts less than this in its sample goes on by chance, and counts this much then. A smooth
 /// dielectric seen from the front reflects 0.04, and is always followed.

@@ -31,6 +31,7 @@ struct PrimaryHits {
   std::vector<glm::vec3> diffuse_albedo;  ///< textured Lambertian albedo at the hit
   std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
   std::vector<HitLobe> lobe;              ///< empty unless glossy
+  std::vector<float> share;  ///< of its sample, for its illuminance; empty where all are whole
 
   std::size_t size() const { return position.size(); }
 };
@@ -60,6 +61,9 @@ struct PrimaryHitParameters {
   /// Lobes that are narrow, or reflect little, are left out of hits: a ray of each hit follows them
   /// to the surfaces that they reflect (PrimaryHitBatch::reflected).
   bool lobe_rays = false;
+  /// Samples follow both the reflection and the refraction of glass, as long as both count
+  /// (defaults::least_glass_share), and have a hit for each; else one by chance.
+  bool part_at_glass = false;
   /// > 1: samples of a pixel belong to so many runs, and the pixel of what they see is that of a
   /// film so many times as wide, y * width * runs + x * runs + run. Runs follow each other in the
   /// sequence of the pixel.

@@ -191,6 +191,38 @@ TEST_CASE("A window splits rays by Fresnel's probability and conserves their num
       counts_agree({reflected, all - reflected}, {all * reflectance, all * (1 - reflectance)}));
 }
 
+TEST_CASE("A window parts rays by Fresnel's shares, where it is not left to chance") {
+  const bool thin = GENERATE(true, false);
+  SceneBuilder builder;
+  const std::uint32_t pane = builder.add(glass(1.5f, thin));
+  builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, pane);
+  if (!thin) builder.grid({-2, -2, 0.5f}, {0, 4, 0}, {4, 0, 0}, 1, pane);
+  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, grey);
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
+  Camera camera = camera_above();
+  camera.vertical_field_of_view = 0.01;  // normal incidence
+  const int samples = 32 * 32 * 16;
+  const PrimaryHits hits =
+      trace_primary_hits(
+          RayScene(builder.build()), camera,
+          {.width = 32, .height = 32, .samples_per_pixel = 16, .part_at_glass = true}, 0, 32)
+          .hits;
+  double reflected = 0, transmitted = 0, shares = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    (hits.position[i].z > 2 ? reflected : transmitted) += double{hits.throughput[i].x} * 16;
+    shares += double{hits.share[i]};
+  }
+  const double reflectance = 2 * 0.04 / 1.04;
+  // A slab reflects at once, or after one way in it and back; where that is seen again is left to
+  // chance, and 0.04 x 0.04 of the light.
+  const double left_to_chance = thin ? 1e-6 : 2.5e-4;
+  CHECK(reflected / samples == Approx(reflectance).margin(left_to_chance));
+  CHECK(transmitted / samples == Approx(1 - reflectance).margin(left_to_chance));
+  CHECK(hits.size() == static_cast<std::size_t>(thin ? 2 : 3) * samples);
+  CHECK(shares / samples == Approx(1).epsilon(1e-6));
+}
+
 TEST_CASE("A lamp under water is seen from above by its radiance over the squared index") {
   const bool closed = GENERATE(false, true);  // the lamp is in the glass, or below it
   SceneBuilder builder;

@@ -30,7 +30,7 @@ bool same_bits(const PrimaryHits& a, const PrimaryHits& b) {
   return same_bits(a.position, b.position) && same_bits(a.sided_triangle, b.sided_triangle) &&
          same_bits(a.pixel, b.pixel) && same_bits(a.throughput, b.throughput) &&
          same_bits(a.diffuse_albedo, b.diffuse_albedo) && same_bits(a.outgoing, b.outgoing) &&
-         same_bits(a.lobe, b.lobe);
+         same_bits(a.lobe, b.lobe) && same_bits(a.share, b.share);
 }
 
 /// A room with glossy walls, a mirror and glass, whose floor is covered twice: of two triangles in
