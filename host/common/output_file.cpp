@@ -74,7 +74,12 @@ int create_locked(const fs::path& file) {
 OutputFile::OutputFile(const fs::path& file) : file_(file), target_(target_of(file)) {
   refuse_input(file);
   struct stat status {};
-  if (::stat(target_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+  const bool found = ::stat(target_.c_str(), &status) == 0;
+  if (!found && errno == ELOOP) {
+    throw OutputError(fmt::format(
+        "{}: is a symbolic link that leads to itself; name a file to be written", file.string()));
+  }
+  if (found && !S_ISREG(status.st_mode)) {
     throw OutputError(
         fmt::format("{}: is not a regular file; name a file to be written", file.string()));
   }

@@ -10,6 +10,10 @@
 namespace photile {
 namespace {
 
+/// What floats hold with all their digits.
+constexpr double least_positive = std::numeric_limits<float>::min(),
+                 most_positive = std::numeric_limits<float>::max();
+
 std::string range_text(const WholeNumbers& range) {
   return range.most == std::numeric_limits<std::uint64_t>::max()
              ? fmt::format("a whole number from {}", range.least)
@@ -35,7 +39,7 @@ bool holds(const Numbers& range, double value) {
 }
 
 bool holds(const PositiveNumbers&, double value) {
-  return value >= std::numeric_limits<float>::min() && value <= std::numeric_limits<float>::max();
+  return value >= least_positive && value <= most_positive;
 }
 
 bool holds(const Words& range, std::string_view value) {
@@ -66,7 +70,12 @@ bool contains(const ValueRange& range, const SettingValue& value) {
 }
 
 std::string out_of_range(std::string_view found, const ValueRange& range) {
-  return fmt::format("'{}' is not {}", found, text_of(range));
+  // Else 1e300 would be called no number greater than 0.
+  const std::string bounds =
+      std::holds_alternative<PositiveNumbers>(range)
+          ? fmt::format(", from {:.2g} to {:.2g}", least_positive, most_positive)
+          : "";
+  return fmt::format("'{}' is not {}{}", found, text_of(range), bounds);
 }
 
 }  // namespace photile

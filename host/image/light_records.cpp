@@ -91,6 +91,19 @@ double read_efficacy(const PictureHeader& image) {
   return *efficacy;
 }
 
+/// An attribute has one type: one of the same name that another program left is replaced.
+void set_attribute(PictureHeader& image, const std::string& name, std::string text) {
+  image.numbers.erase(name);
+  image.matrices.erase(name);
+  image.attributes[name] = std::move(text);
+}
+
+void set_attribute(PictureHeader& image, const std::string& name, float number) {
+  image.attributes.erase(name);
+  image.matrices.erase(name);
+  image.numbers[name] = number;
+}
+
 }  // namespace
 
 void write_light_records(PictureHeader& image, const LightRecords& records) {
@@ -106,16 +119,17 @@ void write_light_records(PictureHeader& image, const LightRecords& records) {
     lights.push_back(std::move(record));
   }
   // A name that is no UTF-8 must not stop the picture from being written.
-  image.attributes[lights_attribute] = lights.dump(-1, ' ', false, Json::error_handler_t::replace);
+  set_attribute(image, lights_attribute,
+                lights.dump(-1, ' ', false, Json::error_handler_t::replace));
   if (!records.relative.empty()) return;
 
   const double lumen_per_watt = records.mix.lumen_per_watt;
   const bool watts =
       !records.mix.lights.empty() && records.mix.lights.front().unit == PowerUnit::watt;
-  image.attributes["photile.units"] = watts ? "W/(m2 sr)" : "cd/m2";
-  image.attributes["photile.illuminance.units"] = "lux";
-  image.attributes[efficacy_attribute] = fmt::format("{}", lumen_per_watt);
-  image.numbers["whiteLuminance"] = watts ? static_cast<float>(lumen_per_watt) : 1.0f;
+  set_attribute(image, "photile.units", watts ? "W/(m2 sr)" : "cd/m2");
+  set_attribute(image, "photile.illuminance.units", "lux");
+  set_attribute(image, efficacy_attribute, fmt::format("{}", lumen_per_watt));
+  set_attribute(image, "whiteLuminance", watts ? static_cast<float>(lumen_per_watt) : 1.0f);
 }
 
 LightRecords read_light_records(const PictureHeader& image) {

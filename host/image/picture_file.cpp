@@ -50,15 +50,18 @@ void take_attributes(const Imf::Header& header, PictureHeader& image) {
   for (auto i = header.begin(); i != header.end(); ++i) {
     const std::string name = i.name();
     const Imf::Attribute& value = i.attribute();
-    if (describes_storage(name)) continue;
+    // Parts may hold attributes of one name and two types: the first counts.
+    const bool taken = image.attributes.contains(name) || image.matrices.contains(name) ||
+                       image.numbers.contains(name);
+    if (taken || describes_storage(name)) continue;
     if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&value)) {
-      image.attributes.try_emplace(name, text->value());
+      image.attributes.emplace(name, text->value());
     } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&value)) {
       std::copy_n(&matrix->value()[0][0], 16, image.matrices[name].begin());
     } else if (const auto* real = dynamic_cast<const Imf::FloatAttribute*>(&value)) {
-      image.numbers.try_emplace(name, real->value());
+      image.numbers.emplace(name, real->value());
     } else if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&value)) {
-      image.numbers.try_emplace(name, static_cast<float>(integer->value()));
+      image.numbers.emplace(name, static_cast<float>(integer->value()));
     }
   }
 }

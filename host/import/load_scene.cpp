@@ -79,13 +79,19 @@ void finish_directional_lights(const ImportContext& context) {
   }
 }
 
-void check_powers(const Scene& scene) {
+void check_powers(const Scene& scene, double emissive_scale) {
   for (const Light& light : scene.lights) {
     if (light.power <= limits::max_light_power) continue;
-    throw InputError(fmt::format("{}: light '{}' emits {:.4g} {}; the limit is {:g}; give it less",
-                                 scene.source.string(), light.name, light.power,
-                                 scene.unit == PowerUnit::lumen ? "lm" : "W",
-                                 limits::max_light_power));
+    const std::string emits =
+        fmt::format("light '{}' emits {:.4g} {}; the limit is {:g}", light.name, light.power,
+                    scene.unit == PowerUnit::lumen ? "lm" : "W", limits::max_light_power);
+    const bool by_scale = light.kind == LightKind::area && emissive_scale > 1.0 &&
+                          light.power / emissive_scale <= limits::max_light_power;
+    if (by_scale) {
+      throw UsageError(
+          fmt::format("emissive scale of {:g}: {}; give a smaller one", emissive_scale, emits));
+    }
+    throw InputError(fmt::format("{}: {}; give it less", scene.source.string(), emits));
   }
 }
 
@@ -141,7 +147,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   make_light_names_unique(scene.lights);
   apply_profiles(scene, options.profiles, warnings);
   apply_temperatures(scene, options.temperatures);
-  check_powers(scene);
+  check_powers(scene, options.emissive_scale);
   group_lights(scene, options.light_groups);
   if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
   scene.report.warnings = warnings.lines();

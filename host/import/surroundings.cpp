@@ -15,10 +15,24 @@
 namespace photile::scene_io {
 namespace {
 
+constexpr const char* fewer_lux = "give fewer lux";
+
 void check_lux(const char* light, double lux) {
   if (lux > 0.0 && lux <= limits::max_illuminance) return;
   throw UsageError(fmt::format("{} of {:g} lux: give more than 0, and {:g} at most", light, lux,
                                limits::max_illuminance));
+}
+
+/// Of the light that was added last; `what` has said too much of it.
+template <class Refusal>
+void check_flux(const Scene& scene, const std::string& what, const char* remedy) {
+  const Light& light = scene.lights.back();
+  if (light.power <= limits::max_light_power) return;
+  throw Refusal(
+      fmt::format("{}: light '{}' emits {:.4g} {} into a scene of this size; the limit is "
+                  "{:g}; {}",
+                  what, light.name, light.power, scene.unit == PowerUnit::lumen ? "lm" : "W",
+                  limits::max_light_power, remedy));
 }
 
 /// What is given in lux, in the scene's unit.
@@ -46,6 +60,7 @@ void add_picture(const EnvironmentPicture& picture, Scene& scene) {
                                  picture.file.string()));
   }
   add_environment_light("environment", std::move(map), scene);
+  check_flux<InputError>(scene, picture.file.string(), "give a smaller scale");
 }
 
 void add_sun(const Sun& sun, const SceneLoadOptions& options, Scene& scene) {
@@ -59,6 +74,7 @@ void add_sun(const Sun& sun, const SceneLoadOptions& options, Scene& scene) {
   light.power = distant_flux(in_scene_unit(sun.illuminance, scene, options), diameter,
                              bounding_sphere(scene).radius);
   scene.lights.push_back(std::move(light));
+  check_flux<UsageError>(scene, fmt::format("sun of {:g} lux", sun.illuminance), fewer_lux);
 }
 
 void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
@@ -72,6 +88,7 @@ void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
   }
   add_environment_light(
       "sky", sky_map(sky.kind, in_scene_unit(sky.illuminance, scene, options), to_sun), scene);
+  check_flux<UsageError>(scene, fmt::format("sky of {:g} lux", sky.illuminance), fewer_lux);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Layers as other programs write them; the files are made with OpenImageIO alone.
 #include <OpenImageIO/imageio.h>
 
+#include "photile/layered_picture.hpp"
 #include "picture_support.hpp"
 
 namespace photile::test {
@@ -11,6 +12,7 @@ constexpr int columns = 4, rows = 3, pixels = columns * rows;
 struct Part {
   std::string name;
   std::vector<std::string> channels;
+  enum { text, number } take = text;  ///< type of an attribute
 };
 
 /// The value that channel c of the file holds at a pixel; c counts over all parts.
@@ -23,6 +25,7 @@ void write_parts(const std::filesystem::path& file, const std::vector<Part>& par
                          OIIO::TypeDesc::FLOAT);
     spec.channelnames = part.channels;
     if (!part.name.empty()) spec.attribute("oiio:subimagename", part.name);
+    part.take == Part::text ? spec.attribute("take", "first") : spec.attribute("take", 2.0f);
     specs.push_back(spec);
   }
   const auto output = OIIO::ImageOutput::create(file.string());
@@ -146,6 +149,18 @@ TEST_CASE("a light group with blanks and non-ASCII letters keeps its name") {
   const TemporaryFolder folder;
   write_parts(folder / "a.exr", {{"", rgb("ViewLayer.Combined_Küche 1")}});
   CHECK(read_light_mix(read_image(folder / "a.exr")).lights.at(0).name == "Küche 1");
+}
+
+TEST_CASE(
+    "of an attribute of two types in two parts the first counts, and the picture is written") {
+  const TemporaryFolder folder;
+  write_parts(folder / "a.exr",
+              {{"", rgb("Combined_key")}, {"b", rgb("Combined_b"), Part::number}});
+  const PictureHeader read = read_header(folder / "a.exr");
+  CHECK(read.attributes.at("take") == "first");
+  CHECK(!read.numbers.contains("take"));
+  write_exr(folder / "b.exr", *relit_picture(folder / "a.exr", {}));
+  CHECK(read_header(folder / "b.exr").attributes.at("take") == "first");
 }
 
 TEST_CASE("parts that share channel names are told apart by their part's name") {

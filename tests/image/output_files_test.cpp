@@ -93,8 +93,11 @@ TEST_CASE("a symbolic link to what does not exist is followed, or refused and ke
   write_exr(folder / "to_file.exr", noise(4, 4));
   CHECK(fs::is_symlink(folder / "to_file.exr"));
   CHECK(read_image(folder / "there.exr").width == 4);
-  refusal(write_exr, folder / "to_nowhere.exr");
-  CHECK(fs::is_symlink(folder / "to_nowhere.exr"));
+  fs::create_symlink("to_itself.exr", folder / "to_itself.exr");
+  for (const char* name : {"to_nowhere.exr", "to_itself.exr"}) {
+    refusal(write_exr, folder / name);
+    CHECK(fs::is_symlink(folder / name));
+  }
 }
 
 TEST_CASE("a folder that is missing, is a file, or cannot be written is refused by name") {

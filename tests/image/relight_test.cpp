@@ -1,3 +1,4 @@
+#include "photile/layered_picture.hpp"
 #include "picture_support.hpp"
 
 namespace photile::test {
@@ -75,6 +76,23 @@ TEST_CASE("relighting without changes keeps every bit and the attributes") {
   CHECK(relit.attributes == picture.attributes);
   CHECK(relit.matrices == picture.matrices);
   CHECK(relit.numbers == picture.numbers);
+}
+
+TEST_CASE("attributes that another program gave another type are replaced by photile's own") {
+  const TemporaryFolder folder;
+  Image picture = mix_layers(random_layers(3, 3, names), mix_of(10.0, 20.0, 0.0));
+  picture.numbers.erase("whiteLuminance");
+  picture.attributes["whiteLuminance"] = "bright";
+  picture.attributes.erase("photile.units");
+  picture.numbers["photile.units"] = 3;
+  picture.attributes.erase("photile.illuminance.units");
+  picture.matrices["photile.illuminance.units"] = {};
+  write_exr(folder / "foreign.exr", picture);
+  write_exr(folder / "relit.exr", *relit_picture(folder / "foreign.exr", parse({"lamp=x2"})));
+  const PictureHeader relit = read_header(folder / "relit.exr");
+  CHECK(relit.numbers.at("whiteLuminance") == 1.0f);
+  CHECK(relit.attributes.at("photile.units") == "cd/m2");
+  CHECK(relit.attributes.at("photile.illuminance.units") == "lux");
 }
 
 TEST_CASE("turning up a light that is off in the picture is refused by name") {

@@ -54,7 +54,8 @@ TEST_CASE("offsets, strides and counts that are no whole numbers are refused by 
       {"/accessors/0/bufferView", "accessors[0].bufferView"},
       {"/accessors/0/componentType", "accessors[0].componentType"},
   }));
-  const std::string value = GENERATE("-1", "1.5", "-0.0", "1e300", "true", "null", R"("12")");
+  const std::string value =
+      GENERATE("-1", "1.5", "-0.0", "1e300", "true", "null", R"("12")", "[]", R"({"a": 1})");
   CAPTURE(place, value);
   CHECK_THAT(refusal_with(place, value),
              Contains("scene.gltf: malformed glTF: " + shown + " is ") &&

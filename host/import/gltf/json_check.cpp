@@ -84,7 +84,7 @@ class JsonCheck {
     bool array, free;            ///< free: not of the format itself
     std::string key = {};        ///< of the member that comes, in an object
     std::uint64_t elements = 0;  ///< begun, in an array
-    /// Whether what comes is a whole number, unless an array or object, and up to which.
+    /// Whether what comes is a whole number, and up to which.
     bool whole = false;
     std::uint64_t most = most_size;
   };
@@ -94,7 +94,7 @@ class JsonCheck {
     return n < levels_.size() ? std::string_view(levels_[levels_.size() - 1 - n].key) : "";
   }
 
-  /// Whether what comes has to be a whole number, unless it is an array or object.
+  /// Whether what comes has to be a whole number.
   bool is_whole() const { return !levels_.empty() && levels_.back().whole; }
 
   void set_wanted(Level& level) const {
@@ -136,6 +136,7 @@ class JsonCheck {
   }
 
   bool enter(bool array) {
+    if (is_whole()) return value(false, array ? "a list" : "an object");
     begin_value();
     if (levels_.size() == 2 && !check_count()) return false;
     Level level{.array = array, .free = false};

@@ -10,6 +10,8 @@
 
 #include "import/gltf/document.hpp"
 #include "import/photometry/photometric_text.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
 #include "scene/light_names.hpp"
 
 namespace photile::scene_io {
@@ -107,6 +109,10 @@ std::optional<Panel> panel_of(const tinygltf::Model& model, int number, ImportCo
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(number)];
   for (const LuminousPanel& asked : context.options.panels) {
     if (asked.node != node.name) continue;
+    if (asked.lumens > limits::max_light_power) {
+      throw UsageError(fmt::format("area light '{}' of {:g} lm: the limit is {:g}; give it less",
+                                   asked.node, asked.lumens, limits::max_light_power));
+    }
     Panel panel{asked.width, asked.height};
     panel.radiance = radiance_of(asked.lumens, panel);
     return panel;
