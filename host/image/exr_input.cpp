@@ -134,15 +134,16 @@ const Imf::Header& ExrInput::header(std::size_t part) const {
   return file_->header(static_cast<int>(part));
 }
 
-void ExrInput::read(std::size_t part, int first, int end, std::vector<float>& planes) {
+void ExrInput::read(std::size_t part, int first, int end, std::size_t channels,
+                    std::vector<float>& planes) {
   const Part& shape = parts_[part];
   const auto width = static_cast<std::size_t>(shape.width);
   const std::size_t plane = static_cast<std::size_t>(end - first) * width;
-  planes.resize(plane * shape.channels.size());
+  planes.resize(plane * channels);
   const Imath::Box2i& window = header(part).dataWindow();
   const Imath::V2i corner(window.min.x, window.min.y + first);
   Imf::FrameBuffer buffer;
-  for (std::size_t i = 0; i < shape.channels.size(); ++i) {
+  for (std::size_t i = 0; i < channels; ++i) {
     buffer.insert(shape.channels[i],
                   Imf::Slice::Make(Imf::FLOAT, &planes[i * plane], corner, shape.width, end - first,
                                    sizeof(float), sizeof(float) * width));

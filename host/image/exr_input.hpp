@@ -30,9 +30,9 @@ class ExrInput {
   const std::vector<Part>& parts() const { return parts_; }
   const Imf::Header& header(std::size_t part) const;
 
-  /// Rows [first, end) of all channels of a part: channels x rows x width.
+  /// Rows [first, end) of the first channels of a part: channels x rows x width.
   /// Errors: those of OpenEXR where the file is damaged.
-  void read(std::size_t part, int first, int end, std::vector<float>& planes);
+  void read(std::size_t part, int first, int end, std::size_t channels, std::vector<float>& planes);
 
  private:
   struct File;

@@ -270,7 +270,8 @@ std::vector<float> PictureFile::read(std::size_t channel, int first, int end) {
 void PictureFile::decode(int part, int first, int end) {
   block_.part = -1;  // nothing is kept of a failure
   if (exr_) {
-    exr_->read(static_cast<std::size_t>(part), first, end, block_.planes);
+    const auto index = static_cast<std::size_t>(part);
+    exr_->read(index, first, end, exr_->parts()[index].channels.size(), block_.planes);
   } else {
     const std::vector<unsigned char> bytes = bytes_of(file_);
     block_.planes = planes_of(open_picture(file_.string(), bytes)->decode(), largest_part_);

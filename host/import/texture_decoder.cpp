@@ -141,6 +141,7 @@ RadiancePicture decode_radiance(const std::string& name, std::span<const unsigne
   }
   const auto pixels = std::get<std::vector<float>>(picture.decode());
   RadiancePicture result{shape.width, shape.height, {}};
+  result.texels.reserve(pixels.size() / static_cast<std::size_t>(shape.channels));
   for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(shape.channels)) {
     const std::array<float, 4> pixel = rgba(&pixels[i], shape.channels, 1.0f);
     result.texels.emplace_back(pixel[0], pixel[1], pixel[2]);

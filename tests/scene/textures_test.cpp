@@ -9,6 +9,7 @@
 
 #include "import/texture_decoder.hpp"
 #include "import/warnings.hpp"
+#include "photile/image.hpp"
 #include "scene_files.hpp"
 #include "srgb_oracle.hpp"
 
@@ -90,6 +91,26 @@ TEST_CASE("linear pictures are clamped and come back within half an 8-bit step")
   CHECK(first.g == Approx(0.1).margin(0.005));
   CHECK(first.b == Approx(0.9).margin(0.005));
   CHECK(second == glm::vec3(0, 0, 1));
+}
+
+TEST_CASE("channels of an EXR behind its picture are no alpha") {
+  const SceneFolderOnDisk folder;
+  Image picture;
+  picture.width = picture.height = 1;
+  for (const auto& [channel, value] :
+       {std::pair{"R", 1.0f}, {"G", 0.5f}, {"B", 0.0f}, {"Z", 0.0f}}) {
+    picture.add(channel).assign(1, value);
+  }
+  write_exr(folder.path / "t.exr", picture);
+  const auto alpha = [&] {
+    return scene_io::decode_texture("t.exr", read_bytes(folder.path / "t.exr"))
+        .sample_data({0.5f, 0.5f})
+        .a;
+  };
+  CHECK(alpha() == 1.0f);
+  picture.add("A").assign(1, 0.25f);
+  write_exr(folder.path / "t.exr", picture);
+  CHECK(alpha() == Approx(0.25).margin(0.005));
 }
 
 TEST_CASE("a PNG header that promises too many pixels is refused before decoding") {
