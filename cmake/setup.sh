@@ -49,6 +49,10 @@ oclgrind               | tests: checks every memory access of the kernels
 libopenimageio-dev     | tests: another reader and writer of pictures
 openimageio-tools      | tests: reads the pictures as other tools do
 python3                | scripts of the docs and the tests
+python3-dev            | the Python module
+pybind11-dev           | the same
+python3-pytest         | its tests
+python3-pandas         | an example of it: tables
 python3-numpy          | the script that compares pictures with references
 python3-openimageio    | the same: reads and writes pictures
 END

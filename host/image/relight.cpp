@@ -53,6 +53,18 @@ struct Factors {
   float illuminance = 1.0f;
 };
 
+Factors factors_of(const MixedLight& before, const MixedLight& now, bool illuminance) {
+  Factors factors;
+  for (int i = 0; i < 3; ++i) {
+    factors.rgb[static_cast<std::size_t>(i)] =
+        static_cast<float>(ratio(now.power * now.tint[i], before.power * before.tint[i], now.name));
+  }
+  if (illuminance) {
+    factors.illuminance = static_cast<float>(ratio(now.power, before.power, now.name));
+  }
+  return factors;
+}
+
 class RelitPicture : public LayeredPicture {
  public:
   RelitPicture(std::unique_ptr<image::ChannelRows> source, const std::vector<LightChange>& changes)
@@ -100,18 +112,6 @@ class RelitPicture : public LayeredPicture {
  private:
   /// Rows that are held at a time.
   static constexpr int rows_per_read = 64;
-
-  static Factors factors_of(const MixedLight& before, const MixedLight& now, bool illuminance) {
-    Factors factors;
-    for (int i = 0; i < 3; ++i) {
-      factors.rgb[static_cast<std::size_t>(i)] = static_cast<float>(
-          ratio(now.power * now.tint[i], before.power * before.tint[i], now.name));
-    }
-    if (illuminance) {
-      factors.illuminance = static_cast<float>(ratio(now.power, before.power, now.name));
-    }
-    return factors;
-  }
 
   LightRows read_rgb(std::size_t light, int first, int end) const {
     LightRows rows;
@@ -170,6 +170,42 @@ std::unique_ptr<LayeredPicture> relit_picture(const std::filesystem::path& file,
     return std::make_unique<RelitPicture>(std::make_unique<image::ImageRows>(std::move(image)),
                                           changes);
   });
+}
+
+LightLayers light_layers(const Image& layered) {
+  const image::LayerSet set = image::find_layers(layered);
+  std::vector<std::string> names;
+  for (const MixedLight& light : set.records.mix.lights) names.push_back(light.name);
+  LightLayers layers = LightLayers(layered.width, layered.height, names).dense();
+  for (std::size_t l = 0; l < names.size(); ++l) {
+    const MixedLight& light = set.records.mix.lights[l];
+    const image::LayerChannels& channels = set.channels[l];
+    for (int c = 0; c < 3; ++c) {
+      const double power = light.power * light.tint[c];
+      if (power == 0) continue;
+      const auto& plane = layered.channels[channels.rgb[static_cast<std::size_t>(c)]];
+      for (std::size_t p = 0; p < plane.size(); ++p) {
+        layers.layers[l].radiance[p][c] = static_cast<float>(plane[p] / power);
+      }
+    }
+    if (!channels.illuminance || light.power == 0) continue;
+    const auto& plane = layered.channels[*channels.illuminance];
+    const double lux = light.unit == PowerUnit::lumen ? 1.0 : set.records.mix.lumen_per_watt;
+    for (std::size_t p = 0; p < plane.size(); ++p) {
+      layers.layers[l].illuminance[p] = static_cast<float>(plane[p] / (light.power * lux));
+    }
+  }
+  return layers;
+}
+
+LightMix relit_mix(const PictureHeader& layered, const std::vector<LightChange>& changes) {
+  const image::LayerSet before = image::find_layers(layered);
+  image::LightRecords now = before.records;
+  apply_to_picture(now, changes);
+  for (std::size_t i = 0; i < now.mix.lights.size(); ++i) {
+    factors_of(before.records.mix.lights[i], now.mix.lights[i], false);  // refuses
+  }
+  return std::move(now.mix);
 }
 
 LightMix read_light_mix(const std::filesystem::path& file) {

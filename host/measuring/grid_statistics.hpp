@@ -4,13 +4,9 @@
 #include <span>
 #include <vector>
 
-namespace photile::measuring {
+#include "photile/illuminance.hpp"
 
-/// A value and the standard deviation that it would have over measurements like this one.
-struct Measured {
-  double value = 0;
-  double standard_error = 0;
-};
+namespace photile::measuring {
 
 /// Mean and standard error at each sensor.
 ///   repeats   per repeat the values of all sensors; at least 2

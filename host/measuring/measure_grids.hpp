@@ -7,17 +7,9 @@
 #include "measuring/readings.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/device.hpp"
-#include "photile/sensors.hpp"
+#include "photile/illuminance.hpp"
 
 namespace photile::measuring {
-
-struct MeasuringParameters {
-  GatherParameters gathering;
-  int repeats = defaults::measuring_repeats;  ///< >= 2, each with its own seed
-  bool by_paths = false;                      ///< and not by photon maps
-  RenderParameters photons;                   ///< of each repeat, whose seeds follow from this one
-  double maintenance = defaults::maintenance_factor;  ///< factor of all values
-};
 
 /// The readings of all grids' sensors, one grid after the other. Errors: those of `gather`.
 Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,

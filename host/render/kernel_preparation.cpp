@@ -10,8 +10,8 @@
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
+#include "photile/settings.hpp"
 #include "render/map_estimators.hpp"
-#include "render/quality.hpp"
 
 namespace photile {
 namespace {

@@ -1,5 +1,4 @@
-#include "render/quality.hpp"
-
+#include "photile/settings.hpp"
 #include "render/setting.hpp"
 
 namespace photile {

@@ -69,6 +69,14 @@ void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<gl
 /// or a colour that it lacks there, is to be turned up.
 Image relight(const Image& layered, const std::vector<LightChange>& changes);
 
+/// The layers of a picture at a power of 1, for combine_layers with relit_mix: to change lights as
+/// often as a slider moves. A light that is off in the picture, or lacks a colour there, is black.
+/// Errors: InputError as `relight`.
+LightLayers light_layers(const Image& layered);
+
+/// The lights of a picture after changes, with the refusals of `relight`.
+LightMix relit_mix(const PictureHeader& layered, const std::vector<LightChange>& changes);
+
 /// The lights of a picture, as `relight` sees them. Errors: InputError as `relight`, naming the
 /// file.
 LightMix read_light_mix(const PictureHeader& layered);

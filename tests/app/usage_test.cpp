@@ -4,7 +4,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
-#include "render/quality.hpp"
+#include "photile/settings.hpp"
 
 namespace photile::test {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
+#include "photile/settings.hpp"
 #include "render/neighbour_choice.hpp"
-#include "render/quality.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"
 #include "tile_means.hpp"

@@ -30,7 +30,7 @@ namespace {
 struct MeasureOptions {
   RenderOptions render;
   MeasureOutputOptions outputs;
-  measuring::MeasuringParameters parameters;
+  MeasuringParameters parameters;
   std::vector<std::string> planes;  ///< files
   std::vector<std::string> points;  ///< files
   std::string height;               ///< of the working plane; "" = none
@@ -127,7 +127,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   tell_scene(scene, mix, progress);
   warn(scene, grids, progress);
 
-  measuring::MeasuringParameters& parameters = options.parameters;
+  MeasuringParameters& parameters = options.parameters;
   parameters.photons = render.parameters;
   parameters.by_paths = render.integrator == Integrator::path;
   if (options.cylindrical) parameters.gathering.response = SensorResponse::cylindrical;
@@ -186,7 +186,7 @@ void add_places(CLI::App& command, MeasureOptions& options) {
 }
 
 void add_measuring(CLI::App& command, MeasureOptions& options) {
-  measuring::MeasuringParameters& parameters = options.parameters;
+  MeasuringParameters& parameters = options.parameters;
   command
       .add_flag("--cylindrical", options.cylindrical,
                 "cylindrical illuminance round each point's direction, which points up")

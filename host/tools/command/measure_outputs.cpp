@@ -24,7 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json run_json(const measuring::Measurement& measurement, const MeasureRun& run) {
-  const measuring::MeasuringParameters& parameters = run.parameters;
+  const MeasuringParameters& parameters = run.parameters;
   const bool planar = parameters.gathering.response == SensorResponse::planar;
   Json record{{"photile", version_number()},
               {"scene", run.scene.source.filename().string()},
@@ -49,7 +49,7 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run) 
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run) {
-  const measuring::MeasuringParameters& parameters = run.parameters;
+  const MeasuringParameters& parameters = run.parameters;
   const bool planar = parameters.gathering.response == SensorResponse::planar;
   std::vector<std::pair<std::string, std::string>> facts{
       {"illuminance", planar ? "planar" : "cylindrical"},

@@ -31,7 +31,7 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
 struct MeasureRun {
   const Scene& scene;
   const LightMix& mix;
-  const measuring::MeasuringParameters& parameters;
+  const MeasuringParameters& parameters;
 };
 
 class MeasureOutputs {

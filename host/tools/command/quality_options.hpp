@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "photile/renderer.hpp"
+#include "photile/settings.hpp"
 #include "photile/statistics.hpp"
-#include "render/quality.hpp"
 #include "tools/trade/quality_target.hpp"
 
 namespace CLI {

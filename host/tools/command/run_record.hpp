@@ -11,8 +11,8 @@
 #include "photile/image.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/renderer.hpp"
+#include "photile/settings.hpp"
 #include "photile/statistics.hpp"
-#include "render/quality.hpp"
 #include "tools/trade/quality_target.hpp"
 
 namespace photile::app {

@@ -5,7 +5,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/quiet_progress.hpp"
-#include "render/quality.hpp"
+#include "photile/settings.hpp"
 #include "tools/trade/trade.hpp"
 
 namespace photile {

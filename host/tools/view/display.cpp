@@ -129,7 +129,7 @@ std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, i
   for (std::size_t light = 0; light < readings.size(); ++light) {
     if (!(photons[light] > 0) || !(frame.noise.photons > 0)) continue;
     const double relative = 1 / std::sqrt(frame.noise.photons * photons[light] / all);
-    for (measuring::Measured* part : {&readings[light].luminance, &readings[light].illuminance}) {
+    for (Measured* part : {&readings[light].luminance, &readings[light].illuminance}) {
       part->standard_error = relative * part->value;
     }
   }
@@ -137,7 +137,7 @@ std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, i
 }
 
 LightReading sum_of(std::span<const LightReading> readings) {
-  const auto add = [](measuring::Measured& sum, const measuring::Measured& part) {
+  const auto add = [](Measured& sum, const Measured& part) {
     sum.value += part.value;
     sum.standard_error = std::hypot(sum.standard_error, part.standard_error);
   };

@@ -51,8 +51,8 @@ std::vector<glm::vec3> scales_of(const LightMix& mix);
 
 /// What one light gives to a pixel.
 struct LightReading {
-  measuring::Measured luminance;    ///< cd/m2 or W/(m2 sr)
-  measuring::Measured illuminance;  ///< lux
+  Measured luminance;    ///< cd/m2 or W/(m2 sr)
+  Measured illuminance;  ///< lux
 };
 
 /// Per light of the mix, at a pixel of the frame. Standard errors are those of photons that fall

@@ -67,7 +67,7 @@ void draw_frame_times(const PanelReadings& readings) {
   }
 }
 
-std::string text_of(const measuring::Measured& measured) {
+std::string text_of(const Measured& measured) {
   return measuring::text_with_error(measured.value, measured.standard_error);
 }
 

@@ -1,0 +1,54 @@
+"""photile: photon mapping on OpenCL devices, a layer of the picture per light.
+
+Scenes come from files (`load`) or arrays (`Scene`). `trace` gives photons as arrays, `PhotonMaps`
+finds the nearest of any photons on an OpenCL device, `render` gives a picture with a layer for each
+light, `Picture.mix` changes its lights, `relight` those of a file, and `measure` tells lux at
+points. Metres, lumens (or watts), cd/m2 and lux throughout; arrays are numpy's.
+
+Long work releases the interpreter's lock, hears Ctrl-C and tells a callback how far it is.
+"""
+
+from typing import Any
+
+from . import _photile
+from .errors import (
+    DeviceError,
+    DeviceMemoryError,
+    Error,
+    InputError,
+    KernelBuildError,
+    OutputError,
+    UsageError,
+)
+from .measuring import Illuminance, grid, measure
+from .photons import NONE, STRUCTURES, Neighbours, PhotonMaps, Photons, trace
+from .pictures import SETTINGS, LightState, Picture, png_of, relight, render
+from .scenes import Camera, Light, Material, Scene, load
+
+__version__: str = _photile.version
+
+__all__ = [
+    "NONE", "SETTINGS", "STRUCTURES", "Camera", "DeviceError", "DeviceMemoryError", "Error",
+    "Illuminance", "InputError", "KernelBuildError", "Light", "LightState", "Material",
+    "Neighbours", "OutputError", "PhotonMaps", "Photons", "Picture", "Scene", "UsageError",
+    "devices", "grid", "load", "measure", "png_of", "relight", "render", "test_devices", "trace",
+]
+
+
+def devices() -> list[dict[str, Any]]:
+    """The OpenCL devices: id, name, platform, type, memory and more of each."""
+    return _photile.devices()
+
+
+def test_devices(device: str = "") -> str:
+    """Whether devices compute right, in seconds: "" where they do, else what does not, in a line.
+
+    Parameters
+    ----------
+    device : str
+        As for `render`.
+    """
+    return _photile.test_devices(device)
+
+
+test_devices.__test__ = False  # type: ignore[attr-defined]  # it is no test of pytest's

@@ -1,0 +1,149 @@
+"""Illuminance at points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _photile
+from .errors import InputError
+from .scenes import Scene
+
+__all__ = ["Illuminance", "grid", "measure"]
+
+
+@dataclass(frozen=True)
+class Illuminance:
+    """Lux at points, with standard errors.
+
+    Attributes
+    ----------
+    points, normals : (m, 3) arrays
+        Where it was measured.
+    lux, error : (m,) arrays
+        Of all lights together, and its standard error.
+    by_light, error_by_light : dicts of (m,) arrays
+        The same of each light layer.
+    """
+
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    lux: NDArray[np.float64]
+    error: NDArray[np.float64]
+    by_light: dict[str, NDArray[np.float64]]
+    error_by_light: dict[str, NDArray[np.float64]]
+
+    def __len__(self) -> int:
+        return len(self.lux)
+
+    def columns(self) -> dict[str, NDArray[np.float64]]:
+        """Columns of a table: ``pandas.DataFrame(measured.columns())``."""
+        columns = {axis: self.points[:, i] for i, axis in enumerate("xyz")}
+        return {**columns, "lux": self.lux, "error": self.error, **self.by_light}
+
+
+def grid(
+    corner: ArrayLike, along: ArrayLike, across: ArrayLike, columns: int, rows: int
+) -> NDArray[np.float64]:
+    """Middles of the equal cells of a rectangle.
+
+    Parameters
+    ----------
+    corner : (3,) floats
+        Metres.
+    along, across : (3,) floats
+        Its whole sides, metres.
+    columns, rows : int
+        Cells along the first and the second.
+
+    Returns
+    -------
+    (rows * columns, 3) array
+        Metres, row by row.
+    """
+    u, v = (np.arange(count) + 0.5 for count in (columns, rows))
+    places = np.stack(np.meshgrid(u / columns, v / rows), axis=-1).reshape(-1, 2)
+    sides = np.stack([np.asarray(along, float), np.asarray(across, float)])
+    middles: NDArray[np.float64] = np.asarray(corner, float) + places @ sides
+    return middles
+
+
+def measure(
+    scene: Scene,
+    points: ArrayLike,
+    normals: ArrayLike = (0.0, 1.0, 0.0),
+    *,
+    rays: int = 1024,
+    repeats: int = 8,
+    cylindrical: bool = False,
+    integrator: str = "photon-map",
+    maintenance: float = 1.0,
+    lumen_per_watt: float = _photile.lumen_per_watt,
+    device: str = "",
+    progress: _photile.Callback = None,
+    **settings: Union[int, float, str],
+) -> Illuminance:
+    """Illuminance at points in the air or on surfaces, as `photile measure` prints it.
+
+    Parameters
+    ----------
+    scene : Scene
+    points : (m, 3) array
+        Metres in the file's world.
+    normals : (m, 3) or (3,) array
+        Directions that they face, of any length; y is upwards in glTF files.
+    rays : int
+        Of each point and repeat.
+    repeats : int
+        At least 2: measurements with random numbers of their own, whose scatter is the standard
+        error.
+    cylindrical : bool
+        Cylindrical illuminance round the normals (EN 12464-1).
+    integrator : {"photon-map", "path"}
+        Paths are unbiased and need no OpenCL device.
+    maintenance : float
+        Factor of all values, for ageing and dirt.
+    lumen_per_watt : float
+        What turns watts into lumens.
+    device, progress
+        As for `render`.
+    **settings
+        By their names in ``photile.SETTINGS``, such as ``photons_emitted=200_000``.
+
+    Returns
+    -------
+    Illuminance
+
+    Raises
+    ------
+    InputError
+        Arrays do not fit, or hold numbers that are none.
+    UsageError
+        Names the setting and its range.
+    """
+    where = np.ascontiguousarray(points, np.float64)
+    if where.ndim != 2 or where.shape[1] != 3:
+        raise InputError(f"points: the array has shape {where.shape}, and has to have (m, 3)")
+    if not np.all(np.isfinite(where)):
+        row = int(np.argmin(np.all(np.isfinite(where), axis=1)))
+        raise InputError(f"points: number {row} is no place")
+    facing = np.asarray(normals, np.float64)
+    if facing.shape == (3,):
+        facing = np.broadcast_to(facing, where.shape)
+    facing = np.ascontiguousarray(facing)
+    found = _photile.measure(
+        scene._core, where, facing, rays, repeats, cylindrical, integrator, maintenance,
+        lumen_per_watt, dict(settings), device, progress,
+    )
+    total, lights = found[0], found[1:]
+    return Illuminance(
+        where,
+        facing,
+        total[1],
+        total[2],
+        {name: lux for name, lux, _ in lights},
+        {name: error for name, _, error in lights},
+    )

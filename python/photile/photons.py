@@ -1,0 +1,398 @@
+"""Photons of a scene, and photon maps over photons of any origin."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _photile
+from .errors import InputError, UsageError
+from .scenes import Scene
+
+__all__ = ["NONE", "Neighbours", "PhotonMaps", "Photons", "STRUCTURES", "trace"]
+
+NONE: int = _photile.none
+"""What stands where there is no neighbour, no light, no material."""
+
+STRUCTURES: tuple[str, ...] = _photile.structures
+"""Names of the structures of `PhotonMaps`; all find the same neighbours."""
+
+_POINTS_AT_A_TIME = 1 << 20  # Ctrl-C is heard between them
+
+
+class Photons:
+    """Photons where they land: arrays of one length, views into the library's memory.
+
+    They are in the order of their triangles. A photon's flux is that of a light layer at a power
+    of 1 (lumen or watt): multiply by ``photons.power[photons.light]`` for the scene's own lights.
+
+    ``numpy.asarray(photons)`` copies them into one structured array with the fields position, flux,
+    light, triangle and side.
+
+    Attributes
+    ----------
+    scene : Scene
+        What they lie on.
+    """
+
+    scene: Scene
+
+    def __init__(self, scene: Scene, core: _photile.Photons) -> None:
+        self.scene = scene
+        self._core = core
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    @property
+    def position(self) -> NDArray[np.float32]:
+        """(n, 3) metres from ``scene.origin``; a read-only view."""
+        return self._core.position
+
+    @property
+    def flux(self) -> NDArray[np.float32]:
+        """(n, 3) linear RGB, where the photon's light layer emits 1; a read-only view."""
+        return self._core.flux
+
+    @property
+    def incoming(self) -> Optional[NDArray[np.float32]]:
+        """(n, 3) unit vectors to where they came from, or None in scenes without glossy surfaces."""
+        incoming = self._core.incoming
+        return incoming if len(incoming) == len(self) else None
+
+    @property
+    def light(self) -> NDArray[np.uint16]:
+        """(n,) numbers of `layer_names`; a read-only view where there are several."""
+        light = self._core.light
+        return light if len(light) == len(self) else np.zeros(len(self), np.uint16)
+
+    @property
+    def triangle(self) -> NDArray[np.uint32]:
+        """(n,) rows of ``scene.triangles``."""
+        return self._core.sided_triangle >> np.uint32(1)
+
+    @property
+    def side(self) -> NDArray[np.uint8]:
+        """(n,) 0 or 1: the side of the triangle; 0 is that of the stored corners' normal."""
+        return (self._core.sided_triangle & np.uint32(1)).astype(np.uint8)
+
+    @property
+    def normal(self) -> NDArray[np.float32]:
+        """(n, 3) unit normals of the sides that they lie on."""
+        return self._core.normals(self.scene._core)
+
+    @property
+    def layer_names(self) -> list[str]:
+        """Names of the light layers."""
+        return list(self.scene.layers)
+
+    @property
+    def power(self) -> NDArray[np.float64]:
+        """(layers,) powers of the scene's lights, lumens or watts."""
+        return np.array(list(self.scene.layers.values()))
+
+    @property
+    def emitted(self) -> NDArray[np.uint64]:
+        """(lights,) paths that were started."""
+        return np.array(self._core.emitted_per_light, np.uint64)
+
+    @property
+    def absorbed_flux(self) -> NDArray[np.float64]:
+        """(lights,) share of each light's flux that surfaces absorbed."""
+        return np.array(self._core.absorbed_flux_per_light)
+
+    @property
+    def escaped_flux(self) -> NDArray[np.float64]:
+        """(lights,) share of each light's flux that left the scene."""
+        return np.array(self._core.escaped_flux_per_light)
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
+        fields = np.empty(
+            len(self),
+            [("position", "<f4", 3), ("flux", "<f4", 3), ("light", "<u2"), ("triangle", "<u4"),
+             ("side", "u1")],
+        )
+        for name in fields.dtype.names or ():
+            fields[name] = getattr(self, name)
+        return fields if dtype is None else fields.astype(dtype)
+
+    def __repr__(self) -> str:
+        return f"<photile.Photons: {len(self)} of {len(self.layer_names)} light layers>"
+
+
+def trace(
+    scene: Scene,
+    photons: int = 1_000_000,
+    seed: int = 1,
+    *,
+    quota: str = "balanced",
+    store_direct: bool = True,
+    max_path_length: int = 64,
+    progress: _photile.Callback = None,
+) -> Photons:
+    """Follow photon paths from the lights, and store a photon at each opaque surface they meet.
+
+    Parameters
+    ----------
+    scene : Scene
+    photons : int
+        Paths over all lights; each leaves several photons.
+    seed : int
+        The same seed gives the same photons, bit for bit, on any number of threads.
+    quota : {"balanced", "power", "equal"}
+        How lights share the paths: half by power and half equally, by power, equally.
+    store_direct : bool
+        Whether photons that come straight from a lamp are stored.
+    max_path_length : int
+        Surfaces that a path meets at most.
+    progress : callable, optional
+        See `render`.
+
+    Returns
+    -------
+    Photons
+
+    Raises
+    ------
+    UsageError
+        A number is out of its range.
+    KeyboardInterrupt
+        Ctrl-C was pressed.
+    """
+    if photons < 0 or seed < 0:
+        raise UsageError("photons and seed: negative numbers are out of their range")
+    core = _photile.trace(
+        scene._core, photons, seed, quota, store_direct, max_path_length, progress
+    )
+    return Photons(scene, core)
+
+
+class Neighbours(NamedTuple):
+    """The k nearest photons of each point, nearest first."""
+
+    photons: NDArray[np.uint32]
+    """(points, k) rows of the photons; ``photile.NONE`` beyond the last."""
+    squared_distance: NDArray[np.float32]
+    """(points, k) square metres; infinity beyond the last."""
+
+    @property
+    def distance(self) -> NDArray[np.float32]:
+        """(points, k) metres."""
+        return np.sqrt(self.squared_distance)
+
+
+class PhotonMaps:
+    """Photon maps on an OpenCL device, over photons of any origin.
+
+    Parameters
+    ----------
+    photons : Photons or (n, 3) array
+        Of `trace`, with their normals, flux and lights; or positions in metres.
+    flux : (n, 3) array, optional
+        Linear RGB of each photon; 1 where it is left out.
+    normals : (n, 3) array, optional
+        Unit normals of the surfaces below. Where photons have some, points have to, and only
+        photons count whose normals differ by at most ``angle``.
+    lights : (n,) array of ints below 65536, optional
+        A light of each; densities are told for each.
+    radius : float, optional
+        Metres: no neighbour is farther away. Left out: twice the median distance to the
+        ``neighbours``-th photon.
+    neighbours : int
+        That the radius is chosen for.
+    angle : float
+        Degrees, in [0, 180].
+    structure : str
+        One of ``photile.STRUCTURES``; all find the same neighbours.
+    photons_per_cell : float
+        That uniform grids aim at.
+    device : str
+        As for `render`; of several the first.
+    progress : callable, optional
+        See `render`.
+
+    Raises
+    ------
+    InputError
+        Arrays do not fit, or hold numbers that are none; the first wrong photon is named.
+    UsageError
+        A parameter is out of its range.
+    DeviceMemoryError
+        The device's memory does not suffice.
+    """
+
+    def __init__(
+        self,
+        photons: Union[Photons, ArrayLike],
+        flux: Optional[ArrayLike] = None,
+        *,
+        normals: Optional[ArrayLike] = None,
+        lights: Optional[ArrayLike] = None,
+        radius: Optional[float] = None,
+        neighbours: int = 50,
+        angle: float = 60.0,
+        structure: str = "uniform-grid",
+        photons_per_cell: float = 4.0,
+        device: str = "",
+        progress: _photile.Callback = None,
+    ) -> None:
+        self._origin: Optional[NDArray[np.float64]] = None
+        if isinstance(photons, Photons):
+            positions = photons.position
+            flux = photons.flux if flux is None else flux
+            normals = photons.normal if normals is None else normals
+            if lights is None and len(photons.layer_names) > 1:
+                lights = photons.light
+            if any(photons.scene.origin):
+                self._origin = np.array(photons.scene.origin)
+        else:
+            positions = _rows(photons, "positions")
+        of_photons = None if lights is None else _lights(lights)
+        self._has_normals = normals is not None
+        if radius is not None and not radius > 0:
+            raise UsageError(f"radius: '{radius}' is not a number above 0")
+        self._core = _photile.PhotonMaps(
+            positions,
+            None if normals is None else _rows(normals, "normals"),
+            None if flux is None else _rows(flux, "flux"),
+            of_photons,
+            radius or 0.0,
+            neighbours,
+            angle,
+            structure,
+            photons_per_cell,
+            device,
+            progress,
+        )
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    @property
+    def radius(self) -> float:
+        """Metres: no neighbour is farther away."""
+        return self._core.radius
+
+    @property
+    def statistics(self) -> dict[str, Any]:
+        """Photons, references (entries over all maps), maps, cells, nodes, bytes and seconds."""
+        return self._core.statistics()
+
+    def nearest(
+        self,
+        points: ArrayLike,
+        normals: Optional[ArrayLike] = None,
+        k: int = 50,
+        radius: Optional[float] = None,
+    ) -> Neighbours:
+        """The k nearest photons of each point, in space.
+
+        Parameters
+        ----------
+        points : (m, 3) array
+            Metres, in the file's world where the photons are those of a scene.
+        normals : (m, 3) array, optional
+            Unit; needed where the photons have normals.
+        k : int
+            Neighbours of each point.
+        radius : float, optional
+            Metres, at most that of the maps, which it is where it is left out.
+
+        Returns
+        -------
+        Neighbours
+            Of photons at the same distance, to a few roundings of a float, any may be the last.
+
+        Raises
+        ------
+        InputError
+            Arrays do not fit, or hold numbers that are none.
+        UsageError
+            k or the radius is out of its range.
+        """
+        where, facing = self._queries(points, normals)
+        parts = [
+            self._core.nearest(where[part], None if facing is None else facing[part], k,
+                               radius or 0.0)
+            for part in _parts(len(where))
+        ]
+        return Neighbours(_joined([p[0] for p in parts]), _joined([p[1] for p in parts]))
+
+    def irradiance(
+        self,
+        points: ArrayLike,
+        normals: Optional[ArrayLike] = None,
+        k: int = 50,
+        radius: Optional[float] = None,
+        kernel: str = "constant",
+    ) -> NDArray[np.float32]:
+        """Flux per area at each point: that of its neighbours over the disc that they fill.
+
+        Parameters
+        ----------
+        points, normals, k, radius
+            As for `nearest`.
+        kernel : {"constant", "cone", "epanechnikov"}
+            What each photon counts, by its distance.
+
+        Returns
+        -------
+        (m, lights, 3) array
+            Linear RGB, in the unit of the flux per square metre; one light where photons have none
+            of their own. Of photons of `trace` each light layer is at a power of 1:
+            ``irradiance @ ...`` with ``photons.power`` gives the scene's.
+
+        Raises
+        ------
+        InputError, UsageError
+            As for `nearest`.
+        """
+        where, facing = self._queries(points, normals)
+        return _joined(
+            [
+                self._core.irradiance(where[part], None if facing is None else facing[part], k,
+                                      radius or 0.0, kernel)
+                for part in _parts(len(where))
+            ]
+        )
+
+    def _queries(
+        self, points: ArrayLike, normals: Optional[ArrayLike]
+    ) -> tuple[NDArray[np.float32], Optional[NDArray[np.float32]]]:
+        if self._origin is not None:
+            points = np.asarray(points, np.float64) - self._origin
+        where = _rows(points, "points")
+        if normals is None and self._has_normals:
+            raise InputError("normals: the photons have some, so points need theirs")
+        return where, None if normals is None else _rows(normals, "normals")
+
+    def __repr__(self) -> str:
+        return f"<photile.PhotonMaps: {len(self)} photons, radius {self.radius:.4g} m>"
+
+
+def _rows(values: ArrayLike, name: str) -> NDArray[np.float32]:
+    """A C-contiguous (n, 3) array of floats: the same one where it is such."""
+    array = np.ascontiguousarray(values, np.float32)
+    if array.ndim == 1 and array.size == 3:
+        array = array.reshape(1, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise InputError(f"{name}: the array has shape {array.shape}, and has to have (n, 3)")
+    return array
+
+
+def _lights(values: ArrayLike) -> NDArray[np.uint16]:
+    array = np.asarray(values)
+    if array.dtype.kind not in "iu" or (array.size and (array.min() < 0 or array.max() > 0xFFFF)):
+        raise InputError("lights: the array has to hold whole numbers from 0 to 65535")
+    return np.ascontiguousarray(array, np.uint16)
+
+
+def _parts(count: int) -> list[slice]:
+    starts = range(0, max(count, 1), _POINTS_AT_A_TIME)
+    return [slice(start, start + _POINTS_AT_A_TIME) for start in starts]
+
+
+def _joined(parts: list[NDArray[Any]]) -> NDArray[Any]:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)

@@ -1,0 +1,320 @@
+"""Pictures with a layer for each light."""
+
+from __future__ import annotations
+
+import io
+import os
+import struct
+import zlib
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _photile
+from .errors import UsageError
+from .scenes import Camera, Scene
+
+__all__ = ["Changes", "LightState", "Picture", "SETTINGS", "relight", "render"]
+
+SETTINGS: tuple[str, ...] = tuple(_photile.setting_names())
+"""Names of the settings that `render` and `measure` take; docs/settings.md says what they are."""
+
+Change = Union[float, str]
+Changes = Optional[Mapping[str, Change]]
+
+
+class LightState(NamedTuple):
+    """A light layer as it is in a picture."""
+
+    power: float
+    """In `unit`."""
+    unit: str
+    """"lumen" or "watt"."""
+    color: tuple[float, float, float]
+    """Linear RGB of the light itself; luminance 1."""
+    tint: tuple[float, float, float]
+    """What multiplies its layer on top."""
+    members: list[str]
+    """Lights of a group; none of a light alone."""
+
+
+class Picture(Mapping[str, NDArray[np.float32]]):
+    """Layers by the names of their lights, each at the light's power.
+
+    ``picture["desk_lamp"]`` is a new array of shape (height, width, 3): linear RGB with Rec.709
+    primaries, cd/m2 (or W/(m2 sr) in scenes of watts), row 0 at the top. `unit_layer` is a view at
+    a power of 1. Layers add up to `mix`.
+
+    Changes of lights are a mapping of names to a factor of the power (``2``, ``0.5``, ``0``), or to
+    text as `photile relight` has it: ``"1500lm"``, ``"x2"``, ``"2700K"``, ``"#ffb070"``, ``"off"``.
+    """
+
+    def __init__(self, core: _photile.Picture, changes: Changes = None) -> None:
+        self._core = core
+        self._changes = _listed(changes)
+        self._core.lights(self._changes)  # refuses what cannot be done
+
+    @property
+    def width(self) -> int:
+        """Pixels."""
+        return self._core.width
+
+    @property
+    def height(self) -> int:
+        """Pixels."""
+        return self._core.height
+
+    @property
+    def lights(self) -> dict[str, LightState]:
+        """Powers and colours by layer."""
+        return {
+            row["name"]: LightState(
+                row["power"], row["unit"], row["color"], row["tint"], row["members"]
+            )
+            for row in self._core.lights(self._changes)
+        }
+
+    @property
+    def statistics(self) -> list[dict[str, Any]]:
+        """What each stage of the rendering cost: seconds, processor seconds, bytes, figures."""
+        return self._core.statistics
+
+    def __getitem__(self, light: str) -> NDArray[np.float32]:
+        layer = self._core.unit_layer(light)
+        state = self.lights[light]
+        return layer * (state.power * np.array(state.tint)).astype(np.float32)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.lights)
+
+    def __len__(self) -> int:
+        return len(self.lights)
+
+    def unit_layer(self, light: str) -> NDArray[np.float32]:
+        """(height, width, 3) radiance where the light's power is 1; a read-only view."""
+        return self._core.unit_layer(light)
+
+    def illuminance(self, light: Optional[str] = None) -> NDArray[np.float32]:
+        """(height, width) lux of the surfaces seen, of one light or of all together."""
+        if light is None:
+            total = np.zeros((self.height, self.width), np.float32)
+            for name in self:
+                total += self.illuminance(name)
+            return total
+        layer = self._core.unit_illuminance(light)
+        state = self.lights[light]
+        lumens = 1.0 if state.unit == "lumen" else self._core.lumen_per_watt
+        return layer * np.float32(state.power * lumens)
+
+    def mix(self, changes: Changes = None) -> NDArray[np.float32]:
+        """The picture with other lights, in the time that it takes to add its layers.
+
+        Parameters
+        ----------
+        changes : mapping of names to factors or text, optional
+            See the class.
+
+        Returns
+        -------
+        (height, width, 3) array
+            Linear RGB, cd/m2 or W/(m2 sr).
+
+        Raises
+        ------
+        UsageError
+            There is no such light, the value is no change of one, or a light that is off in a
+            picture of a file is to be turned up.
+        """
+        return self._core.mix(self._changes + _listed(changes))
+
+    def relit(self, changes: Changes) -> Picture:
+        """The same layers with other lights; nothing is copied. Errors as for `mix`."""
+        picture = Picture(self._core)
+        picture._changes = self._changes + _listed(changes)
+        picture._core.lights(picture._changes)
+        return picture
+
+    def display(
+        self,
+        changes: Changes = None,
+        *,
+        exposure: float = 0.0,
+        automatic: bool = True,
+        view: str = "neutral",
+    ) -> NDArray[np.uint8]:
+        """The picture as a screen shows it.
+
+        Parameters
+        ----------
+        changes : mapping, optional
+            See the class.
+        exposure : float
+            Stops, on top of the automatic exposure.
+        automatic : bool
+            Scale so that the log-average luminance becomes mid grey; else 1 cd/m2 is white.
+        view : {"neutral", "standard"}
+            Khronos PBR Neutral, or the sRGB curve alone.
+
+        Returns
+        -------
+        (height, width, 3) array of uint8
+            sRGB.
+        """
+        linear = self._core.displayed(self._changes + _listed(changes), exposure, automatic, view)
+        curve = np.where(
+            linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055
+        )
+        return (np.clip(curve, 0, 1) * 255 + 0.5).astype(np.uint8)
+
+    def save(
+        self,
+        file: Union[str, os.PathLike[str]],
+        changes: Changes = None,
+        *,
+        exposure: float = 0.0,
+        automatic: bool = True,
+        view: str = "neutral",
+    ) -> None:
+        """Write an EXR with all layers, or a PNG.
+
+        Parameters
+        ----------
+        file : path
+            Ends in .exr or .png.
+        changes : mapping, optional
+            See the class.
+        exposure, automatic, view
+            Of a PNG, as for `display`.
+
+        Raises
+        ------
+        OutputError
+            It cannot be written; an existing file is kept then.
+        UsageError
+            The name ends otherwise.
+        """
+        name, all_changes = os.fspath(file), self._changes + _listed(changes)
+        if name.lower().endswith(".exr"):
+            self._core.save_exr(name, all_changes)
+        elif name.lower().endswith(".png"):
+            self._core.save_png(name, all_changes, exposure, automatic, view)
+        else:
+            raise UsageError(f"{name}: a picture is written as .exr or .png")
+
+    def _repr_png_(self) -> bytes:
+        """What Jupyter shows."""
+        return png_of(self.display())
+
+    def __repr__(self) -> str:
+        return f"<photile.Picture: {self.width} x {self.height}, {len(self)} light layers>"
+
+
+def png_of(pixels: NDArray[np.uint8]) -> bytes:
+    """A PNG of (height, width, 3) sRGB values, such as those of `Picture.display`."""
+    height, width, _ = pixels.shape
+    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], axis=1)
+    file = io.BytesIO(b"")
+    file.write(b"\x89PNG\r\n\x1a\n")
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    for name, data in ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 6)), (b"IEND", b"")):
+        file.write(struct.pack(">I", len(data)) + name + data)
+        file.write(struct.pack(">I", zlib.crc32(name + data)))
+    return file.getvalue()
+
+
+def _listed(changes: Changes) -> _photile.Changes:
+    """As the extension takes them."""
+    return [
+        (name, value if isinstance(value, str) else f"x{float(value)!r}")
+        for name, value in (changes or {}).items()
+    ]
+
+
+def render(
+    scene: Scene,
+    camera: Union[None, int, str, Camera] = None,
+    *,
+    size: Optional[tuple[int, int]] = None,
+    quality: str = "good",
+    integrator: str = "photon-map",
+    lumen_per_watt: float = _photile.lumen_per_watt,
+    device: str = "",
+    progress: _photile.Callback = None,
+    **settings: Union[int, float, str],
+) -> Picture:
+    """Render a picture with a layer for each light.
+
+    Parameters
+    ----------
+    scene : Scene
+    camera : Camera, str or int, optional
+        One of its own, or one of the scene by name or number; the first where it is left out.
+    size : (width, height), optional
+        Pixels; 512 x 384, or as wide as the camera says.
+    quality : {"draft", "good", "final"}
+        Settings that belong together; those given by name come on top.
+    integrator : {"photon-map", "path"}
+        Paths are unbiased and need no OpenCL device; their noise is settled by samples_per_pixel.
+    lumen_per_watt : float
+        What turns watts into lumens.
+    device : str
+        An OpenCL device, or several, as `photile devices` lists them: "" is the best; else
+        "0:0", "cpu", "gpu", a part of a name, or "all".
+    progress : callable, optional
+        ``progress(stage, done, total, unit)`` is called a few times a second in the calling thread.
+        What it raises stops the work and is raised here, once it has stopped. Notes to the user go
+        to the logger "photile".
+    **settings
+        By their names in ``photile.SETTINGS``: ``photons_emitted=100_000``, ``neighbours=80``,
+        ``seed=7``, ``structure="kdtree-2d"``.
+
+    Returns
+    -------
+    Picture
+
+    Raises
+    ------
+    UsageError
+        Names the setting and its range, or the camera.
+    DeviceError
+        There is no such device, or it failed.
+    KeyboardInterrupt
+        Ctrl-C was pressed.
+    """
+    core = _photile.render(
+        scene._core,
+        scene._camera(camera),
+        size,
+        integrator,
+        {"quality": quality, **settings},
+        lumen_per_watt,
+        device,
+        progress,
+    )
+    return Picture(core)
+
+
+def relight(file: Union[str, os.PathLike[str]], changes: Changes = None) -> Picture:
+    """Read a picture with light layers, of photile, Blender or Arnold, and change its lights.
+
+    Parameters
+    ----------
+    file : path
+        An EXR whose layers are called ``Combined_<light>`` or ``RGBA_<light>``.
+    changes : mapping, optional
+        See `Picture`.
+
+    Returns
+    -------
+    Picture
+
+    Raises
+    ------
+    InputError
+        Names the file, which is missing, damaged or has no light layers.
+    UsageError
+        There is no such light, or one that is off in the file is to be turned up.
+    """
+    return Picture(_photile.read_picture(os.fspath(file)), changes)

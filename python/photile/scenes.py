@@ -1,0 +1,470 @@
+"""Scenes: read from files, or made of arrays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _photile
+from .errors import InputError, UsageError
+
+__all__ = ["Camera", "Light", "Material", "Scene", "load"]
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Material:
+    """How a surface reflects; the same on both of its sides.
+
+    Parameters
+    ----------
+    name : str
+        For messages.
+    diffuse : (3,) floats
+        Lambertian albedo, linear RGB in [0, 1]; multiplied by the texture.
+    texture : (height, width, 3 or 4) uint8 array, optional
+        sRGB texels, row 0 at the top; needs ``Scene(uv=...)``.
+    interaction : {"opaque", "mirror", "glass"}
+        Photons are stored on opaque surfaces alone.
+    specular : (3,) floats
+        Reflectance at normal incidence of the glossy lobe of an opaque surface, or of a mirror.
+    roughness : float
+        GGX alpha of the glossy lobe, in (0, 1].
+    transmission : (3,) floats
+        Colour of what passes a surface of glass.
+    index_of_refraction : float
+        Of glass.
+    thin : bool
+        Glass without volume: rays are not bent.
+    opacity : float
+        Share of the surface that is there, in [0, 1].
+    """
+
+    name: str = "material"
+    diffuse: Vector = (0.8, 0.8, 0.8)
+    texture: Optional[NDArray[np.uint8]] = None
+    interaction: str = "opaque"
+    specular: Vector = (0.0, 0.0, 0.0)
+    roughness: float = 1.0
+    transmission: Vector = (1.0, 1.0, 1.0)
+    index_of_refraction: float = 1.5
+    thin: bool = False
+    opacity: float = 1.0
+
+
+@dataclass(frozen=True)
+class Light:
+    """A lamp, or light from beyond the scene.
+
+    Parameters
+    ----------
+    name : str
+        Of its layer in pictures; made unique where several have the same.
+    power : float
+        Lumens, or watts in a scene of that unit. Not of directional lights and environments.
+    kind : {"point", "area", "spot", "directional", "environment"}
+        Area lights are triangles of the scene, which shine from their fronts.
+    triangles : sequence of int
+        Of an area light: rows of ``Scene(triangles=...)``.
+    two_sided : bool
+        Of an area light: it shines from both sides.
+    color : (3,) floats
+        Linear RGB of any luminance above 0; only the hue and saturation count.
+    position : (3,) floats
+        Metres, of point and spot lights.
+    direction : (3,) floats
+        Where spot and directional lights shine to, of any length.
+    inner_angle, outer_angle : float
+        Degrees from the axis of a spot light at which its light begins to fall off, and ends.
+    illuminance : float
+        Lux (or W/m2) of a directional light on a surface that faces it.
+    diameter : float
+        Degrees of a directional light's disc, such as 0.53 of the sun; 0 is parallel light.
+    texels : (height, width, 3) array, optional
+        Of an environment: radiance in cd/m2 (or W/(m2 sr)) by direction, row 0 at the zenith (y).
+    group : str
+        Lights of one group share a layer.
+    """
+
+    name: str = "light"
+    power: float = 0.0
+    kind: str = "point"
+    triangles: Sequence[int] = ()
+    two_sided: bool = False
+    color: Vector = (1.0, 1.0, 1.0)
+    position: Vector = (0.0, 0.0, 0.0)
+    direction: Vector = (0.0, 0.0, -1.0)
+    inner_angle: float = 0.0
+    outer_angle: float = 45.0
+    illuminance: float = 0.0
+    diameter: float = 0.0
+    texels: Optional[NDArray[np.float32]] = None
+    group: str = ""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera, in metres of the file's world.
+
+    Parameters
+    ----------
+    position : (3,) floats
+        Metres.
+    target : (3,) floats
+        A point that it looks at.
+    up : (3,) floats
+        What is upwards in the picture; y in glTF files.
+    field_of_view : float
+        Degrees from the lower to the upper edge of the picture.
+    name : str
+        For ``render(scene, "name")``.
+    aspect_ratio : float
+        Width over height; 0 follows the picture.
+    """
+
+    position: Vector
+    target: Vector
+    up: Vector = (0.0, 1.0, 0.0)
+    field_of_view: float = 40.0
+    name: str = "camera"
+    aspect_ratio: float = 0.0
+
+    def _parts(self) -> _photile.CameraParts:
+        forward = np.subtract(self.target, self.position)
+        if not np.all(np.isfinite(forward)) or not np.any(forward):
+            raise UsageError(f"camera '{self.name}': it looks nowhere; give another target")
+        return (
+            self.name,
+            _vector(self.position),
+            _vector(forward),
+            _vector(self.up),
+            float(np.radians(self.field_of_view)),
+            self.aspect_ratio,
+        )
+
+
+def _vector(values: ArrayLike) -> Vector:
+    x, y, z = (float(value) for value in np.asarray(values, dtype=float).reshape(3))
+    return (x, y, z)
+
+
+def _per_corner(
+    values: Optional[ArrayLike], name: str, columns: int, triangles: NDArray[Any], vertices: int
+) -> NDArray[np.float32]:
+    """Rows per vertex; none where there are no values."""
+    if values is None:
+        return np.empty((0, columns), np.float32)
+    array = np.asarray(values, np.float32)
+    expected = (triangles.shape[0], 3, columns)
+    if array.shape == expected and 3 * triangles.shape[0] == vertices:
+        return np.ascontiguousarray(array.reshape(-1, columns))
+    if array.shape == (vertices, columns):
+        return np.ascontiguousarray(array)
+    raise InputError(
+        f"{name}: the array has shape {array.shape}, and has to have {(vertices, columns)}"
+        f" or, with triangles of corners, {expected}"
+    )
+
+
+def _indices(values: ArrayLike, count: int, name: str) -> NDArray[np.uint32]:
+    """Whole numbers from 0 to below ``count``."""
+    array = np.asarray(values)
+    if array.size == 0:
+        return np.empty(array.shape, np.uint32)
+    if array.dtype.kind not in "iu":
+        raise InputError(f"{name}: the array has type {array.dtype}, and has to hold whole numbers")
+    if array.min() < 0 or array.max() >= count:
+        wrong = array.min() if array.min() < 0 else array.max()
+        raise InputError(f"{name}: there is no number {wrong}; there are {count}, from 0")
+    return np.ascontiguousarray(array, np.uint32)
+
+
+class Scene:
+    """Triangles, materials and lights, checked and ready to be rendered.
+
+    Parameters
+    ----------
+    triangles : (n, 3, 3) array of floats, or (n, 3) array of ints
+        Corners of each triangle in metres, counter-clockwise as seen from its front; or, with
+        ``vertices``, their rows there.
+    vertices : (v, 3) array, optional
+        Metres.
+    normals : (n, 3, 3) or (v, 3) array, optional
+        Shading normals of the corners or vertices, of any length; zero means flat.
+    uv : (n, 3, 2) or (v, 2) array, optional
+        Coordinates of the materials' textures, (0, 0) at the upper left.
+    materials : sequence of Material
+        One white one where none is given.
+    triangle_materials : (n,) array of ints, optional
+        The material of each triangle; all have the first where it is left out.
+    lights : sequence of Light
+        At least one.
+    cameras : sequence of Camera
+        One that shows the whole scene where none is given.
+    unit : {"lumen", "watt"}
+        Of all powers: pictures are in cd/m2, or in W/(m2 sr).
+    name : str
+        For messages.
+
+    Raises
+    ------
+    InputError
+        For arrays that do not fit, no triangles or lights, or numbers that are none.
+
+    Notes
+    -----
+    Triangles without area, and those that lie exactly on others, are left out and counted in
+    `dropped_triangles`; the corners of a triangle are stored in an order of the library's own.
+    """
+
+    _core: _photile.Scene
+
+    def __init__(
+        self,
+        triangles: ArrayLike,
+        vertices: Optional[ArrayLike] = None,
+        *,
+        normals: Optional[ArrayLike] = None,
+        uv: Optional[ArrayLike] = None,
+        materials: Sequence[Material] = (),
+        triangle_materials: Optional[ArrayLike] = None,
+        lights: Sequence[Light] = (),
+        cameras: Sequence[Camera] = (),
+        unit: str = "lumen",
+        name: str = "scene in memory",
+    ) -> None:
+        if vertices is None:
+            corners = np.asarray(triangles, np.float32)
+            if corners.ndim != 3 or corners.shape[1:] != (3, 3):
+                raise InputError(
+                    f"triangles: the array has shape {corners.shape}, and has to have (n, 3, 3)"
+                    " or, with vertices, (n, 3)"
+                )
+            points = np.ascontiguousarray(corners.reshape(-1, 3))
+            faces = np.arange(len(points), dtype=np.uint32).reshape(-1, 3)
+        else:
+            points = np.ascontiguousarray(vertices, np.float32)
+            if points.ndim != 2 or points.shape[1] != 3:
+                raise InputError(
+                    f"vertices: the array has shape {points.shape}, and has to have (v, 3)"
+                )
+            faces = _indices(triangles, len(points), "triangles")
+            if faces.ndim != 2 or faces.shape[1] != 3:
+                raise InputError(
+                    f"triangles: the array has shape {faces.shape}, and has to have (n, 3)"
+                )
+        materials = materials or (Material(),)
+        if triangle_materials is None:
+            of_triangles = np.zeros(len(faces), np.uint32)
+        else:
+            of_triangles = _indices(triangle_materials, len(materials), "triangle_materials")
+        shining = np.full(len(faces), _photile.none, np.uint32)
+        for number, light in enumerate(lights):
+            rows = _indices(light.triangles, len(faces), f"triangles of light '{light.name}'")
+            shining[rows] = number
+        self._core = _photile.build(
+            name,
+            unit,
+            points,
+            faces,
+            _per_corner(normals, "normals", 3, faces, len(points)),
+            _per_corner(uv, "uv", 2, faces, len(points)),
+            of_triangles,
+            shining,
+            [_fields(material) for material in materials],
+            [_fields(light) for light in lights],
+            [camera._parts() for camera in cameras],
+        )
+
+    @classmethod
+    def _of(cls, core: _photile.Scene) -> Scene:
+        scene = cls.__new__(cls)
+        scene._core = core
+        return scene
+
+    @property
+    def unit(self) -> str:
+        """"lumen" or "watt": what powers are in."""
+        return self._core.unit
+
+    @property
+    def origin(self) -> Vector:
+        """Where (0, 0, 0) of `vertices` and photons lies in the file's world, metres.
+
+        It is (0, 0, 0) but for scenes more than a kilometre from there.
+        """
+        return self._core.origin
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the import found worth telling, one line each."""
+        return self._core.warnings
+
+    @property
+    def dropped_triangles(self) -> int:
+        """How many had no area, no finite corners, or lay exactly on others."""
+        return self._core.dropped_triangles
+
+    @property
+    def vertices(self) -> NDArray[np.float32]:
+        """(v, 3) metres from `origin`; a read-only view."""
+        return self._core.vertices
+
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(n, 3) rows of `vertices`; a read-only view."""
+        return self._core.triangles
+
+    @property
+    def triangle_material(self) -> NDArray[np.uint32]:
+        """(n,) numbers of `materials`; a read-only view."""
+        return self._core.triangle_material
+
+    @property
+    def triangle_light(self) -> NDArray[np.uint32]:
+        """(n,) numbers of `lights`, ``photile.NONE`` where it is no lamp; a read-only view."""
+        return self._core.triangle_light
+
+    @property
+    def triangle_normals(self) -> NDArray[np.float32]:
+        """(n, 3) unit normals of the triangles' fronts."""
+        return self._core.triangle_normals()
+
+    @property
+    def triangle_areas(self) -> NDArray[np.float64]:
+        """(n,) square metres."""
+        return self._core.triangle_areas()
+
+    @property
+    def materials(self) -> list[Material]:
+        """Those of the scene, without their textures."""
+        return [Material(**fields) for fields in self._core.materials()]
+
+    @property
+    def lights(self) -> list[Light]:
+        """Those of the scene, with their triangles in it."""
+        return [Light(**fields) for fields in self._core.lights()]
+
+    @property
+    def layers(self) -> dict[str, float]:
+        """Powers by layer of the picture: a light, or the lights of a group."""
+        return dict(self._core.layers())
+
+    @property
+    def cameras(self) -> list[Camera]:
+        """Those of the file, or the one that was placed; never none."""
+        return [
+            Camera(position, _vector(np.add(position, forward)), up, float(np.degrees(angle)),
+                   name, aspect)
+            for name, position, forward, up, angle, aspect in self._core.cameras()
+        ]
+
+    def _camera(self, camera: Union[None, int, str, Camera]) -> Union[int, _photile.CameraParts]:
+        """As the extension takes it. Cameras of the scene keep all their bits."""
+        if isinstance(camera, Camera):
+            return camera._parts()
+        names = [parts[0] for parts in self._core.cameras()]
+        if isinstance(camera, str):
+            if camera not in names:
+                raise UsageError(f"there is no camera '{camera}'; there are {', '.join(names)}")
+            return names.index(camera)
+        number = camera or 0
+        if not 0 <= number < len(names):
+            raise UsageError(f"there is no camera {number}; there are {len(names)}, from 0")
+        return number
+
+    def __repr__(self) -> str:
+        return (
+            f"<photile.Scene: {len(self.triangles)} triangles, {len(self.layers)} light layers>"
+        )
+
+
+def _fields(part: Union[Material, Light]) -> dict[str, Any]:
+    """The fields by name, arrays as they are."""
+    return dict(part.__dict__)
+
+
+def load(
+    file: Union[str, os.PathLike[str]],
+    *,
+    scene: str = "",
+    emissive_scale: float = 1.0,
+    allow_outside: bool = False,
+    light_groups: Optional[Mapping[str, str]] = None,
+    profiles: Optional[Mapping[str, Union[str, os.PathLike[str]]]] = None,
+    temperatures: Optional[Mapping[str, float]] = None,
+    panels: Optional[Mapping[str, tuple[float, float, float]]] = None,
+    environment: Union[None, str, os.PathLike[str]] = None,
+    environment_scale: float = 1.0,
+    environment_rotation: float = 0.0,
+    sun: Optional[tuple[float, float, float]] = None,
+    sky: Optional[tuple[str, float]] = None,
+    lumen_per_watt: float = _photile.lumen_per_watt,
+    progress: _photile.Callback = None,
+) -> Scene:
+    """Read a scene from OBJ and MTL (.obj) or glTF 2.0 (.gltf, .glb).
+
+    Parameters
+    ----------
+    file : path
+        The scene.
+    scene : str
+        Name or number of one of the scenes in a glTF file; the file's default where it is "".
+    emissive_scale : float
+        Factor of emissive radiance; 683 mends files of Blender.
+    allow_outside : bool
+        Textures and buffers may lie outside the scene's folder.
+    light_groups : mapping of patterns of light names to groups
+        Lights of a group share a layer of the picture.
+    profiles : mapping of light names to files
+        LM-63 (.ies) or EULUMDAT (.ldt) files of point and spot lights.
+    temperatures : mapping of light names to kelvin
+        Colours of lights.
+    panels : mapping of node names to (width, height, lumens)
+        Luminous rectangles at nodes of a glTF file, metres; they shine along -z.
+    environment : path, optional
+        A picture of the surroundings, equirectangular.
+    environment_scale, environment_rotation : float
+        Factor of its texels, and degrees clockwise as seen from above.
+    sun : (azimuth, elevation, lux), optional
+        Degrees clockwise from north (-z) and above the horizon; lux on a surface that faces it.
+    sky : (kind, lux), optional
+        "uniform", "overcast" or "clear"; lux on a horizontal surface.
+    lumen_per_watt : float
+        What turns lumens and lux into the watts of an OBJ scene.
+    progress : callable, optional
+        See `render`; here it is only asked whether Ctrl-C was pressed.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    InputError
+        Names the file and the remedy: missing, malformed, beyond a limit, without lights.
+    UsageError
+        The file has no such scene or light.
+    """
+    options = {
+        "scene": scene,
+        "emissive_scale": emissive_scale,
+        "allow_outside": allow_outside,
+        "light_groups": [f"{glob}={group}" for glob, group in (light_groups or {}).items()],
+        "profiles": [f"{light}={os.fspath(of)}" for light, of in (profiles or {}).items()],
+        "temperatures": [f"{light}={kelvin}" for light, kelvin in (temperatures or {}).items()],
+        "panels": [f"{node}={w}x{h},{lumens}" for node, (w, h, lumens) in (panels or {}).items()],
+        "environment": os.fspath(environment) if environment is not None else "",
+        "environment_scale": environment_scale,
+        "environment_rotation": environment_rotation,
+        "sun": ",".join(str(number) for number in sun) if sun is not None else "",
+        "sky": f"{sky[0]}={sky[1]}" if sky is not None else "",
+        "lumen_per_watt": lumen_per_watt,
+    }
+    return Scene._of(_photile.load(os.fspath(file), options, progress))

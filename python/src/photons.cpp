@@ -1,0 +1,236 @@
+// Photons of a scene, and photon maps over any photons.
+#include "photile/photons.hpp"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "arrays.hpp"
+#include "parts.hpp"
+#include "photile/light_groups.hpp"
+#include "photile/neighbour_groups.hpp"
+#include "photile/photon_cloud.hpp"
+#include "photile/photon_tracer.hpp"
+#include "work.hpp"
+
+namespace photile::python {
+namespace {
+
+std::shared_ptr<PhotonTracerResult> trace(const std::shared_ptr<Scene>& scene, std::uint64_t count,
+                                          std::uint64_t seed, const std::string& quota,
+                                          bool store_direct, int max_path_length,
+                                          const py::object& progress) {
+  PhotonTracerParameters parameters;
+  parameters.emitted_photons = count;
+  parameters.seed = seed;
+  parameters.store_direct = store_direct;
+  parameters.max_path_length = max_path_length;
+  const auto found = std::find_if(all_photon_quotas.begin(), all_photon_quotas.end(),
+                                  [&](PhotonQuota one) { return name_of(one) == quota; });
+  if (found == all_photon_quotas.end()) {
+    throw UsageError("quota: '" + quota + "' is not one of balanced, power, equal");
+  }
+  parameters.quota = *found;
+  return run(progress, [&](Progress& told) {
+    return std::make_shared<PhotonTracerResult>(trace_photons(RayScene(*scene), parameters, told));
+  });
+}
+
+/// The unit normal of the side that each photon lies on.
+py::array normals_of(const PhotonTracerResult& traced, const Scene& scene) {
+  const Photons& photons = traced.photons;
+  std::vector<glm::vec3> normals(photons.size());
+  {
+    const py::gil_scoped_release release;
+    for (std::uint32_t s = 0; s + 1 < photons.first_of.size(); ++s) {
+      if (photons.first_of[s] == photons.first_of[s + 1]) continue;
+      std::fill(normals.begin() + photons.first_of[s], normals.begin() + photons.first_of[s + 1],
+                glm::vec3(sided_normal(scene, s)));
+    }
+  }
+  const auto count = static_cast<py::ssize_t>(normals.size());
+  return taken<float>(std::move(normals), {count, 3});
+}
+
+MapStructure structure_named(const std::string& name) {
+  std::string all;
+  for (const MapStructureRow& row : map_structure_table) {
+    if (row.name == name) return row.structure;
+    all += (all.empty() ? "" : ", ") + std::string(row.name);
+  }
+  throw UsageError("structure: '" + name + "' is not one of " + all);
+}
+
+DensityKernel kernel_named(const std::string& name) {
+  for (const DensityKernel kernel : all_density_kernels) {
+    if (name_of(kernel) == name) return kernel;
+  }
+  throw UsageError("kernel: '" + name + "' is not one of constant, cone, epanechnikov");
+}
+
+/// Arrays that may be empty: a span of nothing.
+template <class Row, class T>
+std::span<const Row> rows_or_none(const std::optional<Array<T>>& array, const char* name) {
+  return array ? rows_of<Row>(*array, name) : std::span<const Row>();
+}
+
+/// PhotonCloud with its device, and the radius that it was built with.
+class Maps {
+ public:
+  Maps(const Array<float>& positions, const std::optional<Array<float>>& normals,
+       const std::optional<Array<float>>& flux, const std::optional<Array<std::uint16_t>>& lights,
+       double radius, int neighbours, double angle, const std::string& structure,
+       float photons_per_cell, const std::string& device, const py::object& progress) {
+    const CloudPhotons photons{
+        .position = rows_of<glm::vec3>(positions, "positions"),
+        .normal = rows_or_none<glm::vec3>(normals, "normals"),
+        .flux = rows_or_none<glm::vec3>(flux, "flux"),
+        .light = lights ? values_of(*lights, "lights") : std::span<const std::uint16_t>()};
+    CloudParameters parameters{.radius = radius,
+                               .angle_degrees = angle,
+                               .structure = structure_named(structure),
+                               .photons_per_cell = photons_per_cell};
+    run_in_thread(progress, [&](Progress& told) {
+      if (parameters.radius == 0) {
+        Photons copied;
+        copied.position.assign(photons.position.begin(), photons.position.end());
+        parameters.radius = automatic_radius(copied, neighbours);
+      }
+      devices_ = devices_of(device);
+      const std::lock_guard lock(devices_->mutex);
+      cloud_.emplace(devices_->devices.front(), photons, parameters, told);
+    });
+    radius_ = parameters.radius;
+    for (const std::uint16_t light : photons.light) {
+      light_count_ = std::max(light_count_, std::size_t{light} + 1);
+    }
+  }
+
+  ~Maps() {
+    if (!devices_) return;
+    const py::gil_scoped_release release;
+    const std::lock_guard lock(devices_->mutex);
+    cloud_.reset();
+  }
+
+  std::size_t size() const { return cloud_->size(); }
+  double radius() const { return radius_; }
+
+  py::tuple nearest(const Array<float>& points, const std::optional<Array<float>>& normals, int k,
+                    double radius) {
+    const auto where = rows_of<glm::vec3>(points, "points");
+    const auto facing = rows_or_none<glm::vec3>(normals, "normals");
+    CloudNeighbours found = [&] {
+      const py::gil_scoped_release release;
+      const std::lock_guard lock(devices_->mutex);
+      return cloud_->nearest(where, facing, k, radius);
+    }();
+    const std::vector<py::ssize_t> shape{points.shape(0), k};
+    return py::make_tuple(taken<std::uint32_t>(std::move(found.photons), shape),
+                          taken<float>(std::move(found.squared_distance), shape));
+  }
+
+  /// Shape (points, lights, 3).
+  py::array irradiance(const Array<float>& points, const std::optional<Array<float>>& normals,
+                       int k, double radius, const std::string& kernel) {
+    const auto where = rows_of<glm::vec3>(points, "points");
+    const auto facing = rows_or_none<glm::vec3>(normals, "normals");
+    const CloudEstimateParameters parameters{
+        .neighbours = k, .radius = radius, .kernel = kernel_named(kernel)};
+    Estimates found = [&] {
+      const py::gil_scoped_release release;
+      const std::lock_guard lock(devices_->mutex);
+      return cloud_->irradiance(where, facing, parameters);
+    }();
+    if (!found.first.empty()) found.irradiance = dense(found);
+    return taken<float>(std::move(found.irradiance),
+                        {points.shape(0), static_cast<py::ssize_t>(light_count_), 3});
+  }
+
+  py::dict statistics() const {
+    const PhotonMapStatistics& all = cloud_->statistics();
+    py::dict row;
+    row["photons"] = all.photons;
+    row["references"] = all.references;
+    row["maps"] = all.maps;
+    row["cells"] = all.cells;
+    row["nodes"] = all.nodes;
+    row["largest_map"] = all.largest_map;
+    row["device_bytes"] = all.device_bytes;
+    row["seconds"] = all.seconds;
+    return row;
+  }
+
+ private:
+  /// One row for each point, of all lights, from those of the lights that it found.
+  std::vector<glm::vec3> dense(const Estimates& sparse) const {
+    const std::size_t points = sparse.first.size() - 1;
+    std::vector<glm::vec3> rows(points * light_count_, glm::vec3(0.0f));
+    for (std::size_t p = 0; p < points; ++p) {
+      for (std::uint64_t i = sparse.first[p]; i < sparse.first[p + 1]; ++i) {
+        rows[p * light_count_ + sparse.light[i]] = sparse.irradiance[i];
+      }
+    }
+    return rows;
+  }
+
+  std::shared_ptr<OpenDevices> devices_;  ///< outlive the cloud
+  std::optional<PhotonCloud> cloud_;
+  double radius_ = 0;
+  std::size_t light_count_ = 1;
+};
+
+}  // namespace
+
+void define_photons(py::module_& module) {
+  using Traced = PhotonTracerResult;
+  const auto photons_of = [](const py::object& o) -> const Photons& {
+    return o.cast<const Traced&>().photons;
+  };
+  py::class_<Traced, std::shared_ptr<Traced>>(module, "Photons")
+      .def("__len__", [](const Traced& t) { return t.photons.size(); })
+      .def_property_readonly(
+          "position",
+          [photons_of](const py::object& o) { return view_rows<float>(o, photons_of(o).position); })
+      .def_property_readonly(
+          "flux",
+          [photons_of](const py::object& o) { return view_rows<float>(o, photons_of(o).flux); })
+      .def_property_readonly(
+          "incoming",
+          [photons_of](const py::object& o) { return view_rows<float>(o, photons_of(o).incoming); })
+      .def_property_readonly("light",
+                             [photons_of](const py::object& o) {
+                               return view_rows<std::uint16_t>(o, photons_of(o).light);
+                             })
+      .def_property_readonly("sided_triangle",
+                             [photons_of](const py::object& o) {
+                               return view_rows<std::uint32_t>(o, photons_of(o).sided_triangle);
+                             })
+      .def("normals", &normals_of)
+      .def_property_readonly("emitted_per_light",
+                             [](const Traced& t) { return t.photons.emitted_per_light; })
+      .def_property_readonly("absorbed_flux_per_light",
+                             [](const Traced& t) { return t.absorbed_flux_per_light; })
+      .def_property_readonly("escaped_flux_per_light",
+                             [](const Traced& t) { return t.escaped_flux_per_light; });
+  module.def("trace", &trace);
+
+  py::class_<Maps>(module, "PhotonMaps")
+      .def(py::init<const Array<float>&, const std::optional<Array<float>>&,
+                    const std::optional<Array<float>>&, const std::optional<Array<std::uint16_t>>&,
+                    double, int, double, const std::string&, float, const std::string&,
+                    const py::object&>())
+      .def("__len__", &Maps::size)
+      .def_property_readonly("radius", &Maps::radius)
+      .def("statistics", &Maps::statistics)
+      .def("nearest", &Maps::nearest)
+      .def("irradiance", &Maps::irradiance);
+  py::list names;
+  for (const MapStructureRow& row : map_structure_table) names.append(row.name);
+  module.attr("structures") = py::tuple(names);
+}
+
+}  // namespace photile::python

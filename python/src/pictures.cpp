@@ -1,0 +1,286 @@
+// Pictures with a layer for each light: rendered, or read from a file, and mixed.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "arrays.hpp"
+#include "parts.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/defaults.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/path_tracer.hpp"
+#include "photile/settings.hpp"
+#include "work.hpp"
+
+namespace photile::python {
+namespace {
+
+using Changes = std::vector<std::pair<std::string, std::string>>;
+
+/// Layers at a power of 1, and what the file that they are written to says of them.
+class Picture {
+ public:
+  LightLayers layers;
+  LightMix own;               ///< powers of the scene, or of the file
+  bool from_file = false;     ///< what is off there cannot be turned up
+  PictureHeader header;       ///< attributes
+  RunStatistics statistics;   ///< of its rendering
+  RenderParameters settings;  ///< that it was rendered with
+
+  /// Errors: UsageError as change_lights and relight have them.
+  LightMix mix_of(const Changes& changes) const {
+    std::vector<LightChange> list;
+    for (const auto& [name, value] : changes) list.push_back({name, value});
+    if (from_file) return relit_mix(header, list);
+    LightMix mix = own;
+    change_lights(mix, list);
+    return mix;
+  }
+
+  std::size_t index_of(const std::string& light) const {
+    for (std::size_t i = 0; i < layers.layers.size(); ++i) {
+      if (layers.layers[i].light == light) return i;
+    }
+    throw py::key_error(light);
+  }
+
+  std::unique_ptr<LayeredPicture> mixed(const LightMix& mix) const {
+    std::unique_ptr<LayeredPicture> picture = mixed_picture(layers, mix);
+    PictureHeader& to = picture->header();
+    for (const auto& [name, value] : header.attributes) to.attributes.try_emplace(name, value);
+    for (const auto& [name, value] : header.matrices) to.matrices.try_emplace(name, value);
+    for (const auto& [name, value] : header.numbers) to.numbers.try_emplace(name, value);
+    return picture;
+  }
+
+  std::vector<py::ssize_t> shape(py::ssize_t components) const {
+    std::vector<py::ssize_t> sizes{layers.height, layers.width};
+    if (components > 1) sizes.push_back(components);
+    return sizes;
+  }
+};
+
+RenderParameters parameters_of(const Camera& camera, const std::optional<std::pair<int, int>>& size,
+                               const py::dict& settings) {
+  RenderParameters parameters;
+  set_all(parameters, settings);
+  if (size) {
+    parameters.film.width = size->first;
+    parameters.film.height = size->second;
+  } else if (camera.aspect_ratio > 0) {
+    const double width = std::round(camera.aspect_ratio * parameters.film.height);
+    parameters.film.width = std::max(1, static_cast<int>(std::min(width, 1e6)));
+  }
+  return parameters;
+}
+
+/// A number of the scene's cameras, or a tuple as camera_of takes it.
+Camera chosen_camera(const Scene& scene, const py::object& camera) {
+  if (py::isinstance<py::tuple>(camera)) return camera_of(scene, camera.cast<py::tuple>());
+  return scene.cameras.at(camera.cast<std::size_t>());
+}
+
+std::shared_ptr<Picture> render_picture(const std::shared_ptr<Scene>& scene, const py::object& view,
+                                        const std::optional<std::pair<int, int>>& size,
+                                        const std::string& integrator, const py::dict& settings,
+                                        double lumen_per_watt, const std::string& device,
+                                        const py::object& progress) {
+  const Camera camera = chosen_camera(*scene, view);
+  const RenderParameters parameters = parameters_of(camera, size, settings);
+  const bool by_paths = integrator == "path";
+  if (!by_paths && integrator != "photon-map") {
+    throw UsageError("integrator: '" + integrator + "' is not one of photon-map, path");
+  }
+  return run(progress, [&](Progress& told) {
+    auto picture = std::make_shared<Picture>();
+    picture->own = LightMix::of(*scene, lumen_per_watt);
+    picture->settings = parameters;
+    if (by_paths) {
+      PathTracerResult result = trace_paths(*scene, camera, eye_rays(parameters), told);
+      picture->layers = std::move(result.layers);
+      picture->statistics = std::move(result.statistics);
+    } else {
+      const auto open = devices_of(device);
+      const std::lock_guard lock(open->mutex);
+      RenderResult result = render(*scene, camera, open->devices, parameters, told);
+      picture->layers = std::move(result.layers);
+      picture->statistics = std::move(result.statistics);
+      picture->settings = result.used;
+    }
+    if (picture->layers.sparse()) picture->layers = picture->layers.dense();
+    set_camera_attributes(picture->header, in_world(*scene, camera), picture->layers.width,
+                          picture->layers.height);
+    return picture;
+  });
+}
+
+std::shared_ptr<Picture> read_picture(const std::filesystem::path& file) {
+  const py::gil_scoped_release release;
+  const Image image = read_image(file);
+  auto picture = std::make_shared<Picture>();
+  try {
+    picture->own = read_light_mix(image);
+    picture->layers = light_layers(image);
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+  picture->header = image;
+  picture->from_file = true;
+  return picture;
+}
+
+py::array unit_layer(const py::object& owner, const std::string& light) {
+  const auto& picture = owner.cast<const Picture&>();
+  const auto& layer = picture.layers.layers[picture.index_of(light)];
+  return view<float>(owner, picture.shape(3), layer.radiance.data());
+}
+
+py::array unit_illuminance(const py::object& owner, const std::string& light) {
+  const auto& picture = owner.cast<const Picture&>();
+  const auto& layer = picture.layers.layers[picture.index_of(light)];
+  return view<float>(owner, picture.shape(1), layer.illuminance.data());
+}
+
+/// The sum of the layers, shape (height, width, 3).
+py::array mixed_layers(const Picture& picture, const Changes& changes) {
+  std::vector<glm::vec3> sum(static_cast<std::size_t>(picture.layers.width) *
+                             static_cast<std::size_t>(picture.layers.height));
+  {
+    const py::gil_scoped_release release;
+    combine_layers(picture.layers, picture.mix_of(changes), sum);
+  }
+  return taken<float>(std::move(sum), picture.shape(3));
+}
+
+DisplayView view_named(const std::string& name) {
+  for (const DisplayView display : all_display_views) {
+    if (name_of(display) == name) return display;
+  }
+  throw UsageError("view: '" + name + "' is not one of neutral, standard");
+}
+
+ToneMapping tone_mapping(const std::optional<double>& exposure, bool automatic,
+                         const std::string& display) {
+  return {.automatic_exposure = automatic,
+          .exposure = exposure.value_or(defaults::exposure),
+          .view = view_named(display)};
+}
+
+/// Display-referred and linear, shape (height, width, 3).
+py::array displayed(const Picture& picture, const Changes& changes,
+                    const std::optional<double>& exposure, bool automatic,
+                    const std::string& display) {
+  const ToneMapping parameters = tone_mapping(exposure, automatic, display);
+  std::vector<glm::vec3> pixels;
+  {
+    const py::gil_scoped_release release;
+    const Image image = tone_map(picture.mixed(picture.mix_of(changes))->root(), parameters);
+    pixels.resize(image.pixels());
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<float>& plane = *image.find(std::string(1, "RGB"[c]));
+      for (std::size_t p = 0; p < pixels.size(); ++p) pixels[p][c] = plane[p];
+    }
+  }
+  return taken<float>(std::move(pixels), picture.shape(3));
+}
+
+void save_exr(const Picture& picture, const std::filesystem::path& file, const Changes& changes) {
+  const py::gil_scoped_release release;
+  write_exr(file, *picture.mixed(picture.mix_of(changes)));
+}
+
+void save_png(const Picture& picture, const std::filesystem::path& file, const Changes& changes,
+              const std::optional<double>& exposure, bool automatic, const std::string& display) {
+  const ToneMapping parameters = tone_mapping(exposure, automatic, display);
+  const py::gil_scoped_release release;
+  write_png(file, tone_map(picture.mixed(picture.mix_of(changes))->root(), parameters));
+}
+
+/// Per light: name, power, unit, colour, tint, names of the lights of a group.
+py::list lights_of_picture(const Picture& picture, const Changes& changes) {
+  py::list list;
+  const LightMix mix = picture.mix_of(changes);
+  for (const MixedLight& light : mix.lights) {
+    py::dict row;
+    row["name"] = light.name;
+    row["power"] = light.power;
+    row["unit"] = light.unit == PowerUnit::lumen ? "lumen" : "watt";
+    row["color"] = py::make_tuple(light.color.x, light.color.y, light.color.z);
+    row["tint"] = py::make_tuple(light.tint.x, light.tint.y, light.tint.z);
+    row["members"] = light.members;
+    list.append(row);
+  }
+  return list;
+}
+
+py::list statistics_of(const Picture& picture) {
+  py::list list;
+  for (const StageStatistics& stage : picture.statistics) {
+    py::dict row;
+    row["stage"] = stage.stage;
+    row["seconds"] = stage.seconds;
+    row["processor_seconds"] = stage.processor_seconds;
+    row["host_bytes"] = stage.host_bytes;
+    row["device_bytes"] = stage.device_bytes;
+    py::dict figures;
+    for (const auto& [name, value] : stage.figures) figures[py::str(name)] = value;
+    row["figures"] = figures;
+    list.append(row);
+  }
+  return list;
+}
+
+}  // namespace
+
+void set_all(RenderParameters& parameters, const py::dict& settings) {
+  if (settings.contains("quality")) {
+    const auto name = settings["quality"].cast<std::string>();
+    const auto found = std::find_if(all_qualities.begin(), all_qualities.end(),
+                                    [&](Quality one) { return name_of(one) == name; });
+    if (found == all_qualities.end()) {
+      throw UsageError("quality: '" + name + "' is not one of draft, good, final");
+    }
+    set_quality(parameters, *found);
+  }
+  for (const auto& [key, value] : settings) {
+    const auto name = key.cast<std::string>();
+    if (name == "quality") continue;
+    if (py::isinstance<py::str>(value)) {
+      const auto text = value.cast<std::string>();
+      set_by_name(parameters, name, std::string_view(text));
+    } else if (py::isinstance<py::float_>(value)) {
+      set_by_name(parameters, name, value.cast<double>());
+    } else if (value < py::int_(0)) {
+      set_by_name(parameters, name, value.cast<double>());
+    } else {
+      set_by_name(parameters, name, value.cast<std::uint64_t>());
+    }
+  }
+}
+
+void define_pictures(py::module_& module) {
+  py::class_<Picture, std::shared_ptr<Picture>>(module, "Picture")
+      .def_property_readonly("width", [](const Picture& p) { return p.layers.width; })
+      .def_property_readonly("height", [](const Picture& p) { return p.layers.height; })
+      .def_property_readonly("lumen_per_watt",
+                             [](const Picture& p) { return p.own.lumen_per_watt; })
+      .def_property_readonly("statistics", &statistics_of)
+      .def_property_readonly("radius", [](const Picture& p) { return p.settings.radius; })
+      .def("lights", &lights_of_picture)
+      .def("unit_layer", &unit_layer)
+      .def("unit_illuminance", &unit_illuminance)
+      .def("mix", &mixed_layers)
+      .def("displayed", &displayed)
+      .def("save_exr", &save_exr)
+      .def("save_png", &save_png);
+  module.def("render", &render_picture);
+  module.def("read_picture", &read_picture);
+  module.def("setting_names", &setting_names);
+}
+
+}  // namespace photile::python

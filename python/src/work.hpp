@@ -1,0 +1,31 @@
+// Long work of the library, called from Python.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <exception>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "photile/progress.hpp"
+
+namespace photile::python {
+
+/// Runs `work` in a thread of its own without the interpreter's lock. The calling thread waits,
+/// hears Ctrl-C and tells `callback` (stage, done, total, unit) what is done, a few times a second;
+/// notes go to the logger "photile". `callback` may be None.
+/// Errors: what `work` throws; what the callback or a signal handler raises, once the work has
+/// stopped.
+void run_in_thread(const pybind11::object& callback, const std::function<void(Progress&)>& work);
+
+/// The same, with a result.
+template <class Work>
+auto run(const pybind11::object& callback, const Work& work) {
+  using Result = decltype(work(std::declval<Progress&>()));
+  std::optional<Result> result;
+  run_in_thread(callback, [&](Progress& progress) { result.emplace(work(progress)); });
+  return std::move(*result);
+}
+
+}  // namespace photile::python

@@ -1,0 +1,56 @@
+"""The scripts in python/examples, and what they print."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = ROOT / "scenes"
+
+
+def run(name, *arguments):
+    environment = {**os.environ, "MPLBACKEND": "Agg", "PYTHONDONTWRITEBYTECODE": "1"}
+    return subprocess.run(
+        [sys.executable, ROOT / "python" / "examples" / name, *map(str, arguments)],
+        env=environment, stdout=subprocess.PIPE, text=True, check=True,
+    ).stdout
+
+
+def test_own_photons():
+    told = run("own_photons.py")
+    # 400 lm on 4 m2.
+    assert float(re.search(r"within the border: ([0-9.]+) lx", told)[1]) == pytest.approx(100, rel=0.02)
+    assert re.search(r"lux: \[ *[0-9.]+ +[0-9.]+ +0\. *\]", told)
+
+
+def test_own_scene(tmp_path):
+    told = run("own_scene.py", tmp_path)
+    assert "absorbed: [1. 1.]" in told  # the room is closed
+    assert {file.name for file in tmp_path.iterdir()} == {"room.exr", "room.png", "evening.png"}
+
+
+def test_relight_sliders(tmp_path):
+    told = run("relight_sliders.py", SCENES / "living-room" / "living-room.gltf", tmp_path)
+    assert "desk_lamp: 470 lumens" in told and "mixed (240, 320, 3)" in told
+    assert (tmp_path / "mood.png").stat().st_size > 1_000
+
+
+def test_lux_table(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    run("lux_table.py", SCENES / "living-room" / "living-room.gltf", tmp_path)
+    table = pandas.read_csv(tmp_path / "lux.csv")
+    assert len(table) == 24
+    lamps = table.drop(columns=["x", "y", "z", "lux", "error"])
+    assert lamps.sum(axis=1).to_numpy() == pytest.approx(table["lux"].to_numpy(), rel=1e-4)
+
+
+def test_compare_structures(tmp_path):
+    pytest.importorskip("matplotlib")
+    told = run("compare_structures.py", SCENES / "cornell-box" / "cornell-box.obj", tmp_path,
+               "uniform-grid,hashed-grid")
+    assert len(re.findall("us a query", told)) == 4
+    assert "hashed-grid" in (tmp_path / "structures.svg").read_text()
