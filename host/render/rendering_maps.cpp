@@ -34,9 +34,10 @@ PhotonTracerResult Rendering::trace(int pass, PreparedPhotons* prepared, const K
   count(traced);
   if (pass == 0) {
     const Stopwatch radius_watch;
-    radius_ = prepared ? prepared->radius : plan_.radius(traced.photons, *progress_);
+    const bool grouped = prepared && prepared->has_groups();
+    radius_ = grouped ? prepared->radius : plan_.radius(traced.photons, *progress_);
     costs_.radius.add(radius_watch.taken());
-    find_groups(traced.photons, prepared);  // once: no later radius is larger
+    find_groups(traced.photons, grouped ? prepared : nullptr);  // once: no later radius is larger
     find_surface(traced.photons);
   }
   if (plan_.reads_light_maps()) choose_light_maps(pass, traced.photons);

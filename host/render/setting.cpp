@@ -88,6 +88,12 @@ Setting by_quality(Setting setting, std::uint64_t good, std::uint64_t best) {
   return setting;
 }
 
+/// A row that neighbour groups depend on, but no photons.
+Setting of_groups(Setting setting) {
+  setting.kept_for_groups = true;
+  return setting;
+}
+
 constexpr Kept not_kept = nullptr;
 
 std::string kept_as_it_is(const Setting& setting, const RenderParameters& parameters) {
@@ -164,20 +170,20 @@ std::vector<Setting> estimate_rows() {
   constexpr std::string_view estimate = "radiance estimate", groups = "neighbour groups",
                              build = "build photon maps";
   return {
-      by_quality(row<&P::neighbours>("neighbours", "k,neighbours", estimate,
-                                     WholeNumbers{1, limits::max_neighbours},
-                                     "photons of an estimate", kept_for_radius),
+      by_quality(of_groups(row<&P::neighbours>("neighbours", "k,neighbours", estimate,
+                                               WholeNumbers{1, limits::max_neighbours},
+                                               "photons of an estimate", kept_for_radius)),
                  100, 100),
       row<&P::least_neighbours>(
           "least_neighbours", "least-neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
           "each hit has its own number of neighbours, from this one up, as its bias allows",
           not_kept, "all hits have the same"),
-      row<&P::radius>("radius", "radius", groups, PositiveNumbers{},
-                      "no photon farther away counts", kept_if_given,
-                      "twice the median distance to the k-th photon", "m"),
-      row<&P::angle_degrees>("angle_degrees", "angle", groups, Numbers{0, 180},
-                             "largest angle between the normals of a group", kept_as_it_is, "",
-                             "degrees"),
+      of_groups(row<&P::radius>("radius", "radius", groups, PositiveNumbers{},
+                                "no photon farther away counts", kept_if_given,
+                                "twice the median distance to the k-th photon", "m")),
+      of_groups(row<&P::angle_degrees>("angle_degrees", "angle", groups, Numbers{0, 180},
+                                       "largest angle between the normals of a group",
+                                       kept_as_it_is, "", "degrees")),
       row<&P::area>("area", "area", "surface index", words_of(all_area_modes),
                     "that photons are divided by; disc: dark borders and corners, all that naive "
                     "maps have",
@@ -185,10 +191,10 @@ std::vector<Setting> estimate_rows() {
       row<&P::kernel>("kernel", "kernel", estimate, words_of(all_density_kernels),
                       "that photons are weighted by; cone, epanechnikov: less blur, more noise",
                       not_kept),
-      row<&P::maps>("maps", "maps", groups, words_of(all_map_modes),
-                    "naive: dark edges; patch: triangles share maps", kept_as_it_is),
-      row<&P::structure>("structure", "structure", build, words_of(all_map_structures),
-                         "how photons are found; same neighbours", kept_for_structure),
+      of_groups(row<&P::maps>("maps", "maps", groups, words_of(all_map_modes),
+                              "naive: dark edges; patch: triangles share maps", kept_as_it_is)),
+      of_groups(row<&P::structure>("structure", "structure", build, words_of(all_map_structures),
+                                   "how photons are found; same neighbours", kept_for_structure)),
       row<&P::photons_per_cell>("photons_per_cell", "photons-per-cell", build, PositiveNumbers{},
                                 "fineness of the grids", not_kept),
       row<&P::direct_rays>(
@@ -220,6 +226,16 @@ std::vector<Setting> estimate_rows() {
                                 "between the finest nodes of light maps, at most", not_kept,
                                 "an eighth of the coarsest, by the photons", "m"),
   };
+}
+
+std::string kept_settings(const RenderParameters& parameters, bool for_groups) {
+  std::string words;
+  for (const Setting& setting : settings()) {
+    if (!setting.kept || setting.kept_for_groups != for_groups) continue;
+    const std::string kept = setting.kept(setting, parameters);
+    if (!kept.empty()) words += (words.empty() ? "" : ", ") + kept;
+  }
+  return words;
 }
 
 }  // namespace
@@ -255,12 +271,11 @@ std::string text_with_unit(const Setting& setting, const RenderParameters& param
 }
 
 std::string photon_settings(const RenderParameters& parameters) {
-  std::string words;
-  for (const Setting& setting : settings()) {
-    const std::string kept = setting.kept ? setting.kept(setting, parameters) : std::string();
-    if (!kept.empty()) words += (words.empty() ? "" : ", ") + kept;
-  }
-  return words;
+  return kept_settings(parameters, false);
+}
+
+std::string group_settings(const RenderParameters& parameters) {
+  return kept_settings(parameters, true);
 }
 
 void check_setting(std::string_view name, const SettingValue& value) {

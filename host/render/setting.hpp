@@ -28,6 +28,7 @@ struct Setting {
   std::vector<SettingValue> by_quality = {};
   /// What photons and their groups depend on, in words; "" = not on this. Null: they never do.
   std::string (*kept)(const Setting& setting, const RenderParameters& parameters) = nullptr;
+  bool kept_for_groups = false;  ///< photons alone do not depend on it
 
   SettingValue (*value)(const RenderParameters& parameters) = nullptr;
   void (*set)(RenderParameters& parameters, const SettingValue& value) = nullptr;
@@ -48,8 +49,11 @@ inline bool is_of_any_integrator(const Setting& setting) { return setting.group 
 /// "45 degrees".
 std::string text_with_unit(const Setting& setting, const RenderParameters& parameters);
 
-/// What photons and neighbour groups depend on beside the scene, in words that a refusal can name.
+/// What photons depend on beside the scene, in words that a refusal can name.
 std::string photon_settings(const RenderParameters& parameters);
+
+/// What neighbour groups depend on beside the photons.
+std::string group_settings(const RenderParameters& parameters);
 
 /// A setting is out of its range. The message begins with its name.
 struct SettingError : UsageError {

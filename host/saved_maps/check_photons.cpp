@@ -35,6 +35,10 @@ std::string problem_of(const PreparedPhotons& prepared, const Scene& scene) {
         maps::problem_of(*prepared.caustics, needs_of(scene), sided_triangles);
     if (!of_caustics.empty()) return of_caustics;
   }
+  if (!prepared.has_groups()) {
+    const bool none = groups.offsets.empty() && groups.members.empty() && groups.patches.empty();
+    return none && !prepared.light_maps ? "" : "groups without a radius";
+  }
   if (!are_patches(groups.patches, sided_triangles)) return "patches that do not fit the scene";
   const std::uint64_t map_count =
       groups.patches.empty() ? sided_triangles : 2 * std::uint64_t{groups.patches.count()};

@@ -1,29 +1,43 @@
-// Photons and groups in a file, so that the same scene is looked at again without tracing it. The
-// format is docs/saved-maps.md.
+// Photons and groups in a file, so that the same scene is looked at again without tracing it, or
+// traced by several processes. The format is docs/saved-maps.md.
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "photile/scene.hpp"
 #include "photile/scene_renderer.hpp"
+#include "photile/shard.hpp"
 
 namespace photile::saved_maps {
 
+/// What a file fits beside the scene, in words that a refusal can name.
+struct Settings {
+  std::string photons;
+  std::string groups;  ///< what these depend on beside the photons
+};
+
 /// Writes a file, through a temporary name and a rename.
-///   settings   in words: what the photons depend on beside the scene
+///   prepared   without groups: the file fits any settings of groups
+///   shard      what part of all photons it holds
 /// Errors: OutputError naming the file; an existing file is kept then.
-void save(const std::filesystem::path& file, const Scene& scene, const std::string& settings,
-          const PreparedPhotons& prepared);
+void save(const std::filesystem::path& file, const Scene& scene, const Settings& settings,
+          const PreparedPhotons& prepared, const Shard& shard = {});
 
 /// Adds light maps of these photons to a file, in place of those that it holds: through a temporary
 /// name and a rename. Errors: InputError where it is no such file; OutputError.
 void add_light_maps(const std::filesystem::path& file, const LightMapContents& contents);
 
 /// Reads a file back, bit for bit. Errors: InputError naming the file where it is missing, no such
-/// file, of another version or byte order, truncated, longer than it says, damaged, or
-/// inconsistent; or where it was saved from another scene or with other settings, which it names.
+/// file, of another version or byte order, truncated, longer than it says, damaged, inconsistent,
+/// or a shard; or where it was saved from another scene or with other settings, which it names.
 PreparedPhotons load(const std::filesystem::path& file, const Scene& scene,
-                     const std::string& settings);
+                     const Settings& settings);
+
+/// Writes what one process that traces all paths would write, from the files of all shards, in any
+/// order. Their photons are in memory at once. Errors: InputError naming the file that is damaged,
+/// foreign or doubled, or the shards that are missing; OutputError.
+void merge(std::span<const std::filesystem::path> files, const std::filesystem::path& output);
 
 }  // namespace photile::saved_maps

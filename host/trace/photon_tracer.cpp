@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -36,13 +37,29 @@ void check(const PhotonTracerParameters& parameters) {
   check_setting("photons_emitted", setting_value(parameters.emitted_photons));
   check_setting("max_path_length", setting_value(parameters.max_path_length));
   check_setting("roulette_start", setting_value(parameters.roulette_start));
+  const Shard& shard = parameters.shard;
+  if (shard.index >= shard.count || shard.count > limits::max_shards) {
+    throw UsageError("shard " + std::to_string(shard.index) + " of " + std::to_string(shard.count) +
+                     ": the index counts from 0, of at most " + std::to_string(limits::max_shards));
+  }
 }
 
-std::vector<Chunk> chunks_of(const std::vector<std::uint64_t>& paths_per_light) {
+std::vector<Chunk> chunks_of(const std::vector<std::uint64_t>& paths_per_light,
+                             const Shard& shard) {
+  const std::uint64_t all =
+      std::accumulate(paths_per_light.begin(), paths_per_light.end(), std::uint64_t{0});
+  const std::uint64_t begin = shard.begin(all), end = shard.end(all);
   std::vector<Chunk> chunks;
-  for (std::uint32_t light = 0; light < paths_per_light.size(); ++light)
-    for (std::uint64_t first = 0; first < paths_per_light[light]; first += paths_per_chunk)
-      chunks.push_back({light, first, std::min(first + paths_per_chunk, paths_per_light[light])});
+  std::uint64_t before = 0;  // paths of the lights before
+  for (std::uint32_t light = 0; light < paths_per_light.size(); ++light) {
+    const std::uint64_t paths = paths_per_light[light];
+    const std::uint64_t last = std::clamp(end, before, before + paths) - before;
+    for (std::uint64_t first = std::clamp(begin, before, before + paths) - before; first < last;
+         first += paths_per_chunk) {
+      chunks.push_back({light, first, std::min(first + paths_per_chunk, last)});
+    }
+    before += paths;
+  }
   return chunks;
 }
 
@@ -120,10 +137,10 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   PhotonTracerResult result;
   const std::vector<std::uint64_t> paths_per_light =
       photons_per_light(scene, parameters.emitted_photons, parameters.quota);
-  const std::vector<Chunk> chunks = chunks_of(paths_per_light);
+  const std::vector<Chunk> chunks = chunks_of(paths_per_light, parameters.shard);
 
   std::uint64_t paths = 0;
-  for (const std::uint64_t count : paths_per_light) paths += count;
+  for (const Chunk& chunk : chunks) paths += chunk.last_path - chunk.first_path;
   progress.begin("trace photons", paths, "paths");
   const LightGroups groups = light_groups_of(scene);
   std::vector<PathRecord> records = trace_chunks(ray_scene, parameters, chunks, paths_per_light,

@@ -27,6 +27,23 @@ void scatter(std::vector<T>& values, const std::vector<std::uint32_t>& destinati
   values = std::move(sorted);
 }
 
+/// Brings one array of all runs together, triangle by triangle.
+template <auto array>
+void merge_arrays(std::vector<Photons>& runs, Photons& merged) {
+  auto& all = merged.*array;
+  std::size_t count = 0;
+  for (const Photons& run : runs) count += (run.*array).size();
+  if (count == 0) return;
+  all.reserve(count);
+  for (std::size_t s = 0; s + 1 < merged.first_of.size(); ++s) {
+    for (const Photons& run : runs) {
+      const auto first = (run.*array).begin();
+      all.insert(all.end(), first + run.first_of[s], first + run.first_of[s + 1]);
+    }
+  }
+  for (Photons& run : runs) run.*array = {};
+}
+
 }  // namespace
 
 std::uint64_t Photons::bytes() const {
@@ -53,6 +70,22 @@ Photons sort_by_sided_triangle(Photons photons, std::size_t sided_triangle_count
   scatter(photons.light, destination);
   scatter(photons.sided_triangle, destination);
   return photons;
+}
+
+Photons merge_runs(std::vector<Photons> runs) {
+  if (runs.size() == 1) return std::move(runs.front());
+  Photons merged;
+  merged.emitted_per_light = runs.front().emitted_per_light;
+  merged.first_of.assign(runs.front().first_of.size(), 0);
+  for (const Photons& run : runs) {
+    for (std::size_t s = 0; s < merged.first_of.size(); ++s) merged.first_of[s] += run.first_of[s];
+  }
+  merge_arrays<&Photons::position>(runs, merged);
+  merge_arrays<&Photons::flux>(runs, merged);
+  merge_arrays<&Photons::incoming>(runs, merged);
+  merge_arrays<&Photons::light>(runs, merged);
+  merge_arrays<&Photons::sided_triangle>(runs, merged);
+  return merged;
 }
 
 }  // namespace photile

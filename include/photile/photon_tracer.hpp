@@ -10,6 +10,7 @@
 #include "photile/photons.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
+#include "photile/shard.hpp"
 
 namespace photile {
 
@@ -38,6 +39,10 @@ struct PhotonTracerParameters {
   bool keep_caustics = false;
   /// Paths of each light that earlier passes have traced: the first to be traced now. Empty: none.
   std::vector<std::uint64_t> paths_before = {};
+  /// Of all paths, in the order light, path: what is traced. Flux and Photons::emitted_per_light
+  /// are those of all paths, so that the photons of all shards together (merge_runs) are those of
+  /// one process, bit for bit.
+  Shard shard = {};
 };
 
 struct PhotonTracerResult {

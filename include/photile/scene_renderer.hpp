@@ -18,13 +18,15 @@ namespace photile {
 /// What photon maps are built from: all that depends on random numbers or takes long on the host.
 struct PreparedPhotons {
   Photons photons;
-  NeighbourGroups groups;
-  double radius = 0;  ///< metres: of the maps
+  NeighbourGroups groups;  ///< empty: found when maps are built
+  double radius = 0;       ///< metres: of the maps; 0 where groups are not there
   /// Of them, those that came by mirrors and glass alone; where rays gather.
   std::optional<Photons> caustics = std::nullopt;
   /// What light maps of these photons held, if they are kept. Where its settings are those of the
   /// rendering, maps are built from the photons when an estimate is first needed.
   std::optional<LightMapContents> light_maps = std::nullopt;
+
+  bool has_groups() const { return radius > 0; }
 };
 using KeepPhotons = std::function<void(const PreparedPhotons&)>;
 

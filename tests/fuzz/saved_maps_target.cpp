@@ -17,17 +17,20 @@
 namespace photile::test {
 namespace {
 
-/// As docs/saved-maps.md has it: 96 bytes.
+/// As docs/saved-maps.md has it: 104 bytes.
 struct Head {
   std::array<char, 8> magic;
   std::uint32_t version, byte_order;
   ContentHash::Digest scene;
+  std::uint32_t shard, shards;
   std::uint64_t photon_bytes;
   ContentHash::Digest photons;
   std::uint64_t light_map_bytes;
   ContentHash::Digest light_maps, head;
 };
-static_assert(sizeof(Head) == 96);
+static_assert(sizeof(Head) == 104);
+
+const saved_maps::Settings words{"words", ""};
 
 /// A floor of two triangles with a lamp above.
 const Scene& floor_scene() {
@@ -92,14 +95,14 @@ void use_light_maps(LightMapContents contents) {
 bool fuzz_saved_maps(Bytes bytes) {
   const auto file = file_of("room.maps", sealed(bytes));
   return accepts([&] {
-    PreparedPhotons photons = saved_maps::load(file, floor_scene(), "words");
+    PreparedPhotons photons = saved_maps::load(file, floor_scene(), words);
     require(photons.photons.first_of.size() == 2 * floor_scene().triangle_count() + 1,
             "rows that lack");
     // What was read can be written, and read again.
     const auto again = file.parent_path() / "again.maps";
-    saved_maps::save(again, floor_scene(), "words", photons);
+    saved_maps::save(again, floor_scene(), words, photons);
     if (photons.light_maps) saved_maps::add_light_maps(again, *photons.light_maps);
-    const PreparedPhotons same = saved_maps::load(again, floor_scene(), "words");
+    const PreparedPhotons same = saved_maps::load(again, floor_scene(), words);
     require(same.photons.size() == photons.photons.size() && same.radius == photons.radius,
             "saved again they are others");
     if (photons.light_maps) use_light_maps(std::move(*photons.light_maps));

@@ -107,16 +107,19 @@ TEST_CASE("saved photons tell all that they depend on, and nothing else") {
     RenderParameters other = usual;
     setting.set(other, another_value(setting));
     if (setting.name == "structure") other.structure = MapStructure::kdtree_global;
-    CHECK((photon_settings(other) == photon_settings(usual)) == (setting.kept == nullptr));
+    CHECK((photon_settings(other) == photon_settings(usual)) ==
+          (setting.kept == nullptr || setting.kept_for_groups));
+    CHECK((group_settings(other) == group_settings(usual)) == !setting.kept_for_groups);
   }
   RenderParameters more = usual;
   more.radius = 0.2;
-  const std::string by_radius = photon_settings(more);
+  const std::string by_radius = group_settings(more);
   more.neighbours = 12;  // the radius no longer follows it
-  CHECK(photon_settings(more) == by_radius);
+  CHECK(group_settings(more) == by_radius);
+  const std::string by_photons = photon_settings(more);
   more.direct_rays = 1;
   const std::string by_rays = photon_settings(more);
-  CHECK(by_rays != by_radius);
+  CHECK(by_rays != by_photons);
   more.direct_rays = 5;
   CHECK(photon_settings(more) == by_rays);
 }

@@ -20,6 +20,8 @@ using Catch::Contains;
 
 namespace {
 
+const saved_maps::Settings words{"words", "of groups"};
+
 RenderParameters small(MapMode maps = MapMode::automatic) {
   RenderParameters parameters;
   parameters.photons.emitted_photons = 2'000;
@@ -35,7 +37,7 @@ struct Saved {
       : file(folder.path / "maps.photile") {
     SceneRenderer renderer(
         scene, std::span(&test::device(), 1), parameters, nullptr,
-        [&](const PreparedPhotons& prepared) { saved_maps::save(file, scene, "words", prepared); });
+        [&](const PreparedPhotons& prepared) { saved_maps::save(file, scene, words, prepared); });
     layers = renderer.render(scene_camera(), parameters.film).layers;
   }
 
@@ -61,7 +63,7 @@ TEST_CASE("a picture from loaded maps is the picture, bit for bit") {
       GENERATE(MapMode::automatic, MapMode::triangle, MapMode::patch, MapMode::naive);
   const RenderParameters parameters = small(mode);
   const Saved saved(scene, parameters);
-  PreparedPhotons prepared = saved_maps::load(saved.file, scene, "words");
+  PreparedPhotons prepared = saved_maps::load(saved.file, scene, words);
   SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters, &prepared);
   const LightLayers layers = renderer.render(Saved::scene_camera(), parameters.film).layers;
   for (std::size_t light = 0; light < layers.layers.size(); ++light) {
@@ -83,7 +85,7 @@ TEST_CASE("a file cut off anywhere is refused") {
     const std::size_t length = i < 100 ? i : (i - 100) * whole.size() / 200;
     saved.write(whole.substr(0, length));
     INFO(length << " of " << whole.size() << " bytes");
-    REQUIRE_THROWS_AS(saved_maps::load(saved.file, scene, "words"), InputError);
+    REQUIRE_THROWS_AS(saved_maps::load(saved.file, scene, words), InputError);
   }
 }
 
@@ -97,10 +99,10 @@ TEST_CASE("a file with any byte changed, or with more of them, is refused") {
     spoilt[at] = static_cast<char>(spoilt[at] ^ (i % 2 == 0 ? 0x80 : 1));
     saved.write(spoilt);
     INFO("byte " << at);
-    REQUIRE_THROWS_AS(saved_maps::load(saved.file, scene, "words"), InputError);
+    REQUIRE_THROWS_AS(saved_maps::load(saved.file, scene, words), InputError);
   }
   saved.write(whole + "x");
-  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, "words"), Contains("after its end"));
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, words), Contains("after its end"));
 }
 
 namespace {
@@ -111,7 +113,7 @@ struct SavedRoom {
     parameters.light_maps = LightMapMode::on;
     parameters.light_map_rays = light_map_rays;
     SceneRenderer renderer = made(parameters, nullptr, [&](const PreparedPhotons& photons) {
-      saved_maps::save(file, scene, "words", photons);
+      saved_maps::save(file, scene, words, photons);
     });
     CHECK_FALSE(renderer.light_maps());
     first = draw(renderer, Saved::scene_camera(), all);
@@ -128,7 +130,7 @@ struct SavedRoom {
                      const KeepPhotons& keep = {}) const {
     return SceneRenderer(scene, std::span(&test::device(), 1), with, prepared, keep);
   }
-  PreparedPhotons loaded() const { return saved_maps::load(file, scene, "words"); }
+  PreparedPhotons loaded() const { return saved_maps::load(file, scene, words); }
   std::vector<glm::vec3> draw(SceneRenderer& renderer, const Camera& camera, double seconds) {
     std::vector<glm::vec3> picture(24 * 16);
     const std::vector<glm::vec3> powers(2, glm::vec3(1.0f));
@@ -193,8 +195,8 @@ TEST_CASE("a file whose light maps are damaged, or cut off anywhere, is refused"
   const SavedRoom room(16);
   const std::string whole = room.bytes();
   std::uint64_t photon_bytes = 0;
-  std::memcpy(&photon_bytes, whole.data() + 32, sizeof photon_bytes);
-  const std::size_t photons_end = 96 + photon_bytes;
+  std::memcpy(&photon_bytes, whole.data() + 40, sizeof photon_bytes);
+  const std::size_t photons_end = 104 + photon_bytes;
   REQUIRE(photons_end + 1000 < whole.size());
   room.refused(whole.substr(0, photons_end));  // all photons, and nothing after them
   for (std::size_t i = 0; i < 100; ++i) {
@@ -221,22 +223,24 @@ TEST_CASE("another scene, other settings and other files are told apart") {
   const Saved saved(scene);
   Scene moved = scene;
   moved.vertices[3].x += 1e-4f;
-  CHECK_THROWS_WITH(saved_maps::load(saved.file, moved, "words"), Contains("another scene"));
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, moved, words), Contains("another scene"));
   Scene painted = scene;
   painted.materials[0].diffuse.g += 1e-3f;
-  CHECK_THROWS_WITH(saved_maps::load(saved.file, painted, "words"), Contains("another scene"));
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, painted, words), Contains("another scene"));
   Scene lit = scene;
   lit.lights[1].position.z += 1e-4f;
-  CHECK_THROWS_WITH(saved_maps::load(saved.file, lit, "words"), Contains("another scene"));
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, lit, words), Contains("another scene"));
   Scene renamed = scene;
   renamed.source = "elsewhere/room.gltf";
-  CHECK_NOTHROW(saved_maps::load(saved.file, renamed, "words"));
-  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, "other words"),
+  CHECK_NOTHROW(saved_maps::load(saved.file, renamed, words));
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, {"other words", ""}),
                     Contains("words") && Contains("other words"));
-  CHECK_THROWS_WITH(saved_maps::load(saved.folder.path / "none", scene, "words"),
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, {"words", "of other groups"}),
+                    Contains("of groups") && Contains("of other groups"));
+  CHECK_THROWS_WITH(saved_maps::load(saved.folder.path / "none", scene, words),
                     Contains("no such file"));
   saved.write("v 0 0 0\n");
-  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, "words"), Contains("no photon maps"));
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, words), Contains("no photon maps"));
 }
 
 TEST_CASE("another version or byte order is named") {
@@ -246,11 +250,11 @@ TEST_CASE("another version or byte order is named") {
   std::string newer = bytes;
   newer[8] = 9;
   saved.write(newer);
-  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, "words"), Contains("version 9"));
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, words), Contains("version 9"));
   std::swap(bytes[12], bytes[15]);
   std::swap(bytes[13], bytes[14]);
   saved.write(bytes);
-  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, "words"), Contains("byte order"));
+  CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, words), Contains("byte order"));
 }
 
 TEST_CASE("a whole file whose indices lead nowhere is refused") {
@@ -261,11 +265,11 @@ TEST_CASE("a whole file whose indices lead nowhere is refused") {
   const SceneRenderer renderer(scene, std::span(&test::device(), 1), small(), nullptr,
                                [&](const PreparedPhotons& prepared) { good = prepared; });
   const auto refused = [&](const PreparedPhotons& bad) {
-    saved_maps::save(file, scene, "words", bad);
-    CHECK_THROWS_AS(saved_maps::load(file, scene, "words"), InputError);
+    saved_maps::save(file, scene, words, bad);
+    CHECK_THROWS_AS(saved_maps::load(file, scene, words), InputError);
   };
-  saved_maps::save(file, scene, "words", good);
-  CHECK_NOTHROW(saved_maps::load(file, scene, "words"));
+  saved_maps::save(file, scene, words, good);
+  CHECK_NOTHROW(saved_maps::load(file, scene, words));
   PreparedPhotons bad = good;
   SECTION("light") { bad.photons.light[0] = 7; }
   SECTION("triangle") { bad.photons.sided_triangle[0] = 1'000'000; }

@@ -87,6 +87,32 @@ TEST_CASE("The photons have the same bits on 1, 2, 3 and 8 threads, the tree inc
   }
 }
 
+TEST_CASE("Photons of all shards are those of one process, bit for bit, caustics included") {
+  const Scene scene = difficult_room();
+  const RayScene rays(scene);
+  PhotonTracerParameters parameters{.emitted_photons = 20'001, .seed = 5, .keep_caustics = true};
+  const PhotonTracerResult one = trace_photons(rays, parameters);
+  REQUIRE(one.caustics.size() > 0);
+  for (const std::uint32_t count : {2u, 3u, 7u, 50'000u}) {  // more shards than paths
+    std::vector<Photons> photons, caustics;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (count == 50'000u && i % 12'500 != 0) continue;  // one of these has a path
+      parameters.shard = {i, count};
+      PhotonTracerResult shard = trace_photons(rays, parameters);
+      photons.push_back(std::move(shard.photons));
+      caustics.push_back(std::move(shard.caustics));
+    }
+    const Photons all = merge_runs(std::move(photons));
+    if (count == 50'000u) {
+      CHECK(all.size() < one.photons.size() / 100);
+      continue;
+    }
+    CHECK(same_bits(all, one.photons));
+    CHECK(all.emitted_per_light == one.photons.emitted_per_light);
+    CHECK(same_bits(merge_runs(std::move(caustics)), one.caustics));
+  }
+}
+
 TEST_CASE("Another seed gives other photons, and each light its own") {
   const Scene scene = furnished_room();
   const RayScene rays(scene);

@@ -40,6 +40,8 @@ void define(CLI::App& photile) {
   add_info_command(photile);
   add_validate_command(photile);
   add_walk_command(photile);
+  add_trace_command(photile);
+  add_merge_command(photile);
   add_view_command(photile);
   add_bake_command(photile);
 }

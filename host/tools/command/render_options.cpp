@@ -70,6 +70,8 @@ void add_device_group(CLI::App& command, RenderOptions& options) {
       ->group("Device");
 }
 
+}  // namespace
+
 void add_run_group(CLI::App& command, RenderOptions& options) {
   command.add_option("--threads", options.threads, "of the host; 0 = all cores")
       ->type_name("N")
@@ -78,8 +80,6 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
       ->group("Run");
   command.add_flag("-q,--quiet", options.quiet, "print errors only")->group("Run");
 }
-
-}  // namespace
 
 void add_setting_options(CLI::App& command, RenderOptions& options,
                          std::initializer_list<std::string_view> without) {
@@ -99,6 +99,10 @@ void add_picture_settings(CLI::App& command, RenderOptions& options,
   add_quality_preset(command, options.quality_options());  // before the settings that override it
   add_setting_options(command, options, without);
   add_view_group(command, options);
+  add_direct_option(command, options);
+}
+
+void add_direct_option(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--direct", options.direct,
                   "what brings the light straight from lamps; rays: sharp shadows")
@@ -177,6 +181,18 @@ void add_preview_option(CLI::App& command, RenderOptions& options, const std::st
       ->type_name("[HOST:PORT]")
       ->expected(0, 1)
       ->default_str(image::tev_address)
+      ->group(group);
+}
+
+void add_shard_option(CLI::App& command, Shard& shard, const std::string& of_what,
+                      const std::string& group) {
+  command
+      .add_option_function<std::string>(
+          "--shard", [&shard](const std::string& text) { shard = *parse_shard(text); },
+          fmt::format("the I-th of N equal parts {}, from 1; several processes share the work",
+                      of_what))
+      ->type_name("I/N")
+      ->check(shard_of_some())
       ->group(group);
 }
 

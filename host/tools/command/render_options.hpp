@@ -12,6 +12,7 @@
 #include "photile/light_mix.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
+#include "photile/shard.hpp"
 #include "tools/command/picture_outputs.hpp"
 #include "tools/command/quality_options.hpp"
 #include "tools/trade/quality_target.hpp"
@@ -65,6 +66,17 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
 /// Adds these and those that say what a camera makes of it, but not what becomes of the picture.
 void add_picture_settings(CLI::App& command, RenderOptions& options,
                           std::initializer_list<std::string_view> without = {});
+
+/// Adds --direct.
+void add_direct_option(CLI::App& command, RenderOptions& options);
+
+/// Adds --threads and --quiet.
+void add_run_group(CLI::App& command, RenderOptions& options);
+
+/// Adds --shard I/N.
+///   of_what   "of the paths"
+void add_shard_option(CLI::App& command, Shard& shard, const std::string& of_what,
+                      const std::string& group);
 
 /// Adds --save-maps and --load-maps.
 void add_saved_maps_options(CLI::App& command, RenderOptions& options);

@@ -16,10 +16,6 @@
 namespace photile::app {
 namespace {
 
-std::string settings_of(const RenderOptions& options) {
-  return fmt::format("photile {}, {}", version_number(), photon_settings(options.parameters));
-}
-
 /// Adds to `time` what `work` takes, and returns what it does.
 template <class Work>
 auto timed(TimeTaken& time, const Work& work) {
@@ -34,6 +30,11 @@ auto timed(TimeTaken& time, const Work& work) {
 
 }  // namespace
 
+saved_maps::Settings saved_settings(const RenderParameters& parameters) {
+  return {fmt::format("photile {}, {}", version_number(), photon_settings(parameters)),
+          group_settings(parameters)};
+}
+
 std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions& options,
                                          Progress& progress) {
   if (options.parameters.passes > 1 && !(options.load_maps.empty() && options.save_maps.empty())) {
@@ -42,7 +43,8 @@ std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions
   }
   if (options.load_maps.empty()) return std::nullopt;
   progress.begin("load photons", 0, "");
-  PreparedPhotons prepared = saved_maps::load(options.load_maps, scene, settings_of(options));
+  PreparedPhotons prepared =
+      saved_maps::load(options.load_maps, scene, saved_settings(options.parameters));
   progress.end();
   return prepared;
 }
@@ -50,7 +52,7 @@ std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions
 KeepPhotons keep_maps(const Scene& scene, const RenderOptions& options, Progress& progress) {
   if (options.save_maps.empty()) return {};
   return [&scene, &progress, file = options.save_maps,
-          settings = settings_of(options)](const PreparedPhotons& photons) {
+          settings = saved_settings(options.parameters)](const PreparedPhotons& photons) {
     progress.begin("save photons", 0, "");
     saved_maps::save(file, scene, settings, photons);
     progress.end();

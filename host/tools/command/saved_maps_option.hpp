@@ -7,9 +7,13 @@
 #include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
+#include "saved_maps/saved_maps.hpp"
 #include "tools/command/render_options.hpp"
 
 namespace photile::app {
+
+/// What a file of photons fits.
+saved_maps::Settings saved_settings(const RenderParameters& parameters);
 
 /// The photons of --load-maps; none where it was not given. Errors: those of saved_maps::load.
 std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions& options,

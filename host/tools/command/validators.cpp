@@ -11,6 +11,7 @@
 
 #include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
+#include "tools/walk/frame_range.hpp"
 
 namespace photile::app {
 namespace {
@@ -87,6 +88,17 @@ std::optional<PixelSize> parse_size(std::string_view text) {
   return PixelSize{*width, *height};
 }
 
+std::optional<Shard> parse_shard(std::string_view text) {
+  const auto separator = text.find('/');
+  if (separator == std::string_view::npos) return std::nullopt;
+  const auto index = parse_number<std::uint32_t>(text.substr(0, separator));
+  const auto count = parse_number<std::uint32_t>(text.substr(separator + 1));
+  if (!index || !count || *index < 1 || *index > *count || *count > limits::max_shards) {
+    return std::nullopt;
+  }
+  return Shard{*index - 1, *count};
+}
+
 CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest) {
   return within(WholeNumbers{lowest, highest});
 }
@@ -160,6 +172,23 @@ CLI::Validator picture_size() {
                          limits::max_image_side);
     }
     return {};
+  };
+  return {check, ""};
+}
+
+CLI::Validator shard_of_some() {
+  const auto check = [](std::string& text) -> std::string {
+    if (parse_shard(text)) return {};
+    return fmt::format("'{}' is not I/N, such as 2/8, with I from 1 to N and N up to {}", text,
+                       limits::max_shards);
+  };
+  return {check, ""};
+}
+
+CLI::Validator frame_range() {
+  const auto check = [](std::string& text) -> std::string {
+    if (walk::parse_frame_range(text)) return {};
+    return fmt::format("'{}' is not A, A-B or A-BxS, such as 1-240x10", text);
   };
   return {check, ""};
 }

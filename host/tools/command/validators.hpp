@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/value_range.hpp"
+#include "photile/shard.hpp"
 
 namespace photile::app {
 
@@ -32,6 +33,9 @@ struct PixelSize {
 
 /// "640x480". Nothing if it is none.
 std::optional<PixelSize> parse_size(std::string_view text);
+
+/// A part of several, counted from 1: "2/8". Nothing if it is none.
+std::optional<Shard> parse_shard(std::string_view text);
 
 /// A value in the range: a whole number as `parse_count` reads it, a finite number, a word, which
 /// then is a view of `text`. Nothing if it is none.
@@ -57,6 +61,12 @@ CLI::Validator number_between(double lowest, double highest);
 
 /// A finite number greater than zero.
 CLI::Validator positive_number();
+
+/// A part as `parse_shard` reads it.
+CLI::Validator shard_of_some();
+
+/// Frames as walk::parse_frame_range reads them.
+CLI::Validator frame_range();
 
 /// A size as `parse_size` reads it, within the limits of pictures.
 CLI::Validator picture_size();

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/run_files.hpp"
@@ -35,6 +36,7 @@
 #include "tools/view/display.hpp"
 #include "tools/walk/contact_sheet.hpp"
 #include "tools/walk/frame_names.hpp"
+#include "tools/walk/frame_range.hpp"
 
 namespace photile::app {
 namespace {
@@ -49,6 +51,8 @@ struct WalkOptions {
   bool quick = false;     ///< frames of light maps alone
   double frames_per_second = 24;
   int first_number = 1;
+  std::optional<walk::FrameRange> frames;  ///< none = all
+  Shard shard;                             ///< of them
 };
 
 walk::CameraMotion motion_of(const WalkOptions& options, const Camera& camera) {
@@ -70,7 +74,25 @@ int count_of(const walk::CameraMotion& motion, double frames_per_second) {
   return static_cast<int>(count);
 }
 
-/// All frames of a walk, rendered or found finished.
+/// Places in the walk, from 0, of the frames to be made. Errors: UsageError where there are none.
+std::vector<int> frames_to_make(const WalkOptions& options, int count) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < count; ++frame) {
+    if (!options.frames || options.frames->contains(options.first_number + frame)) {
+      frames.push_back(frame);
+    }
+  }
+  if (frames.empty()) {
+    throw UsageError(fmt::format("--frames: the walk has frames {} to {}, and none of these",
+                                 options.first_number, options.first_number + count - 1));
+  }
+  const auto place = [&](std::uint64_t i) {
+    return frames.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  return {place(options.shard.begin(frames.size())), place(options.shard.end(frames.size()))};
+}
+
+/// Frames of a walk, rendered or found finished.
 class Walk {
  public:
   Walk(WalkOptions& options, const Scene& scene, const LightMix& mix, const Camera& camera,
@@ -80,6 +102,7 @@ class Walk {
         mix_(mix),
         motion_(motion_of(options, camera)),
         count_(count_of(motion_, options.frames_per_second)),
+        frames_(frames_to_make(options, count_)),
         to_exr_(options.output.ends_with(".exr")),
         names_(options.output),
         devices_(devices),
@@ -87,7 +110,8 @@ class Walk {
         scene_digest_(digest_of(scene)) {
     if (!options.png.empty()) png_names_.emplace(options.png);
     if (!to_exr_) png_names_.emplace(options.output);
-    for (int frame = 1; frame < count_; ++frame) {  // check_names has noted the first
+    for (const int frame : frames_) {
+      if (frame == 0) continue;  // check_names has noted it
       if (to_exr_) note_output(names_.of(number(frame)));
       if (png_names_) note_output(png_names_->of(number(frame)));
     }
@@ -99,16 +123,18 @@ class Walk {
 
   void run() {
     const std::vector<bool> finished = find_finished();
-    const auto kept = static_cast<int>(std::count(finished.begin(), finished.end(), true));
+    const auto kept = static_cast<std::size_t>(std::count(finished.begin(), finished.end(), true));
     if (kept > 0) {
       progress_.note(
-          fmt::format("{} of {} frames are finished, with these settings", kept, count_));
+          fmt::format("{} of {} frames are finished, with these settings", kept, frames_.size()));
     }
-    if (kept < count_ || !options_.render.save_maps.empty()) make_maps();
-    progress_.begin("render frames", static_cast<std::uint64_t>(count_ - kept), "frames");
-    for (int frame = 0; frame < count_; ++frame) {
+    if (kept < frames_.size() || !options_.render.save_maps.empty()) make_maps();
+    if (png_names_ && kept < frames_.size() && frames_.front() != 0) set_exposure();
+    progress_.begin("render frames", frames_.size() - kept, "frames");
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
       progress_.throw_if_cancelled();
-      const bool keeps = finished[static_cast<std::size_t>(frame)];
+      const int frame = frames_[i];
+      const bool keeps = finished[i];
       std::optional<Image> root;
       if (!keeps) root = options_.quick ? draw(frame) : render(frame);
       wait_for_shown();
@@ -159,16 +185,26 @@ class Walk {
            (options_.quick ? " quick" : "");
   }
 
-  /// Of each frame.
+  /// Of each frame that is to be made.
   std::vector<bool> find_finished() const {
-    std::vector<bool> finished(static_cast<std::size_t>(count_), false);
+    std::vector<bool> finished(frames_.size(), false);
     if (!to_exr_) return finished;
-    for (int frame = 0; frame < count_; ++frame) {
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
       progress_.throw_if_cancelled();
-      finished[static_cast<std::size_t>(frame)] =
-          is_finished(names_.of(number(frame)), settings_of(camera_at(frame)));
+      finished[i] = is_finished(names_.of(number(frames_[i])), settings_of(camera_at(frames_[i])));
     }
     return finished;
+  }
+
+  /// To that of the walk's first frame, which another process may make.
+  void set_exposure() { exposure_ = std::log2(automatic_exposure(first_frame())); }
+
+  Image first_frame() {
+    const std::string file = names_.of(number(0));
+    if (to_exr_ && is_finished(file, settings_of(camera_at(0)))) return read_image(file);
+    if (options_.quick) return draw(0);
+    LightLayers layers;
+    return picture_of(0, layers)->root();
   }
 
   void make_maps() {
@@ -179,6 +215,17 @@ class Walk {
 
   /// Renders a frame to its file and returns its R, G, B.
   Image render(int frame) {
+    LightLayers layers;
+    const auto picture = picture_of(frame, layers);
+    write_exr(names_.of(number(frame)), *picture);
+    for (const std::string& line : picture->overflows()) {
+      progress_.note(fmt::format("warning: frame {}: {}", number(frame), line));
+    }
+    return picture->root();
+  }
+
+  /// Puts the layers that it refers to in `layers`.
+  std::unique_ptr<LayeredPicture> picture_of(int frame, LightLayers& layers) {
     const Camera camera = camera_at(frame);
     QuietProgress quiet(progress_);
     const Film& film = options_.render.parameters.film;
@@ -188,15 +235,12 @@ class Walk {
     record.used = result.used;
     record.stored_photons = result.stored_photons;
     record.stages = result.statistics;
-    const auto picture = mixed_picture(result.layers, mix_);
+    layers = std::move(result.layers);
+    auto picture = mixed_picture(layers, mix_);
     set_camera_attributes(picture->header(), in_world(scene_, camera), film.width, film.height);
     set_run_attributes(picture->header(), record);
     set_settings(picture->header(), settings);
-    write_exr(names_.of(number(frame)), *picture);
-    for (const std::string& line : picture->overflows()) {
-      progress_.note(fmt::format("warning: frame {}: {}", number(frame), line));
-    }
-    return picture->root();
+    return picture;
   }
 
   /// Errors: those of what wrote it.
@@ -255,7 +299,8 @@ class Walk {
   const Scene& scene_;
   const LightMix& mix_;
   const walk::CameraMotion motion_;
-  const int count_;
+  const int count_;  ///< of the whole walk
+  const std::vector<int> frames_;
   const bool to_exr_;
   const walk::FrameNames names_;
   std::optional<walk::FrameNames> png_names_;
@@ -296,8 +341,15 @@ void check_names(const WalkOptions& options) {
   check_outputs(files);
 }
 
+void check_share(const WalkOptions& options) {
+  if (options.sheet.empty() || (!options.frames && options.shard == Shard{})) return;
+  throw UsageError(
+      "--contact-sheet shows all frames; leave it out here, and make it when all are finished");
+}
+
 void run_walk(WalkOptions& options) {
   handle_signals();
+  check_share(options);
   RenderOptions& render = options.render;
   check_settings(render);
   check_names(options);
@@ -360,6 +412,17 @@ void add_walk_command(CLI::App& photile) {
       ->transform(count_between(0, limits::max_frames))
       ->capture_default_str()
       ->group("Motion");
+  command
+      ->add_option_function<std::string>(
+          "--frames",
+          [&frames = options->frames](const std::string& text) {
+            frames = walk::parse_frame_range(text);
+          },
+          "these alone, by number; every S-th")
+      ->type_name("A[-B[xS]]")
+      ->check(frame_range())
+      ->group("Motion");
+  add_shard_option(*command, options->shard, "of the frames", "Motion");
   set_quality(options->render.quality_options(), Quality::good);
   add_picture_settings(*command, options->render);
   add_saved_maps_options(*command, options->render);
