@@ -30,27 +30,6 @@ std::unique_lock<std::mutex> lock_compilation(bool is_pocl) {
   return is_pocl && !alone ? std::unique_lock(mutex) : std::unique_lock<std::mutex>();
 }
 
-/// The names of a kernel's arguments, in their order; none where the runtime does not know them.
-std::optional<std::vector<std::string>> argument_names(cl_kernel kernel) {
-  cl_uint count = 0;
-  check(clGetKernelInfo(kernel, CL_KERNEL_NUM_ARGS, sizeof count, &count, nullptr),
-        "clGetKernelInfo");
-  std::vector<std::string> names;
-  for (cl_uint i = 0; i < count; ++i) {
-    std::size_t bytes = 0;
-    if (clGetKernelArgInfo(kernel, i, CL_KERNEL_ARG_NAME, 0, nullptr, &bytes) != CL_SUCCESS ||
-        bytes < 2) {
-      return std::nullopt;
-    }
-    std::string name(bytes, '\0');
-    check(clGetKernelArgInfo(kernel, i, CL_KERNEL_ARG_NAME, bytes, name.data(), nullptr),
-          "clGetKernelArgInfo");
-    name.resize(bytes - 1);  // the last is the end of a C string
-    names.push_back(std::move(name));
-  }
-  return names;
-}
-
 template <class T>
 T group_property(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info name) {
   T value{};
@@ -69,20 +48,19 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
   }
   const auto compiling = lock_compilation(impl_->info.is_pocl);
   auto made = std::make_shared<Kernel::Impl>();
-  const auto create = [&](cl_program program) {
-    const cl_int status = impl_->persevere([&] {
-      cl_int created = CL_SUCCESS;
-      made->kernel = KernelHandle(clCreateKernel(program, name.c_str(), &created));
-      return created;
-    });
-    impl_->check(status, "clCreateKernel", fmt::format("kernel '{}' of '{}'", name, file));
-    return argument_names(made->kernel.get());
-  };
-  const cl_program program = impl_->programs->get(file, options);
+  const Program& program = impl_->programs->get(file, options);
   const Stopwatch stopwatch;
-  auto arguments = create(program);
-  // OpenCL promises the names for programs that are made from source, not from a binary.
-  if (!arguments) arguments = create(impl_->programs->get_compiled(file, options));
+  const cl_int status = impl_->persevere([&] {
+    cl_int created = CL_SUCCESS;
+    made->kernel = KernelHandle(clCreateKernel(program.handle.get(), name.c_str(), &created));
+    return created;
+  });
+  impl_->check(status, "clCreateKernel", fmt::format("kernel '{}' of '{}'", name, file));
+  auto arguments = argument_names(made->kernel.get());
+  if (const auto kept = program.arguments.find(name);
+      !arguments && kept != program.arguments.end()) {
+    arguments = kept->second;
+  }
   if (!arguments) {
     throw DeviceError(fmt::format("the device does not tell the names of the arguments of kernel "
                                   "'{}' of '{}'; update its driver",

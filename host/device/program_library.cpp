@@ -45,23 +45,13 @@ ProgramLibrary::~ProgramLibrary() {
   if (pocl_cache_ != nullptr) pocl_cache_->publish();
 }
 
-cl_program ProgramLibrary::get(const std::string& file, const std::string& defines) {
+const Program& ProgramLibrary::get(const std::string& file, const std::string& defines) {
   const auto key = std::make_pair(file, defines);
-  if (const auto found = programs_.find(key); found != programs_.end()) return found->second.get();
+  if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
   const Stopwatch stopwatch;
   auto program = load_or_build(file, options(defines));
   times_.push_back({file, stopwatch.seconds()});
-  return programs_.emplace(key, std::move(program)).first->second.get();
-}
-
-cl_program ProgramLibrary::get_compiled(const std::string& file, const std::string& defines) {
-  const Stopwatch stopwatch;
-  auto program = build_from_source(target_, file, assemble_source(file), options(defines));
-  ++built_;
-  times_.push_back({file, stopwatch.seconds()});
-  auto& kept = programs_[{file, defines}];
-  kept = std::move(program);
-  return kept.get();
+  return programs_.emplace(key, std::move(program)).first->second;
 }
 
 std::string ProgramLibrary::options(const std::string& defines) const {
@@ -73,31 +63,44 @@ double ProgramLibrary::compile_seconds() const {
                          [](double sum, const ProgramTime& time) { return sum + time.seconds; });
 }
 
-ProgramHandle ProgramLibrary::load_or_build(const std::string& file, const std::string& options) {
+Program ProgramLibrary::load_or_build(const std::string& file, const std::string& options) {
   const auto source = assemble_source(file);
   const auto key = program_key(*target_.info, options, source);
   if (pocl_cache_ != nullptr) {
-    ProgramHandle program;
+    Program program;
     const bool found = pocl_cache_->build(
-        key, [&] { program = build_from_source(target_, file, source, options); });
+        key, [&] { program.handle = build_from_source(target_, file, source, options); });
     ++(found ? from_cache_ : built_);
     return program;
   }
   if (cache_) {
-    if (const auto binary = cache_->load(key)) {
-      if (auto program = build_from_binary(target_, *binary, options)) {
-        ++from_cache_;
-        return program;
-      }
-      warn("the device refuses '" + cache_->file(key).string() + "'; compiling again");
+    if (Program program = load(key, options); program.handle) {
+      ++from_cache_;
+      return program;
     }
   }
-  auto program = build_from_source(target_, file, source, options);
+  Program program{build_from_source(target_, file, source, options), {}};
   ++built_;
   if (cache_) {
-    if (const auto binary = program_binary(program.get())) cache_->store(key, *binary);
+    auto binary = program_binary(program.handle.get());
+    auto arguments = argument_names(program.handle.get());
+    if (binary && arguments) {
+      cache_->store(key, joined({std::move(*arguments), std::move(*binary)}));
+    }
   }
   return program;
+}
+
+Program ProgramLibrary::load(const CacheKey& key, const std::string& options) {
+  const auto stored = cache_->load(key);
+  if (!stored) return {};
+  if (auto program = split(*stored)) {
+    if (auto handle = build_from_binary(target_, program->binary, options)) {
+      return {std::move(handle), std::move(program->arguments)};
+    }
+  }
+  warn("the device refuses '" + cache_->file(key).string() + "'; compiling again");
+  return {};
 }
 
 }  // namespace photile::device

@@ -7,12 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "device/argument_names.hpp"
 #include "device/context.hpp"
 #include "device/kernel_store.hpp"
 #include "device/pocl_cache.hpp"
 #include "device/program.hpp"
 
 namespace photile::device {
+
+struct Program {
+  ProgramHandle handle;
+  ArgumentNames arguments;  ///< of programs from a binary, whose kernels need not tell them
+};
 
 class ProgramLibrary {
  public:
@@ -24,10 +30,7 @@ class ProgramLibrary {
 
   /// The program of kernel file `file` built with `defines` ("-D NAME=VALUE ..."). Lives as long as
   /// the library. Errors: KernelBuildError.
-  cl_program get(const std::string& file, const std::string& defines);
-  /// The same, compiled from its source: binaries need not tell the names of arguments. Takes the
-  /// place of what get() gave.
-  cl_program get_compiled(const std::string& file, const std::string& defines);
+  const Program& get(const std::string& file, const std::string& defines);
 
   const std::vector<ProgramTime>& times() const { return times_; }
   double compile_seconds() const;
@@ -36,13 +39,15 @@ class ProgramLibrary {
 
  private:
   std::string options(const std::string& defines) const;
-  ProgramHandle load_or_build(const std::string& file, const std::string& options);
+  Program load_or_build(const std::string& file, const std::string& options);
+  /// From the cache of runtimes other than PoCL; an empty handle where it has none to be used.
+  Program load(const CacheKey& key, const std::string& options);
 
   BuildTarget target_;
   std::string base_options_;
   PoclCache* pocl_cache_ = nullptr;   ///< on PoCL, unless switched off
   std::optional<KernelStore> cache_;  ///< on others, unless switched off
-  std::map<std::pair<std::string, std::string>, ProgramHandle> programs_;  ///< by file, defines
+  std::map<std::pair<std::string, std::string>, Program> programs_;  ///< by file, defines
   std::vector<ProgramTime> times_;
   std::uint64_t built_ = 0, from_cache_ = 0;
 };

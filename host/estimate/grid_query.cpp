@@ -4,6 +4,7 @@
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
 #include "estimate/tuning.hpp"
+#include "structures/structure_arguments.hpp"
 
 namespace photile::estimate {
 namespace {
@@ -29,7 +30,11 @@ class GridQuery : public Query {
     device::Launch launch(context_,
                           context_.kernel(choice_.kernel_file(), "estimate", estimate_defines));
     set_estimate_arguments(launch, store_, hits, parameters_, estimates);
-    set_grid(launch, hits.page);
+    if (choice_.strategy == EstimateStrategy::heap) {
+      maps::set_structure_arguments(launch, hits.page);
+    } else {
+      set_grid(launch, hits.page);
+    }
     run(launch, hits, [&](std::uint32_t count) {
       launch.run(choice_.work_items(count), choice_.work_group_size);
     });

@@ -44,7 +44,7 @@ device::Defines Specialisation::defines() const {
   defines.set("NEAR_CAPACITY", static_cast<long long>(lanes ? neighbours : near_capacity));
   defines.set("HITS_PER_ITEM", static_cast<long long>(hits_per_item));
   if (strategy == EstimateStrategy::heap) {
-    defines.set("LIST_CAPACITY", static_cast<long long>(neighbours));
+    defines.set("RINGS").set("LIST_CAPACITY", static_cast<long long>(neighbours));
   }
   if (strategy == EstimateStrategy::tile) {
     defines.set("TILE_CAPACITY", static_cast<long long>(tile_capacity));
@@ -58,7 +58,7 @@ device::Defines Specialisation::defines() const {
 std::string Specialisation::kernel_file() const {
   switch (strategy) {
     case EstimateStrategy::heap:
-      return "estimate/estimate_heap.cl";
+      return "structures/estimate.cl";
     case EstimateStrategy::tile:
       return "estimate/estimate_tile.cl";
     case EstimateStrategy::select:

@@ -24,8 +24,8 @@ MapTiling::MapTiling(const PhotileGrid& grid, double radius)
       rows_(divided_up(grid.rows, bin_height_)),
       map_of_bin_(std::size_t{columns_} * rows_, none) {
   // Queries look at the cells within the radius and the slack of a hit (kernels/estimate/block.clh,
-  // rings.clh). The slack twice more: rounding may put hits, and the ends of their cells, beyond
-  // the borders.
+  // kernels/structures/rings.clh). The slack twice more: rounding may put hits, and the ends of
+  // their cells, beyond the borders.
   const double rows = (radius + 3 * double{grid.slack}) / double{grid.cell_height};
   border_ = static_cast<std::uint32_t>(
       std::min<double>(most_bins, std::ceil(rows / static_cast<double>(bin_height_))));

@@ -21,20 +21,8 @@ void insertion_sort(__global uint* values, uint count) {
 
 #ifdef IN_GROUPS
 
-// One work-item per cell: sorts it, or lists it in crowded_cell. Before: crowded[0] is zero.
-__kernel void sort_cells(uint cell_count, __global const uint* cell_start,
-                         __global uint* entry_photon, __global uint* crowded,
-                         __global uint* crowded_cell) {
-  for (uint cell = get_global_id(0); cell < cell_count; cell += get_global_size(0)) {
-    const uint start = cell_start[cell];
-    const uint count = cell_start[cell + 1] - start;
-    if (count <= INSERTION_LIMIT) {
-      insertion_sort(entry_photon + start, count);
-    } else {
-      crowded_cell[atomic_inc(crowded)] = cell;
-    }
-  }
-}
+#define CROWDED_ARGUMENTS , __global uint *crowded, __global uint *crowded_cell
+#define SORT_CROWDED crowded_cell[atomic_inc(crowded)] = cell
 
 #define SORT_GROUP 256
 
@@ -97,18 +85,22 @@ void heap_sort(__global uint* values, uint count) {
   }
 }
 
-// One work-item per cell.
+#define CROWDED_ARGUMENTS
+#define SORT_CROWDED heap_sort(entry_photon + start, count)
+
+#endif
+
+// One work-item per cell: sorts it, or in groups lists crowded ones in crowded_cell. Before:
+// crowded[0] is zero.
 __kernel void sort_cells(uint cell_count, __global const uint* cell_start,
-                         __global uint* entry_photon) {
+                         __global uint* entry_photon CROWDED_ARGUMENTS) {
   for (uint cell = get_global_id(0); cell < cell_count; cell += get_global_size(0)) {
     const uint start = cell_start[cell];
     const uint count = cell_start[cell + 1] - start;
     if (count <= INSERTION_LIMIT) {
       insertion_sort(entry_photon + start, count);
     } else {
-      heap_sort(entry_photon + start, count);
+      SORT_CROWDED;
     }
   }
 }
-
-#endif
