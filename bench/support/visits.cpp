@@ -19,8 +19,8 @@ Visits count_visits(const PhotonMaps& maps, const PrimaryHits& hits, int k) {
 
   device::Context& context = device::context_of(*store.device);
   const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, 0, hits.size());
-  const estimate::HitBuffers buffers =
-      estimate::upload_hits(context, hits, 0, hit_maps, store.normals, nullptr, {});
+  estimate::HitBuffers buffers;
+  estimate::upload_hits(context, hits, 0, hit_maps, store.normals, nullptr, {}, buffers);
   const auto neighbours = static_cast<std::uint32_t>(k);
   estimate::QueryParameters parameters;
   parameters.neighbours = neighbours;

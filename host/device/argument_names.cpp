@@ -16,10 +16,8 @@ std::optional<std::string_view> take_line(std::string_view& text) {
   return line;
 }
 
-std::string text_of(std::string text) {
-  text.resize(text.find('\0'));  // the end of a C string
-  return text;
-}
+/// What the runtime wrote, without the end of a C string.
+std::string text_of(const std::string& written) { return written.c_str(); }
 
 }  // namespace
 
@@ -37,7 +35,7 @@ std::optional<std::vector<std::string>> argument_names(cl_kernel kernel) {
     std::string name(bytes, '\0');
     check(clGetKernelArgInfo(kernel, i, CL_KERNEL_ARG_NAME, bytes, name.data(), nullptr),
           "clGetKernelArgInfo");
-    names.push_back(text_of(std::move(name)));
+    names.push_back(text_of(name));
   }
   return names;
 }
@@ -59,7 +57,7 @@ std::optional<ArgumentNames> argument_names(cl_program program) {
           "clGetKernelInfo");
     auto arguments = argument_names(kernel.get());
     if (!arguments) return std::nullopt;
-    names.emplace(text_of(std::move(name)), std::move(*arguments));
+    names.emplace(text_of(name), std::move(*arguments));
   }
   return names;
 }

@@ -148,6 +148,26 @@ void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
   impl_->check(status, "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
 }
 
+void Context::write_bytes_beside(const RawBuffer& buffer, const void* data, std::size_t bytes) {
+  if (shares_host_memory()) {
+    write_bytes(buffer, data, bytes, 0);
+    return;
+  }
+  check_range(buffer, bytes, 0, "write");
+  if (bytes > 0) impl_->beside().write(memory_of(buffer), 0, data, bytes);
+}
+
+void Context::read_bytes_after(const Event& event, const RawBuffer& buffer, void* data,
+                               std::size_t bytes) {
+  if (event.handle() == nullptr) {
+    read_bytes(buffer, data, bytes, 0);
+    return;
+  }
+  check_range(buffer, bytes, 0, "read");
+  if (bytes == 0) return;
+  impl_->beside().read(static_cast<cl_event>(event.handle()), memory_of(buffer), 0, data, bytes);
+}
+
 bool Context::shares_host_memory() const { return impl_->info.type == DeviceType::cpu; }
 
 RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_view what,

@@ -97,6 +97,18 @@ class Buffer {
 /// case does not.
 enum class SharedMemory { uncounted, counted };
 
+/// A point of a context's queue, reached once all that was enqueued before it is done. Empty where
+/// nothing needs to be waited for. May outlive the context.
+class Event {
+ public:
+  Event() = default;
+  explicit Event(std::shared_ptr<void> handle) : handle_(std::move(handle)) {}
+  void* handle() const { return handle_.get(); }  ///< a cl_event, or null
+
+ private:
+  std::shared_ptr<void> handle_;
+};
+
 /// What memory a buffer of a CPU device is to be made of.
 enum class MemoryPages {
   ordinary,
@@ -203,6 +215,21 @@ class Context {
   void read(const Buffer<T>& buffer, std::span<T> out, std::size_t first = 0) {
     read_bytes(buffer.raw(), out.data(), out.size_bytes(), first * sizeof(T));
   }
+  /// Whether transfers run beside kernels: the device has a memory of its own.
+  bool transfers_beside_kernels() const { return !shares_host_memory(); }
+  /// The point that the queue has come to; empty where transfers do not run beside kernels.
+  Event mark();
+  void wait(const Event& event);
+  /// As `write`, beside the kernels that were enqueued before, none of which may use the buffer.
+  template <class T>
+  void write_beside(Buffer<T>& buffer, std::span<const T> values) {
+    write_bytes_beside(buffer.raw(), values.data(), values.size_bytes());
+  }
+  /// As `read`, once the event has happened, beside the kernels that were enqueued after it.
+  template <class T>
+  void read_after(const Event& event, const Buffer<T>& buffer, std::span<T> out) {
+    read_bytes_after(event, buffer.raw(), out.data(), out.size_bytes());
+  }
   /// The content of a buffer, to be restored later.
   template <class T>
   std::vector<std::byte> save(const Buffer<T>& buffer) {
@@ -264,6 +291,8 @@ class Context {
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
+  void write_bytes_beside(const RawBuffer& buffer, const void* data, std::size_t bytes);
+  void read_bytes_after(const Event& event, const RawBuffer& buffer, void* data, std::size_t bytes);
   /// With blocks of bytes one after the other, where the device shares memory with the host.
   void fill_from_all_cores(const RawBuffer& buffer, std::span<const unsigned char> block,
                            std::size_t bytes, std::size_t first);

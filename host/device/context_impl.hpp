@@ -13,6 +13,7 @@
 #include "device/kernel_times.hpp"
 #include "device/opencl.hpp"
 #include "device/program_library.hpp"
+#include "device/transfers.hpp"
 
 namespace photile::device {
 
@@ -61,6 +62,9 @@ struct Context::Impl {
     return status;
   }
 
+  /// Made where there is none yet. Errors: DeviceMemoryError.
+  Transfers& beside();
+
   /// Whether a reclaimer has released memory.
   bool reclaim();
 
@@ -72,6 +76,7 @@ struct Context::Impl {
   std::uint64_t memory_limit = 0;
   ContextHandle context;
   QueueHandle queue;
+  std::unique_ptr<Transfers> transfers;  ///< of cards, from the first use on
   std::unique_ptr<ProgramLibrary> programs;
   std::map<std::tuple<std::string, std::string, std::string>, Kernel>
       kernels;  ///< file, name, defines

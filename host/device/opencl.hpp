@@ -55,6 +55,7 @@ using ContextHandle = Handle<cl_context, clReleaseContext>;
 using QueueHandle = Handle<cl_command_queue, clReleaseCommandQueue>;
 using ProgramHandle = Handle<cl_program, clReleaseProgram>;
 using KernelHandle = Handle<cl_kernel, clReleaseKernel>;
+using MemoryHandle = Handle<cl_mem, clReleaseMemObject>;
 using EventHandle = Handle<cl_event, clReleaseEvent>;
 
 /// A property of a device or platform. Errors: DeviceError.

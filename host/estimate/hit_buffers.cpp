@@ -13,14 +13,24 @@ std::span<const float> floats(const std::vector<glm::vec3>& values, std::size_t 
   return {&values[first].x, 3 * count};
 }
 
+/// Makes a buffer hold the values, allocated anew where it has no room for them.
+template <class T>
+void put(device::Context& context, device::Buffer<T>& buffer, std::span<const T> values,
+         std::string_view what) {
+  if (buffer.size() < values.size()) {
+    buffer = {};
+    buffer = context.allocate<T>(values.size(), what);
+  }
+  context.write_beside(buffer, values);
+}
+
 /// One member of every lobe, packed for the device.
 template <class Member>
-device::Buffer<float> upload_lobes(device::Context& context, const PrimaryHits& hits,
-                                   std::size_t first, std::size_t count, Member member,
-                                   std::string_view what) {
+void put_lobes(device::Context& context, device::Buffer<float>& buffer, const PrimaryHits& hits,
+               std::size_t first, std::size_t count, Member member, std::string_view what) {
   std::vector<glm::vec3> values(count);
   for (std::size_t i = 0; i < count; ++i) values[i] = hits.lobe[first + i].*member;
-  return context.upload(floats(values, 0, count), what);
+  put(context, buffer, floats(values, 0, count), what);
 }
 
 std::vector<DiffusePart> diffuse_of(const PrimaryHits& hits, std::size_t first, std::size_t count) {
@@ -55,15 +65,14 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped) {
          (normals || clipped ? normal : 0) + (clipped ? place : 0);
 }
 
-HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
-                       std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                       const SurfaceBuffers* surface, const SceneNeeds& needs) {
+void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
+                 std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
+                 const SurfaceBuffers* surface, const SceneNeeds& needs, HitBuffers& buffers) {
   const std::size_t count = maps.size();
-  HitBuffers buffers;
   buffers.count = static_cast<std::uint32_t>(count);
-  if (count == 0) return buffers;
-  buffers.position = context.upload(floats(hits.position, first, count), "hit positions");
-  buffers.map = context.upload(maps, "maps of hits");
+  if (count == 0) return;
+  put(context, buffers.position, floats(hits.position, first, count), "hit positions");
+  put(context, buffers.map, maps, "maps of hits");
   if (surface != nullptr) {
     const SurfaceIndex& index = surface->index;
     normals = index.normal;
@@ -77,31 +86,29 @@ HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::s
                                    index.sheet_at(own, hits.position[first + i])});
       inwards[i] = surface->centroid[triangle] - hits.position[first + i];
     }
-    buffers.place = context.upload(std::span<const std::uint32_t>(places), "places of hits");
-    buffers.inwards = context.upload(floats(inwards, 0, count), "ways into triangles of hits");
+    put(context, buffers.place, std::span<const std::uint32_t>(places), "places of hits");
+    put(context, buffers.inwards, floats(inwards, 0, count), "ways into triangles of hits");
   }
   if (!normals.empty()) {
     std::vector<glm::vec3> of_hits(count);
     for (std::size_t i = 0; i < count; ++i) of_hits[i] = normals[hits.sided_triangle[first + i]];
-    buffers.face_normal = context.upload(floats(of_hits, 0, count), "hit face normals");
+    put(context, buffers.face_normal, floats(of_hits, 0, count), "hit face normals");
   }
-  if (!needs.glossy) return buffers;
-  buffers.outgoing = context.upload(floats(hits.outgoing, first, count), "hit directions");
-  buffers.normal =
-      upload_lobes(context, hits, first, count, &HitLobe::normal, "hit shading normals");
+  if (!needs.glossy) return;
+  put(context, buffers.outgoing, floats(hits.outgoing, first, count), "hit directions");
+  put_lobes(context, buffers.normal, hits, first, count, &HitLobe::normal, "hit shading normals");
   const std::vector<DiffusePart> diffuse = diffuse_of(hits, first, count);
-  buffers.diffuse =
-      context.upload(std::span<const float>(&diffuse[0][0].x, 9 * count), "hit diffuse parts");
-  buffers.f0 = upload_lobes(context, hits, first, count, &HitLobe::specular, "hit F0");
+  put(context, buffers.diffuse, std::span<const float>(&diffuse[0][0].x, 9 * count),
+      "hit diffuse parts");
+  put_lobes(context, buffers.f0, hits, first, count, &HitLobe::specular, "hit F0");
   std::vector<glm::vec2> shape(count);
   for (std::size_t i = 0; i < count; ++i) {
     shape[i] = {hits.lobe[first + i].roughness, hits.lobe[first + i].f90};
   }
-  buffers.shape = context.upload(std::span<const float>(&shape[0].x, 2 * count), "hit lobes");
-  if (!needs.normal_maps) return buffers;
+  put(context, buffers.shape, std::span<const float>(&shape[0].x, 2 * count), "hit lobes");
+  if (!needs.normal_maps) return;
   const std::vector<glm::vec4> bumps = bumps_of(hits, first, count);
-  buffers.bump = context.upload(std::span<const float>(&bumps[0].x, 4 * count), "hit normal maps");
-  return buffers;
+  put(context, buffers.bump, std::span<const float>(&bumps[0].x, 4 * count), "hit normal maps");
 }
 
 }  // namespace photile::estimate

@@ -30,13 +30,14 @@ struct HitBuffers {
 ///   clipped   whether areas are clipped
 std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 
-/// Hits [first, first + maps.size()).
+/// Makes `buffers` those of the hits [first, first + maps.size()), in place of others where they
+/// have room. Kernels that use them must have ended; others may run.
 ///   maps      of those hits
 ///   normals   per sided triangle, if a map is mixed (maps::MapStore::normals), else empty
 ///   surface   where areas are clipped, else null
 ///   needs     of which `glossy` and `normal_maps` ask for lobes
-HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
-                       std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                       const SurfaceBuffers* surface, const SceneNeeds& needs);
+void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
+                 std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
+                 const SurfaceBuffers* surface, const SceneNeeds& needs, HitBuffers& buffers);
 
 }  // namespace photile::estimate

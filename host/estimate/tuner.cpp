@@ -30,9 +30,10 @@ class Bench {
       : device_(device),
         neighbours_(static_cast<std::uint32_t>(neighbours)),
         sample_(make_tuning_sample(needs, neighbours, size)),
-        groups_(find_neighbour_groups(sample_.scene, {sample_.radius})),
-        hits_(upload_hits(device::context_of(device), sample_.hits, 0, sample_.hits.sided_triangle,
-                          {}, nullptr, needs)) {}
+        groups_(find_neighbour_groups(sample_.scene, {sample_.radius})) {
+    upload_hits(device::context_of(device), sample_.hits, 0, sample_.hits.sided_triangle, {},
+                nullptr, needs, hits_);
+  }
 
   /// Median of 5 runs over all hits, after one that warms up.
   double microseconds_per_hit(const EstimateTuning& tuning) {

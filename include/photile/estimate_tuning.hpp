@@ -47,8 +47,8 @@ struct EstimateTuning {
 };
 
 /// What is used unless the user asks for another: vector width 16 on every CPU, whatever its own
-/// width, so that pictures agree in every bit between CPUs; scalar elsewhere. Lanes
-/// are for the tuner to find: not all that they run has been tested.
+/// width, so that pictures agree in every bit between CPUs; elsewhere `lanes`, of as many
+/// work-items as the device runs in step, or of 32 where it does not say.
 EstimateTuning shipped_tuning(const DeviceInfo& device);
 
 /// One measurement of the tuner.

@@ -1,4 +1,5 @@
 // Buffers of estimates that are kept from call to call.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "device/context.hpp"
@@ -79,6 +80,23 @@ TEST_CASE("a second call allocates nothing that the first has not") {
   CHECK(kept - before == hits.size() * sizeof(glm::vec3));
   estimator.estimate(hits, 0, hits.size() / 2);
   CHECK(device::context_of(device).allocated_bytes() == kept);
+}
+
+TEST_CASE("hits of several batches are those of calls of their own") {
+  const Scene scene = two_plates();
+  const Photons photons = photons_on_one(scene);
+  const PhotonMaps maps = maps_on(test::device(), scene, photons);
+  // More than two batches where one is sent while another is computed.
+  const PrimaryHits hits = test::uniform_hits(scene, 300'001, 9);
+  Estimator estimator(maps, scene, {.neighbours = 5});
+  const Estimates together = estimator.estimate(hits);
+  REQUIRE(together.irradiance.size() == hits.size());
+  constexpr std::size_t part = 70'001;
+  for (std::size_t begin = 0; begin < hits.size(); begin += part) {
+    const Estimates alone = estimator.estimate(hits, begin, std::min(part, hits.size() - begin));
+    CHECK(std::equal(alone.irradiance.begin(), alone.irradiance.end(),
+                     together.irradiance.begin() + static_cast<std::ptrdiff_t>(begin)));
+  }
 }
 
 TEST_CASE("kept estimates make room where memory runs out") {

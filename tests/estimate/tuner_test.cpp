@@ -157,6 +157,23 @@ TEST_CASE("groups of lanes keep to the local memory that every device has, or ar
   }
 }
 
+TEST_CASE("devices that are no CPUs work in lanes, as many as they run in step") {
+  DeviceInfo gpu = device_of_type(DeviceType::gpu);
+  for (const auto& [in_step, width] : std::vector<std::pair<std::uint32_t, int>>{
+           {0, 32}, {8, 32}, {16, 16}, {32, 32}, {64, 64}, {128, 32}}) {
+    gpu.lanes = in_step;
+    CHECK(shipped_tuning(gpu).strategy == EstimateStrategy::lanes);
+    CHECK(shipped_tuning(gpu).vector_width == width);
+    CHECK(tuning_problem(shipped_tuning(gpu)).empty());
+  }
+  gpu.lanes = 64;
+  gpu.max_work_group_size = 32;
+  CHECK(shipped_tuning(gpu).vector_width == 32);
+  gpu.max_work_group_size = 8;
+  CHECK(shipped_tuning(gpu).strategy == EstimateStrategy::select);
+  CHECK(shipped_tuning(device_of_type(DeviceType::cpu)).strategy == EstimateStrategy::select);
+}
+
 TEST_CASE("every alternative differs in its parameter, has a kernel, and keeps to the memory") {
   for (const DeviceType type : {DeviceType::cpu, DeviceType::gpu}) {
     for (const SceneNeeds& needs : {one_light, several_lights, glossy}) {

@@ -1,8 +1,8 @@
 #!/bin/bash
-# Runs every kernel under one of Oclgrind's checks. Oclgrind exits with 0 even after errors, so a log
+# Runs kernels under one of Oclgrind's checks. Oclgrind exits with 0 even after errors, so a log
 # that is not empty is the failure.
 #
-#   check_kernels.sh CHECK FINGERPRINT LOG OCLGRIND_LAYER
+#   check_kernels.sh CHECK FINGERPRINT LOG OCLGRIND_LAYER ARGUMENT_OF_FINGERPRINT...
 #
 # CHECK is races (memory, data races and use of the API, in kernels compiled as always) or
 # uninitialised. The latter crashes in Oclgrind 21.10 on the shuffles with undefined lanes that LLVM
@@ -25,7 +25,7 @@ case $check in
     ;;
 esac
 rm -f "$log"
-"$fingerprint" 300 100 --every-kernel
+"$fingerprint" "${@:5}"
 if [ -s "$log" ]; then
   cat "$log" >&2
   exit 1

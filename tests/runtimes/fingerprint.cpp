@@ -1,12 +1,13 @@
 // Prints hashes of everything that the build, knn and density kernels compute on fixed photons and
 // hits, one per line. Two runtimes agree in every bit if they print the same.
 //
-//   photile_fingerprint PHOTONS HITS [--every-kernel]
+//   photile_fingerprint PHOTONS HITS [--every-kernel | --lanes]
 //
 // With --every-kernel the kd-trees, brute force and glossy surfaces are run, too, so that a checker
-// sees each kernel and each of its specialisations once. The device is the best there is, or those
-// that PHOTILE_DEVICE names: several share the hits. Exit code 3 where a result is not a finite
-// number.
+// sees each kernel and each of its specialisations once. With --lanes the estimates are those of
+// groups of 32 and 64 work-items, as on GPUs, and nothing else is run. The device is the best there
+// is, or those that PHOTILE_DEVICE names: several share the hits. Exit code 3 where a result is not
+// a finite number.
 #include <fmt/format.h>
 #include <xxhash.h>
 
@@ -183,6 +184,27 @@ std::vector<Case> cases(bool every_kernel) {
   return list;
 }
 
+std::vector<Case> cases_of_lanes() {
+  std::vector<Case> list;
+  for (const int width : {32, 64}) {
+    const EstimateTuning tuning{EstimateStrategy::lanes, width, 4, width};
+    const auto add = [&](std::string_view name, std::size_t lights, bool glossy, int neighbours,
+                         DensityKernel kernel = DensityKernel::constant) {
+      list.push_back({fmt::format("{}-lanes-{}", width, name), torus_and_plate(lights, glossy),
+                      MapStructure::uniform_grid, neighbours, tuning, 0, kernel});
+    };
+    add("one-light", 1, false, 50);
+    add("three-lights", 3, false, 50);
+    add("many-lights", 300, false, 50);
+    add("glossy", 1, true, 50);
+    add("glossy-many-lights", 20, true, 50);
+    // More candidates than a group keeps.
+    add("k-1000", 1, false, 1000);
+    add("epanechnikov", 1, false, 50, DensityKernel::epanechnikov);
+  }
+  return list;
+}
+
 }  // namespace
 }  // namespace photile::test
 
@@ -190,18 +212,18 @@ int main(int count, char** arguments) {
   using namespace photile;
   using namespace photile::test;
   if (count < 3) {
-    fmt::print(stderr, "usage: photile_fingerprint PHOTONS HITS [--every-kernel]\n");
+    fmt::print(stderr, "usage: photile_fingerprint PHOTONS HITS [--every-kernel | --lanes]\n");
     return static_cast<int>(app::ExitCode::usage);
   }
   const Sizes sizes{std::strtoul(arguments[1], nullptr, 10),
                     std::strtoul(arguments[2], nullptr, 10)};
-  const bool every_kernel = count > 3 && std::string_view(arguments[3]) == "--every-kernel";
+  const std::string_view set = count > 3 ? arguments[3] : "";
   try {
     std::vector<Device> devices = open_devices();
     for (const Device& device : devices) {
       fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().platform);
     }
-    for (const Case& test : cases(every_kernel)) {
+    for (const Case& test : set == "--lanes" ? cases_of_lanes() : cases(set == "--every-kernel")) {
       if (test.memory_per_photon == 0) {
         print_fingerprint(devices, test, sizes);
       } else {
