@@ -1,0 +1,60 @@
+# Debian packages: `cpack --config BUILD/CPackConfig.cmake` makes photile, libphotile-dev and
+# python3-photile. tests/package/debian.sh installs them on a bare Debian 12.
+# Packages hold what has been built: tests and benches need not be.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The photile developers <photile@localhost>")
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
+set(CPACK_COMPONENTS_ALL development)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libphotile-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+  "photon mapping on OpenCL devices (library)\n Headers, the static library and its CMake files, for C++20 programs.")
+# What photileConfig.cmake looks for.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "libglm-dev, libtbb-dev, libembree-dev, libopenexr-dev, libpng-dev, libjpeg-dev, libtiff-dev, libwebp-dev, libfmt-dev, nlohmann-json3-dev, robin-map-dev, libxxhash-dev, ocl-icd-opencl-dev, opencl-c-headers, pkg-config")
+
+if(TARGET photile_command)
+  list(APPEND CPACK_COMPONENTS_ALL command)
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME photile)
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION graphics)
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, fonts-dejavu-core")
+  set(CPACK_COMPONENT_COMMAND_DESCRIPTION
+    "photon mapping on OpenCL devices, a layer per light\n Renders interiors from glTF and OBJ files, changes the lights of finished pictures, measures lux,\n and walks through scenes in a window.")
+  # Manual pages and completions are what the command itself prints.
+  install(CODE "set(PHOTILE_COMMAND \"$<TARGET_FILE:photile_command>\")
+    set(PHOTILE_SCRATCH \"${PROJECT_BINARY_DIR}/manuals\")" COMPONENT command)
+  install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install_manuals.cmake COMPONENT command)
+  install(FILES packaging/org.photile.Photile.desktop DESTINATION share/applications
+    COMPONENT command)
+  install(FILES packaging/org.photile.Photile.metainfo.xml DESTINATION share/metainfo
+    COMPONENT command)
+  install(FILES packaging/org.photile.Photile.svg DESTINATION share/icons/hicolor/scalable/apps
+    COMPONENT command)
+  # Where Debian's Blender looks for add-ons.
+  install(DIRECTORY blender/photile DESTINATION share/blender/scripts/addons COMPONENT command
+    FILES_MATCHING PATTERN "*.py")
+  install(FILES LICENSE DESTINATION share/doc/photile RENAME copyright COMPONENT command)
+endif()
+
+if(TARGET photile_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-photile)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  math(EXPR _next "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${_next}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+    "photon mapping on OpenCL devices (Python)\n Scenes, photons, photon maps, pictures and lux as arrays of numpy.")
+endif()
+include(CPack)

@@ -1,0 +1,85 @@
+#!/bin/bash
+# Makes the Debian packages, installs them on a bare Debian 12 in a folder of its own, and uses each
+# there: a picture, a module, a program that is linked. Needs root, debootstrap and a mirror of Debian;
+# without, the test is skipped and says so.
+#   debian.sh BUILD-FOLDER SOURCE-FOLDER SCRATCH-FOLDER
+set -eu
+build=$1 source=$2 scratch=$3/debian
+mirror=${PHOTILE_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+
+skip() {
+  echo "skipped: $*"
+  exit 77
+}
+fail() {
+  echo "debian.sh: $*" >&2
+  exit 1
+}
+[ "$(id -u)" = 0 ] || skip "a chroot needs root"
+command -v debootstrap > /dev/null || skip "there is no debootstrap; apt-get install debootstrap"
+
+root=$scratch/root
+rm -rf "$scratch/packages"
+mkdir -p "$scratch"
+(cd "$build" && cpack --config CPackConfig.cmake -B "$scratch/packages") > "$scratch/cpack.log" ||
+  { cat "$scratch/cpack.log"; fail "cpack failed"; }
+for name in photile libphotile-dev python3-photile; do
+  ls "$scratch"/packages/${name}_*.deb > /dev/null || fail "there is no package $name"
+done
+
+# A bare Debian is made once and copied for each run.
+if [ ! -e "$scratch/bare.tar" ]; then
+  rm -rf "$root"
+  debootstrap --variant=minbase bookworm "$root" "$mirror" > "$scratch/debootstrap.log" 2>&1 ||
+    skip "debootstrap found no Debian 12 at $mirror; PHOTILE_DEBIAN_MIRROR names another"
+  tar -C "$root" -cf "$scratch/bare.tar" .
+fi
+rm -rf "$root"
+mkdir -p "$root"
+tar -C "$root" -xf "$scratch/bare.tar"
+cp "$scratch"/packages/*.deb "$root/root"
+cp -r "$source/scenes/cornell-box" "$source/docs/examples" "$root/root"
+cp /etc/resolv.conf "$root/etc/resolv.conf"
+trap 'umount "$root/proc" "$root/sys" 2> /dev/null || true' EXIT
+mount -t proc proc "$root/proc" || skip "nothing can be mounted here"
+mount -t sysfs sys "$root/sys"  # by which PoCL counts processors
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
+  DEBIAN_FRONTEND=noninteractive bash -euc "cd /root; $*"; }
+
+inside "apt-get update; apt-get install --yes --no-install-recommends pocl-opencl-icd \
+  ./photile_*.deb ./python3-photile_*.deb" > "$scratch/install.log" 2>&1 ||
+  { tail -n 20 "$scratch/install.log"; fail "the packages do not install"; }
+inside "photile --version" | grep -q '^photile [0-9.]* (commit ' || fail "no version is told"
+inside "photile render cornell-box/cornell-box.obj -o box.exr --png box.png --size 64x48 \
+  --quality draft --photons 20000 --quiet; photile relight box.exr" | grep -q '^light: lamp' ||
+  fail "no picture is rendered and relit"
+inside "python3 -c '
+import photile
+scene = photile.load(\"cornell-box/cornell-box.obj\")
+photons = photile.trace(scene, 1000)
+maps = photile.PhotonMaps(photons)
+near = maps.nearest(photons.position[:10], photons.normal[:10], k=3)
+assert near.distance[:, 0].max() < 1e-6
+assert photile.relight(\"box.exr\").mix().shape == (48, 64, 3)
+print(\"python:\", len(photons))'" | grep -q '^python: [0-9]' || fail "the module does not work"
+for file in man/man1/photile.1 man/man1/photile-render.1 bash-completion/completions/photile \
+  zsh/vendor-completions/_photile fish/vendor_completions.d/photile.fish \
+  applications/org.photile.Photile.desktop metainfo/org.photile.Photile.metainfo.xml \
+  icons/hicolor/scalable/apps/org.photile.Photile.svg blender/scripts/addons/photile/__init__.py; do
+  # minbase leaves pages out, as Debian's own containers do; then the package lists them.
+  [ -s "$root/usr/share/$file" ] || inside "dpkg -L photile" | grep -q "/$file" ||
+    fail "share/$file is missing"
+done
+
+inside "apt-get install --yes --no-install-recommends cmake g++ make ./libphotile-dev_*.deb" \
+  >> "$scratch/install.log" 2>&1 ||
+  { tail -n 20 "$scratch/install.log"; fail "libphotile-dev does not install"; }
+inside "cmake -S examples -B built -DCMAKE_BUILD_TYPE=Release && cmake --build built \
+  --target own_photons && built/own_photons" > "$scratch/example.log" 2>&1 ||
+  { tail -n 20 "$scratch/example.log"; fail "a program does not link libphotile-dev"; }
+grep -q '^point 0: nearest photon' "$scratch/example.log" || fail "the program prints no photon"
+inside "apt-get purge --yes photile python3-photile libphotile-dev" > /dev/null 2>&1 ||
+  fail "the packages cannot be removed"
+umount "$root/proc" "$root/sys"
+rm -rf "$root"
+echo "photile, python3-photile and libphotile-dev install on Debian 12 and work there"
