@@ -23,9 +23,9 @@ outputs=$(mktemp -d)
 trap 'rm -rf "$outputs"' EXIT
 export photile outputs
 xvfb-run --auto-servernum --server-args "-screen 0 1280x960x24" bash -c '
-  "$photile" view scenes/living-room/living-room.gltf --size 800x600 --samples 4 --photons 2M \
-    --neighbours 200 --outputs "$outputs" --quiet &
-  until xdotool search --name "4 of 4 samples, 2M"; do sleep 1; done
+  "$photile" view scenes/living-room/living-room.gltf --size 800x600 --quality good \
+    --outputs "$outputs" --quiet &
+  until xdotool search --name "16 of 16 samples, 0.5M"; do sleep 1; done
   for place in "560 470" "108 464"; do
     xdotool mousemove $place; sleep 0.4
     xdotool mousedown 1; sleep 0.4
