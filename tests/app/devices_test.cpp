@@ -198,7 +198,7 @@ TEST_CASE("the test of devices passes, and not with kernels that compute wrong a
 
   const auto file = std::filesystem::path("surface/clipped_disc.clh");
   std::string text = bytes_of(source_folder() / "kernels" / file);
-  const std::string area = "disc->area = whole_disc";
+  const std::string area = "disc->area = squared_radius";
   REQUIRE(text.find(area) != std::string::npos);
   text.insert(text.find(area) + std::string("disc->area = ").size(), "1.01f * ");
   std::filesystem::create_directories(folder / "kernels/surface");

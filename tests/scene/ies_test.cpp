@@ -209,6 +209,8 @@ TEST_CASE("what is wrong with a file is told with its line", "[ies]") {
   CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 180 90")), holds("angles ascend"));
   CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 90 90")), holds("angles ascend"));
   CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 90 181")), holds("within 0 and 180"));
+  // Mirrored, these would be one.
+  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 1e-44 180")), holds("angles ascend"));
   CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 0 3 1 1")),
              holds("multiplier is 0"));
   CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 1 1 1")),

@@ -83,10 +83,11 @@ std::vector<double> ascending_angles(const std::string& what, std::size_t first_
   std::vector<double> angles;
   for (std::size_t i = 0; i < count; ++i) {
     const double angle = lines.number(what, first_line + i);
-    if (!(angle >= 0.0 && angle <= highest) || (i > 0 && !(angle > angles.back()))) {
-      throw ResourceError(
-          fmt::format("line {}: the {} is {}; angles ascend within 0 and {} degrees",
-                      first_line + i, what, angle, highest));
+    const bool ascends = i == 0 || angle - angles.back() >= least_angle_step;
+    if (!(angle >= 0.0 && angle <= highest) || !ascends) {
+      throw ResourceError(fmt::format(
+          "line {}: the {} is {}; angles ascend within 0 and {} degrees, by {:g} at least",
+          first_line + i, what, angle, highest, least_angle_step));
     }
     angles.push_back(angle);
   }

@@ -62,9 +62,11 @@ std::vector<double> angles(const std::string& what, std::size_t count, double lo
                            double highest, NumberReader& reader) {
   std::vector<double> values = reader.numbers(what, count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (values[i] < lowest || values[i] > highest || (i > 0 && !(values[i] > values[i - 1]))) {
-      throw ResourceError(fmt::format("{} {} of {} is {}; angles ascend within {} and {} degrees",
-                                      what, i + 1, count, values[i], lowest, highest));
+    const bool ascends = i == 0 || values[i] - values[i - 1] >= least_angle_step;
+    if (values[i] < lowest || values[i] > highest || !ascends) {
+      throw ResourceError(
+          fmt::format("{} {} of {} is {}; angles ascend within {} and {} degrees, by {:g} at least",
+                      what, i + 1, count, values[i], lowest, highest, least_angle_step));
     }
   }
   return values;

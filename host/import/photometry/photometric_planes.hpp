@@ -6,6 +6,9 @@
 
 namespace photile::scene_io {
 
+/// Degrees between the angles of a file: mirrored, or turned by right angles, they still differ.
+inline constexpr double least_angle_step = 1e-6;
+
 /// A half-plane of intensities: its azimuth, and which of the measured ones it repeats.
 struct MeasuredPlane {
   double azimuth;  ///< degrees
