@@ -13,6 +13,7 @@ import pathlib
 import report_kernels
 import report_lights
 import report_plots
+import report_ratios
 import report_scale
 import report_tables
 import report_targets
@@ -73,7 +74,7 @@ def machine_section(results):
     return "  \n".join(lines)
 
 
-def page(results, plots, notes):
+def page(results, plots, ratio_plots, notes):
     sections = [
         "# Benchmarks",
         "How fast the estimate is, beside other ways to find the same photons. `bench/run_all.sh` "
@@ -88,6 +89,10 @@ def page(results, plots, notes):
         "\n\n".join(f"![Time against photons: {name}](benchmarks/{file})"
                     for name, file in plots),
         report_tables.knn(results["knn"]),
+        "### As ratios",
+        "\n\n".join(f"![Time over that of the uniform grid: {name}](benchmarks/{file})"
+                    for name, file in ratio_plots),
+        report_ratios.text(results["knn"]["results"]),
         "## Where the time of an estimate goes", report_kernels.profile(results["profile"]),
         "## Kinds of scenes", report_kernels.specialisations(results["kernels"]),
         "## Beside the limits of the device", report_kernels.roofline(results["kernels"]),
@@ -114,10 +119,11 @@ def main():
         with open(options.results / f"{bench}.json", encoding="utf-8") as file:
             results[bench] = json.load(file)
     plots = report_plots.draw_knn(results["knn"], caption(results), options.results)
+    ratio_plots = report_plots.draw_ratios(results["knn"], caption(results), options.results)
     report_lights.draw(results["lights"], caption(results), options.results)
     report_scale.draw(results["scale"], caption(results), options.results)
     notes = (ROOT / "bench/report_notes.md").read_text(encoding="utf-8")
-    options.page.write_text(page(results, plots, notes), encoding="utf-8")
+    options.page.write_text(page(results, plots, ratio_plots, notes), encoding="utf-8")
     print(f"wrote {options.page}")
 
 

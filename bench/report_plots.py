@@ -5,6 +5,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot  # noqa: E402
 
+import report_ratios  # noqa: E402
+
 matplotlib.rcParams["svg.hashsalt"] = "photile"
 
 # Okabe and Ito's colours, which colour-blind readers can tell apart, and two greys.
@@ -100,6 +102,31 @@ def draw_summary(rows, workloads, caption, file):
     axes[0].set_ylabel("microseconds a query")
     legend_beside(axes)
     save(figure, file)
+
+
+def draw_ratios(knn, caption, folder):
+    """Times over those of the uniform grid: a picture a workload of several numbers of photons, a panel a
+    value of k; returns (workload, file name) of these."""
+    cases = {case: structures for case, structures in report_ratios.ratios(knn["results"]).items()
+             if several_counts(knn["results"], case[0])}
+    drawn = []
+    for workload in dict.fromkeys(workload for workload, _ in cases):
+        ks = sorted(k for name, k in cases if name == workload)
+        figure, axes = panels(len(ks), caption)
+        for axis, k in zip(axes, ks):
+            for structure, of_photons in cases[workload, k].items():
+                colour, line, marker = STYLES[structure]
+                photons = sorted(of_photons)
+                axis.plot(photons, [of_photons[count] for count in photons], line, marker=marker,
+                          color=colour, label=structure, markersize=4)
+            axis.axhline(1, color=STYLES[report_ratios.BASE][0])
+            log_log(axis, f"k = {k}", "photons")
+        axes[0].set_ylabel(f"times as long as {report_ratios.BASE}")
+        legend_beside(axes)
+        figure.suptitle(workload)
+        drawn.append((workload, f"knn-ratios-{workload}.svg"))
+        save(figure, folder / drawn[-1][1])
+    return drawn
 
 
 def draw_knn(knn, caption, folder):

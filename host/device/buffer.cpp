@@ -154,7 +154,10 @@ void Context::write_bytes_beside(const RawBuffer& buffer, const void* data, std:
     return;
   }
   check_range(buffer, bytes, 0, "write");
-  if (bytes > 0) impl_->beside().write(memory_of(buffer), 0, data, bytes);
+  if (bytes == 0) return;
+  Transfers& transfers = impl_->beside();
+  impl_->check(impl_->persevere([&] { return transfers.write(memory_of(buffer), data, bytes); }),
+               "clEnqueueWriteBuffer", fmt::format("{} bytes", bytes));
 }
 
 void Context::read_bytes_after(const Event& event, const RawBuffer& buffer, void* data,
@@ -165,7 +168,11 @@ void Context::read_bytes_after(const Event& event, const RawBuffer& buffer, void
   }
   check_range(buffer, bytes, 0, "read");
   if (bytes == 0) return;
-  impl_->beside().read(static_cast<cl_event>(event.handle()), memory_of(buffer), 0, data, bytes);
+  Transfers& transfers = impl_->beside();
+  const auto after = static_cast<cl_event>(event.handle());
+  const cl_int status =
+      impl_->persevere([&] { return transfers.read(after, memory_of(buffer), data, bytes); });
+  impl_->check(status, "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
 }
 
 bool Context::shares_host_memory() const { return impl_->info.type == DeviceType::cpu; }

@@ -62,7 +62,7 @@ struct Context::Impl {
     return status;
   }
 
-  /// Made where there is none yet. Errors: DeviceMemoryError.
+  /// Made where there is none yet. Errors: DeviceError.
   Transfers& beside();
 
   /// Whether a reclaimer has released memory.

@@ -25,58 +25,69 @@ Transfers::~Transfers() {
   clFinish(queue_.get());
 }
 
-void Transfers::wait(Half& half) {
-  if (!half.copied) return;
+cl_int Transfers::wait(Half& half) {
+  if (!half.copied) return CL_SUCCESS;
   const cl_event event = half.copied.get();
-  check(clWaitForEvents(1, &event), "clWaitForEvents", "transfer");
+  const cl_int status = clWaitForEvents(1, &event);
   half.copied = {};
+  return status;
 }
 
 template <class Enqueue>
-void Transfers::start(Half& half, cl_event after, const char* call, const Enqueue& enqueue) {
+cl_int Transfers::start(Half& half, cl_event after, const Enqueue& enqueue) {
   cl_event event = nullptr;
-  check(enqueue(after != nullptr ? 1u : 0u, after != nullptr ? &after : nullptr, &event), call,
-        "transfer");
+  const cl_int status =
+      enqueue(after != nullptr ? 1u : 0u, after != nullptr ? &after : nullptr, &event);
+  if (status != CL_SUCCESS) return status;
   half.copied = EventHandle(event);
-  check(clFlush(queue_.get()), "clFlush", "transfer");
+  return clFlush(queue_.get());
 }
 
-void Transfers::write(cl_mem to, std::size_t offset, const void* data, std::size_t bytes) {
+cl_int Transfers::write(cl_mem to, const void* data, std::size_t bytes) {
   const auto* const from = static_cast<const unsigned char*>(data);
+  cl_int status = CL_SUCCESS;
   std::size_t turn = 0;
-  for (std::size_t done = 0; done < bytes; done += half_bytes, turn = 1 - turn) {
+  for (std::size_t at = 0; at < bytes && status == CL_SUCCESS; at += half_bytes, turn = 1 - turn) {
     Half& half = halves_[turn];
-    wait(half);
-    const std::size_t part = std::min(half_bytes, bytes - done);
-    std::memcpy(half.memory, from + done, part);
-    start(half, nullptr, "clEnqueueWriteBuffer",
-          [&](cl_uint count, const cl_event* list, cl_event* event) {
-            return clEnqueueWriteBuffer(queue_.get(), to, CL_FALSE, offset + done, part,
-                                        half.memory, count, list, event);
-          });
+    status = wait(half);
+    if (status != CL_SUCCESS) break;
+    const std::size_t part = std::min(half_bytes, bytes - at);
+    std::memcpy(half.memory, from + at, part);
+    status = start(half, nullptr, [&](cl_uint count, const cl_event* list, cl_event* event) {
+      return clEnqueueWriteBuffer(queue_.get(), to, CL_FALSE, at, part, half.memory, count, list,
+                                  event);
+    });
   }
-  for (Half& half : halves_) wait(half);
+  for (Half& half : halves_) {
+    const cl_int ended = wait(half);
+    if (status == CL_SUCCESS) status = ended;
+  }
+  return status;
 }
 
-void Transfers::read(cl_event after, cl_mem from, std::size_t offset, void* data,
-                     std::size_t bytes) {
+cl_int Transfers::read(cl_event after, cl_mem from, void* data, std::size_t bytes) {
   auto* const to = static_cast<unsigned char*>(data);
   const auto part_at = [&](std::size_t at) { return std::min(half_bytes, bytes - at); };
+  cl_int status = CL_SUCCESS;
   std::size_t turn = 0;
   // The part before is copied by the host while the device copies this one.
   for (std::size_t at = 0; at < bytes + half_bytes; at += half_bytes, turn = 1 - turn) {
-    if (at < bytes) {
-      start(halves_[turn], after, "clEnqueueReadBuffer",
-            [&](cl_uint count, const cl_event* list, cl_event* event) {
-              return clEnqueueReadBuffer(queue_.get(), from, CL_FALSE, offset + at, part_at(at),
-                                         halves_[turn].memory, count, list, event);
-            });
+    if (at < bytes && status == CL_SUCCESS) {
+      Half& half = halves_[turn];
+      status = start(half, after, [&](cl_uint count, const cl_event* list, cl_event* event) {
+        return clEnqueueReadBuffer(queue_.get(), from, CL_FALSE, at, part_at(at), half.memory,
+                                   count, list, event);
+      });
     }
     if (at == 0) continue;
     Half& before = halves_[1 - turn];
-    wait(before);
+    const cl_int ended = wait(before);
+    if (status == CL_SUCCESS) status = ended;
+    if (status != CL_SUCCESS) break;
     std::memcpy(to + at - half_bytes, before.memory, part_at(at - half_bytes));
   }
+  for (Half& half : halves_) wait(half);  // after a failure
+  return status;
 }
 
 }  // namespace photile::device

@@ -10,18 +10,22 @@
 namespace photile::device {
 
 /// Both directions go through two halves of pinned memory: one is copied by the host while the
-/// device copies the other. Errors: DeviceError.
+/// device copies the other.
 class Transfers {
  public:
+  /// Errors: DeviceError.
   Transfers(cl_context context, cl_device_id device);
   ~Transfers();
   Transfers(const Transfers&) = delete;
   Transfers& operator=(const Transfers&) = delete;
 
-  /// Returns when `to` holds the data. No kernel that was enqueued before may use these bytes.
-  void write(cl_mem to, std::size_t offset, const void* data, std::size_t bytes);
+  // Both return when all is copied, or the status of the first call that failed; they may be called
+  // again then.
+
+  /// No kernel that was enqueued before may use `to`.
+  cl_int write(cl_mem to, const void* data, std::size_t bytes);
   /// Once `after` has happened.
-  void read(cl_event after, cl_mem from, std::size_t offset, void* data, std::size_t bytes);
+  cl_int read(cl_event after, cl_mem from, void* data, std::size_t bytes);
 
  private:
   static constexpr std::size_t half_bytes = std::size_t{4} << 20;
@@ -30,10 +34,10 @@ class Transfers {
     unsigned char* memory = nullptr;
     EventHandle copied;  ///< the device's last copy
   };
-  void wait(Half& half);
-  /// The event of a command that `enqueue(events, list, event)` puts into the queue.
+  static cl_int wait(Half& half);
+  /// Keeps the event of a command that `enqueue(events, list, event)` puts into the queue.
   template <class Enqueue>
-  void start(Half& half, cl_event after, const char* call, const Enqueue& enqueue);
+  cl_int start(Half& half, cl_event after, const Enqueue& enqueue);
 
   QueueHandle queue_;
   MemoryHandle pinned_;

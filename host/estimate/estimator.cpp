@@ -129,6 +129,15 @@ struct Estimator::Impl {
     batch.unread = false;
   }
 
+  /// What a call that failed has left: its kernels may still run.
+  void forget_failed() {
+    for (Batch& batch : in_flight) {
+      if (batch.hits.count > 0) context.finish();
+      batch.hits = {};
+      batch.unread = false;
+    }
+  }
+
   /// Reads what is left and releases the hits' memory.
   void end(Estimates& result) {
     for (Batch& batch : in_flight) {
@@ -211,7 +220,7 @@ Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::s
       impl_->store.needs.many_lights()
           ? std::max<std::size_t>(comfortable_bytes / together / least_hits, 1) * least_hits
           : (impl_->overlaps() ? overlapped_hits : hit_count);
-  for (Impl::Batch& batch : impl_->in_flight) batch.unread = false;  // of a call that failed
+  impl_->forget_failed();
   const auto estimate = [&](std::size_t first, std::size_t count) {
     try {
       impl_->estimate(hits, begin + first, count, first, result);

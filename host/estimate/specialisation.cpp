@@ -22,7 +22,7 @@ int capacity_for(int neighbours, EstimateStrategy strategy, int vector_width) {
     return std::clamp(rounded_up(std::min(neighbours, largest_lane_capacity) * 8, vector_width),
                       least, largest_lane_capacity);
   }
-  const int most = vector_width == 1 ? largest_capacity / 2 : largest_capacity;
+  const int most = vector_width == 1 ? largest_scalar_capacity : largest_capacity;
   return std::clamp(rounded_up(std::min(neighbours, most) * 8, 16), least, most);
 }
 

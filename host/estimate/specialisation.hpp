@@ -18,9 +18,13 @@ namespace photile::estimate {
 /// cache.
 inline constexpr std::size_t max_private_bytes_per_group = 512u << 10;
 
-/// Distances that kernels/estimate/candidates.clh keeps at most, so that a group of 64 work-items
-/// stays within max_private_bytes_per_group.
-inline constexpr int largest_capacity = 1600;
+/// Distances that kernels/estimate/candidates.clh keeps at most. A block of k = 1,000 fits; with
+/// half as many it is walked again by each pass, which takes 1.5 times as long.
+inline constexpr int largest_capacity = 3200;
+
+/// The same of scalar kernels, whose chunks are of one: a group of 64 work-items stays within
+/// max_private_bytes_per_group.
+inline constexpr int largest_scalar_capacity = 800;
 
 /// The same for the lanes of a group, which keep them in local memory. What a group may have of
 /// that is at least 32 KiB on any device with a full profile; half of it leaves room for two

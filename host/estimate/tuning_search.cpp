@@ -84,7 +84,6 @@ std::vector<EstimateTuning> alternatives(TuningParameter parameter, const Estima
         std::erase_if(tunings,
                       [](const EstimateTuning& tuning) { return tuning.vector_width == 1; });
       }
-      for (EstimateTuning& tuning : tunings) fit_groups(tuning, needs, neighbours);
       break;
     case TuningParameter::hits_per_item:
       if (from.strategy == EstimateStrategy::select) {
@@ -101,6 +100,8 @@ std::vector<EstimateTuning> alternatives(TuningParameter parameter, const Estima
       });
       break;
   }
+  // Those of `from`, too: a large k needs smaller groups than what is shipped.
+  for (EstimateTuning& tuning : tunings) fit_groups(tuning, needs, neighbours);
   return tunings;
 }
 

@@ -30,6 +30,20 @@ class RatiosTest(unittest.TestCase):
         self.assertIn("| structure | 1,000 photons | 10,000 photons |", text)
         self.assertIn("| tree | 3 | 2 |", text)
 
+    def test_ratios_are_drawn_a_picture_a_workload(self):
+        sys.path.insert(0, str(SCRIPT.parent))
+        try:
+            import report_plots
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        rows = [row(name, seconds, 100, photons) for photons in (1_000, 10_000)
+                for name, seconds in (("uniform-grid", 2.0), ("kdtree-3d", 3.0))]
+        rows.append({**rows[0], "workload": "one number of photons"})
+        with tempfile.TemporaryDirectory() as folder:
+            drawn = report_plots.draw_ratios({"results": rows}, "", pathlib.Path(folder))
+            self.assertEqual(drawn, [("plane", "knn-ratios-plane.svg")])
+            self.assertIn("<svg", pathlib.Path(folder, drawn[0][1]).read_text())
+
     def test_visits_are_listed_where_they_are_counted(self):
         rows = [row("tree", 3.0, 50, **{"nodes visited": 12.4, "photons visited": 99.6})]
         self.assertIn("| tree | 12 | 100 |", self.run_on(json.dumps({"results": rows})).stdout)
