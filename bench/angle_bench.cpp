@@ -192,6 +192,6 @@ bool run(const BenchOptions& options) {
 int main(int argument_count, char** arguments) {
   BenchOptions options;
   CLI::App command("Darkening and bleeding against the angle of the groups", "angle");
-  add_options(command, options);
+  add_options(command, options, Repeating::no);
   return run_bench(command, argument_count, arguments, [&] { return run(options); });
 }

@@ -129,6 +129,6 @@ bool run(BenchOptions& options) {
 int main(int argument_count, char** arguments) {
   BenchOptions options;
   CLI::App command("Readings near borders beside closed forms", "borders");
-  add_options(command, options);
+  add_options(command, options, Repeating::no);
   return run_bench(command, argument_count, arguments, [&] { return run(options); });
 }

@@ -36,6 +36,16 @@ def words_of(key):
                      for name, value in key)
 
 
+def with_range(time):
+    return f"{time['median']:.4g} [{time['min']:.4g}, {time['max']:.4g}]"
+
+
+def for_as_many_queries(time, of, wanted):
+    """What as many queries as `wanted` has would take: slow cases answer fewer."""
+    ratio = wanted.get("queries", 1) / (of.get("queries", 1) or 1) if "queries" in of else 1
+    return {part: ratio * time[part] for part in ("median", "min", "max")}
+
+
 def change(before, after):
     """1 where the time is longer beyond the noise, -1 where it is shorter, else 0."""
     if after["min"] > before["max"]:
@@ -57,13 +67,14 @@ def compare(before, after):
             if not is_time(time) or not is_time(old.get(name)):
                 continue
             compared += 1
-            direction = change(old[name], time)
+            earlier = for_as_many_queries(old[name], old, row)
+            direction = change(earlier, time)
             if direction != 0:
-                ratio = max(time["median"], old[name]["median"]) / min(time["median"],
-                                                                       old[name]["median"])
+                ratio = max(time["median"], earlier["median"]) / min(time["median"],
+                                                                     earlier["median"])
                 lines.append(f"{ratio:.2f} x {'slower' if direction > 0 else 'faster'}: "
-                             f"{words_of(key)}, {name} {old[name]['median']:.4g} -> "
-                             f"{time['median']:.4g} s")
+                             f"{words_of(key)}, {name} {with_range(earlier)} -> "
+                             f"{with_range(time)} s")
     lines += [f"only before: {words_of(key)}" for key in rows]
     return lines, compared
 
@@ -92,15 +103,12 @@ def read(path):
     return content
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("before", type=pathlib.Path)
-    parser.add_argument("after", type=pathlib.Path)
-    given = parser.parse_args()
-    before, after = read(given.before), read(given.after)
+def compare_files(before_file, after_file):
+    """Prints what `compare` and `differences` found."""
+    before, after = read(before_file), read(after_file)
     if before.get("bench") != after.get("bench"):
-        sys.exit(f"compare.py: error: {given.before} is of the bench {before.get('bench')}, "
-                 f"{given.after} of {after.get('bench')}; compare files of one bench")
+        sys.exit(f"compare.py: error: {before_file} is of the bench {before.get('bench')}, "
+                 f"{after_file} of {after.get('bench')}; compare files of one bench")
     for line in differences(before, after):
         print(f"not the same: {line}")
     lines, compared = compare(before, after)
@@ -108,6 +116,14 @@ def main():
         print(line)
     changed = sum(" x " in line for line in lines)
     print(f"{changed} of {compared} times changed beyond the noise")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("before", type=pathlib.Path)
+    parser.add_argument("after", type=pathlib.Path)
+    given = parser.parse_args()
+    compare_files(given.before, given.after)
 
 
 if __name__ == "__main__":

@@ -244,7 +244,7 @@ int main(int argument_count, char** arguments) {
   std::vector<std::string> files;
   Sizes sizes;
   CLI::App command("Irradiance gathered by rays beside the k nearest photons", "gather");
-  add_options(command, options);
+  add_options(command, options, Repeating::no);
   command.add_option("scenes", files, "scene files; without any the living room");
   command.add_option("--points", sizes.points, "whose error is measured");
   command.add_option("--paths", sizes.paths, "of the reference, from each point");

@@ -18,6 +18,7 @@
 #include "support/bench_record.hpp"
 #include "support/hit_sample.hpp"
 #include "support/host_search.hpp"
+#include "support/least_work.hpp"
 #include "support/morton_order.hpp"
 #include "support/point_bench.hpp"
 #include "support/visits.hpp"
@@ -36,6 +37,9 @@ struct Settings {
   std::vector<int> neighbours;
   std::size_t plane_queries = 524'288;
   int width = 512, height = 512;
+  std::vector<std::string> structures;  ///< names; empty: all
+  float photons_per_cell = defaults::photons_per_cell;
+  std::string strategy;  ///< of uniform grids; "": that of the device
 
   void make_quick() {
     if (workloads.empty()) workloads = {"plane", "living-room"};
@@ -113,8 +117,17 @@ class KnnBench {
  public:
   explicit KnnBench(const Settings& settings)
       : repeats_(settings.common.repeats),
+        structures_(settings.structures),
+        photons_per_cell_(settings.photons_per_cell),
         record_("knn", settings.common),
         device_({.selector = settings.common.device}) {
+    for (const EstimateStrategy strategy : all_estimate_strategies) {
+      if (name_of(strategy) != settings.strategy) continue;
+      tuning_ = shipped_tuning(device_.info());
+      tuning_->strategy = strategy;
+    }
+    record_.set("photons per cell", photons_per_cell_);
+    record_.set("strategy", settings.strategy.empty() ? "of the device" : settings.strategy);
     record_.set_device(device_.info());
     record_.set_version("nanoflann", nanoflann_version());
     record_.set_version("embree", embree_version());
@@ -141,7 +154,8 @@ class KnnBench {
         if (k == defaults::neighbours) run_host(c, "nanoflann-morton", *list, morton_order);
         run_host(c, "embree", *embree, given_order);
         for (const MapStructure structure : all_map_structures) {
-          if (worth_running(structure, photons.size(), k)) run_device(c, structure);
+          if (!wanted(structure) || !worth_running(structure, photons.size(), k)) continue;
+          run_device(c, structure);
         }
       }
     }
@@ -160,6 +174,18 @@ class KnnBench {
     std::vector<std::uint32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0u);
     return order;
+  }
+
+  bool wanted(MapStructure structure) const {
+    return structures_.empty() || std::find(structures_.begin(), structures_.end(),
+                                            name_of(structure)) != structures_.end();
+  }
+
+  /// The times of a row, and how near they come to what no search can do without.
+  static void set_seconds(nlohmann::json& row, const Case& c, const HitSample& asked,
+                          const Timing& timing) {
+    row["seconds"] = to_json(timing);
+    LeastWork(asked.index.size(), c.k).add_to(row, timing.median());
   }
 
   nlohmann::json row_of(const Case& c, const std::string& structure, const HitSample& asked) const {
@@ -182,7 +208,7 @@ class KnnBench {
     const Timing timing = measure(repeats_, [&] { estimate(asked.hits); });
     if (c.checked.index.empty()) set_reference(c, asked, answers);
     nlohmann::json row = row_of(c, name, asked);
-    row["seconds"] = to_json(timing);
+    set_seconds(row, c, asked, timing);
     row["radii that differ"] = radii_that_differ(c, asked, answers.squared_radius);
     add(c, std::move(row), asked, answers.irradiance);
   }
@@ -203,15 +229,17 @@ class KnnBench {
   void run_device(const Case& c, MapStructure structure) {
     const std::string name(name_of(structure));
     try {
-      const PhotonMaps maps(device_, *c.workload.scene, c.photons, c.groups,
-                            {.radius = c.radius, .structure = structure});
-      Estimator estimator(maps, *c.workload.scene,
-                          {.neighbours = c.k, .radius = c.radius, .area = AreaMode::disc});
+      const PhotonMaps maps(
+          device_, *c.workload.scene, c.photons, c.groups,
+          {.radius = c.radius, .photons_per_cell = photons_per_cell_, .structure = structure});
+      Estimator estimator(
+          maps, *c.workload.scene,
+          {.neighbours = c.k, .radius = c.radius, .tuning = tuning_, .area = AreaMode::disc});
       Estimates estimates;
       const auto estimate = [&](const PrimaryHits& hits) { estimates = estimator.estimate(hits); };
       const HitSample asked = affordable_hits(c.hits, repeats_, estimate);
       nlohmann::json row = row_of(c, name, asked);
-      row["seconds"] = to_json(measure(repeats_, [&] { estimate(asked.hits); }));
+      set_seconds(row, c, asked, measure(repeats_, [&] { estimate(asked.hits); }));
       row["references"] = maps.statistics().references;
       row["radii that differ"] =
           radii_that_differ(c, c.checked, estimator.nearest(c.checked.hits).squared_radius);
@@ -288,6 +316,9 @@ class KnnBench {
   }
 
   Repeats repeats_;
+  std::vector<std::string> structures_;
+  float photons_per_cell_;
+  std::optional<EstimateTuning> tuning_;
   BenchRecord record_;
   Device device_;
   std::uint64_t disagreements_ = 0;
@@ -333,20 +364,38 @@ int main(int argument_count, char** arguments) {
   for (const Plan& plan : plans()) workloads.push_back(plan.workload);
   command.add_option("--workloads", settings.workloads, "what is measured; default: all")
       ->check(CLI::IsMember(workloads));
+  std::vector<std::string> structures, strategies;
+  for (const MapStructure structure : all_map_structures) {
+    structures.emplace_back(name_of(structure));
+  }
+  for (const EstimateStrategy strategy : all_estimate_strategies) {
+    strategies.emplace_back(name_of(strategy));
+  }
+  command.add_option("--structure", settings.structures, "structures of photile; default: all")
+      ->check(CLI::IsMember(structures));
+  command.add_option("--cells", settings.photons_per_cell, "photons per cell of uniform grids")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  CLI::Option* const strategy =
+      command
+          .add_option("--strategy", settings.strategy,
+                      "how uniform grids are queried; default: that of the device")
+          ->check(CLI::IsMember(strategies));
   PointBenchSettings points;
   CLI::Option* const file =
       command.add_option("--points", points.photons, "photons of a .npy or .csv file, no scene");
   CLI::Option* const queries =
       command.add_option("--queries", points.queries, "where they are searched: a file, too");
-  file->needs(queries)->excludes("--photons")->excludes("--workloads");
+  file->needs(queries)->excludes("--photons")->excludes("--workloads")->excludes(strategy);
   queries->needs(file);
   command.add_option("--radius", points.radius, "metres, with --points; default: automatic")
       ->check(CLI::PositiveNumber)
       ->needs(file);
-  command.add_option("--csv", points.csv, "the rows as a table, with --points")->needs(file);
   return run_bench(command, argument_count, arguments, [&] {
     if (points.photons.empty()) return run(settings);
     points.neighbours = settings.neighbours;
+    points.structures = settings.structures;
+    points.photons_per_cell = settings.photons_per_cell;
     if (points.neighbours.empty()) points.neighbours = {defaults::neighbours};
     return run_point_bench(settings.common, points);
   });

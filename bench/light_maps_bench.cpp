@@ -272,7 +272,6 @@ bool run(BenchOptions& options, Settings settings, const std::string& only) {
     settings.neighbours = 50;
     settings.sizes = {{32, 24}};
     settings.mixed_nodes = 1'000;
-    options.repeats = {1, 1};
   }
   BenchRecord record("light_maps", options);
   Device device({.selector = options.device});

@@ -92,7 +92,7 @@ class LightsBench {
     parameters.light_maps = LightMapMode::off;
     RenderResult result = render(scene, scene.cameras.front(), device_, parameters);
     StageTimes times;  // the first run compiled the kernels
-    for (int i = 0; i < std::min(repeats_.most, 3); ++i) {
+    for (int i = 0; i < repeats_.most; ++i) {
       result = render(scene, scene.cameras.front(), device_, parameters);
       times.add(result.statistics);
     }
@@ -137,6 +137,7 @@ bool run(BenchOptions& options) {
 
 int main(int argument_count, char** arguments) {
   BenchOptions options;
+  options.repeats.most = 3;
   CLI::App command("A render and its file against the number of lights", "lights");
   add_options(command, options);
   return run_bench(command, argument_count, arguments, [&] { return run(options); });

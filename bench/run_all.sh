@@ -1,26 +1,28 @@
 #!/bin/bash
-# Builds the benches, runs them all and rewrites docs/benchmarks.md with its tables and plots. Takes
-# about an hour on two cores; the machine should do nothing else.
+# Builds the benches, runs them all and writes a page with their tables and plots. Takes about an hour
+# on two cores; the machine should do nothing else.
 # Usage: bench/run_all.sh [option]...
 #   --quick                 tiny sizes: shows that everything works, times nothing
 #   --full                  scale up to 4 million triangles and 100 million photons (24 GB)
 #   --results FOLDER        where JSON files and plots go, and the page beside it as FOLDER.md;
-#                           default: docs/benchmarks
+#                           default: build/benchmarks
+#   --docs                  rewrites docs/benchmarks.md and what belongs to it
 #   --benches FOLDER        where the benches are; nothing is built then
-#   --repeats N, --seconds-per-case S   as for each bench
+#   --repeats N, --seconds-per-case S   as for each bench that repeats its cases
 #   PHOTILE_DEVICE          the OpenCL device, as for photile --device
 #   PHOTILE_SHARED_SCENES   folder with classroom/; default: ../shared/scenes, left out if missing
 set -euo pipefail
 cd "$(dirname "$0")/.."
-results=docs/benchmarks benches=
-options=() profile_options=() scale_options=()
+results=build/benchmarks benches=
+options=() repeats=() profile_options=() scale_options=()
 while (($#)); do
   case $1 in
     --quick) options+=("$1") profile_options+=("$1") ;;
     --full) scale_options+=("$1") ;;
     --results) results=$2 && shift ;;
+    --docs) results=docs/benchmarks ;;
     --benches) benches=$2 && shift ;;
-    --repeats | --seconds-per-case) options+=("$1" "$2") && shift ;;
+    --repeats | --seconds-per-case) repeats+=("$1" "$2") && shift ;;
     *) echo "bench/run_all.sh: error: unknown option '$1'; see the head of the file" >&2 && exit 2 ;;
   esac
   shift
@@ -40,6 +42,7 @@ mkdir -p "$results"
 for bench in "${programs[@]}"; do
   extra=()
   [[ $bench == scale ]] && extra=("${scale_options[@]}")
+  [[ $bench =~ ^(angle|borders|scale)$ ]] || extra+=("${repeats[@]}")
   "$benches/photile_bench_$bench" --output "$results/$bench.json" "${options[@]}" "${extra[@]}"
 done
 bench/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"

@@ -245,7 +245,7 @@ bool run(const Settings& settings) {
 int main(int argument_count, char** arguments) {
   Settings settings;
   CLI::App command("Stages of a render against triangles and photons", "scale");
-  add_options(command, settings.common);
+  add_options(command, settings.common, Repeating::no);
   command.add_flag("--full", settings.full, "up to 4 million triangles and 100 million photons");
   command
       .add_option("--seconds-per-size", settings.seconds_per_size,

@@ -198,7 +198,7 @@ bool run(const BenchOptions& options, const Settings& settings) {
 int main(int argument_count, char** arguments) {
   BenchOptions options;
   CLI::App command("The window, walked through", "window");
-  add_options(command, options);
+  add_options(command, options, Repeating::no);
   Settings settings;
   command.add_option("--size", settings.size, "of the window")->capture_default_str();
   command.add_option("--scene", settings.scene, "or classroom, kitchen")->capture_default_str();

@@ -61,18 +61,22 @@ double load_average() {
 
 }  // namespace
 
-void add_options(CLI::App& command, BenchOptions& options) {
+void add_options(CLI::App& command, BenchOptions& options, Repeating repeating) {
   command.add_flag("--quick", options.quick,
                    "tiny sizes, and one repeat without --repeats: a smoke test");
-  CLI::Option* repeats =
-      command.add_option("--repeats", options.repeats.most, "timed repeats of each case")
-          ->check(CLI::Range(1, 1000))
-          ->capture_default_str();
-  command
-      .add_option("--seconds-per-case", options.repeats.seconds_per_case,
-                  "a case that took longer ends after three repeats; knn asks fewer queries then")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  options.repeats_cases = repeating == Repeating::yes;
+  CLI::Option* repeats = nullptr;
+  if (repeating == Repeating::yes) {
+    repeats = command.add_option("--repeats", options.repeats.most, "timed repeats of each case")
+                  ->check(CLI::Range(1, 1000))
+                  ->capture_default_str();
+    command
+        .add_option("--seconds-per-case", options.repeats.seconds_per_case,
+                    "a case that took longer ends after three repeats, unless --repeats says how "
+                    "many; knn asks fewer queries then")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+  }
   command.add_option("--device", options.device, "OpenCL device, as for photile --device");
   command
       .add_option("--kernel", options.kernels,
@@ -81,7 +85,8 @@ void add_options(CLI::App& command, BenchOptions& options) {
       ->type_name("DIR");
   command.add_option("-o,--output", options.output, "JSON file");
   command.callback([&options, repeats] {
-    if (options.quick && repeats->empty()) options.repeats.most = 1;
+    options.repeats.all = repeats && !repeats->empty();
+    if (options.quick && !options.repeats.all) options.repeats.most = 1;
     if (!options.kernels.empty()) setenv("PHOTILE_KERNEL_DIR", options.kernels.c_str(), 1);
   });
 }
@@ -95,6 +100,7 @@ nlohmann::json to_json(const Timing& timing) {
 
 BenchRecord::BenchRecord(const std::string& bench, const BenchOptions& options)
     : output_(options.output) {
+  json_["schema version"] = schema_version;
   json_["bench"] = bench;
   json_["date"] = date();
   json_["commit"] = commit();
@@ -103,10 +109,11 @@ BenchRecord::BenchRecord(const std::string& bench, const BenchOptions& options)
                       {"hardware threads", std::thread::hardware_concurrency()},
                       {"load average at start", load_average()}};
   json_["versions"] = {{"photile", PHOTILE_VERSION}, {"compiler", __VERSION__}};
-  json_["settings"] = {{"quick", options.quick},
-                       {"repeats", options.repeats.most},
-                       {"seconds per case", options.repeats.seconds_per_case},
-                       {"kernels", options.kernels}};
+  json_["settings"] = {{"quick", options.quick}, {"kernels", options.kernels}};
+  if (options.repeats_cases) {
+    json_["settings"]["repeats"] = options.repeats.most;
+    json_["settings"]["seconds per case"] = options.repeats.seconds_per_case;
+  }
   json_["results"] = nlohmann::json::array();
 }
 

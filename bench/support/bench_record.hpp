@@ -11,17 +11,25 @@
 
 namespace photile::bench {
 
+/// Of the JSON files (docs/bench-points.md): raised when a name changes its meaning or goes, not
+/// when one comes.
+inline constexpr int schema_version = 1;
+
 struct BenchOptions {
   bool quick = false;  ///< tiny sizes: shows that the bench works, times nothing
   Repeats repeats;
+  bool repeats_cases = true;     ///< whether `repeats` counts: not for every bench
   std::filesystem::path output;  ///< JSON file; empty = none
   std::string device;   ///< selector as for `photile --device`; "" = PHOTILE_DEVICE or best
   std::string kernels;  ///< folder of kernel files in place of the built-in ones; "" = none
 };
 
+/// Whether a bench repeats its cases: one that does not refuses --repeats.
+enum class Repeating { yes, no };
+
 /// Adds the options that every bench has. With --quick there is one repeat, unless --repeats says
-/// otherwise.
-void add_options(CLI::App& command, BenchOptions& options);
+/// otherwise; as many as that are made, however long they take.
+void add_options(CLI::App& command, BenchOptions& options, Repeating repeating = Repeating::yes);
 
 /// Times as {"median", "min", "max", "samples"}, in seconds.
 nlohmann::json to_json(const Timing& timing);

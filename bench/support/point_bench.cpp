@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <numeric>
 
@@ -14,30 +12,11 @@
 #include "support/agreement.hpp"
 #include "support/host_search.hpp"
 #include "support/kernel_seconds.hpp"
+#include "support/least_work.hpp"
 #include "support/point_file.hpp"
 
 namespace photile::bench {
 namespace {
-
-/// Of rows and columns: raised when one changes its meaning or goes, not when one comes.
-constexpr int schema_version = 1;
-
-constexpr std::array csv_columns{"schema version", "structure", "device",     "driver",
-                                 "photons",        "queries",   "k",          "radius",
-                                 "median",         "min",       "max",        "kernel seconds",
-                                 "build",          "bytes",     "operations", "GB/s",
-                                 "GFLOP/s",        "map bytes", "references", "radii that differ",
-                                 "failure"};
-
-/// What no exact search of k photons a query can do without: their positions and fluxes and the
-/// query are read, the estimate is written; a distance takes eight operations and a sum three.
-struct LeastWork {
-  double bytes, operations;
-
-  LeastWork(std::size_t queries, int k)
-      : bytes(static_cast<double>(queries) * (24.0 * k + 24)),
-        operations(static_cast<double>(queries) * 11.0 * k) {}
-};
 
 /// Brute force over more photons would take minutes.
 bool worth_running(MapStructure structure, std::size_t photons) {
@@ -59,7 +38,7 @@ class PointBench {
                                    settings.photons.string(), normals_of(photons_),
                                    settings.queries.string(), normals_of(queries_)));
     }
-    record_.set("schema version", schema_version);
+    record_.set("photons per cell", settings.photons_per_cell);
     record_.set("photons", settings.photons.filename().string());
     record_.set("queries", settings.queries.filename().string());
     record_.set_version("nanoflann", nanoflann_version());
@@ -80,12 +59,12 @@ class PointBench {
       run_host(k, radius);
       for (Device& device : devices) {
         for (const MapStructure structure : all_map_structures) {
-          if (worth_running(structure, stored_.size())) run_device(device, structure, k, radius);
+          if (!settings_.wants(structure) || !worth_running(structure, stored_.size())) continue;
+          run_device(device, structure, k, radius);
         }
       }
     }
     record_.write();
-    write_csv();
     return disagreements_ == 0;
   }
 
@@ -137,7 +116,9 @@ class PointBench {
     try {
       const Stopwatch build_watch;
       PhotonCloud cloud(device, {.position = photons_.position, .normal = photons_.normal},
-                        {.radius = radius, .structure = structure});
+                        {.radius = radius,
+                         .structure = structure,
+                         .photons_per_cell = settings_.photons_per_cell});
       const double build_seconds = build_watch.seconds();
       std::vector<double> kernel_seconds;
       const Timing timing = measure_returned(repeats_, [&] {
@@ -165,31 +146,22 @@ class PointBench {
       }
       add(std::move(row), squared_radius);
     } catch (const DeviceError& error) {
-      record({{"structure", name_of(structure)},
-              {"device", info.name},
-              {"driver", info.driver_version},
-              {"k", k},
-              {"failure", error.what()}});
+      record_.add({{"structure", name_of(structure)},
+                   {"device", info.name},
+                   {"driver", info.driver_version},
+                   {"k", k},
+                   {"failure", error.what()}});
     }
   }
 
   nlohmann::json row_of(const std::string& structure, const std::string& device,
                         const std::string& driver, int k, double radius,
                         const Timing& timing) const {
-    const LeastWork least(hits_.size(), k);
-    constexpr double giga = 1e9;
-    return {{"structure", structure},
-            {"device", device},
-            {"driver", driver},
-            {"photons", stored_.size()},
-            {"queries", hits_.size()},
-            {"k", k},
-            {"radius", radius},
-            {"seconds", to_json(timing)},
-            {"bytes", least.bytes},
-            {"operations", least.operations},
-            {"GB/s", least.bytes / timing.median() / giga},
-            {"GFLOP/s", least.operations / timing.median() / giga}};
+    nlohmann::json row{{"structure", structure},    {"device", device},          {"driver", driver},
+                       {"photons", stored_.size()}, {"queries", hits_.size()},   {"k", k},
+                       {"radius", radius},          {"seconds", to_json(timing)}};
+    LeastWork(hits_.size(), k).add_to(row, timing.median());
+    return row;
   }
 
   void add(nlohmann::json row, const std::vector<float>& squared_radius) {
@@ -200,39 +172,7 @@ class PointBench {
                                row["k"].get<int>(), row["structure"].get<std::string>(), different);
     }
     disagreements_ += different;
-    record(std::move(row));
-  }
-
-  void record(nlohmann::json row) {
-    rows_.push_back(row);
     record_.add(std::move(row));
-  }
-
-  void write_csv() const {
-    if (settings_.csv.empty()) return;
-    std::ofstream file(settings_.csv);
-    const auto text = [](const nlohmann::json& value) {
-      if (value.is_null()) return std::string();
-      if (!value.is_string()) return value.dump();
-      std::string quoted = "\"";
-      for (const char c : value.get<std::string>()) quoted += c == '"' ? "\"\"" : std::string(1, c);
-      return quoted + '"';
-    };
-    for (const char* column : csv_columns) {
-      file << (column == csv_columns.front() ? "" : ",") << column;
-    }
-    file << '\n';
-    for (nlohmann::json row : rows_) {
-      row["schema version"] = schema_version;
-      if (row.contains("seconds")) row.update(row["seconds"]);
-      for (const char* column : csv_columns) {
-        file << (column == csv_columns.front() ? "" : ",")
-             << text(row.contains(column) ? row[column] : nlohmann::json());
-      }
-      file << '\n';
-    }
-    file.close();
-    if (!file) throw OutputError(settings_.csv.string() + ": cannot be written");
   }
 
   Repeats repeats_;
@@ -244,7 +184,6 @@ class PointBench {
   PrimaryHits hits_;
   std::vector<float> reference_;  ///< squared radii of nanoflann, for reference_k_
   int reference_k_ = 0;
-  std::vector<nlohmann::json> rows_;
   std::uint64_t disagreements_ = 0;
 };
 

@@ -1,23 +1,33 @@
 // Times of all structures on photons and queries that a user brings, without a scene.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <vector>
 
+#include "photile/photon_maps.hpp"
 #include "support/bench_record.hpp"
 
 namespace photile::bench {
 
 struct PointBenchSettings {
-  std::filesystem::path photons, queries;  ///< see read_points
-  std::vector<int> neighbours;             ///< values of k
-  double radius = 0;                       ///< metres; 0 = automatic_radius for each k
-  std::filesystem::path csv;               ///< the rows once more as a table; empty = none
+  std::filesystem::path photons, queries;               ///< see read_points
+  std::vector<int> neighbours;                          ///< values of k
+  double radius = 0;                                    ///< metres; 0 = automatic_radius for each k
+  std::vector<std::string> structures;                  ///< names; empty = all
+  float photons_per_cell = defaults::photons_per_cell;  ///< of uniform grids
+
+  bool wants(MapStructure structure) const {
+    return structures.empty() ||
+           std::find(structures.begin(), structures.end(), name_of(structure)) != structures.end();
+  }
 };
 
-/// Times every structure on every device of options.device ("" = all), and nanoflann and Embree on
-/// the host. What the rows hold: docs/bench-points.md. Returns false where a k-th distance differs
-/// from nanoflann's. Errors: those of read_points, of PhotonCloud and of the devices.
+/// Times the structures that are wanted on every device of options.device ("" = all), and nanoflann
+/// and Embree on the host. What the rows hold: docs/bench-points.md. Returns false where a k-th
+/// distance differs from nanoflann's. Errors: those of read_points, of PhotonCloud and of the
+/// devices.
 bool run_point_bench(const BenchOptions& options, const PointBenchSettings& settings);
 
 }  // namespace photile::bench

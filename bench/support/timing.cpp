@@ -16,7 +16,7 @@ Timing measure_returned(const Repeats& repeats, const std::function<double()>& r
   run();
   Timing timing;
   for (int i = 0; i < repeats.most; ++i) {
-    if (i >= 3 && all.seconds() > repeats.seconds_per_case) break;
+    if (!repeats.all && i >= 3 && all.seconds() > repeats.seconds_per_case) break;
     timing.seconds.push_back(run());
   }
   return timing;

@@ -22,6 +22,7 @@ struct Repeats {
   int most = 5;
   /// A case that has run for this long, warm-up included, ends after its third repeat.
   double seconds_per_case = 1.5;
+  bool all = false;  ///< every case has `most`, however long it takes
 };
 
 /// Times `run` after one untimed call, which compiles kernels and touches memory for the first

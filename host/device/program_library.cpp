@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "device/cache_folder.hpp"
+#include "device/kernel_dump.hpp"
 #include "device/pocl_work_folder.hpp"
 #include "device/program_source.hpp"
 #include "photile/statistics.hpp"
@@ -50,6 +51,7 @@ const Program& ProgramLibrary::get(const std::string& file, const std::string& d
   if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
   const Stopwatch stopwatch;
   auto program = load_or_build(file, options(defines));
+  dump_program(file, options(defines), program.handle.get());
   times_.push_back({file, stopwatch.seconds()});
   return programs_.emplace(key, std::move(program)).first->second;
 }

@@ -37,9 +37,16 @@ class CompareTest(unittest.TestCase):
     def test_slower_and_faster_have_the_factor_of_the_medians(self):
         result = self.run_on(record([row("grid", [1.0, 1.1, 1.2]), row("tree", [4, 5, 6])]),
                              record([row("tree", [2, 2.5, 3]), row("grid", [2.1, 2.2, 2.3])]))
-        self.assertIn("2.00 x slower: k 50, grid, plane, seconds 1.1 -> 2.2 s", result.stdout)
+        self.assertIn("2.00 x slower: k 50, grid, plane, seconds 1.1 [1, 1.2] -> 2.2 [2.1, 2.3] s", result.stdout)
         self.assertIn("2.00 x faster: k 50, tree, plane", result.stdout)
         self.assertIn("2 of 2 times", result.stdout)
+
+    def test_times_of_fewer_queries_count_for_as_many(self):
+        slow = {**row("grid", [1.0, 1.1, 1.2]), "queries": 100}
+        half = {**row("grid", [0.5, 0.55, 0.6]), "queries": 50}
+        self.assertIn("0 of 1 times", self.run_on(record([slow]), record([half])).stdout)
+        result = self.run_on(record([half]), record([{**slow, "queries": 50}]))
+        self.assertIn("2.00 x slower", result.stdout)
 
     def test_rows_of_one_file_and_other_drivers_are_named(self):
         result = self.run_on(record([row("grid", [1]), row("grid", [1], k=16)]),

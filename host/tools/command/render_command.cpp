@@ -93,13 +93,21 @@ StageStatistics timed_stage(const char* name, Progress& progress, const Work& wo
   return stage(name, {stopwatch.taken()});
 }
 
-void tell_kernels(Device& device, bool profile, Progress& progress) {
+/// Tells and notes what the kernels of a device cost.
+void tell_kernels(Device& device, bool profile, RunRecord& record, Progress& progress) {
+  KernelRecord kernels{device.info().id,
+                       device.programs_built(),
+                       device.programs_from_cache(),
+                       device.compile_seconds(),
+                       {}};
+  if (profile) kernels.times = device::context_of(device).kernel_times();
   progress.note(fmt::format("kernels of {}: {} compiled, {} from the cache, {}", device.info().id,
                             device.programs_built(), device.programs_from_cache(),
                             format_seconds(device.compile_seconds())));
-  if (!profile) return;
-  for (const auto& line : kernel_table(device::context_of(device).kernel_times()))
-    progress.note(line);
+  if (profile) {
+    for (const auto& line : kernel_table(kernels.times)) progress.note(line);
+  }
+  record.kernels.push_back(std::move(kernels));
 }
 
 /// What is rendered: the picture and, where --glare asks for it, what came by reflection.
@@ -331,7 +339,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   } else {
     write(render_by_photons(scene, camera, devices, options, views, record, progress));
   }
-  for (Device& device : devices) tell_kernels(device, options.device.profile, progress);
+  for (Device& device : devices) tell_kernels(device, options.device.profile, record, progress);
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include "tools/command/number_format.hpp"
 #include "tools/command/quality_options.hpp"
 #include "tools/command/setting_options.hpp"
+#include "tools/command/tuning_report.hpp"
 #include "tools/command/version.hpp"
 
 namespace photile::app {
@@ -74,6 +75,23 @@ json parameters_json(const RunRecord& record) {
   return result;
 }
 
+/// Seconds of compiling are in no kernel's time.
+json kernels_json(const RunRecord& record) {
+  json list = json::array();
+  for (const KernelRecord& kernels : record.kernels) {
+    json row{{"device", kernels.device},
+             {"compiled", kernels.compiled},
+             {"cached", kernels.cached},
+             {"compile_seconds", kernels.compile_seconds}};
+    for (const device::KernelTime& time : kernels.times) {
+      row["times"].push_back(
+          {{"kernel", time.kernel}, {"launches", time.launches}, {"seconds", time.seconds}});
+    }
+    list.push_back(std::move(row));
+  }
+  return list;
+}
+
 }  // namespace
 
 void close(RunRecord& record, const TimeTaken& total) {
@@ -122,7 +140,12 @@ json run_json(const RunRecord& record) {
               {"total_processor_seconds", record.total.processor_seconds},
               {"peak_host_bytes", peak_host_bytes()}};
   if (!record.denoiser.empty()) result["denoiser"] = record.denoiser;
-  if (record.has_photons()) result["photons_stored"] = record.stored_photons;
+  if (record.has_photons()) {
+    result["photons_stored"] = record.stored_photons;
+    result["tuning"] =
+        tuning_words(record.used.tuning.value_or(shipped_tuning(record.devices.front())));
+    result["kernels"] = kernels_json(record);
+  }
   for (const MixedLight& light : record.mix.lights) {
     result["lights"].push_back({{"name", light.name},
                                 {"power", light.power},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "device/context.hpp"
 #include "photile/device.hpp"
 #include "photile/image.hpp"
 #include "photile/light_mix.hpp"
@@ -16,6 +17,14 @@
 #include "tools/trade/quality_target.hpp"
 
 namespace photile::app {
+
+/// Kernels of one device.
+struct KernelRecord {
+  std::string device;                      ///< its id
+  std::uint64_t compiled = 0, cached = 0;  ///< programs, and those that were compiled before
+  double compile_seconds = 0;
+  std::vector<device::KernelTime> times;  ///< with --profile
+};
 
 struct RunRecord {
   bool has_photons() const { return !devices.empty(); }
@@ -31,6 +40,7 @@ struct RunRecord {
   LightMix mix;
   std::string denoiser;  ///< and its version; "" = not denoised
   std::uint64_t stored_photons = 0;
+  std::vector<KernelRecord> kernels;  ///< of each device
   RunStatistics stages;
   TimeTaken total;  ///< of the process
 };

@@ -1,0 +1,75 @@
+"""bench/bench.py: what it lists, runs and refuses. A script stands in for the programs."""
+
+import csv
+import json
+import pathlib
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench/bench.py"
+RECORD = {
+    "schema version": 1, "bench": "knn", "commit": "abc", "results": [
+        {"structure": "uniform-grid", "k": 50, "GB/s": 2.5,
+         "seconds": {"median": 2, "min": 1, "max": 3, "samples": [1, 2, 3]}},
+        {"structure": "wide-bvh", "k": 50, "failure": "out of memory"}]}
+
+
+def run(*arguments):
+    return subprocess.run([sys.executable, SCRIPT, *map(str, arguments)], capture_output=True,
+                          text=True)
+
+
+class BenchToolTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        program = self.folder / "photile_bench_knn"
+        program.write_text(f"#!/bin/sh\necho \"$@\" > {self.folder}/arguments\n"
+                           f"[ \"$3\" = --colour ] && exit 2\ncat > \"$2\" <<'E'\n"
+                           f"{json.dumps(RECORD)}\nE\n")
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+
+    def run_knn(self, *arguments):
+        return run("run", "knn", "--benches", self.folder, "-o", self.folder / "out.json", *arguments)
+
+    def test_every_bench_is_listed_with_what_it_measures(self):
+        lines = run("list").stdout.splitlines()
+        names = {line.split()[0] for line in lines}
+        self.assertTrue({"knn", "build", "frame", "kernels", "strategies"} <= names)
+        for line in lines:
+            self.assertGreater(len(line.split(None, 1)[1]), 15, line)
+
+    def test_options_reach_the_program_and_rows_a_table(self):
+        result = self.run_knn("--csv", self.folder / "out.csv", "--structure", "uniform-grid", "-k", 50)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        given = (self.folder / "arguments").read_text().split()
+        self.assertEqual(given[2:], ["--structure", "uniform-grid", "-k", "50"])
+        with open(self.folder / "out.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(rows[0]["seconds median"], "2")
+        self.assertEqual((rows[0]["schema version"], rows[0]["commit"]), ("1", "abc"))
+        self.assertEqual((rows[1]["failure"], rows[1]["seconds median"]), ("out of memory", ""))
+
+    def test_a_refusal_of_the_program_is_one_of_the_tool(self):
+        result = self.run_knn("--colour")
+        self.assertEqual(result.returncode, 2)
+        self.assertFalse((self.folder / "out.json").exists())
+
+    def test_unknown_names_are_refused_with_those_there_are(self):
+        result = run("run", "plaen")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("there is no bench 'plaen'; there are", result.stderr)
+        self.assertIn("knn", result.stderr)
+        self.assertEqual(run("compare", "a.json").returncode, 2)
+        self.assertEqual(run("list", "--fast").returncode, 2)
+
+    def test_a_comparison_names_files_that_are_not_there(self):
+        result = run("compare", self.folder / "a.json", self.folder / "b.json")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("a.json", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
