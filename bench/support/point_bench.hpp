@@ -15,7 +15,7 @@ struct PointBenchSettings {
   std::filesystem::path photons, queries;               ///< see read_points
   std::vector<int> neighbours;                          ///< values of k
   double radius = 0;                                    ///< metres; 0 = automatic_radius for each k
-  std::vector<std::string> structures;                  ///< names; empty = all
+  std::vector<std::string> structures = {};             ///< names; empty = all
   float photons_per_cell = defaults::photons_per_cell;  ///< of uniform grids
 
   bool wants(MapStructure structure) const {
