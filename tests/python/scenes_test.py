@@ -45,16 +45,16 @@ def test_what_was_given_is_what_there_is():
         materials=[photile.Material("red", (0.5, 0.1, 0.1)), glass],
         triangle_materials=[0, 1, 0, 0],
         lights=[
-            photile.Light("panel", 100, "area", triangles=[2, 3], group="all"),
             photile.Light("spot", 50, "spot", position=(1, 2, 3), outer_angle=30, group="all"),
+            photile.Light("panel", 100, "area", triangles=[2, 3], group="all"),
             photile.Light("sun", kind="directional", illuminance=1000, direction=(0, 0, -1)),
         ],
         cameras=[photile.Camera((0, 0, 5), (0, 0, 0), (0, 1, 0), 35, "top", 1.5)],
     )
     assert scene.triangle_material.tolist() == [0, 1, 0, 0]
-    assert scene.triangle_light.tolist() == [photile.NONE, photile.NONE, 0, 0]
-    assert [light.triangles for light in scene.lights] == [[2, 3], [], []]
-    spot = scene.lights[1]
+    assert scene.triangle_light.tolist() == [photile.NONE, photile.NONE, 1, 1]
+    assert [light.triangles for light in scene.lights] == [[], [2, 3], []]
+    spot = scene.lights[0]
     assert (spot.kind, spot.power, spot.position) == ("spot", 50, (1, 2, 3))
     assert spot.outer_angle == pytest.approx(30)
     found = scene.materials[1]
