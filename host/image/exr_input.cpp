@@ -127,7 +127,20 @@ void ExrInput::find_parts(std::uint64_t bytes) {
   set_up_openexr();
   check_exr_headers(*stream_, bytes);
   file_ = std::make_unique<File>(*stream_);
-  for (int part = 0; part < file_->parts(); ++part) parts_.push_back(part_of(file_->header(part)));
+  std::uint64_t decoded = 0, pixels = 0;
+  for (int i = 0; i < file_->parts(); ++i) {
+    const Part& part = parts_.emplace_back(part_of(file_->header(i)));
+    pixels = std::max(pixels, static_cast<std::uint64_t>(part.width) * part.height);
+    decoded +=
+        static_cast<std::uint64_t>(part.width) * part.height * part.channels.size() * sizeof(float);
+  }
+  if (decoded > limits::unchecked_image_bytes &&
+      pixels / bytes >= limits::max_exr_pixels_per_byte) {
+    throw DecodeError(fmt::format(
+        "is damaged or empty: {} bytes for {} x {} pixels; the limit is {} pixels a "
+        "byte; scale it down",
+        bytes, parts_.front().width, parts_.front().height, limits::max_exr_pixels_per_byte));
+  }
 }
 
 const Imf::Header& ExrInput::header(std::size_t part) const {

@@ -17,7 +17,8 @@ void set_up_openexr();
 
 class ExrInput {
  public:
-  /// Reads the headers. Errors: DecodeError, also for sides beyond limits.hpp; those of OpenEXR.
+  /// Reads the headers. Errors: DecodeError, also for sides and pixels a byte
+  /// beyond limits.hpp; those of OpenEXR.
   explicit ExrInput(const std::filesystem::path& file);
   explicit ExrInput(std::span<const unsigned char> bytes);  ///< which must outlive it
   ~ExrInput();

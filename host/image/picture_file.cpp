@@ -158,16 +158,7 @@ void PictureFile::open_exr() {
     add_part(exr_->parts()[part]);
     take_attributes(exr_->header(part), header_);
   }
-  const std::uint64_t decoded = header_.pixels() * header_.channel_names.size() * sizeof(float);
-  check_expansion(decoded);
-  const std::uintmax_t encoded = fs::file_size(file_);
-  if (decoded > limits::unchecked_image_bytes &&
-      header_.pixels() / encoded >= limits::max_exr_pixels_per_byte) {
-    refuse(
-        fmt::format("is damaged or empty: {} bytes for {} x {} pixels; the limit is {} pixels a "
-                    "byte; scale it down",
-                    encoded, header_.width, header_.height, limits::max_exr_pixels_per_byte));
-  }
+  check_expansion(header_.pixels() * header_.channel_names.size() * sizeof(float));
 }
 
 /// Their pixels are decoded at once, when some are asked for.

@@ -99,7 +99,9 @@ TEST_CASE("an EXR of two megabytes that says that it is huge is refused in littl
   const std::string file = folder.write("a.exr", bytes);
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"relight", file, "-o", folder / "b.exr"},
-        std::vector<std::string>{"compare", file, file}}) {
+        std::vector<std::string>{"compare", file, file},
+        std::vector<std::string>{"render", write_box(folder), "-o", folder / "b.exr",
+                                 "--environment", file}}) {
     const Outcome taken = run_photile(command);
     CHECK_THAT(last_error(taken, bad_input), Catch::Contains("a.exr: ") &&
                                                  Catch::Contains("pixels a byte") &&
