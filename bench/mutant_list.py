@@ -42,7 +42,7 @@ MUTANTS = (
 
     # Physics of photons
     Mutant("k for k - 1", "kernels/estimate/estimate_hit.clh",
-           "if (k > 1) return SMALLEST_LANE(candidates, beyond);", "",
+           "if (k > 1) return nearest;", "",
            (("validation", "few neighbours are as unbiased as many*"), EXACT_LAW)),
     Mutant("area 1% off", "kernels/estimate/area.clh",
            "*area = disc.area;", "*area = 1.01f * disc.area;", (EVEN_LIGHT, EXACT_LAW)),

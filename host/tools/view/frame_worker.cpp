@@ -79,9 +79,12 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   return true;
 }
 
-/// What a frame leaves of its time, and a little in any case: nodes must come at last.
-double FrameWorker::time_to_fill() const {
-  return std::max(frame_seconds_ - draw_seconds_, 0.25 * frame_seconds_);
+/// What a frame leaves of its time, and a little in any case: nodes must come at last. At rest no
+/// frame has to be in time, and drawing what hardly changed would take most of it: nodes that
+/// gather are dear.
+double FrameWorker::time_to_fill(bool moving) const {
+  const double least = 0.25 * frame_seconds_;
+  return std::max(frame_seconds_ - draw_seconds_, moving ? least : 2 * draw_seconds_ + least);
 }
 
 /// The whole window, however many nodes are missing: new surface is seen coarsely at once, and
@@ -103,14 +106,14 @@ std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, cons
     draw_seconds_ = of_drawing.seconds() - drawn.fill_seconds;
     return drawn;
   };
-  DrawnFrame drawn = draw_from(*task.maps, time_to_fill());
+  DrawnFrame drawn = draw_from(*task.maps, time_to_fill(wanted.moving));
   std::shared_ptr<MapGeneration> maps = task.maps;
   if (drawn.empty > 0 && drawn_maps_ && drawn_maps_ != task.maps) {
     maps = drawn_maps_;
     draw_from(*maps, 0);
   }
   while (drawn.empty > 0 && !drawn_maps_ && !stop.stop_requested()) {  // the first picture
-    drawn = draw_from(*maps, time_to_fill());
+    drawn = draw_from(*maps, time_to_fill(wanted.moving));
   }
   drawn_maps_ = maps;
   lacks_nodes_ = drawn.lacking > 0;

@@ -66,7 +66,7 @@ class FrameWorker {
   bool next_task(std::stop_token stop, Task& task);
   std::shared_ptr<const Frame> render(const std::stop_token& stop, const Task& task);
   std::shared_ptr<const Frame> draw(const std::stop_token& stop, const Task& task);
-  double time_to_fill() const;
+  double time_to_fill(bool moving) const;
 
   const int most_samples_;
   mutable std::mutex mutex_;
