@@ -200,6 +200,6 @@ MUTANTS = (
            "if (material.thin) return 1;", "return 1;",
            (("render", "a pool shows*"), ("trace", "A lamp under water*"))),
     Mutant("Fresnel's share swapped", "host/trace/scatter_specular.cpp",
-           "if (choice < (material.thin", "if (choice >= (material.thin",
+           "if (choice < boundary.reflectance)", "if (choice >= boundary.reflectance)",
            (("trace", "Glass*,Thin glass*"),)),
 )

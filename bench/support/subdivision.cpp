@@ -8,11 +8,11 @@ namespace photile::bench {
 namespace {
 
 template <class T>
-using Corners = std::array<T, 3>;
+using AtCorners = std::array<T, 3>;
 
 /// The three at the corners, then the one in the middle, wound as the whole.
 template <class T>
-std::array<Corners<T>, 4> quarters(const Corners<T>& whole) {
+std::array<AtCorners<T>, 4> quarters(const AtCorners<T>& whole) {
   const auto [a, b, c] = whole;
   const T ab = 0.5f * (a + b), bc = 0.5f * (b + c), ca = 0.5f * (c + a);
   return {{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
@@ -20,9 +20,9 @@ std::array<Corners<T>, 4> quarters(const Corners<T>& whole) {
 
 /// Corners counter-clockwise seen from the front.
 template <class T>
-Corners<T> from_the_front(const Corners<T>& canonical, bool front_is_side_0) {
+AtCorners<T> from_the_front(const AtCorners<T>& canonical, bool front_is_side_0) {
   const auto [a, b, c] = canonical;
-  return front_is_side_0 ? Corners<T>{a, b, c} : Corners<T>{a, c, b};
+  return front_is_side_0 ? AtCorners<T>{a, b, c} : AtCorners<T>{a, c, b};
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ Scene subdivided(const Scene& scene) {
       return quarters(from_the_front(whole, scene.front_side[t] == 0));
     };
     const auto positions = pieces(scene.corners(t));
-    std::array<Corners<scene_io::Corner>, 4> corners;
+    std::array<AtCorners<scene_io::Corner>, 4> corners;
     for (std::size_t piece = 0; piece < 4; ++piece) {
       for (std::size_t i = 0; i < 3; ++i) {
         scene_io::Corner& corner = corners[piece][i];

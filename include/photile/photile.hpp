@@ -41,5 +41,6 @@
 #include "photile/scene_renderer.hpp"
 #include "photile/sensors.hpp"
 #include "photile/settings.hpp"
+#include "photile/shard.hpp"
 #include "photile/statistics.hpp"
 #include "photile/surface_index.hpp"

@@ -118,7 +118,7 @@ TEST_CASE("extremes: needles a million times as long as wide, and the plates bes
   }
 }
 
-TEST_CASE("extremes: fans of needles with a common tip, tilted against each other") {
+TEST_CASE("extremes: fans of needles with a common tip, tilted against each other", "[slow]") {
   Scene scene = test::empty_scene();
   // A flat cone of 1024 slivers around its tip, and a plate just above it: photons of the plate
   // project into faces, and reach them or not by their height alone.
@@ -146,7 +146,7 @@ TEST_CASE("extremes: surfaces less than a float's rounding apart count as one") 
   test::check_against_oracle(scene, photons, hits, 0.15, {1, 50}, true);
 }
 
-TEST_CASE("extremes: a million photons in one point") {
+TEST_CASE("extremes: a million photons in one point", "[slow]") {
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
   const glm::vec3 point(0.5f, 0.25f, 0);

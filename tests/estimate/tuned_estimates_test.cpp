@@ -98,7 +98,8 @@ TEST_CASE("every strategy and vector width gives the oracle's irradiance for one
   one_light().check(tunings({8}));
 }
 
-TEST_CASE("every strategy and vector width gives the oracle's irradiance for several lights") {
+TEST_CASE("every strategy and vector width gives the oracle's irradiance for several lights",
+          "[slow]") {
   several_lights().check(tunings({8}));
 }
 

@@ -48,7 +48,8 @@ RenderResult render_by_all_maps(const Scene& scene, Device& device,
 
 }  // namespace
 
-TEST_CASE("a picture within a tenth and a fiftieth of the memory of all maps has the same bits") {
+TEST_CASE("a picture within a tenth and a fiftieth of the memory of all maps has the same bits",
+          "[slow]") {
   const MapStructure structure =
       GENERATE(MapStructure::uniform_grid, MapStructure::kdtree_2d, MapStructure::brute_force);
   const MapMode maps = GENERATE(MapMode::triangle, MapMode::automatic);
