@@ -33,14 +33,14 @@ if(TARGET photile_command)
   install(CODE "set(PHOTILE_COMMAND \"$<TARGET_FILE:photile_command>\")
     set(PHOTILE_SCRATCH \"${PROJECT_BINARY_DIR}/manuals\")" COMPONENT command)
   install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install_manuals.cmake COMPONENT command)
-  install(FILES packaging/org.photile.Photile.desktop DESTINATION share/applications
+  install(FILES cmake/packaging/org.photile.Photile.desktop DESTINATION share/applications
     COMPONENT command)
-  install(FILES packaging/org.photile.Photile.metainfo.xml DESTINATION share/metainfo
+  install(FILES cmake/packaging/org.photile.Photile.metainfo.xml DESTINATION share/metainfo
     COMPONENT command)
-  install(FILES packaging/org.photile.Photile.svg DESTINATION share/icons/hicolor/scalable/apps
+  install(FILES cmake/packaging/org.photile.Photile.svg DESTINATION share/icons/hicolor/scalable/apps
     COMPONENT command)
   # Where Debian's Blender looks for add-ons.
-  install(DIRECTORY blender/photile DESTINATION share/blender/scripts/addons COMPONENT command
+  install(DIRECTORY python/blender/photile DESTINATION share/blender/scripts/addons COMPONENT command
     FILES_MATCHING PATTERN "*.py")
   install(FILES LICENSE DESTINATION share/doc/photile RENAME copyright COMPONENT command)
 endif()

@@ -10,7 +10,7 @@ command -v blender > /dev/null || {
 }
 rm -rf "$scratch"
 mkdir -p "$scratch/scripts/addons" "$scratch/config"
-cp -r "$source/blender/photile" "$scratch/scripts/addons/photile"
+cp -r "$source/python/blender/photile" "$scratch/scripts/addons/photile"
 export BLENDER_USER_SCRIPTS=$scratch/scripts BLENDER_USER_CONFIG=$scratch/config
 blender -b --factory-startup --python-exit-code 1 \
   --python "$source/tests/blender/addon_test.py" -- "$photile" "$scratch" > "$scratch/log" 2>&1 ||

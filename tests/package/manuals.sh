@@ -54,10 +54,10 @@ offers final photile render --quality f
 offers --version photile --v
 
 if command -v desktop-file-validate > /dev/null; then
-  desktop-file-validate "$source/packaging/org.photile.Photile.desktop"
+  desktop-file-validate "$source/cmake/packaging/org.photile.Photile.desktop"
 fi
 if command -v appstreamcli > /dev/null; then
-  appstreamcli validate --no-net "$source/packaging/org.photile.Photile.metainfo.xml" > /dev/null ||
+  appstreamcli validate --no-net "$source/cmake/packaging/org.photile.Photile.metainfo.xml" > /dev/null ||
     fail "the AppStream entry is not valid"
 fi
 echo "pages of $(wc -w <<< "$commands") commands, completions of three shells"
