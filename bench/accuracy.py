@@ -172,17 +172,16 @@ def slopes(results):
 def page(record, results):
     return f"""# Accuracy
 
-Readings beside closed forms, and errors that fall as photons grow. This page is written by
-`bench/accuracy.py`.
+After this page you know how far photile's light is from closed forms, and how its error falls with the number of
+photons. `bench/accuracy.py` writes this page.
 
 ## Closed forms
 
 `photile validate` measures light that is known, through the code that renders:
 {record['seeds']} seeds of {record['photons'] / 1e6:.3g}M photon paths with
-k = {record['neighbours']}, and {record['paths'] / 1e3:.0f}k paths from the sensors.
-Means over whole rooms take a share of the photons and of k: many sensors make them quiet, and small
-discs see no curvature of the irradiance. Error and noise are relative; the noise is half the 99%
-confidence interval of the mean over the seeds. Bold errors are beyond 1%.
+k = {record['neighbours']}, and {record['paths'] / 1e3:.0f}k paths from the sensors; means over whole rooms take a share of
+the photons and of k. Error and noise are relative; the noise is half the 99% confidence interval of the mean over the
+seeds. Bold errors are beyond 1%.
 
 Photon maps: {counts(record, 'photon_map')}.
 Paths: {counts(record, 'path')}.
@@ -194,14 +193,10 @@ Where the values come from:
 {sources(record)}
 
 The scenes that follow CIE 171:2006 have its kind of light and surface, not its dimensions: expected
-values are computed from form factors, none is quoted. Some of the printed tables are known to be
-wrong: table 19 of case 5.7, and others (Ashdown, [CIE 171:2006 errata](
-https://lightinganalysts.com/cie-1712006-errata)). Its cases of skies, windows and luminaires with
-measured photometry are not among these.
-
-Means over whole walls show what happens at edges and corners: a density whose disc hangs over the
-edge of a surface comes out too dark unless the disc is clipped. Readings away from edges show the
-rest.
+values are computed from form factors, since some of the printed tables are wrong (table 19 of case 5.7,
+and others: Ashdown, [CIE 171:2006 errata](https://lightinganalysts.com/cie-1712006-errata)). Its cases of
+skies, windows and luminaires with measured photometry are not among these. Means over whole walls include
+edges and corners.
 
 ## More photons
 
@@ -211,21 +206,17 @@ bias both vanish.
 
 ![relMSE against photons](accuracy/consistency.svg)
 
-What theory gives: the noise of a density from the k-th distance is 1 / (k - 2), which falls with the
-power -2/3; where irradiance is smooth the squared bias falls with the same power; at the borders of
-shadows and surfaces the bias does not fall, only the area where it is seen, with the radius: with
-the power -1/6. Pictures are a mixture, and the worst pixels are those of borders. The references'
-own noise is in every error: it is the floor on which the curves end.
+In theory the noise of a density from the k-th distance is 1 / (k - 2), which falls with the power -2/3;
+where irradiance is smooth the squared bias falls with the same power; at the borders of shadows and surfaces
+only the area of the bias falls, with the power -1/6. Pictures are a mixture, and the worst pixels are those of
+borders. The references' own noise is in every error: it is the floor on which the curves end.
 
 {slopes(results)}
 
 {consistency_table(results)}
 
-The mean of the kitchen stays below that of its reference whatever the number of photons: more of them
-do not mend it.
-
-relMSE is that of [the references](references.md). `tests/validation` holds the first of these laws
-on an evenly lit plate, the slope -2/3 within 0.1, with the noise of 16 seeds.
+The mean of the kitchen stays below that of its reference whatever the number of photons. relMSE is that of [the references](references.md). `tests/validation` tests the first of
+these laws on an evenly lit plate, the slope -2/3 within 0.1, with the noise of 16 seeds.
 
 ## See also
 

@@ -105,8 +105,8 @@ def page(records, figures):
     sections = "\n".join(section(name, records[name], figures[name]) for name in SCENES)
     return f"""# Beside path-traced references
 
-Two interiors with all surfaces diffuse, rendered by photile and by an independent path tracer. This
-page is written by `bench/compare_with_references.py`.
+After this page you can judge photile's pictures beside those of an independent path tracer: two interiors with all
+surfaces diffuse, their errors, time and memory. `bench/compare_with_references.py` writes this page.
 
 | interior | mean ratio | relMSE | relMSE without the worst 5% of pixels | seconds |
 |---|--:|--:|--:|--:|

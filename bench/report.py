@@ -77,12 +77,11 @@ def machine_section(results):
 def page(results, plots, ratio_plots, notes):
     sections = [
         "# Benchmarks",
-        "How fast the estimate is, beside other ways to find the same photons. `bench/run_all.sh --docs` "
-        "runs everything and writes this page; "
-        "times are medians, with the least and the largest in brackets.",
+        "After this page you know how fast the estimate is, beside other ways to find the same photons, and can measure "
+        "your own machine: `bench/run_all.sh --docs` runs everything and writes this page. "
+        "Times are medians, with the least and the largest in brackets.",
         machine_section(results),
-        "On a machine with a GPU, the same page with its numbers:\n\n"
-        "    PHOTILE_DEVICE=gpu bench/run_all.sh --docs",
+        "On a GPU: `PHOTILE_DEVICE=gpu bench/run_all.sh --docs`.",
         "## Targets", report_targets.write_table(results, bool(doubts(results))),
         "## Search and estimate against the number of photons",
         report_tables.knn_text(),

@@ -146,11 +146,10 @@ def startup(result):
             lines.append([title.format(name)] + [times(row[kind][name]) if name in row[kind] else ""
                                                  for row, _ in columns])
     text = ("Milliseconds until kernels can run, in a process of its own: compiled with an empty "
-            "cache, loaded with a full one. Programs are read and checked whole; PoCL compiles each "
-            "kernel at its first launch, which is in the kernel's row. With a full cache most of the "
-            "time is clang's preprocessor, which PoCL runs over each program, and over OpenCL's "
-            "built-in functions before it, to find it in its cache. Shared libraries are those of the "
-            "whole of photile.")
+            "cache, loaded with a full one. PoCL compiles each kernel at its first launch, "
+            "which is in the kernel's row. With a full cache most of the time is clang's preprocessor, "
+            "which PoCL runs over each program and OpenCL's built-in functions to find it in its cache. "
+            "Shared libraries are those of the whole of photile.")
     return text + "\n\n" + table([""] + [name for _, name in columns], lines)
 
 

@@ -20,18 +20,18 @@ def times(timing, scale=1e3, digits=3):
 
 def knn_text():
     return """
-Microseconds a query; all hardware threads, the same queries. Hits come in the order of the
-renderer: by sided triangle, then along a Morton curve. Everyone finds the k nearest photons within R
-(`automatic_radius`, twice the median distance to the k-th) on surfaces whose normals agree, and sums
-the flux of k - 1 over the disc, per light. Maps are those of `--maps auto`, the default.
+Microseconds a query; all hardware threads, the same queries, in the order of the renderer: by sided
+triangle, then along a Morton curve. All find the k nearest photons within R (`automatic_radius`,
+twice the median distance to the k-th) on surfaces whose normals agree, and sum the flux of k - 1 over
+the disc, per light. Maps are those of `--maps auto`, the default.
 
 - Times on the device are those of `Estimator::estimate`: transfers in and out are in them.
 - `nanoflann` is a 3D tree over all photons with leaves of 10 and its own result set,
   `nanoflann-heap` the same with a heap, `nanoflann-morton` with queries in Morton order over the
   whole scene. `embree` is rtcPointQuery with a heap. They are compiled with `-march=native`.
 - *plane*: two triangles, uniform photons, 524,288 queries. Interiors: traced photons, the primary
-  hits of the camera at 512 x 512, every surface diffuse. Slow cases answer fewer of the queries,
-  every 2nd, 4th, ... block of 256 neighbours, so that a case takes seconds.
+  hits of the camera at 512 x 512, every surface diffuse. Slow cases answer every 2nd, 4th, ... block
+  of 256 queries.
 - Every run compares results with nanoflann's and fails where one differs: irradiance on the plane
   (within 0.01%), elsewhere the distance to the k-th photon.
 
