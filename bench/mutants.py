@@ -186,13 +186,14 @@ def run(options):
 def table(results):
     rows = ["| mutant | file | killed by |", "|---|---|---|"]
     for mutant in MUTANTS:
-        if mutant.name not in results:
-            verdict = "not run"
-        else:
-            verdict = "; ".join(results[mutant.name][:2]) or "**survives**"
-            more = len(results[mutant.name]) - 2
+        if mutant.name in results:
+            verdict = next(iter(results[mutant.name]), "**survives**")
+            more = len(results[mutant.name]) - 1
             verdict += f"; {more} more" if more > 0 else ""
-        rows.append(f"| {mutant.name} | `{mutant.file}` | {verdict} |")
+            rows.append(f"| {mutant.name} | `{mutant.file}` | {verdict} |")
+    missing = [f"{mutant.name} (`{mutant.file}`)" for mutant in MUTANTS if mutant.name not in results]
+    if missing:
+        rows += ["", f"Not run: {'; '.join(missing)}."]
     return "\n".join(rows) + "\n"
 
 
