@@ -1,0 +1,318 @@
+#!/usr/bin/python3
+"""Lux at points by photile beside Radiance: error against processor seconds; writes docs/beside-radiance.md.
+
+    bench/radiance.py [--radiance FOLDER] [--photile COMMAND] [--again] [--redraw] [--quick]
+
+Measures what is missing in docs/benchmarks/radiance.json, a row at a time, so that it can be stopped and
+started again. FOLDER holds Radiance's rtrace, oconv and mkpmap, such as bin/ of the package pyradiance; what
+is not there becomes a line that says so. Needs the built command and the Debian packages python3-numpy and
+python3-matplotlib.
+"""
+
+import argparse
+import csv
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+import processes
+import report_plots
+from radiance_scene import write_plain_gltf, write_radiance_scene
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "docs/benchmarks/radiance.json"
+PLOT = ROOT / "docs/benchmarks/radiance.svg"
+PAGE = ROOT / "docs/beside-radiance.md"
+LUMINANCE = (0.2126, 0.7152, 0.0722)  # Rec.709
+SEEDS = (1, 2, 3)  # photile's errors are root mean squares over these
+
+# Points: what to ask photile measure for.
+SCENES = {
+    "living room": ("scenes/living-room/living-room.gltf",
+                    "--plane floor+0.75 --clearance 0.1 --spacing 0.45"),
+    "Cornell box": ("scenes/cornell-box/cornell-box.gltf", "--grid grid.json"),
+}
+GRID = {"name": "plane", "origin": [0.05, 0.4, 0.05], "u": [0, 0, 0.45], "v": [0.45, 0, 0],
+        "columns": 9, "rows": 9}  # above the blocks
+
+REFERENCE = "--integrator path --rays 131072 --repeats 16 --seed 99"
+DIRECT = "-dt 0 -ds 0.1 -dj 0 -st 0"  # of rtrace: no lamp is left to chance
+RTRACE = {
+    "rtrace": (
+        "-ab 3 -ad 512 -as 128 -aa 0.2 -ar 64", "-ab 4 -ad 512 -as 128 -aa 0.15 -ar 128",
+        "-ab 5 -ad 1024 -as 256 -aa 0.1 -ar 256", "-ab 5 -ad 2048 -as 512 -aa 0.1 -ar 256"),
+    "rtrace -aa 0": (
+        "-ab 8 -ad 64 -as 0 -aa 0 -lw 1e-2", "-ab 8 -ad 256 -as 0 -aa 0 -lw 4e-3",
+        "-ab 8 -ad 1024 -as 0 -aa 0 -lw 1e-3", "-ab 8 -ad 4096 -as 0 -aa 0 -lw 2.5e-4",
+        "-ab 8 -ad 16384 -as 0 -aa 0 -lw 6e-5"),
+}
+# mkpmap's photons, and rtrace's settings after it.
+PHOTON_MAPS = (("50k", "-ab 1 -ad 256 -as 0 -aa 0"), ("500k", "-ab 1 -ad 512 -as 0 -aa 0"),
+               ("500k", "-ab 1 -ad 2048 -as 0 -aa 0"), ("5m", "-ab 1 -ad 4096 -as 0 -aa 0"))
+PHOTILE = {
+    "photile, maps": (
+        "--photons 62500 --rays 64 --repeats 2", "--photons 125k --rays 256 --repeats 2",
+        "--photons 250k --rays 1024 --repeats 2", "--photons 500k --rays 4096 --repeats 2",
+        "--photons 1M --rays 8192 --repeats 2"),
+    "photile, paths": (
+        "--integrator path --rays 64 --repeats 2", "--integrator path --rays 256 --repeats 2",
+        "--integrator path --rays 1024 --repeats 2", "--integrator path --rays 4096 --repeats 2",
+        "--integrator path --rays 16384 --repeats 2"),
+}
+TOOLS = ("rtrace", "rtrace -aa 0", "mkpmap, rtrace", "photile, maps", "photile, paths")
+ERRORS = (0.05, 0.02, 0.01)
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--radiance", type=pathlib.Path, metavar="FOLDER", help="default: PATH is searched")
+    parser.add_argument("--photile", type=pathlib.Path, metavar="COMMAND", default=ROOT / "build/release/photile",
+                        help="default: %(default)s")
+    parser.add_argument("--again", action="store_true", help="forget the results of before")
+    parser.add_argument("--redraw", action="store_true", help="write the page from the results there are")
+    parser.add_argument("--quick", action="store_true",
+                        help="the cheapest row of each tool and a rough reference: shows that it works, writes nothing")
+    return parser.parse_args()
+
+
+def program(options, name):
+    """Path of one of Radiance's programs, or None."""
+    if options.radiance:
+        found = options.radiance / name
+        return found if found.is_file() else None
+    return shutil.which(name)
+
+
+def run(command, folder, input_file=None, output_file=None):
+    """Processor seconds of a command that has to succeed."""
+    before = processes.processor_seconds()
+    with (open(input_file or os.devnull, "rb") as source,
+          open(output_file or folder / "output", "wb") as target,
+          open(folder / "messages", "w+", encoding="utf-8") as messages):
+        done = subprocess.run([str(word) for word in command], cwd=folder, stdin=source, stdout=target,
+                              stderr=messages, check=False)
+        if done.returncode != 0:
+            messages.seek(0)
+            raise RuntimeError(f"{command[0]}: {messages.read().strip().splitlines()[-1:]}")
+    return processes.processor_seconds() - before
+
+
+class Subject:
+    """A scene with its points, as both programs read them."""
+
+    def __init__(self, options, name, folder):
+        self.options, self.name, self.folder = options, name, folder
+        source, plane = SCENES[name]
+        self.gltf = write_plain_gltf(ROOT / source, folder)
+        write_radiance_scene(self.gltf, folder / "scene.rad")
+        (folder / "grid.json").write_text(json.dumps(GRID))
+        rows = self.measure(f"{plane} --photons 20k --rays 16 --repeats 2")[1]
+        with open(folder / "points.pts", "w", encoding="utf-8") as points:
+            for row in rows:
+                points.write(" ".join(row[key] for key in ("x", "y", "z", "dx", "dy", "dz")) + "\n")
+        self.points = len(rows)
+
+    def measure(self, settings):
+        """Processor seconds of `photile measure`, and the lines of its table."""
+        table = self.folder / "measured.csv"
+        table.unlink(missing_ok=True)
+        seconds = run([self.options.photile, "measure", self.gltf, *settings.split(), "--quiet", "-o", table],
+                      self.folder)
+        with open(table, encoding="utf-8") as lines:
+            return seconds, list(csv.DictReader(lines))
+
+    def lux(self, settings):
+        seconds, rows = self.measure(f"--points points.pts {settings}")
+        return seconds, np.array([float(row["lux"]) for row in rows])
+
+    def reference(self, settings):
+        rows = self.measure(f"--points points.pts {settings}")[1]
+        return {"lux": [float(row["lux"]) for row in rows],
+                "standard_error": [float(row["standard_error"]) for row in rows]}
+
+    def octree(self):
+        """Processor seconds of oconv, whose file rtrace reads."""
+        return run([program(self.options, "oconv"), "scene.rad"], self.folder, output_file=self.folder / "scene.oct")
+
+    def traced(self, settings, more=()):
+        """Processor seconds of rtrace, and lux."""
+        lux = self.folder / "irradiance"
+        seconds = run([program(self.options, "rtrace"), "-h", "-I+", "-ov", *DIRECT.split(), *settings.split(), *more,
+                       "scene.oct"], self.folder, self.folder / "points.pts", lux)
+        return seconds, np.loadtxt(lux)[:, :3] @ LUMINANCE
+
+    def photon_mapped(self, photons, settings):
+        (self.folder / "global.pm").unlink(missing_ok=True)
+        seconds = run([program(self.options, "mkpmap"), "-apg", "global.pm", photons, "-fo+", "scene.oct"], self.folder)
+        more, lux = self.traced(settings, ("-ap", "global.pm", "50"))
+        return seconds + more, lux
+
+
+def figures(lux, reference):
+    """Of one run or several, rows of `lux`: root of the mean squared relative error, largest error, ratio of means."""
+    errors = np.atleast_2d(lux) / reference - 1
+    return {"error": float(np.sqrt(np.mean(errors**2))), "largest": float(np.max(np.abs(errors))),
+            "mean": float(np.mean(lux) / np.mean(reference))}
+
+
+def rows_to_measure(options):
+    """(tool, setting, what of a Subject gives processor seconds and lux), cheapest first."""
+    quick = slice(0, 1) if options.quick else slice(None)
+    if program(options, "rtrace") and program(options, "oconv"):
+        for tool, settings in RTRACE.items():
+            for setting in settings[quick]:
+                yield tool, setting, lambda subject, setting=setting: subject.traced(setting)
+        if program(options, "mkpmap"):
+            for photons, setting in PHOTON_MAPS[quick]:
+                yield ("mkpmap, rtrace", f"-apg {photons}; -ap 50 {setting}",
+                       lambda subject, photons=photons, setting=setting: subject.photon_mapped(photons, setting))
+    for tool, settings in PHOTILE.items():
+        for setting in settings[quick]:
+            yield tool, setting, lambda subject, setting=setting: several_seeds(subject, setting)
+
+
+def several_seeds(subject, setting):
+    runs = [subject.lux(f"{setting} --seed {seed}") for seed in SEEDS]
+    return float(np.mean([seconds for seconds, _ in runs])), np.array([lux for _, lux in runs])
+
+
+def version(options):
+    rtrace = program(options, "rtrace")
+    if not rtrace:
+        return "not there"
+    return subprocess.run([rtrace, "-version"], check=False, capture_output=True, text=True).stdout.strip()
+
+
+def measure_scene(options, name, scene, keep):
+    """Adds to the record of a scene what it lacks; calls `keep` after each row."""
+    with tempfile.TemporaryDirectory() as folder:
+        subject = Subject(options, name, pathlib.Path(folder))
+        if "reference" not in scene:
+            scene["reference"] = subject.reference(
+                "--integrator path --rays 1024 --repeats 2" if options.quick else REFERENCE)
+            keep()
+        truth, done = np.array(scene["reference"]["lux"]), {(row["tool"], row["setting"]) for row in scene["rows"]}
+        scene["points"] = subject.points
+        octree = subject.octree() if program(options, "oconv") else 0
+        for tool, setting, work in rows_to_measure(options):
+            if (tool, setting) in done:
+                continue
+            seconds, lux = work(subject)
+            with_octree = 0 if tool.startswith("photile") else octree
+            scene["rows"].append({"tool": tool, "setting": setting, "seconds": seconds + with_octree,
+                                  **figures(lux, truth)})
+            print(name, json.dumps(scene["rows"][-1]), flush=True)
+            keep()
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|---|" + "--:|" * (len(header) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def seconds_for(rows, tool, error):
+    """The least processor seconds by which a tool's row had at most this error."""
+    enough = [row["seconds"] for row in rows if row["tool"] == tool and row["error"] <= error]
+    return f"{min(enough):.2g} s" if enough else "not reached"
+
+
+def scene_section(name, scene):
+    rows = scene["rows"]
+    tools = [tool for tool in TOOLS if any(row["tool"] == tool for row in rows)]
+    reference = np.array(scene["reference"]["lux"])
+    noise = np.sqrt(np.mean((np.array(scene["reference"]["standard_error"]) / reference) ** 2))
+    short = table(["tool", *(f"error of {100 * error:.0f}%" for error in ERRORS)],
+                  [[tool, *(seconds_for(rows, tool, error) for error in ERRORS)] for tool in tools])
+    long = table(["tool and setting", "processor s", "error", "largest", "mean ratio"],
+                 [[f"{row['tool']}: `{row['setting']}`", f"{row['seconds']:.2f}", f"{100 * row['error']:.2f}%",
+                   f"{100 * row['largest']:.1f}%", f"{row['mean']:.4f}"]
+                  for tool in tools for row in rows if row["tool"] == tool])
+    return (f"## {name[0].upper() + name[1:]}\n\n{scene['points']} points of {reference.min():.0f} to "
+            f"{reference.max():.0f} lx; the reference's own error is {100 * noise:.2f}%. Least processor seconds of "
+            f"a measured row for an error:\n\n{short}\n\n{long}")
+
+
+def page(record):
+    missing = [tool for tool in TOOLS
+               if not any(row["tool"] == tool for scene in record["scenes"].values() for row in scene["rows"])]
+    lacking = f"\n\nNot there, so not measured: {', '.join(missing)}." if missing else ""
+    sections = "\n\n".join(scene_section(name, scene) for name, scene in record["scenes"].items())
+    return f"""# Beside Radiance
+
+After this page you can choose settings for lux at points, and compare photile with Radiance: error against processor
+seconds. `bench/radiance.py` writes this page.
+
+- **Scenes**: the bundled living room and Cornell box, diffuse and without textures, lit by their lamps with an area:
+  copies that both programs read. Points look up from a horizontal plane.
+- **Error**: root of the mean over the points of ((lux - reference) / reference)^2, of photile over {len(SEEDS)} seeds;
+  *largest* is that of the worst point. **Mean ratio**: mean lux over that of the reference.
+- **Reference**: `photile measure {REFERENCE}`, unbiased paths of another seed.
+- **rtrace** computes irradiance (`-I+`) with {DIRECT}; with an ambient cache (`-aa` above 0), without (`-aa 0`), and from
+  a photon map by `mkpmap` with one gathered bounce. oconv is in its time.
+- **photile, maps** is `photile measure`; **photile, paths** is `photile measure --integrator path`. Reading the scene is in
+  all times; kernels are compiled.
+
+{record['cores']} cores, {record['processor']}; load average {record['load_average']:.1f}; {record['radiance']}.{lacking}
+
+![Error against processor seconds](benchmarks/radiance.svg)
+
+{sections}
+
+## See also
+
+[Measuring](measuring.md), [accuracy](accuracy.md), [quality](quality.md).
+"""
+
+
+def draw(record):
+    figure, axes = report_plots.panels(len(record["scenes"]), "lux at points")
+    for axis, (name, scene) in zip(axes, record["scenes"].items()):
+        for number, tool in enumerate(TOOLS):
+            rows = sorted((row["seconds"], row["error"]) for row in scene["rows"] if row["tool"] == tool)
+            if rows:
+                axis.plot(*zip(*rows), "-o", markersize=4, label=tool, color=report_plots.COLOURS[number])
+        report_plots.log_log(axis, name, "processor seconds")
+    axes[0].set_ylabel("root mean square relative error")
+    report_plots.legend_beside(axes)
+    report_plots.save(figure, PLOT)
+
+
+def processor_name():
+    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown processor"
+
+
+def main():
+    options = arguments()
+    stored = RESULTS.is_file() and not options.again and not options.quick
+    record = json.loads(RESULTS.read_text(encoding="utf-8")) if stored else {"bench": "radiance", "scenes": {}}
+
+    def keep():
+        if not options.quick:
+            RESULTS.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+
+    if not options.redraw:
+        record |= {"cores": os.cpu_count(), "processor": processor_name(), "load_average": os.getloadavg()[2],
+                   "radiance": version(options)}
+        for name in SCENES:
+            measure_scene(options, name, record["scenes"].setdefault(name, {"rows": []}), keep)
+    if options.quick:
+        print(page(record))
+        return
+    draw(record)
+    PAGE.write_text(page(record), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (OSError, ValueError, KeyError, RuntimeError) as error:
+        sys.exit(f"radiance.py: error: {error}")
