@@ -87,9 +87,8 @@ class Table(unittest.TestCase):
         text = mutants.table({first: [], second: ["a/b", "c/d", "e/f"]}).splitlines()
         self.assertIn(f"| {first} |", text[2])
         self.assertIn("**survives**", text[2])
-        self.assertIn("a/b; c/d; 1 more", text[3])
-        self.assertIn(f"| {third} |", text[4])
-        self.assertIn("not run", text[4])
+        self.assertIn("| a/b; 2 more |", text[3])
+        self.assertTrue(text[-1].startswith(f"Not run: {third} ("))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,60 @@
+"""Checks the documentation's links: files and headings that it names are there, and the index names each page.
+
+    links.py SOURCE-FOLDER
+"""
+
+import functools
+import pathlib
+import re
+import sys
+
+LINK = re.compile(r"\]\(\s*([^)\s]+)\s*\)")
+HEADING = re.compile(r"#{1,6} (.*)")
+
+
+def prose(file):
+    """Its lines but those of code between fences."""
+    code = False
+    for line in file.read_text(encoding="utf-8").splitlines():
+        if line.startswith("```"):
+            code = not code
+        elif not code:
+            yield line
+
+
+@functools.cache
+def anchors(file):
+    """What GitHub calls the headings."""
+    titles = (match[1] for match in map(HEADING.match, prose(file)) if match)
+    shown = (re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", title) for title in titles)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in shown}
+
+
+def faults(source):
+    pages = sorted((source / "docs").glob("*.md"))
+    linked = set()
+    for page in [source / "README.md", source / "CHANGELOG.md", source / "scenes/README.md", *pages]:
+        for target in LINK.findall("\n".join(prose(page))):
+            if target.startswith(("http:", "https:")):
+                continue
+            path, _, anchor = target.partition("#")
+            file = (page.parent / path).resolve() if path else page
+            if page.parent.name == "docs" and page.name == "README.md":
+                linked.add(file)
+            if not file.exists():
+                yield f"{page.relative_to(source)}: {target}: no such file"
+            elif anchor and file.suffix == ".md" and anchor not in anchors(file):
+                yield f"{page.relative_to(source)}: {target}: no such heading"
+    for page in pages:
+        if page.resolve() not in linked and page.name != "README.md":
+            yield f"docs/README.md: names no {page.name}"
+
+
+def main():
+    found = list(faults(pathlib.Path(sys.argv[1]).resolve()))
+    print("\n".join(found) or "all links lead somewhere")
+    sys.exit(bool(found))
+
+
+if __name__ == "__main__":
+    main()
