@@ -162,7 +162,7 @@ std::vector<Setting> photon_rows() {
           "first bounce at which a path may end by chance", kept_as_it_is),
       row<&P::passes>("passes", "passes", "all", WholeNumbers{1, limits::max_passes},
                       "photon passes, each of its share of the paths", not_kept,
-                      "as many as the host's memory asks for"),
+                      "as many as the host's memory needs"),
   };
 }
 
@@ -179,17 +179,17 @@ std::vector<Setting> estimate_rows() {
           "each hit has its own number of neighbours, from this one up, as its bias allows",
           not_kept, "all hits have the same"),
       of_groups(row<&P::radius>("radius", "radius", groups, PositiveNumbers{},
-                                "no photon farther away counts", kept_if_given,
+                                "photons farther away do not count", kept_if_given,
                                 "twice the median distance to the k-th photon", "m")),
       of_groups(row<&P::angle_degrees>("angle_degrees", "angle", groups, Numbers{0, 180},
                                        "largest angle between the normals of a group",
                                        kept_as_it_is, "", "degrees")),
       row<&P::area>("area", "area", "surface index", words_of(all_area_modes),
-                    "that photons are divided by; disc: dark borders and corners, all that naive "
-                    "maps have",
+                    "area by which photons are divided; disc: dark borders and corners, the only "
+                    "one of naive maps",
                     not_kept),
       row<&P::kernel>("kernel", "kernel", estimate, words_of(all_density_kernels),
-                      "that photons are weighted by; cone, epanechnikov: less blur, more noise",
+                      "weights of photons; cone, epanechnikov: less blur, more noise",
                       not_kept),
       of_groups(row<&P::maps>("maps", "maps", groups, words_of(all_map_modes),
                               "naive: dark edges; patch: triangles share maps", kept_as_it_is)),
@@ -199,7 +199,7 @@ std::vector<Setting> estimate_rows() {
                                 "fineness of the grids", not_kept),
       row<&P::direct_rays>(
           "direct_rays", "direct-rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
-          "looks at lamps from a hit, which leave light straight from lamps to rays",
+          "looks at lamps from a hit, which replace photons straight from lamps",
           kept_for_direct_light, "photons bring it; one look where rays gather"),
       row<&P::final_gather_rays>(
           "final_gather_rays", "final-gather", "final gather",
@@ -211,8 +211,8 @@ std::vector<Setting> estimate_rows() {
                      "read, else photons",
                      not_kept),
       row<&P::light_maps>("light_maps", "light-maps", "light maps", words_of(all_light_map_modes),
-                          "matt surfaces are read between nodes; auto: but where rays gather, with "
-                          "naive maps and, unless nodes gather, several passes; off: an estimate "
+                          "matt surfaces are read between nodes; auto: not with final gathering, "
+                          "naive maps or, unless nodes gather, several passes; off: an estimate "
                           "at each hit",
                           not_kept),
       by_quality(row<&P::light_map_rays>(
@@ -223,7 +223,7 @@ std::vector<Setting> estimate_rows() {
                  64, 256),
       row<&P::light_map_detail>("light_map_detail", "light-map-detail", "light maps",
                                 PositiveNumbers{},
-                                "between the finest nodes of light maps, at most", not_kept,
+                                "largest distance between the finest nodes of light maps", not_kept,
                                 "an eighth of the coarsest, by the photons", "m"),
   };
 }

@@ -149,12 +149,10 @@ void run_devices(const DevicesOptions& options) {
 void add_devices_command(CLI::App& photile) {
   auto options = std::make_shared<DevicesOptions>();
   CLI::App* command = photile.add_subcommand("devices", "List the OpenCL devices");
-  CLI::Option* json = command->add_flag("--json", options->json, "as JSON");
+  CLI::Option* json = command->add_flag("--json", options->json, "print JSON");
   command
       ->add_option("--device", options->selector,
-                   "mark those, compile for those, or tune the one, that this selector chooses, as "
-                   "in photile "
-                   "render")
+                   "devices to mark or to compile for, or the one to tune, as in photile render")
       ->type_name("SELECTOR");
   CLI::Option* tune =
       command

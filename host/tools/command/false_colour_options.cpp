@@ -38,10 +38,10 @@ void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
       ->check(top_of_scale())
       ->capture_default_str()
       ->group(group);
-  command.add_option("-l,--label", colours.label, "of the legend; default: the unit")
+  command.add_option("-l,--label", colours.label, "text of the legend; default: the unit")
       ->type_name("TEXT")
       ->group(group);
-  command.add_option("-n,--steps", colours.steps, "of the legend, and isolines")
+  command.add_option("-n,--steps", colours.steps, "steps of the legend and isolines")
       ->type_name("N")
       ->transform(count_between(1, 100))
       ->capture_default_str()

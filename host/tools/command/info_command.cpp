@@ -53,7 +53,7 @@ void add_info_command(CLI::App& photile) {
   command->add_option("SCENE", options->scene, "scene file: .obj, .gltf or .glb")
       ->required()
       ->type_name("");
-  command->add_flag("--json", options->json, "as JSON");
+  command->add_flag("--json", options->json, "print JSON");
   add_scene_options(*command, options->load, "Scene");
   add_light_options(*command, options->load, "Lights");
   command->callback([options] { run_info(*options); });

@@ -198,7 +198,7 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
       ->transform(share_up_to(1))
       ->capture_default_str()
       ->group("Measuring");
-  command.add_option("--rays", parameters.gathering.rays, "of each point and repeat")
+  command.add_option("--rays", parameters.gathering.rays, "rays of each point and repeat")
       ->type_name("N")
       ->transform(count_between(1, limits::max_samples_per_pixel))
       ->capture_default_str()

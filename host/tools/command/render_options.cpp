@@ -59,7 +59,7 @@ void add_device_group(CLI::App& command, RenderOptions& options) {
       ->group("Device");
   command
       .add_option("--memory", options.device.memory_bytes,
-                  "that the device's buffers may take; default: all it has")
+                  "bound on the device's buffers together; default: all its memory")
       ->type_name("SIZE")
       ->transform(byte_size())
       ->group("Device");
@@ -73,7 +73,7 @@ void add_device_group(CLI::App& command, RenderOptions& options) {
 }  // namespace
 
 void add_run_group(CLI::App& command, RenderOptions& options) {
-  command.add_option("--threads", options.threads, "of the host; 0 = all cores")
+  command.add_option("--threads", options.threads, "threads of the host; 0 = all cores")
       ->type_name("N")
       ->transform(count_between(0, limits::max_threads))
       ->capture_default_str()
@@ -105,7 +105,7 @@ void add_picture_settings(CLI::App& command, RenderOptions& options,
 void add_direct_option(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--direct", options.direct,
-                  "what brings the light straight from lamps; rays: sharp shadows")
+                  "what finds light straight from lamps; rays: sharp shadows")
       ->type_name("photons|rays")
       ->transform(within(Words{{"photons", "rays"}}))
       ->group("Estimate");
@@ -134,7 +134,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_integrator_option(command, options);
   command
       .add_flag("--tuned", options.tuned,
-                "as photile devices --tune found best; other last bits than without")
+                "use kernels that photile devices --tune found best; other last bits than without")
       ->group("Estimate");
   command.add_flag("--profile", options.device.profile, "print the time of every kernel")
       ->group("Device");

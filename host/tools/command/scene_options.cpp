@@ -9,7 +9,7 @@ namespace photile::app {
 void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::string& group) {
   command
       .add_option("--scene", options.scene,
-                  "of the scenes in a glTF file; default: the file's own default, else the first")
+                  "scene of a glTF file, name or index; default: the file's own, else the first")
       ->type_name("NAME|INDEX")
       ->group(group);
   command

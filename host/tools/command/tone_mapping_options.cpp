@@ -27,7 +27,7 @@ void add_view_option(CLI::App& command, DisplayView& view, const std::string& gr
 
 void add_tone_mapping_options(CLI::App& command, ToneMapping& parameters,
                               const std::string& group) {
-  command.add_option("--exposure", parameters.exposure, "stops, of what is shown: never of EXRs")
+  command.add_option("--exposure", parameters.exposure, "stops, for PNGs and the window alone")
       ->type_name("STOPS")
       ->transform(number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
       ->capture_default_str()

@@ -109,13 +109,13 @@ void add_validate_command(CLI::App& photile) {
       ->type_name("N")
       ->transform(count_between(1, std::numeric_limits<int>::max()))
       ->capture_default_str();
-  command->add_option("--seed", photons.seed, "the first of 16")
+  command->add_option("--seed", photons.seed, "the first of 16 seeds")
       ->type_name("N")
       ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max() - 16))
       ->capture_default_str();
   command->add_option("--device", options->device.selector, "OpenCL device, as in photile render")
       ->type_name("SELECTOR");
-  command->add_option("--threads", options->threads, "of the host; 0 = all cores")
+  command->add_option("--threads", options->threads, "threads of the host; 0 = all cores")
       ->type_name("N")
       ->transform(count_between(0, limits::max_threads))
       ->capture_default_str();

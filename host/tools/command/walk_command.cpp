@@ -398,7 +398,7 @@ void add_walk_command(CLI::App& photile) {
                           ->group("Motion");
   command
       ->add_option("--animation", options->animation,
-                   "of a glTF scene, name or index; default: the first that moves the camera")
+                   "animation of a glTF scene; default: the first that moves the camera")
       ->type_name("NAME|INDEX")
       ->excludes(path)
       ->group("Motion");
@@ -407,7 +407,7 @@ void add_walk_command(CLI::App& photile) {
       ->transform(positive_number())
       ->capture_default_str()
       ->group("Motion");
-  command->add_option("--first-number", options->first_number, "of the first frame")
+  command->add_option("--first-number", options->first_number, "number of the first frame")
       ->type_name("N")
       ->transform(count_between(0, limits::max_frames))
       ->capture_default_str()
@@ -418,7 +418,7 @@ void add_walk_command(CLI::App& photile) {
           [&frames = options->frames](const std::string& text) {
             frames = walk::parse_frame_range(text);
           },
-          "these alone, by number; every S-th")
+          "frames to render, by number; every S-th")
       ->type_name("A[-B[xS]]")
       ->check(frame_range())
       ->group("Motion");
