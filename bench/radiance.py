@@ -89,14 +89,20 @@ def program(options, name):
     return shutil.which(name)
 
 
-def run(command, folder, input_file=None, output_file=None):
+def environment(options):
+    """Radiance's programs find their files by RAYPATH; the package pyradiance has them beside bin/."""
+    library = options.radiance.parent / "lib" if options.radiance else None
+    return {"RAYPATH": str(library), **os.environ} if library and library.is_dir() else None
+
+
+def run(command, folder, input_file=None, output_file=None, variables=None):
     """Processor seconds of a command that has to succeed."""
     before = processes.processor_seconds()
     with (open(input_file or os.devnull, "rb") as source,
           open(output_file or folder / "output", "wb") as target,
           open(folder / "messages", "w+", encoding="utf-8") as messages):
         done = subprocess.run([str(word) for word in command], cwd=folder, stdin=source, stdout=target,
-                              stderr=messages, check=False)
+                              stderr=messages, env=variables, check=False)
         if done.returncode != 0:
             messages.seek(0)
             raise RuntimeError(f"{command[0]}: {messages.read().strip().splitlines()[-1:]}")
@@ -138,18 +144,22 @@ class Subject:
 
     def octree(self):
         """Processor seconds of oconv, whose file rtrace reads."""
-        return run([program(self.options, "oconv"), "scene.rad"], self.folder, output_file=self.folder / "scene.oct")
+        return self.radiance("oconv", "scene.rad", output_file=self.folder / "scene.oct")
+
+    def radiance(self, name, *words, **files):
+        """Processor seconds of one of Radiance's programs."""
+        return run([program(self.options, name), *words], self.folder, variables=environment(self.options), **files)
 
     def traced(self, settings, more=()):
         """Processor seconds of rtrace, and lux."""
         lux = self.folder / "irradiance"
-        seconds = run([program(self.options, "rtrace"), "-h", "-I+", "-ov", *DIRECT.split(), *settings.split(), *more,
-                       "scene.oct"], self.folder, self.folder / "points.pts", lux)
+        seconds = self.radiance("rtrace", "-h", "-I+", "-ov", *DIRECT.split(), *settings.split(), *more, "scene.oct",
+                                input_file=self.folder / "points.pts", output_file=lux)
         return seconds, np.loadtxt(lux)[:, :3] @ LUMINANCE
 
     def photon_mapped(self, photons, settings):
         (self.folder / "global.pm").unlink(missing_ok=True)
-        seconds = run([program(self.options, "mkpmap"), "-apg", "global.pm", photons, "-fo+", "scene.oct"], self.folder)
+        seconds = self.radiance("mkpmap", "-apg", "global.pm", photons, "-fo+", "scene.oct")
         more, lux = self.traced(settings, ("-ap", "global.pm", "50"))
         return seconds + more, lux
 
@@ -186,7 +196,8 @@ def version(options):
     rtrace = program(options, "rtrace")
     if not rtrace:
         return "not there"
-    return subprocess.run([rtrace, "-version"], check=False, capture_output=True, text=True).stdout.strip()
+    return subprocess.run([rtrace, "-version"], check=False, capture_output=True, text=True,
+                          env=environment(options)).stdout.strip()
 
 
 def measure_scene(options, name, scene, keep):

@@ -74,7 +74,8 @@ void add_bake_command(CLI::App& photile) {
       ->type_name("M")
       ->transform(positive_number())
       ->group("Output");
-  command->add_option("--most-texels", options->baking.most_side, "texels on a side of the pictures")
+  command
+      ->add_option("--most-texels", options->baking.most_side, "texels on a side of the pictures")
       ->type_name("N")
       ->transform(count_between(64, limits::max_image_side))
       ->capture_default_str()
