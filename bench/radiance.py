@@ -41,7 +41,8 @@ SCENES = {
 GRID = {"name": "plane", "origin": [0.05, 0.4, 0.05], "u": [0, 0, 0.45], "v": [0.45, 0, 0],
         "columns": 9, "rows": 9}  # above the blocks
 
-REFERENCE = "--integrator path --rays 131072 --repeats 16 --seed 99"
+REFERENCE = "--integrator path --rays 65536 --repeats 4"
+REFERENCE_SEEDS = (101, 102, 103, 104)
 DIRECT = "-dt 0 -ds 0.1 -dj 0 -st 0"  # of rtrace: no lamp is left to chance
 RTRACE = {
     "rtrace": (
@@ -137,9 +138,9 @@ class Subject:
         seconds, rows = self.measure(f"--points points.pts {settings}")
         return seconds, np.array([float(row["lux"]) for row in rows])
 
-    def reference(self, settings):
-        rows = self.measure(f"--points points.pts {settings}")[1]
-        return {"lux": [float(row["lux"]) for row in rows],
+    def reference(self, settings, seed):
+        rows = self.measure(f"--points points.pts {settings} --seed {seed}")[1]
+        return {"seed": seed, "lux": [float(row["lux"]) for row in rows],
                 "standard_error": [float(row["standard_error"]) for row in rows]}
 
     def octree(self):
@@ -200,15 +201,23 @@ def version(options):
                           env=environment(options)).stdout.strip()
 
 
+def truth_of(scene):
+    """Lux of the points by all runs of the reference, and their standard errors."""
+    lux = np.mean([run["lux"] for run in scene["references"]], axis=0)
+    errors = np.array([run["standard_error"] for run in scene["references"]])
+    return lux, np.sqrt(np.sum(errors**2, axis=0)) / len(errors)
+
+
 def measure_scene(options, name, scene, keep):
     """Adds to the record of a scene what it lacks; calls `keep` after each row."""
     with tempfile.TemporaryDirectory() as folder:
         subject = Subject(options, name, pathlib.Path(folder))
-        if "reference" not in scene:
-            scene["reference"] = subject.reference(
-                "--integrator path --rays 1024 --repeats 2" if options.quick else REFERENCE)
-            keep()
-        truth, done = np.array(scene["reference"]["lux"]), {(row["tool"], row["setting"]) for row in scene["rows"]}
+        for seed in REFERENCE_SEEDS[:1 if options.quick else None]:
+            if seed not in [run["seed"] for run in scene["references"]]:
+                scene["references"].append(subject.reference(
+                    "--integrator path --rays 1024 --repeats 2" if options.quick else REFERENCE, seed))
+                keep()
+        truth, done = truth_of(scene)[0], {(row["tool"], row["setting"]) for row in scene["rows"]}
         scene["points"] = subject.points
         octree = subject.octree() if program(options, "oconv") else 0
         for tool, setting, work in rows_to_measure(options):
@@ -236,8 +245,8 @@ def seconds_for(rows, tool, error):
 def scene_section(name, scene):
     rows = scene["rows"]
     tools = [tool for tool in TOOLS if any(row["tool"] == tool for row in rows)]
-    reference = np.array(scene["reference"]["lux"])
-    noise = np.sqrt(np.mean((np.array(scene["reference"]["standard_error"]) / reference) ** 2))
+    reference, errors = truth_of(scene)
+    noise = np.sqrt(np.mean((errors / reference) ** 2))
     short = table(["tool", *(f"error of {100 * error:.0f}%" for error in ERRORS)],
                   [[tool, *(seconds_for(rows, tool, error) for error in ERRORS)] for tool in tools])
     long = table(["tool and setting", "processor s", "error", "largest", "mean ratio"],
@@ -263,7 +272,7 @@ seconds. `bench/radiance.py` writes this page.
   copies that both programs read. Points look up from a horizontal plane.
 - **Error**: root of the mean over the points of ((lux - reference) / reference)^2, of photile over {len(SEEDS)} seeds;
   *largest* is that of the worst point. **Mean ratio**: mean lux over that of the reference.
-- **Reference**: `photile measure {REFERENCE}`, unbiased paths of another seed.
+- **Reference**: the mean of `photile measure {REFERENCE}` with {len(REFERENCE_SEEDS)} other seeds: unbiased paths.
 - **rtrace** computes irradiance (`-I+`) with {DIRECT}; with an ambient cache (`-aa` above 0), without (`-aa 0`), and from
   a photon map by `mkpmap` with one gathered bounce. oconv is in its time.
 - **photile, maps** is `photile measure`; **photile, paths** is `photile measure --integrator path`. Reading the scene is in
@@ -314,7 +323,8 @@ def main():
         record |= {"cores": os.cpu_count(), "processor": processor_name(), "load_average": os.getloadavg()[2],
                    "radiance": version(options)}
         for name in SCENES:
-            measure_scene(options, name, record["scenes"].setdefault(name, {"rows": []}), keep)
+            measure_scene(options, name, record["scenes"].setdefault(name, {"references": [], "rows": []}),
+                          keep)
     if options.quick:
         print(page(record))
         return

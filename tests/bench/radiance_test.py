@@ -66,12 +66,17 @@ class Errors(unittest.TestCase):
         self.assertAlmostEqual(found["largest"], 0.1)
         self.assertAlmostEqual(found["mean"], 147.5 / 150)
 
+    def test_runs_of_the_reference_are_averaged(self):
+        lux, error = radiance.truth_of({"references": [{"lux": [100], "standard_error": [3]},
+                                                       {"lux": [102], "standard_error": [4]}]})
+        self.assertEqual((lux[0], error[0]), (101, 2.5))
+
     def test_the_page_says_what_was_not_reached_and_what_is_missing(self):
         rows = [{"tool": "rtrace", "setting": "-ab 3", "seconds": seconds, "error": error, "largest": 0.1, "mean": 1.01}
                 for seconds, error in ((2.0, 0.04), (1.0, 0.06), (3.0, 0.015))]
         page = radiance.page({"cores": 2, "processor": "P", "load_average": 0.5, "radiance": "R", "scenes": {
             "Cornell box": {"points": 2, "rows": rows,
-                            "reference": {"lux": [100, 200], "standard_error": [1, 2]}}}})
+                            "references": [{"lux": [100, 200], "standard_error": [1, 2]}]}}})
         self.assertIn("| rtrace | 2 s | 3 s | not reached |", page)
         self.assertIn("the reference's own error is 1.00%", page)
         self.assertIn("Not there, so not measured: rtrace -aa 0, mkpmap, rtrace, photile, maps, photile, paths.", page)
