@@ -38,6 +38,7 @@ device::Defines Specialisation::defines() const {
   device::Defines defines;
   const bool lanes = strategy == EstimateStrategy::lanes;
   if (lanes) defines.set("LANES");
+  if (private_distances) defines.set("DISTANCES_ARE_PRIVATE");
   defines.set("VECTOR_WIDTH", static_cast<long long>(vector_width));
   defines.set("CAPACITY", static_cast<long long>(capacity));
   // Lanes list the near entries of a hit all at once.
@@ -86,7 +87,10 @@ std::uint32_t Specialisation::nearest_items(std::uint32_t hits) const {
 std::size_t Specialisation::private_bytes() const {
   const auto width = static_cast<std::size_t>(vector_width);
   const bool listed = needs.glossy || needs.many_lights();
-  if (strategy == EstimateStrategy::lanes) return needs.many_lights() ? 0 : sums.private_bytes();
+  if (strategy == EstimateStrategy::lanes) {
+    const std::size_t kept = private_distances ? static_cast<std::size_t>(capacity) / width : 0;
+    return kept * sizeof(float) + (needs.many_lights() ? 0 : sums.private_bytes());
+  }
   std::size_t bytes = sums.private_bytes();
   if (strategy == EstimateStrategy::heap) {
     return bytes + static_cast<std::size_t>(neighbours) * (sizeof(float) + sizeof(std::uint32_t));
@@ -107,7 +111,7 @@ std::size_t Specialisation::local_bytes() const {
   const auto kept = static_cast<std::size_t>(capacity);
   const std::size_t chunks = kept / width;
   constexpr std::size_t word = sizeof(std::uint32_t), columns = 8, queue = 16;
-  std::size_t words = 5 * (width + columns) + kept + chunks;
+  std::size_t words = 5 * (width + columns) + (private_distances ? 0 : kept) + chunks;
   if (needs.glossy || needs.many_lights()) {
     words += chunks * ((width + 31) / 32) + static_cast<std::size_t>(neighbours);
   }
@@ -129,9 +133,12 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
   choice.needs = needs;
   choice.sums = LightSums(needs, static_cast<std::uint32_t>(neighbours));
   choice.work_group_size = static_cast<std::size_t>(tuning.work_group_size);
+  choice.private_distances =
+      choice.strategy == EstimateStrategy::lanes && tuning.private_distances;
   if (choice.local_bytes() > max_local_bytes) {
     choice.strategy = EstimateStrategy::select;
     choice.vector_width = 1;
+    choice.private_distances = false;
     choice.capacity = capacity_for(neighbours, choice.strategy, choice.vector_width);
   }
   const bool in_turn =

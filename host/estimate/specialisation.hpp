@@ -42,6 +42,7 @@ struct Specialisation {
   int capacity = 256;
   int neighbours = 1;       ///< k
   int tile_capacity = 512;  ///< candidates of a tile, `tile` only
+  bool private_distances = false;  ///< `lanes` keep them in private memory
   int hits_per_item = 1;    ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
   SceneNeeds needs;

@@ -1,6 +1,7 @@
 #include "estimate/tuning_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "estimate/specialisation.hpp"
@@ -36,6 +37,7 @@ std::vector<EstimateTuning> other_strategies(const EstimateTuning& from, const S
     if (from.strategy == EstimateStrategy::lanes) {
       tuning.vector_width = 1;
       tuning.work_group_size = EstimateTuning{}.work_group_size;
+      tuning.private_distances = false;
     }
     if (strategy == EstimateStrategy::lanes) {
       // Where work-items hold vectors they are no lanes: such kernels crawl on CPUs.
@@ -98,6 +100,11 @@ std::vector<EstimateTuning> alternatives(TuningParameter parameter, const Estima
       std::erase_if(tunings, [&](const EstimateTuning& tuning) {
         return !groups_fit(tuning, needs, neighbours);
       });
+      break;
+    case TuningParameter::private_distances:
+      if (from.strategy == EstimateStrategy::lanes) {
+        add(&EstimateTuning::private_distances, std::array{false, true});
+      }
       break;
   }
   // Those of `from`, too: a large k needs smaller groups than what is shipped.

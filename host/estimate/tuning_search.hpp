@@ -15,12 +15,14 @@ enum class TuningParameter {
   photons_per_cell,
   vector_width,
   hits_per_item,
-  work_group_size
+  work_group_size,
+  private_distances
 };
 
 inline constexpr std::array all_tuning_parameters = {
     TuningParameter::strategy, TuningParameter::photons_per_cell, TuningParameter::vector_width,
-    TuningParameter::hits_per_item, TuningParameter::work_group_size};
+    TuningParameter::hits_per_item, TuningParameter::work_group_size,
+    TuningParameter::private_distances};
 
 /// Tunings that differ from `from` in one parameter. Where another strategy or width needs more
 /// private memory, its work-groups are the largest that may be. Left out is what would run the same

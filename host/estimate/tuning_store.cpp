@@ -43,7 +43,8 @@ json to_json(const EstimateTuning& tuning) {
           {"vector_width", tuning.vector_width},
           {"hits_per_item", tuning.hits_per_item},
           {"work_group_size", tuning.work_group_size},
-          {"photons_per_cell", tuning.photons_per_cell}};
+          {"photons_per_cell", tuning.photons_per_cell},
+          {"private_distances", tuning.private_distances}};
 }
 
 /// Zero, which no tuning allows, for anything but a whole number of some sense: get<int> alone
@@ -69,6 +70,7 @@ std::optional<EstimateTuning> from_json(const json& object) {
   tuning.hits_per_item = whole_number(object, "hits_per_item");
   tuning.work_group_size = whole_number(object, "work_group_size");
   object.at("photons_per_cell").get_to(tuning.photons_per_cell);
+  object.at("private_distances").get_to(tuning.private_distances);
   if (!known || !tuning_problem(tuning).empty()) return std::nullopt;
   return tuning;
 }

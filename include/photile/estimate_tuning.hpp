@@ -42,6 +42,8 @@ struct EstimateTuning {
   int work_group_size = 64;
   /// The grids that go with it, for PhotonMapParameters; the estimate itself does not use it.
   float photons_per_cell = defaults::photons_per_cell;
+  /// `lanes` only: whether each keeps its distances in private memory, not in local. The same bits.
+  bool private_distances = false;
 
   friend bool operator==(const EstimateTuning&, const EstimateTuning&) = default;
 };

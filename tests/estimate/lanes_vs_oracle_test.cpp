@@ -152,4 +152,15 @@ TEST_CASE("lanes differ from vectors in the order of sums alone") {
   CHECK(relative_difference(of_lanes.irradiance, of_vectors.irradiance) > 0);
 }
 
+TEST_CASE("distances in private memory give the bits of those in local memory", "[slow]") {
+  const std::size_t lights = GENERATE(1u, 20u);
+  // At k = 1,000 a block does not fit and is walked again.
+  const int neighbours = GENERATE(50, 1000);
+  const Subject subject(torus(lights, false), 61);
+  EstimateTuning tuning = lanes(32);
+  const Estimates local = subject.estimate(tuning, neighbours, AreaMode::disc);
+  tuning.private_distances = true;
+  CHECK(subject.estimate(tuning, neighbours, AreaMode::disc).irradiance == local.irradiance);
+}
+
 }  // namespace photile::test

@@ -103,7 +103,8 @@ TEST_CASE("a tuning of other kernels, or a damaged file, counts as none and can 
       replaced("\"work_group_size\": 16", "\"work_group_size\": 1e4"),
       replaced("\"work_group_size\": 16", "\"work_group_size\": 100000"),
       replaced("\"photons_per_cell\": 2.0", "\"photons_per_cell\": 0"),
-      replaced("\"photons_per_cell\": 2.0", "\"photons_per_cell\": null")};
+      replaced("\"photons_per_cell\": 2.0", "\"photons_per_cell\": null"),
+      replaced("\"private_distances\": false", "\"private_distances\": 2")};
   for (const std::string& text : damaged) {
     CAPTURE(text.substr(0, 400));
     write_text(file, text);

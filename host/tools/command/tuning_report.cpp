@@ -35,7 +35,8 @@ std::string tuning_words(const EstimateTuning& tuning) {
     words += fmt::format(", {} hits a work-item", tuning.hits_per_item);
   }
   if (tuning.strategy == EstimateStrategy::lanes) {
-    words += fmt::format(", {} hits a group", tuning.hits_per_item);
+    words += fmt::format(", {} hits a group, distances in {} memory", tuning.hits_per_item,
+                         tuning.private_distances ? "private" : "local");
   }
   return words + fmt::format(", work-groups of {}, {:g} photons a cell", tuning.work_group_size,
                              tuning.photons_per_cell);
