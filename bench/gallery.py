@@ -3,8 +3,8 @@
 
     bench/gallery.py [--photile COMMAND] [--only SCENE] [--references FOLDER] [--quick --results FOLDER]
 
-Takes about half an hour, nearly all of it for the paths, which FOLDER keeps. Needs the built command and the Debian packages python3-numpy and
-python3-openimageio.
+Takes about half an hour, nearly all of it for the paths, which FOLDER keeps. Needs the built command and
+the Debian packages python3-numpy and python3-openimageio.
 """
 
 import argparse
@@ -25,7 +25,8 @@ import path_references
 import picture_error
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SIZE, REFERENCE_PATHS = "480x360", 256
+SIZE, REFERENCE_PATHS = "960x720", 64
+BLOCK = 2  # pixels of a block's side: errors are those of means over blocks, which see 256 paths
 
 
 @dataclasses.dataclass
@@ -61,6 +62,12 @@ def arguments():
     return parser.parse_args()
 
 
+def in_blocks(picture):
+    """Means over blocks of pixels, of shape (height / BLOCK, width / BLOCK, 3)."""
+    height, width, channels = picture.shape
+    return picture.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK, channels).mean(axis=(1, 3))
+
+
 def measure(given, subject, folder):
     """Renders a scene both ways, writes the two side by side, and returns the figures."""
     size = "32x24" if given.quick else SIZE
@@ -69,14 +76,17 @@ def measure(given, subject, folder):
     _, seconds, _ = timed([given.photile, "render", scene, *subject.lights, *few, "--size", size,
                            "-o", picture, "--quiet"])
     own = picture_error.read_picture(picture)
-    paths, noise = path_references.mean_and_noise(path_references.pictures(
+    found = path_references.pictures(
         given.photile, scene, size, 4 if given.quick else REFERENCE_PATHS,
-        folder if given.quick else given.references, subject.lights))
+        folder if given.quick else given.references, subject.lights,
+        paths_of_picture=REFERENCE_PATHS // 2)
+    paths = np.mean(found, axis=0)
+    blocks, noise = path_references.mean_and_noise([in_blocks(each) for each in found])
     factor = picture_error.exposure(paths)
     both = [picture_error.displayed(own, factor), np.ones((own.shape[0], 4, 3)),
             picture_error.displayed(paths, factor)]
     picture_error.write_png(given.results / f"{subject.name}.png", np.concatenate(both, axis=1))
-    figures = picture_error.measure(own, paths)
+    figures = picture_error.measure(in_blocks(own), blocks)
     return {"scene": subject.name, "processor seconds": seconds,
             "mean ratio": figures["mean_ratio"],
             "relMSE": figures["rel_mse"], "noise of the reference": noise,

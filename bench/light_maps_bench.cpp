@@ -226,10 +226,11 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   });
   std::filesystem::remove(file);
   if (!settings.nodes.empty()) {
-    std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));
-    frames.draw(scene.cameras.front(), {width, height, 4}, scales, all, picture, Progress::none());
-    draw_nodes(rays, estimates.maps(), scene.cameras.front(), picture, width, height);
-    write_png(settings.nodes, tone_map(image_of(picture, width, height), {}));
+    constexpr int side = 960;
+    std::vector<glm::vec3> picture(static_cast<std::size_t>(side * side));
+    frames.draw(scene.cameras.front(), {side, side, 4}, scales, all, picture, Progress::none());
+    draw_nodes(rays, estimates.maps(), scene.cameras.front(), picture, side, side);
+    write_png(settings.nodes, tone_map(image_of(picture, side, side), {}));
   }
   row["frame of film, processor seconds"] = to_json(film);
   record.add(row);

@@ -1,6 +1,6 @@
 """Converged pictures by photile's own path tracer, which a folder keeps.
 
-A reference is the mean of pictures of 64 paths a pixel, each of a seed of its own: with more paths only
+A reference is the mean of pictures of some paths a pixel, each of a seed of its own: with more paths only
 the pictures that lack are made, and the two halves of the seeds tell its noise.
 """
 
@@ -12,20 +12,20 @@ import numpy as np
 
 import picture_error
 
-PATHS_OF_PICTURE = 64
+PATHS_OF_PICTURE = 64  # unless the caller says another number
 
 
-def pictures(photile, scene, size, paths, folder, options=()):
+def pictures(photile, scene, size, paths, folder, options=(), paths_of_picture=PATHS_OF_PICTURE):
     """Independent pictures of shape (height, width, 3), at least two, which share out the paths."""
     folder.mkdir(parents=True, exist_ok=True)
     found = []
-    for seed in range(1, max(2, paths // PATHS_OF_PICTURE) + 1):
+    for seed in range(1, max(2, paths // paths_of_picture) + 1):
         kept = folder / f"{scene.stem}-{size}-{seed}.npy"
         if not kept.exists():
             with tempfile.TemporaryDirectory() as name:
                 picture = pathlib.Path(name) / "paths.exr"
                 subprocess.run([photile, "render", scene, *options, "--integrator", "path", "--size",
-                                size, "--samples", str(min(paths, PATHS_OF_PICTURE)), "--seed",
+                                size, "--samples", str(min(paths, paths_of_picture)), "--seed",
                                 str(seed), "--quiet", "-o", picture], check=True)
                 np.save(kept, picture_error.read_picture(picture))
         found.append(np.load(kept))

@@ -67,8 +67,8 @@ SetPower parse_power(const LightChange& change) {
   const std::optional<double> power = parse_amount(number);
   if (!power) {
     refuse(change,
-           "is no change of a light; use POWER, POWERlm or POWERW (0 or more), xFACTOR, #RRGGBB, "
-           "KELVINK or off");
+           "is no change of a light; use POWER, POWERlm or POWERW (0 or more), xFACTOR, PERCENT%, "
+           "#RRGGBB, KELVINK or off");
   }
   return {*power, unit};
 }
@@ -83,6 +83,12 @@ Request understand(const LightChange& change) {
     const std::optional<double> factor = parse_amount(std::string_view(change.value).substr(1));
     if (!factor) refuse(change, "is no factor; use x and a number of 0 or more such as x1.5");
     return ScalePower{*factor};
+  }
+  if (change.value.ends_with('%')) {
+    const std::string_view number = std::string_view(change.value).substr(0, change.value.size() - 1);
+    const std::optional<double> percent = parse_amount(number);
+    if (!percent) refuse(change, "is no percentage; use a number of 0 or more such as 50%");
+    return ScalePower{*percent / 100};
   }
   return parse_power(change);
 }

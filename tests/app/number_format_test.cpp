@@ -36,6 +36,16 @@ TEST_CASE("seconds turn into minutes and hours") {
   CHECK(format_seconds(std::numeric_limits<double>::infinity()) == "?");
 }
 
+TEST_CASE("numbers of five digits and more are grouped, not powers of ten") {
+  CHECK(format_number(0.58571, 4) == "0.5857");
+  CHECK(format_number(9999, 4) == "9999");
+  CHECK(format_number(11'990, 4) == "11,990");
+  CHECK(format_number(-702'234.4, 4) == "-702,234");
+  CHECK(format_number(1'000'000, 4) == "1,000,000");
+  CHECK(format_number(1e12, 4) == "1e+12");
+  CHECK(format_number(-1234.5, 4) == "-1234");
+}
+
 TEST_CASE("a power is given in its own unit first") {
   CHECK(format_power_in_both(683, PowerUnit::lumen, 683) == "683 lm (1 W)");
   CHECK(format_power_in_both(2, PowerUnit::watt, 179) == "2 W (358 lm)");

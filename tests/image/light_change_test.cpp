@@ -37,6 +37,8 @@ TEST_CASE("a power with a unit is converted by the efficacy") {
 
 TEST_CASE("factors multiply, off is zero, and changes apply in order") {
   CHECK(after({"lamp=x0.5"}).lights[0].power == 400.0);
+  CHECK(after({"lamp=50%"}).lights[0].power == 400.0);
+  CHECK_THROWS_AS(after({"lamp=%"}), UsageError);
   CHECK(after({"lamp=off"}).lights[0].power == 0.0);
   CHECK(after({"lamp=0"}).lights[0].power == 0.0);
   CHECK(after({"lamp=x2", "lamp=x3"}).lights[0].power == 4800.0);

@@ -19,6 +19,8 @@ TEST_CASE("hashes and printf's numbers become frame numbers, as wide as they say
       {"a%3d.exr", 7, "a  7.exr"},
       {"a%%0d.exr", 7, "a%7.exr"},
       {"c#/b##.exr", 3, "c#/b03.exr"},
+      {"out/walk.png", 3, "out/walk.0003.png"},
+      {"walk", 3, "walk.0003"},
   }));
   CHECK(FrameNames(pattern).of(frame).string() == name);
 }
@@ -28,8 +30,8 @@ TEST_CASE("a place of any width takes no more stack than another") {
   CHECK(FrameNames(hashes + ".exr").of(7).string() == std::string(199'999, '0') + "7.exr");
 }
 
-TEST_CASE("a name without a place for the number, or with two, is refused") {
-  const std::string pattern = GENERATE("frame.exr", "##-##.exr", "a%d#.exr", "####/frame.exr",
+TEST_CASE("a name with two places for the number, or a wrong one, is refused") {
+  const std::string pattern = GENERATE("##-##.exr", "a%d#.exr", "####/frame.exr",
                                        "%s.exr", "%0", "%00d", "%12d");
   INFO(pattern);
   CHECK_THROWS_AS(FrameNames(pattern), UsageError);

@@ -63,7 +63,7 @@ void add_relight_command(CLI::App& photile) {
   command
       ->add_option("--light", options->lights,
                    "power in the light's unit, a factor (x2), a colour or off; repeatable")
-      ->type_name("NAME=POWER|xFACTOR|#RRGGBB|KELVINK|off")
+      ->type_name("NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off")
       ->allow_extra_args(false);
   add_picture_options(*command, options->pictures);
   command->callback([options] { run_relight(*options); });

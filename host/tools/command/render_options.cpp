@@ -43,7 +43,7 @@ void add_lights(CLI::App& command, RenderOptions& options) {
             for (const auto& text : texts) options.lights.push_back(LightChange::parse(text));
           },
           "power of a light in its unit, a factor (x2), a colour or off; repeatable")
-      ->type_name("NAME=POWER|xFACTOR|#RRGGBB|KELVINK|off")
+      ->type_name("NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off")
       ->allow_extra_args(false)
       ->group("Picture");
 }

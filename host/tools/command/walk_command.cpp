@@ -217,7 +217,7 @@ class Walk {
   Image render(int frame) {
     LightLayers layers;
     const auto picture = picture_of(frame, layers);
-    write_exr(names_.of(number(frame)), *picture);
+    if (to_exr_) write_exr(names_.of(number(frame)), *picture);
     for (const std::string& line : picture->overflows()) {
       progress_.note(fmt::format("warning: frame {}: {}", number(frame), line));
     }
@@ -316,9 +316,6 @@ class Walk {
 ///   off   light maps were refused by name
 void check_quick(WalkOptions& options, bool off) {
   const bool to_exr = options.output.ends_with(".exr");
-  if (!options.quick && !to_exr) {
-    throw UsageError(fmt::format("{}: frames as PNG alone are those of --quick", options.output));
-  }
   if (options.quick && off) {
     throw UsageError("--quick draws light maps; leave out --light-maps off");
   }
@@ -338,6 +335,9 @@ void check_names(const WalkOptions& options) {
   if (!options.render.save_maps.empty()) files.emplace_back(options.render.save_maps);
   note_inputs_of(options.render);
   note_input(options.path);
+  for (const std::filesystem::path& file : files) {
+    if (file.has_parent_path()) make_folder(file.parent_path());
+  }
   check_outputs(files);
 }
 
@@ -372,15 +372,15 @@ void add_walk_command(CLI::App& photile) {
   auto options = std::make_shared<WalkOptions>();
   CLI::App* command = photile.add_subcommand(
       "walk", "Render the frames of a moving camera from one set of photon maps");
-  command->add_option("-o,--output", options->output, "frames to write, such as frame.####.exr")
+  command->add_option("-o,--output", options->output, "frames to write, such as frame.####.exr, or PNG alone; a name without #### gets its number "
+                      "before the ending")
       ->required()
-      ->type_name("PATTERN.exr")
+      ->type_name("PATTERN")
       ->check(file_ending_in({".exr", ".png"}))
       ->group("Output");
   command
       ->add_flag("--quick", options->quick,
-                 "draw light maps alone, as the window does while it moves: matt, no layers; "
-                 "frames may be PATTERN.png")
+                 "draw light maps alone, as the window does while it moves: matt, no layers")
       ->group("Output");
   command->add_option("--png", options->png, "frames as PNG, with the exposure of the first")
       ->type_name("PATTERN.png")

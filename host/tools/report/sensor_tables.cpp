@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "tools/report/number_text.hpp"
+
 namespace photile::measuring {
 namespace {
 
@@ -62,8 +64,13 @@ Json sensor_json(const GridValues& values, std::size_t sensor) {
   return entry;
 }
 
-std::string with_error(const Measured& measured, const char* format) {
-  return fmt::format(fmt::runtime(format), measured.value, measured.standard_error);
+std::string lux_with_error(const Measured& measured) {
+  return fmt::format("{:>9} +-{:<8}", number_text(measured.value, 4),
+                     number_text(measured.standard_error, 2));
+}
+
+std::string ratio_with_error(const Measured& measured) {
+  return fmt::format("{:>6.3f} +-{:<6.2g}", measured.value, measured.standard_error);
 }
 
 }  // namespace
@@ -110,8 +117,6 @@ Json measurement_json(const Measurement& measurement) {
 }
 
 std::vector<std::string> measurement_lines(const Measurement& measurement) {
-  constexpr const char* lux = "{:>9.4g} +-{:<8.2g}";
-  constexpr const char* ratio = "{:>6.3f} +-{:<6.2g}";
   std::size_t width = 12;
   for (const LightValues& light : measurement.front().lights) {
     width = std::max(width, light.light.size() + 2);
@@ -130,8 +135,8 @@ std::vector<std::string> measurement_lines(const Measurement& measurement) {
       const GridStatistics& s = light.statistics;
       std::string line =
           fmt::format("  {:<{}}", light.light.empty() ? "all lights" : light.light, width - 2);
-      for (const Measured& value : {s.mean, s.minimum, s.maximum}) line += with_error(value, lux);
-      for (const Measured& value : {s.uniformity, s.diversity}) line += with_error(value, ratio);
+      for (const Measured& value : {s.mean, s.minimum, s.maximum}) line += lux_with_error(value);
+      for (const Measured& value : {s.uniformity, s.diversity}) line += ratio_with_error(value);
       line.erase(line.find_last_not_of(' ') + 1);
       lines.push_back(line);
     }

@@ -41,7 +41,19 @@ bool draw_temperature(LightControl& control) {
   return true;
 }
 
-/// A name may be longer than the panel is wide.
+/// A name that is wider than so many pixels is cut, between two characters, and ends in dots.
+std::string fitting(const std::string& name, float width) {
+  if (ImGui::CalcTextSize(name.c_str()).x <= width) return name;
+  std::string cut = name;
+  const auto is_wide = [&] { return ImGui::CalcTextSize((cut + "...").c_str()).x > width; };
+  const auto within_character = [&] {
+    return (static_cast<unsigned char>(name[cut.size()]) & 0xC0u) == 0x80u;  // of UTF-8
+  };
+  while (!cut.empty() && (is_wide() || within_character())) cut.pop_back();
+  return cut + "...";
+}
+
+/// The whole name, which may be longer than the panel is wide.
 void tell_light(const LightControl& control) {
   if (control.members.empty()) {
     ImGui::SetTooltip("%s", control.name.c_str());
@@ -73,7 +85,7 @@ bool draw_light(LightControl& control) {
     }
   }
   ImGui::SameLine();
-  ImGui::TextUnformatted(control.name.c_str());
+  ImGui::TextUnformatted(fitting(control.name, ImGui::GetContentRegionAvail().x).c_str());
   if (ImGui::IsItemHovered()) tell_light(control);
   // Of a lamp that is off in the scene, the slider still has to reach somewhere.
   const double most = control.scene_power > 0 ? 4 * control.scene_power : 1000;
@@ -122,7 +134,8 @@ bool draw_moods(PanelState& state, PanelEvents& events) {
     // Room is left for the other buttons.
     const ImVec2 padding = ImGui::GetStyle().FramePadding;
     const float width = ImGui::CalcTextSize(name.c_str()).x + 2 * padding.x;
-    if (ImGui::Button(name.c_str(), ImVec2(std::min(width, widest_mood), 0))) {
+    const std::string shown = fitting(name, widest_mood - 2 * padding.x);
+    if (ImGui::Button(shown.c_str(), ImVec2(std::min(width, widest_mood), 0))) {
       tell(state.message, [&] { state.moods.apply(name, state.lights); });
       changed = true;
     }

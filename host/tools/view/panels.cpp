@@ -128,7 +128,8 @@ PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
       ImGui::TextWrapped(
           "W A S D walk, E and Q rise and sink, Shift hurries. Left button looks, right button "
           "orbits, wheel goes ahead. A click reads the light there. F2 hides the panels, F12 keeps "
-          "a screenshot, Ctrl+S the picture with its layers.");
+          "a screenshot, Ctrl+S the picture with its layers. Ctrl+Z takes back what was set on the "
+          "lamps, Ctrl+Y sets it again.");
     }
     ImGui::PopItemWidth();
   }

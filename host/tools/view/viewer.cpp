@@ -15,6 +15,7 @@
 #include "tools/view/display.hpp"
 #include "tools/view/frame_worker.hpp"
 #include "tools/view/light_board.hpp"
+#include "tools/view/light_history.hpp"
 #include "tools/view/moods.hpp"
 #include "tools/view/navigation.hpp"
 #include "tools/view/panels.hpp"
@@ -67,7 +68,8 @@ class Viewer {
       const bool new_frame = take_frame();
       take_errors();
       picked_ = pick_triangle();
-      const PanelEvents events = panels_shown_ ? show_panels() : PanelEvents();
+      PanelEvents events = panels_shown_ ? show_panels() : PanelEvents();
+      events.lights_changed |= std::exchange(lights_restored_, false);
       if (events.expose && frame_) set_exposure();
       if (frame_ && (new_frame || events.lights_changed || events.display_changed ||
                      events.expose || picked_)) {
@@ -119,6 +121,12 @@ class Viewer {
     screenshot_wanted_ = ImGui::IsKeyPressed(GLFW_KEY_F12, false);
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_S, false)) keep_frame();
+    if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Z, true)) {
+      lights_restored_ = io.KeyShift ? history_.redo(lights_) : history_.undo(lights_);
+    }
+    if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Y, true)) {
+      lights_restored_ = history_.redo(lights_);
+    }
   }
 
   /// Asks for frames of where the viewer is by now.
@@ -218,8 +226,12 @@ class Viewer {
   PanelEvents show_panels() {
     PanelState state{lights_, moods_,   display_, parameters_.render, navigation_.speed(),
                      probe_,  message_, new_mood_};
-    return draw_panels(state, {frame_.get(), photons_->progress(), milliseconds_,
-                               display_.photon_map ? inspector_.map() : nullptr});
+    const LightBoard before = lights_;
+    const PanelEvents events =
+        draw_panels(state, {frame_.get(), photons_->progress(), milliseconds_,
+                            display_.photon_map ? inspector_.map() : nullptr});
+    history_.note(before, events.lights_changed, ImGui::IsAnyItemActive());
+    return events;
   }
 
   void keep_screenshot() {
@@ -251,6 +263,7 @@ class Viewer {
   ViewerParameters parameters_;
   const PhotonWorker::OpenDevices open_devices_;
   LightBoard lights_;
+  LightHistory history_;
   Moods moods_;
   DisplaySettings display_;
   Viewpoint viewpoint_;
@@ -265,7 +278,7 @@ class Viewer {
   std::optional<double> last_motion_;  ///< GLFW's clock, seconds
   bool was_moving_ = false, had_reflections_ = false, clicked_ = false, picked_ = false;
   int asked_width_ = 0, asked_height_ = 0;
-  bool relit_ = false, exposed_ = false;
+  bool relit_ = false, exposed_ = false, lights_restored_ = false;
   bool panels_shown_ = true, screenshot_wanted_ = false;
   FrameWorker frames_;
   std::optional<PhotonWorker> photons_;  // last: it delivers to frames_

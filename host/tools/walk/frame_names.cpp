@@ -54,9 +54,18 @@ FrameNames::FrameNames(const std::string& pattern) {
     }
     begin += std::max<std::size_t>(place.length, 1);
   }
-  if (places != 1) {
+  const bool meant_one =
+      name.find('%') != std::string::npos || folder.find("##") != std::string::npos;
+  if (places > 1 || (places == 0 && meant_one)) {
     throw UsageError(
         fmt::format("{}: needs one place for the number of a frame, #### or %04d", pattern));
+  }
+  if (places == 0) {
+    const std::filesystem::path path(name);
+    before_ = folder + path.stem().string() + ".";
+    after_ = path.extension().string();
+    width_ = 4;
+    fill_ = '0';
   }
 }
 

@@ -7,10 +7,10 @@
 namespace photile::walk {
 
 /// A file's name with a place for the number of a frame: a run of '#', as long as the number is
-/// wide at least, or %d, %4d, %04d as in printf.
+/// wide at least, or %d, %4d, %04d as in printf. A name without one gets .#### before its ending.
 class FrameNames {
  public:
-  /// Errors: UsageError when there is no such place, or more than one.
+  /// Errors: UsageError where there are several places, or what looks like one that is meant.
   explicit FrameNames(const std::string& pattern);
 
   std::filesystem::path of(int frame) const;
