@@ -18,9 +18,10 @@ namespace photile::estimate {
 /// cache.
 inline constexpr std::size_t max_private_bytes_per_group = 512u << 10;
 
-/// Distances that kernels/estimate/candidates.clh keeps at most. A block of k = 1,000 fits; with
-/// half as many it is walked again by each pass, which takes 1.5 times as long.
-inline constexpr int largest_capacity = 3200;
+/// Distances that kernels/estimate/candidates.clh keeps at most. Nearly every block of k = 1,000
+/// fits, also where surfaces share a map; with a quarter of that many it is walked again by each
+/// pass, which takes twice as long.
+inline constexpr int largest_capacity = 12800;
 
 /// The same of scalar kernels, whose chunks are of one: a group of 64 work-items stays within
 /// max_private_bytes_per_group.
