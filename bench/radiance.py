@@ -41,26 +41,24 @@ SCENES = {
 GRID = {"name": "plane", "origin": [0.05, 0.4, 0.05], "u": [0, 0, 0.45], "v": [0.45, 0, 0],
         "columns": 9, "rows": 9}  # above the blocks
 
-REFERENCE = "--integrator path --rays 65536 --repeats 4"
-REFERENCE_SEEDS = (101, 102, 103, 104)
-DIRECT = "-dt 0 -ds 0.1 -dj 0 -st 0"  # of rtrace: no lamp is left to chance
+REFERENCE = "--integrator path --rays 131072 --repeats 4"
+REFERENCE_SEEDS = (101, 102)
+DIRECT = "-dt 0.03 -dc 0.75 -ds 0.1 -dj 0.9"  # of rtrace: lamps subdivided and jittered
 RTRACE = {
-    "rtrace": (
-        "-ab 3 -ad 512 -as 128 -aa 0.2 -ar 64", "-ab 4 -ad 512 -as 128 -aa 0.15 -ar 128",
-        "-ab 5 -ad 1024 -as 256 -aa 0.1 -ar 256", "-ab 5 -ad 2048 -as 512 -aa 0.1 -ar 256"),
+    "rtrace": ("-ab 3 -ad 256 -as 64 -aa 0.25 -ar 32", "-ab 4 -ad 512 -as 128 -aa 0.2 -ar 64",
+               "-ab 5 -ad 1024 -as 256 -aa 0.15 -ar 128"),
     "rtrace -aa 0": (
         "-ab 8 -ad 64 -as 0 -aa 0 -lw 1e-2", "-ab 8 -ad 256 -as 0 -aa 0 -lw 4e-3",
-        "-ab 8 -ad 1024 -as 0 -aa 0 -lw 1e-3", "-ab 8 -ad 4096 -as 0 -aa 0 -lw 2.5e-4",
-        "-ab 8 -ad 16384 -as 0 -aa 0 -lw 6e-5"),
+        "-ab 8 -ad 1024 -as 0 -aa 0 -lw 1e-3", "-ab 8 -ad 4096 -as 0 -aa 0 -lw 2.5e-4"),
 }
 # mkpmap's photons, and rtrace's settings after it.
 PHOTON_MAPS = (("50k", "-ab 1 -ad 256 -as 0 -aa 0"), ("500k", "-ab 1 -ad 512 -as 0 -aa 0"),
-               ("500k", "-ab 1 -ad 2048 -as 0 -aa 0"), ("5m", "-ab 1 -ad 4096 -as 0 -aa 0"))
+               ("500k", "-ab 1 -ad 2048 -as 0 -aa 0"), ("2m", "-ab 1 -ad 4096 -as 0 -aa 0"))
 PHOTILE = {
     "photile, maps": (
         "--photons 62500 --rays 64 --repeats 2", "--photons 125k --rays 256 --repeats 2",
-        "--photons 250k --rays 1024 --repeats 2", "--photons 500k --rays 4096 --repeats 2",
-        "--photons 1M --rays 8192 --repeats 2"),
+        "--photons 250k --rays 1024 --repeats 2", "--photons 500k --rays 2048 --repeats 2",
+        "--photons 1M --rays 4096 --repeats 2"),
     "photile, paths": (
         "--integrator path --rays 64 --repeats 2", "--integrator path --rays 256 --repeats 2",
         "--integrator path --rays 1024 --repeats 2", "--integrator path --rays 4096 --repeats 2",

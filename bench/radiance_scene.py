@@ -75,13 +75,36 @@ def material_text(name, material):
     return f"void plastic {name}\n0\n0\n5 {number_list(colour)} 0 0\n"
 
 
+def joined(first, second):
+    """The quadrangle of two triangles in one plane that share an edge, corners in order, or None."""
+    shared = [index for index in range(3) if any(np.allclose(first[index], corner) for corner in second)]
+    own = [corner for corner in second if not any(np.allclose(corner, other) for other in first)]
+    normals = [np.cross(triangle[1] - triangle[0], triangle[2] - triangle[0]) for triangle in (first, second)]
+    lengths = [np.linalg.norm(normal) for normal in normals]
+    if len(shared) != 2 or len(own) != 1 or np.dot(*normals) < (1 - 1e-6) * lengths[0] * lengths[1]:
+        return None
+    after = shared[0] if shared[1] - shared[0] == 1 else shared[1]  # the corner before the shared edge's end
+    return np.insert(first, after + 1, own[0], axis=0)
+
+
+def lamp_polygons(corners):
+    """Triangles, pairs of neighbours joined: rtrace samples rectangles of lamps well, and triangles badly."""
+    polygons, index = [], 0
+    while index < len(corners):
+        quadrangle = joined(corners[index], corners[index + 1]) if index + 1 < len(corners) else None
+        polygons.append(corners[index] if quadrangle is None else quadrangle)
+        index += 1 if quadrangle is None else 2
+    return polygons
+
+
 def write_radiance_scene(gltf, target):
     """The scene as Radiance's text. Radiances keep their numbers: cd/m2 with Rec.709 primaries stand
     for W/(m2 sr), so that 0.2126 R + 0.7152 G + 0.0722 B of an irradiance is lux."""
     with open(target, "w", encoding="utf-8") as out:
         for number, (material, corners) in enumerate(surfaces(gltf)):
-            name = f"m{number}"
-            out.write(material_text(name, material))
+            name, text = f"m{number}", material_text(f"m{number}", material)
+            out.write(text)
             areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-            for index in np.nonzero(areas > 0)[0]:
-                out.write(f"{name} polygon {name}.{index}\n0\n0\n9 {number_list(corners[index].ravel())}\n")
+            polygons = list(corners[areas > 0])
+            for index, polygon in enumerate(lamp_polygons(polygons) if "light" in text else polygons):
+                out.write(f"{name} polygon {name}.{index}\n0\n0\n{polygon.size} {number_list(polygon.ravel())}\n")
