@@ -171,19 +171,20 @@ def figures(lux, reference):
 
 
 def rows_to_measure(options):
-    """(tool, setting, what of a Subject gives processor seconds and lux), cheapest first."""
+    """(rank, tool, setting, what of a Subject gives processor seconds and lux); the cheapest have rank 0."""
     quick = slice(0, 1) if options.quick else slice(None)
     if program(options, "rtrace") and program(options, "oconv"):
         for tool, settings in RTRACE.items():
-            for setting in settings[quick]:
-                yield tool, setting, lambda subject, setting=setting: subject.traced(setting)
+            for rank, setting in enumerate(settings[quick]):
+                dear = 2 if tool == "rtrace" else 1  # with an ambient cache minutes go into a row
+                yield dear * rank, tool, setting, lambda subject, setting=setting: subject.traced(setting)
         if program(options, "mkpmap"):
-            for photons, setting in PHOTON_MAPS[quick]:
-                yield ("mkpmap, rtrace", f"-apg {photons}; -ap 50 {setting}",
+            for rank, (photons, setting) in enumerate(PHOTON_MAPS[quick]):
+                yield (rank, "mkpmap, rtrace", f"-apg {photons}; -ap 50 {setting}",
                        lambda subject, photons=photons, setting=setting: subject.photon_mapped(photons, setting))
     for tool, settings in PHOTILE.items():
-        for setting in settings[quick]:
-            yield tool, setting, lambda subject, setting=setting: several_seeds(subject, setting)
+        for rank, setting in enumerate(settings[quick]):
+            yield rank, tool, setting, lambda subject, setting=setting: several_seeds(subject, setting)
 
 
 def several_seeds(subject, setting):
@@ -206,27 +207,38 @@ def truth_of(scene):
     return lux, np.sqrt(np.sum(errors**2, axis=0)) / len(errors)
 
 
-def measure_scene(options, name, scene, keep):
-    """Adds to the record of a scene what it lacks; calls `keep` after each row."""
-    with tempfile.TemporaryDirectory() as folder:
-        subject = Subject(options, name, pathlib.Path(folder))
-        for seed in REFERENCE_SEEDS[:1 if options.quick else None]:
-            if seed not in [run["seed"] for run in scene["references"]]:
-                scene["references"].append(subject.reference(
-                    "--integrator path --rays 1024 --repeats 2" if options.quick else REFERENCE, seed))
-                keep()
-        truth, done = truth_of(scene)[0], {(row["tool"], row["setting"]) for row in scene["rows"]}
-        scene["points"] = subject.points
-        octree = subject.octree() if program(options, "oconv") else 0
-        for tool, setting, work in rows_to_measure(options):
-            if (tool, setting) in done:
-                continue
-            seconds, lux = work(subject)
-            with_octree = 0 if tool.startswith("photile") else octree
-            scene["rows"].append({"tool": tool, "setting": setting, "seconds": seconds + with_octree,
-                                  **figures(lux, truth)})
-            print(name, json.dumps(scene["rows"][-1]), flush=True)
+def find_reference(options, subject, scene, keep):
+    """Adds the runs of the reference that a scene's record lacks; calls `keep` after each."""
+    for seed in REFERENCE_SEEDS[:1 if options.quick else None]:
+        if seed not in [run["seed"] for run in scene["references"]]:
+            scene["references"].append(subject.reference(
+                "--integrator path --rays 1024 --repeats 2" if options.quick else REFERENCE, seed))
             keep()
+
+
+def measure(options, record, keep):
+    """Adds what the record lacks, cheap rows of both scenes first, so that one may stop at any time."""
+    with tempfile.TemporaryDirectory() as folder:
+        subjects = {}
+        for name in SCENES:
+            of_scene = pathlib.Path(folder) / name.replace(" ", "-")
+            of_scene.mkdir()
+            subjects[name] = Subject(options, name, of_scene)
+            scene = record["scenes"].setdefault(name, {"references": [], "rows": []})
+            find_reference(options, subjects[name], scene, keep)
+            scene["points"] = subjects[name].points
+        octrees = {name: subject.octree() if program(options, "oconv") else 0 for name, subject in subjects.items()}
+        for _, tool, setting, work in sorted(rows_to_measure(options), key=lambda row: row[0]):
+            for name, subject in subjects.items():
+                scene = record["scenes"][name]
+                if (tool, setting) in {(row["tool"], row["setting"]) for row in scene["rows"]}:
+                    continue
+                seconds, lux = work(subject)
+                seconds += 0 if tool.startswith("photile") else octrees[name]
+                scene["rows"].append({"tool": tool, "setting": setting, "seconds": seconds,
+                                      **figures(lux, truth_of(scene)[0])})
+                print(name, json.dumps(scene["rows"][-1]), flush=True)
+                keep()
 
 
 def table(header, rows):
@@ -270,9 +282,11 @@ seconds. `bench/radiance.py` writes this page.
   copies that both programs read. Points look up from a horizontal plane.
 - **Error**: root of the mean over the points of ((lux - reference) / reference)^2, of photile over {len(SEEDS)} seeds;
   *largest* is that of the worst point. **Mean ratio**: mean lux over that of the reference.
-- **Reference**: the mean of `photile measure {REFERENCE}` with {len(REFERENCE_SEEDS)} other seeds: unbiased paths.
-- **rtrace** computes irradiance (`-I+`) with {DIRECT}; with an ambient cache (`-aa` above 0), without (`-aa 0`), and from
-  a photon map by `mkpmap` with one gathered bounce. oconv is in its time.
+- **Reference**: the mean of `photile measure {REFERENCE}` with {len(REFERENCE_SEEDS)} other
+  seeds: unbiased paths. Where rays are many, rtrace without a cache comes to the same mean.
+- **rtrace** computes irradiance (`-I+`) with `{DIRECT}`; with an ambient cache (`-aa` above 0), without (`-aa 0`), and
+  from a photon map by `mkpmap` with one gathered bounce. oconv is in its time. Each point has one jittered sample of each
+  part of a lamp, whose noise is in all rows; a finer `-ds` takes more time, and other settings may do better.
 - **photile, maps** is `photile measure`; **photile, paths** is `photile measure --integrator path`. Reading the scene is in
   all times; kernels are compiled.
 
@@ -320,9 +334,7 @@ def main():
     if not options.redraw:
         record |= {"cores": os.cpu_count(), "processor": processor_name(), "load_average": os.getloadavg()[2],
                    "radiance": version(options)}
-        for name in SCENES:
-            measure_scene(options, name, record["scenes"].setdefault(name, {"references": [], "rows": []}),
-                          keep)
+        measure(options, record, keep)
     if options.quick:
         print(page(record))
         return
