@@ -1,5 +1,5 @@
-# Debian packages: `cpack --config BUILD/CPackConfig.cmake` makes photile, libphotile-dev and
-# python3-photile. tests/package/debian.sh installs them on a bare Debian 12.
+# Debian packages: `cpack --config BUILD/CPackConfig.cmake` makes photile, photile-mpi, libphotile-dev
+# and python3-photile. tests/package/debian.sh installs them on a bare Debian 12.
 # Packages hold what has been built: tests and benches need not be.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 set(CPACK_GENERATOR DEB)
@@ -43,6 +43,16 @@ if(TARGET photile_command)
   install(DIRECTORY python/blender/photile DESTINATION share/blender/scripts/addons COMPONENT command
     FILES_MATCHING PATTERN "*.py")
   install(FILES LICENSE DESTINATION share/doc/photile RENAME copyright COMPONENT command)
+endif()
+
+if(TARGET photile_mpi)
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
+  set(CPACK_DEBIAN_MPI_PACKAGE_NAME photile-mpi)
+  set(CPACK_DEBIAN_MPI_PACKAGE_SECTION graphics)
+  set(CPACK_DEBIAN_MPI_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "photile")
+  set(CPACK_COMPONENT_MPI_DESCRIPTION
+    "photon mapping on OpenCL devices (several machines)\n Lets mpirun share a rendering between processes.")
 endif()
 
 if(TARGET photile_python)

@@ -35,6 +35,8 @@ libimgui-dev           | its panels
 libgl-dev              | what draws them
 robin-map-dev          | hash tables, for meshes of millions of triangles
 libxxhash-dev          | checksums of the program cache
+libopenmpi-dev         | several processes: any MPI-3 library
+openmpi-bin            | mpirun
 fonts-dejavu-core      | the font of legends and of photile compare's pictures
 catch2                 | tests
 libfcl-dev             | tests: an independent triangle distance

@@ -146,6 +146,9 @@ PhotileMapShape Voxels::shape_of(const Cell& cell, const Voxel& voxel, bool norm
   shape.area = shape.width_u * shape.width_v;
   shape.perimeter = 2 * (shape.width_u + shape.width_v);
   shape.certain_cosine = normals ? 2.0f : -2.0f;
+  constexpr float far = std::numeric_limits<float>::max();  // its own box alone decides
+  shape.low_x = shape.low_y = shape.low_z = -far;
+  shape.high_x = shape.high_y = shape.high_z = far;
   shape.triangle = PHOTILE_NO_TRIANGLE;
   return shape;
 }

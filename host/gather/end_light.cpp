@@ -44,7 +44,7 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
     light.own_of[end] = static_cast<std::uint32_t>(own.size());
     own.push_back(end);
   }
-  if (!own.empty()) light.own = estimates_at(ends, own);
+  if (!own.empty() || processes()) light.own = estimates_at(ends, own);
   costs_.estimated += own.size();
   costs_.ends += ends.hits.size();
   costs_.rays += ends.rays;
@@ -72,7 +72,7 @@ std::uint64_t EndLight::bytes() const {
 
 Estimates EndLight::irradiance(const PrimaryHits& nodes) {
   costs_.estimated += nodes.size();
-  return photons_.estimate(nodes);
+  return photons_.estimate_same(nodes);
 }
 
 void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,

@@ -57,6 +57,11 @@ class EndLight : private PointSource {
   std::vector<NodeBlend> nodes_around(const PrimaryHits& hits, const Progress& progress);
   const Estimates& values() const { return maps_->maps.values(); }
 
+  /// That have the photon maps, and make the same calls; null: this one alone.
+  Communicator* processes() const {
+    return photons_.owners() ? &photons_.owners()->processes() : nullptr;
+  }
+
   /// Metres, from node to node: as wide as the estimates that value them.
   double spacing() const { return parameters_.spacing; }
 

@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
+#include "common/byte_stream.hpp"
+#include "estimate/map_order.hpp"
 #include "gather/batch_sums.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/shard.hpp"
 #include "photile/statistics.hpp"
 #include "render/reflected_radiance.hpp"
 #include "trace/direct_light.hpp"
@@ -135,7 +139,7 @@ void add_run(const RunLight& light, std::size_t first, std::size_t count, Gather
     GatheredParts& own = parts[part];
     const int batches = light.parameters.batches;
     BatchSums indirect(needs, batches, false, own.indirect);
-    BatchSums direct(needs, batches, !light.caustics.irradiance.empty(), own.direct);
+    BatchSums direct(needs, batches, light.caustic_relative_variance > 0, own.direct);
     const std::size_t last = std::min(count, (part + 1) * points_per_task);
     for (std::size_t i = part * points_per_task; i < last; ++i) {
       light.add_indirect(i, indirect);
@@ -150,6 +154,41 @@ void add_run(const RunLight& light, std::size_t first, std::size_t count, Gather
     all.direct.append(std::move(part.direct));
     all.distance.insert(all.distance.end(), part.distance.begin(), part.distance.end());
   }
+}
+
+void put(const GatheredIrradiance& part, ByteWriter& bytes) {
+  bytes.put(part.mean.irradiance);
+  bytes.put(part.mean.first);
+  bytes.put(part.mean.light);
+  bytes.put(part.batch);
+  bytes.put(part.shared_variance);
+}
+
+Communicator::Bytes bytes_of(const GatheredParts& parts) {
+  ByteWriter bytes;
+  put(parts.indirect, bytes);
+  put(parts.direct, bytes);
+  bytes.put(parts.distance);
+  return bytes.take();
+}
+
+void append(ByteReader& reader, GatheredIrradiance& all) {
+  GatheredIrradiance part;
+  part.batches = all.batches;
+  reader.append_to(part.mean.irradiance);
+  reader.append_to(part.mean.first);
+  reader.append_to(part.mean.light);
+  reader.append_to(part.batch);
+  reader.append_to(part.shared_variance);
+  all.append(std::move(part));
+}
+
+/// The points that follow.
+void append(std::span<const std::byte> bytes, GatheredParts& all) {
+  ByteReader reader(bytes);
+  append(reader, all.indirect);
+  append(reader, all.direct);
+  reader.append_to(all.distance);
 }
 
 void check_range(const char* what, int value, int low, int high) {
@@ -177,6 +216,25 @@ IrradianceGather::IrradianceGather(const RayScene& rays, MapEstimators& photons,
 GatheredParts IrradianceGather::gather(const PrimaryHits& points,
                                        std::span<const std::uint64_t> number, int rays, int looks,
                                        const Progress& progress) {
+  Communicator* const processes = ends_.processes();
+  if (!processes) return gather_own(points, number, rays, looks, points.size(), progress);
+  const Shard shard{processes->rank(), processes->size()};
+  const std::uint64_t begin = shard.begin(points.size()), end = shard.end(points.size());
+  std::vector<std::uint32_t> own(end - begin);
+  std::iota(own.begin(), own.end(), static_cast<std::uint32_t>(begin));
+  const std::size_t most = (points.size() + shard.count - 1) / shard.count;
+  const GatheredParts part = gather_own(estimate::reordered(points, 0, own),
+                                        number.subspan(begin, own.size()), rays, looks, most,
+                                        progress);
+  GatheredParts all;
+  all.indirect.batches = all.direct.batches = parameters_.batches;
+  for (const Communicator::Bytes& bytes : processes->gather(bytes_of(part))) append(bytes, all);
+  return all;
+}
+
+GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
+                                           std::span<const std::uint64_t> number, int rays,
+                                           int looks, std::size_t most, const Progress& progress) {
   const EndLight::Costs before = ends_.costs();
   const Stopwatch caustics_watch;
   const Estimates caustics = caustics_ ? caustics_->estimate(points) : Estimates{};
@@ -205,8 +263,9 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
     all.indirect.mean.first.push_back(0);
     all.direct.mean.first.push_back(0);
   }
-  for (std::size_t first = 0; first < points.size(); first += at_a_time) {
+  for (std::size_t round = 0; round < most; round += at_a_time) {
     progress.throw_if_cancelled();
+    const std::size_t first = std::min(round, points.size());
     const std::size_t count = std::min(at_a_time, points.size() - first);
     IndirectLight traced;
     if (rays_per_batch > 0) {

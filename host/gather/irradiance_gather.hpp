@@ -70,6 +70,8 @@ class IrradianceGather {
   ///   points   position, sided_triangle, diffuse_albedo and, in glossy scenes, outgoing and lobe
   ///   number   of each point, below 2^48: the same number and point have the same rays
   ///   rays, looks   in place of the parameters'
+  /// Where several processes have the photon maps, all give the same points; each gathers at a part
+  /// of them, and all get all.
   /// Errors: as DeviceEstimators; Interrupted, when `progress` says so.
   GatheredParts gather(const PrimaryHits& points, std::span<const std::uint64_t> number, int rays,
                        int looks, const Progress& progress = Progress::none());
@@ -97,6 +99,10 @@ class IrradianceGather {
   const Costs& costs() const { return costs_; }
 
  private:
+  /// Of this process's points, in as many rounds as so many points take.
+  GatheredParts gather_own(const PrimaryHits& points, std::span<const std::uint64_t> number,
+                           int rays, int looks, std::size_t most, const Progress& progress);
+
   const RayScene& rays_;
   MapEstimators* caustics_;
   IrradianceGatherParameters parameters_;

@@ -26,7 +26,6 @@ namespace photile {
 namespace {
 
 constexpr std::size_t max_queries = 1024;  ///< photons whose k-th neighbour is looked for
-constexpr std::size_t max_subsample = 1u << 18;
 
 /// Median of the Gamma distribution of shape k and scale 1 (Choi 1994; 0.9% low for k = 1, less for
 /// others).
@@ -50,14 +49,15 @@ double median_squared_distance(const groups::PhotonBlocks& photons, std::size_t 
 
 double automatic_radius(const Photons& photons, int k) {
   check_setting("neighbours", setting_value(k));
-  if (photons.size() < 2) {
+  if (photons.total() < 2) {
     throw UsageError(
         fmt::format("automatic radius: {} photons were stored, at least 2 are needed; "
                     "emit more photons or give a radius",
-                    photons.size()));
+                    photons.total()));
   }
-  const groups::PhotonBlocks subsample(photons.position, max_subsample);
-  const double share = static_cast<double>(subsample.size()) / static_cast<double>(photons.size());
+  const groups::PhotonBlocks subsample(photons.of_all ? photons.of_all->spread : photons.position,
+                                       groups::max_subsample);
+  const double share = static_cast<double>(subsample.size()) / static_cast<double>(photons.total());
   const double rank =
       std::clamp(std::round(k * share), 1.0, static_cast<double>(subsample.size() - 1));
   // With fewer than k others this extrapolates from the farthest, as if its density went on.
@@ -67,7 +67,7 @@ double automatic_radius(const Photons& photons, int k) {
     throw UsageError(
         fmt::format("automatic radius: most of the {} stored photons lie in the same "
                     "points; give a radius",
-                    photons.size()));
+                    photons.total()));
   }
   return defaults::radius_over_median_kth_distance * std::sqrt(squared);
 }

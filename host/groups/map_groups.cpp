@@ -8,7 +8,9 @@ namespace {
 std::vector<std::uint8_t> where_landed(const Photons& photons) {
   std::vector<std::uint8_t> landed(photons.first_of.size() - 1);
   for (std::size_t s = 0; s < landed.size(); ++s) {
-    landed[s] = photons.first_of[s] < photons.first_of[s + 1] ? 1 : 0;
+    const bool any = photons.of_all ? photons.of_all->landed[s] > 0
+                                    : photons.first_of[s] < photons.first_of[s + 1];
+    landed[s] = any ? 1 : 0;
   }
   return landed;
 }

@@ -183,7 +183,7 @@ std::vector<Sharing> find_partners(const PhotonSample& sample, const PatchFacts&
 
 NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons) {
   const std::size_t count = groups.patches.count();
-  if (count < 2 || photons.size() == 0) return groups;
+  if (count < 2 || photons.total() == 0) return groups;
   check_scene(scene);
   PatchFacts facts = facts_of(scene, groups.patches);
   PhotonSample sample(facts.shapes, groups, photons);

@@ -10,6 +10,9 @@
 
 namespace photile::groups {
 
+/// Photons that distances are found among, at most.
+inline constexpr std::size_t max_subsample = 1u << 18;
+
 /// Index of the i-th of `count` samples spread over `size` elements, each in the middle of its
 /// share.
 inline std::size_t spread_index(std::size_t i, std::size_t count, std::size_t size) {

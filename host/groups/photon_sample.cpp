@@ -8,13 +8,17 @@
 namespace photile::groups {
 namespace {
 
-constexpr std::size_t sample_size = 32'768;
+constexpr std::uint64_t sample_size = 32'768;
 
 double gap(double coordinate, double low, double high) {
   return std::max({low - coordinate, coordinate - high, 0.0});
 }
 
 }  // namespace
+
+std::uint64_t sample_step(std::uint64_t photons) {
+  return std::max<std::uint64_t>(1, photons / sample_size);
+}
 
 bool is_within(const PatchShape& shape, const glm::dvec3& point, double radius) {
   const double u = gap(glm::dot(point, shape.u_axis), shape.low.x, shape.high.x);
@@ -25,13 +29,20 @@ bool is_within(const PatchShape& shape, const glm::dvec3& point, double radius) 
 
 PhotonSample::PhotonSample(std::span<const PatchShape> shapes, const NeighbourGroups& groups,
                            const Photons& photons) {
-  const std::size_t step = std::max<std::size_t>(1, photons.size() / sample_size);
-  for (std::size_t i = step / 2; i < photons.size(); i += step) {
-    position_.emplace_back(photons.position[i]);
+  std::vector<std::uint32_t> triangles;
+  if (photons.of_all) {
+    position_.assign(photons.of_all->sample.begin(), photons.of_all->sample.end());
+    triangles = photons.of_all->sample_triangle;
+  } else {
+    const std::size_t step = sample_step(photons.size());
+    for (std::size_t i = step / 2; i < photons.size(); i += step) {
+      position_.emplace_back(photons.position[i]);
+      triangles.push_back(photons.sided_triangle[i]);
+    }
   }
   std::vector<std::vector<std::uint32_t>> maps(position_.size());
   tbb::parallel_for(std::size_t{0}, position_.size(), [&](std::size_t i) {
-    for (const std::uint32_t map : groups.of(photons.sided_triangle[step / 2 + i * step])) {
+    for (const std::uint32_t map : groups.of(triangles[i])) {
       if (is_within(shapes[map / 2], position_[i], groups.radius)) maps[i].push_back(map);
     }
   });

@@ -13,7 +13,11 @@
 
 namespace photile::groups {
 
-/// Every n-th photon, so many that about 32,768 are left. It enters the maps of its group whose
+/// From one photon of a sample to the next, of so many: about 32,768 are left. The first is half a
+/// step from the first of all.
+std::uint64_t sample_step(std::uint64_t photons);
+
+/// Every n-th photon, by sample_step. It enters the maps of its group whose
 /// boxes lie within the radius.
 class PhotonSample {
  public:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -40,6 +41,21 @@ int levels_that_fit(const Charts& charts, int wanted) {
   }
   while (wanted > 1 && cells << (wanted - 1) > std::uint64_t{1} << 31) --wanted;
   return wanted;
+}
+
+/// Cells that some process misses, the same on all of them.
+std::vector<MissingCell> missing_of_all(Communicator* processes, std::vector<MissingCell> own) {
+  if (!processes) return own;
+  std::vector<MissingCell> all;
+  for (const Communicator::Bytes& bytes :
+       processes->gather(std::as_bytes(std::span<const MissingCell>(own)))) {
+    const std::size_t before = all.size();
+    all.resize(before + bytes.size() / sizeof(MissingCell));
+    if (!bytes.empty()) std::memcpy(all.data() + before, bytes.data(), bytes.size());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
 }
 
 void check(const LightMapParameters& parameters, std::size_t layers) {
@@ -252,7 +268,8 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
   Tiles& tiles = impl_->tiles;
   for (int round = 0; round < rounds; ++round) {
     progress.throw_if_cancelled();
-    const std::vector<MissingCell> missing = impl_->missing_cells(hits, pending, levels);
+    const std::vector<MissingCell> missing = light_maps::missing_of_all(
+        impl_->parameters.processes, impl_->missing_cells(hits, pending, levels));
     if (missing.empty()) return;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
     for (const MissingCell& cell : missing) cells.emplace_back(tiles.tile_of(cell), cell.cell);

@@ -36,8 +36,8 @@ device::Buffer<float> upload_normals(Context& context, const MapStore& store) {
   return context.share(std::span(first, 3 * store.normals.size()), "normals of triangles");
 }
 
-/// The radius that photons must lie within of a triangle to enter its map: grown by what rounding
-/// may do to positions as large as the scene's, so that no neighbour is lost.
+}  // namespace
+
 float reach_of(const Scene& scene, double radius) {
   float largest = 0;
   for (const glm::vec3& v : scene.vertices) {
@@ -46,6 +46,8 @@ float reach_of(const Scene& scene, double radius) {
   return static_cast<float>(radius * (1.0 + 1e-5) +
                             8.0 * std::numeric_limits<float>::epsilon() * largest);
 }
+
+namespace {
 
 /// An array of a photon page takes at most a 32nd of the memory, so that the page takes about an
 /// eighth.

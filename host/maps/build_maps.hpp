@@ -44,6 +44,10 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
 /// Errors: DeviceError when they do not fit in one buffer.
 void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map_count);
 
+/// The radius that photons must lie within of a surface to enter its map, metres: grown by what
+/// rounding may do to positions as large as the scene's, so that no neighbour is lost.
+float reach_of(const Scene& scene, double radius);
+
 /// Unit normals of sided triangles.
 std::vector<glm::vec3> sided_normals(const Scene& scene);
 

@@ -87,7 +87,8 @@ class Splitter {
   std::size_t first_photon_;
 };
 
-/// The box of each pair of maps: of a triangle, or of a patch.
+}  // namespace
+
 std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches) {
   std::vector<geometry::Box> boxes(patches.empty() ? scene.triangle_count() : patches.count());
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
@@ -96,8 +97,6 @@ std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches)
   }
   return boxes;
 }
-
-}  // namespace
 
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
                                   const NeighbourGroups& groups, float reach,

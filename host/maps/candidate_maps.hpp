@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/box.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
 #include "photile/scene.hpp"
@@ -26,10 +27,12 @@ struct CandidateMaps {
 /// of the photon, and seldom many more. Splits the photons of a sided triangle in halves until the
 /// members near each half are few. Parallel; the result does not depend on the number of threads.
 ///   wanted   per map of the groups: 1 for those that lists name; empty: all. Which photons a list
-///   is
-///            for, and so which of them enter a map, does not depend on it
+///            is for does not depend on it
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
                                   const NeighbourGroups& groups, float reach,
                                   std::span<const std::uint8_t> wanted = {});
+
+/// The box of each pair of maps: of a triangle, or of a patch.
+std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches);
 
 }  // namespace photile::maps

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/box.hpp"
 #include "groups/patch_shape.hpp"
 
 namespace photile::maps {
@@ -82,6 +83,12 @@ PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts
   shape.perimeter = static_cast<float>(single ? perimeter_of(scene, triangles.front())
                                               : 2 * (box.width(0) + box.width(1)));
   shape.certain_cosine = certain_angle > 0 ? static_cast<float>(std::cos(certain_angle)) : 2.0f;
+  geometry::Box bounds;
+  for (const std::uint32_t triangle : triangles) {
+    for (const glm::vec3& corner_of : scene.corners(triangle)) bounds.extend(corner_of);
+  }
+  shape.low_x = bounds.lower.x, shape.low_y = bounds.lower.y, shape.low_z = bounds.lower.z;
+  shape.high_x = bounds.upper.x, shape.high_y = bounds.upper.y, shape.high_z = bounds.upper.z;
   const bool exact = single && has_float_distance(scene, triangles.front());
   shape.triangle = exact ? triangles.front() : PHOTILE_NO_TRIANGLE;
   return shape;

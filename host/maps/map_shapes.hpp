@@ -11,7 +11,7 @@
 
 namespace photile::maps {
 
-static_assert(sizeof(PhotileMapShape) == 19 * 4, "PhotileMapShape must have no padding");
+static_assert(sizeof(PhotileMapShape) == 25 * 4, "PhotileMapShape must have no padding");
 
 /// The surfaces of pairs of maps.
 struct MapShapes {

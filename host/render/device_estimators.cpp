@@ -12,13 +12,16 @@ namespace photile {
 std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
                                            Photons photons, const NeighbourGroups& groups,
                                            const PhotonMapParameters& parameters,
-                                           Progress& progress) {
+                                           Progress& progress,
+                                           std::span<const std::uint8_t> wanted) {
   std::vector<std::optional<PhotonMaps>> built(devices.size());
   for_each_device(devices, progress, [&](std::size_t i, Progress& shared) {
     if (devices.size() == 1) {
-      built[i].emplace(devices[i], scene, std::move(photons), groups, parameters, shared);
+      built[i].emplace(devices[i], scene, std::move(photons), groups, parameters, shared,
+                       wanted);
     } else {
-      built[i].emplace(devices[i], scene, std::as_const(photons), groups, parameters, shared);
+      built[i].emplace(devices[i], scene, std::as_const(photons), groups, parameters, shared,
+                       wanted);
     }
   });
   std::vector<PhotonMaps> maps;

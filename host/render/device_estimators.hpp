@@ -14,10 +14,12 @@ namespace photile {
 
 /// Builds the same maps on every device, all at once; for one alone, photons are given back on the
 /// way. Errors: as PhotonMaps, see for_each_device.
+///   wanted   as PhotonMaps has it
 std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
                                            Photons photons, const NeighbourGroups& groups,
                                            const PhotonMapParameters& parameters,
-                                           Progress& progress);
+                                           Progress& progress,
+                                           std::span<const std::uint8_t> wanted = {});
 
 /// Estimates batches of hits on every device at once. On devices of one kind the result is that of
 /// one device, bit for bit, however the hits are shared.

@@ -72,7 +72,9 @@ void prepare(Device& device, const estimate::TuningSample& sample,
                                 .tuning = parameters.tuning,
                                 .area = parameters.area,
                                 .kernel = parameters.kernel};
-    if (parameters.light_maps != LightMapMode::off) estimate_each_alone({&estimate, 1}, device);
+    if (parameters.light_maps != LightMapMode::off || parameters.processes) {
+      estimate_each_alone({&estimate, 1}, device);
+    }
     Estimator(maps, sample.scene, estimate).estimate(sample.hits);
   } catch (const DeviceMemoryError&) {
   }

@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "estimate/estimate_writer.hpp"
@@ -32,31 +34,50 @@ std::vector<std::uint32_t> places_of(std::span<const int> levels, int level) {
   return places;
 }
 
+/// Per sided triangle: flux of its photons at the powers, luminance. Of those that this process
+/// answers for, where there are several.
+std::vector<double> flux_of_triangles(const Photons& photons, std::span<const double> powers) {
+  std::vector<double> flux(std::max<std::size_t>(1, photons.first_of.size()) - 1, 0.0);
+  tbb::parallel_for(std::size_t{0}, flux.size(), [&](std::size_t s) {
+    if (photons.of_all && photons.of_all->own[s] == 0) return;
+    for (std::size_t i = photons.first_of[s]; i < photons.first_of[s + 1]; ++i) {
+      const std::size_t layer = photons.light.empty() ? 0 : photons.light[i];
+      flux[s] += powers[layer] * luminance(glm::dvec3(photons.flux[i]));
+    }
+  });
+  return flux;
+}
+
 /// Mean flux of a photon at the powers, luminance.
 double mean_photon(const Photons& photons, std::span<const double> powers) {
-  double sum = 0;
-  for (std::size_t i = 0; i < photons.size(); ++i) {
-    const std::size_t layer = photons.light.empty() ? 0 : photons.light[i];
-    sum += powers[layer] * luminance(glm::dvec3(photons.flux[i]));
+  std::vector<double> flux = flux_of_triangles(photons, powers);
+  if (photons.of_all) {
+    // One process has a number for each, the others zeros: bits add up to those of the number.
+    std::vector<std::uint64_t> bits;
+    for (const double one : flux) bits.push_back(std::bit_cast<std::uint64_t>(one));
+    photons.of_all->processes->sum(bits);
+    for (std::size_t s = 0; s < flux.size(); ++s) flux[s] = std::bit_cast<double>(bits[s]);
   }
-  return photons.size() == 0 ? 0 : sum / static_cast<double>(photons.size());
+  const double sum = std::accumulate(flux.begin(), flux.end(), 0.0);
+  return photons.total() == 0 ? 0 : sum / static_cast<double>(photons.total());
 }
 
 /// Metres: that of photons spread evenly over the triangles that have some; 0 without photons.
 double mean_distance(const Scene& scene, const Photons& photons) {
   double area = 0;
   for (std::uint32_t sided = 0; sided + 1 < photons.first_of.size(); ++sided) {
-    if (photons.first_of[sided + 1] > photons.first_of[sided]) {
-      area += triangle_area(scene, sided / 2);
-    }
+    const std::uint32_t landed = photons.of_all
+                                     ? photons.of_all->landed[sided]
+                                     : photons.first_of[sided + 1] - photons.first_of[sided];
+    if (landed > 0) area += triangle_area(scene, sided / 2);
   }
-  return photons.size() == 0 ? 0 : std::sqrt(area / static_cast<double>(photons.size()));
+  return photons.total() == 0 ? 0 : std::sqrt(area / static_cast<double>(photons.total()));
 }
 
 /// Metres: half the median distance from a photon to its nearest; 0 where most lie in the same
 /// points.
 double near_photons(const Photons& photons) {
-  if (photons.size() < 2) return 0;
+  if (photons.total() < 2) return 0;
   try {
     return automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance / 2;
   } catch (const UsageError&) {
@@ -213,8 +234,9 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
     alone.push_back(hit);
   }
   hits_alone_ += alone.size();
-  const Estimates own =
-      alone.empty() ? Estimates{} : photons_[pass]->estimate(estimate::reordered(hits, 0, alone));
+  const Estimates own = alone.empty() && !shared()
+                            ? Estimates{}
+                            : photons_[pass]->estimate(estimate::reordered(hits, 0, alone));
   const bool reads_ends = std::find(reading.levels.begin(), reading.levels.end(),
                                     int{HitReading::ends}) != reading.levels.end();
   const Estimates* ends = reads_ends ? &ends_[pass]->values() : nullptr;
@@ -227,8 +249,8 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
     parts[part] = blend.of(first, last);
     squared_errors[part] = blend.squared_errors(maps_, first, last);
   });
-  for (const double part : squared_errors) squared_errors_ += part;
-  hits_read_ += static_cast<std::uint64_t>(
+  for (const double part : squared_errors) errors_read_.squares += part;
+  errors_read_.hits += static_cast<std::uint64_t>(
       std::count_if(reading.levels.begin(), reading.levels.end(), [](int l) { return l > 0; }));
   return joined(std::move(parts));
 }
@@ -295,7 +317,9 @@ HitReading LightMapEstimates::read(const PrimaryHits& hits,
 /// Values the nodes that hits read.
 void LightMapEstimates::fill(const PrimaryHits& hits, std::span<const int> levels,
                              const Progress& progress) {
-  if (std::all_of(levels.begin(), levels.end(), [](int l) { return l == LightMaps::all_rounds; })) {
+  const bool all =
+      std::all_of(levels.begin(), levels.end(), [](int l) { return l == LightMaps::all_rounds; });
+  if (all && !shared()) {
     maps_.fill(hits, source_, progress);
     return;
   }
@@ -308,7 +332,7 @@ void LightMapEstimates::fill(const PrimaryHits& hits, std::span<const int> level
 void LightMapEstimates::find_ends(const PrimaryHits& hits, const Progress& progress,
                                   std::size_t pass, HitReading& reading) {
   const std::vector<std::uint32_t> chosen = places_of(reading.levels, HitReading::ends);
-  if (chosen.empty()) return;
+  if (chosen.empty() && !(gathered_ && shared())) return;
   const std::vector<NodeBlend> blends =
       ends_[pass]->nodes_around(estimate::reordered(hits, 0, chosen), progress);
   for (std::size_t i = 0; i < chosen.size(); ++i) reading.blends[chosen[i]] = blends[i];
@@ -336,10 +360,6 @@ void LightMapEstimates::find_nodes(const PrimaryHits& hits, HitReading& reading)
 PhotonBlotches LightMapEstimates::blotches() const {
   return {gathered_ ? ends_.front()->spacing() : maps_.charts().spacing(),
           1 / std::sqrt(neighbours_)};
-}
-
-double LightMapEstimates::error() const {
-  return hits_read_ == 0 ? 0.0 : std::sqrt(squared_errors_ / static_cast<double>(hits_read_));
 }
 
 bool LightMapEstimates::serves(const PrimaryHits& hits, std::size_t hit) const {

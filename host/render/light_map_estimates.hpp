@@ -15,6 +15,7 @@
 #include "photile/statistics.hpp"
 #include "render/map_estimators.hpp"
 #include "render/reflection_noise.hpp"
+#include "render/render_costs.hpp"
 
 namespace photile {
 
@@ -81,9 +82,8 @@ class LightMapEstimates {
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
-  /// Root mean square, over all hits read so far, of the relative standard error of all light; 0
-  /// where photons value nodes.
-  double error() const;
+  /// Of all light at hits read so far; zeros where photons value nodes.
+  const ErrorSum& errors_read() const { return errors_read_; }
   TimeTaken fill_time() const { return fill_time_; }
 
  private:
@@ -91,7 +91,9 @@ class LightMapEstimates {
   class PhotonNodes : public PointSource {
    public:
     explicit PhotonNodes(MapEstimators& photons) : photons_(photons) {}
-    Estimates irradiance(const PrimaryHits& nodes) override { return photons_.estimate(nodes); }
+    Estimates irradiance(const PrimaryHits& nodes) override {
+      return photons_.estimate_same(nodes);
+    }
 
    private:
     MapEstimators& photons_;
@@ -119,6 +121,9 @@ class LightMapEstimates {
   /// where light comes from.
   bool serves(const PrimaryHits& hits, std::size_t hit) const;
 
+  /// Whether maps of photons are those of several processes, which make the same calls.
+  bool shared() const { return photons_.front()->owners() != nullptr; }
+
   /// Values what the hits read, as a pass does.
   HitReading read(const PrimaryHits& hits, std::span<const std::uint8_t> by_photons,
                   const Progress& progress, std::size_t pass);
@@ -140,8 +145,8 @@ class LightMapEstimates {
   Passes source_;
   LightMaps maps_;
   light_maps::NodeSight sight_;
-  std::uint64_t hits_alone_ = 0, hits_read_ = 0;
-  double squared_errors_ = 0;  ///< relative, of hits read
+  std::uint64_t hits_alone_ = 0;
+  ErrorSum errors_read_;
   TimeTaken fill_time_;
 };
 

@@ -85,6 +85,16 @@ MapEstimators::Built& MapEstimators::built() const {
 }
 
 Estimates MapEstimators::estimate(const PrimaryHits& hits) {
+  if (!owners_) return estimate_here(hits);
+  return owners_->estimate(hits, [this](const PrimaryHits& own) { return estimate_here(own); });
+}
+
+Estimates MapEstimators::estimate_same(const PrimaryHits& hits) {
+  if (!owners_) return estimate_here(hits);
+  return owners_->estimate_same(hits, [this](const PrimaryHits& own) { return estimate_here(own); });
+}
+
+Estimates MapEstimators::estimate_here(const PrimaryHits& hits) {
   look_at(hits.sided_triangle);
   if (!patches_) return estimate_by(built(), hits, layer_powers_);
   if (built_.size() == 1) return estimate_by(*built_.front(), hits, layer_powers_);

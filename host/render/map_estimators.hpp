@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "photile/estimator.hpp"
 #include "render/device_estimators.hpp"
+#include "render/owner_estimates.hpp"
 
 namespace photile {
 
@@ -47,13 +50,22 @@ class MapEstimators {
   /// Makes the maps that serve these sided triangles. Errors: those of making them.
   void look_at(std::span<const std::uint32_t> sided_triangles);
 
-  /// Of hits in any order. Errors: as DeviceEstimators.
+  /// From now on maps are those of several processes, each of which has its own, and all make the
+  /// same calls of the two functions below. Before any estimate; references are kept. What is
+  /// estimated must not depend on the hits beside it.
+  void share(OwnerEstimates owners) { owners_.emplace(std::move(owners)); }
+  /// Null where this process has all maps.
+  const OwnerEstimates* owners() const { return owners_ ? &*owners_ : nullptr; }
+
+  /// Of hits in any order, of this process alone. Errors: as DeviceEstimators.
   Estimates estimate(const PrimaryHits& hits);
+  /// Of hits that are the same in all processes.
+  Estimates estimate_same(const PrimaryHits& hits);
 
   /// Per sided triangle, as PhotonMaps has it: the order of hits. Empty where maps are made as they
-  /// are looked at.
+  /// are looked at, or are those of several processes.
   std::span<const std::uint32_t> map_of() const {
-    return patches_ ? std::span<const std::uint32_t>() : built().maps.front().map_of();
+    return patches_ || owners_ ? std::span<const std::uint32_t>() : built().maps.front().map_of();
   }
 
   /// k, or the most that a hit has where it has its own.
@@ -74,6 +86,8 @@ class MapEstimators {
     std::vector<DeviceEstimators> estimators;  ///< of each level; they keep references to the maps
   };
 
+  /// By maps of this process.
+  Estimates estimate_here(const PrimaryHits& hits);
   std::unique_ptr<Built> built_of(Parts parts) const;
   static Estimates estimate_by(Built& built, const PrimaryHits& hits,
                                std::span<const double> layer_powers);
@@ -83,7 +97,8 @@ class MapEstimators {
   const Scene& scene_;
   std::span<const double> layer_powers_;
   mutable std::function<Parts()> make_;
-  const Patches* patches_ = nullptr;  ///< where maps are made as they are looked at
+  std::optional<OwnerEstimates> owners_;  ///< where several processes have maps
+  const Patches* patches_ = nullptr;      ///< where maps are made as they are looked at
   MakeSome make_some_;
   std::vector<std::uint32_t> part_of_;  ///< per map of the groups: in built_; or none
   mutable std::vector<std::unique_ptr<Built>> built_;  ///< one, but where make_some_ made several

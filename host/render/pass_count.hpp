@@ -26,7 +26,8 @@ int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t byt
 /// Passes for the memory that the host has. Traces a few paths to know what one leaves; says so
 /// in one line where there is more than one pass. Errors: UsageError where there would be more than
 /// limits::max_passes.
+///   processes   that share the photons and the memory of their machines; null: this one alone
 int automatic_passes(const RayScene& rays, const PhotonTracerParameters& parameters,
-                     Progress& progress);
+                     Progress& progress, Communicator* processes = nullptr);
 
 }  // namespace photile

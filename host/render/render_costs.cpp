@@ -1,7 +1,14 @@
 #include "render/render_costs.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace photile {
@@ -25,6 +32,10 @@ double median_of(std::vector<std::uint32_t> counts) {
 }
 
 }  // namespace
+
+double ErrorSum::mean() const {
+  return hits == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(hits));
+}
 
 StageStatistics stage(const char* name, const StageCost& cost,
                       std::vector<std::pair<std::string, double>> figures) {
@@ -58,6 +69,10 @@ void RenderCosts::add_pass(const RenderCosts& further) {
   estimators.add(further.estimators.time);
   release.add(further.release.time);
   emitted_photons += further.emitted_photons;
+  exchange.add(further.exchange.time, further.exchange.host_bytes);
+  photons_sent += further.photons_sent;
+  photon_bytes_sent += further.photon_bytes_sent;
+  photons_held += further.photons_held;
   stored_photons += further.stored_photons;
   caustic_photons += further.caustic_photons;
   references += further.references;
@@ -66,8 +81,52 @@ void RenderCosts::add_pass(const RenderCosts& further) {
 
 void RenderCosts::start_picture() {
   hits = gather = light_maps = estimate = film = {};
+  hits_sent = hit_bytes_sent = 0;
   rays = gather_rays = light_map_nodes = hit_count = 0;
   estimate_compile_seconds = 0;
+}
+
+void RenderCosts::add_processes(Communicator& all) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+  const Communicator::Traffic traffic = all.traffic();
+  const std::array own{references,  maps,          mixed_maps, largest_map,
+                       rays,        gather_rays,   hit_count,  photons_sent,
+                       photon_bytes_sent, photons_held, hits_sent, hit_bytes_sent,
+                       traffic.bytes, memory, std::bit_cast<std::uint64_t>(light_map_errors.squares),
+                       light_map_errors.hits};
+  std::vector<std::array<std::uint64_t, own.size()>> of_ranks;
+  for (const Communicator::Bytes& bytes : all.gather(std::as_bytes(std::span(own)))) {
+    std::memcpy(&of_ranks.emplace_back(), bytes.data(), sizeof own);
+  }
+  const auto sum = [&](std::size_t i) {
+    std::uint64_t total = 0;
+    for (const auto& rank : of_ranks) total += rank[i];
+    return total;
+  };
+  const auto most = [&](std::size_t i) {
+    std::uint64_t largest = 0;
+    for (const auto& rank : of_ranks) largest = std::max(largest, rank[i]);
+    return largest;
+  };
+  references = sum(0), maps = sum(1), mixed_maps = sum(2), largest_map = most(3);
+  rays = sum(4), gather_rays = sum(5), hit_count = sum(6);
+  light_map_errors = {0, sum(15)};
+  for (const auto& rank : of_ranks) light_map_errors.squares += std::bit_cast<double>(rank[14]);
+  const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+  processes = {{"processes", number(all.size())},
+               {"photons sent", number(sum(7))},
+               {"bytes sent per stored photon", ratio(sum(8), stored_photons)},
+               {"photons held, largest over mean", ratio(most(9) * all.size(), sum(9))},
+               {"photons held over stored", ratio(sum(9), stored_photons + caustic_photons)},
+               {"hits sent", number(sum(10))},
+               {"bytes per hit sent", ratio(sum(11), sum(10))},
+               {"bytes sent", number(sum(12))},
+               {"calls", number(traffic.calls)},
+               {"seconds waited", traffic.seconds},
+               {"host bytes of a process, most", number(most(13))},
+               {"host bytes of a process, mean", ratio(sum(13), all.size())}};
 }
 
 RunStatistics RenderCosts::statistics() const {
@@ -105,7 +164,8 @@ RunStatistics RenderCosts::statistics() const {
   }
   if (light_maps.time.seconds > 0) {
     std::vector<std::pair<std::string, double>> figures{{"new nodes", number(light_map_nodes)}};
-    if (light_map_error > 0) figures.emplace_back("standard error percent", 100 * light_map_error);
+    const double error = light_map_errors.mean();
+    if (error > 0) figures.emplace_back("standard error percent", 100 * error);
     stages.push_back(stage("light maps", light_maps, std::move(figures)));
   }
   std::vector<std::pair<std::string, double>> estimate_figures{
@@ -117,6 +177,7 @@ RunStatistics RenderCosts::statistics() const {
            : 1e6 * (estimate.time.seconds - estimate_compile_seconds) / number(hit_count)}};
   estimate_figures.insert(estimate_figures.end(), shares.begin(), shares.end());
   stages.push_back(stage("radiance estimate", estimate, std::move(estimate_figures)));
+  if (!processes.empty()) stages.push_back(stage("exchange", exchange, processes));
   stages.push_back(stage("film", film));
   stages.push_back(stage("release memory", release));
   return stages;

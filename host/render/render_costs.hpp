@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "photile/communicator.hpp"
 #include "photile/statistics.hpp"
 
 namespace photile {
@@ -26,15 +27,24 @@ StageStatistics stage(const char* name, const StageCost& cost,
 /// Adds time to the row of a stage; to a new one at the end where there is none.
 void add_time(RunStatistics& stages, const char* name, const TimeTaken& time);
 
+/// Of relative standard errors.
+struct ErrorSum {
+  double squares = 0;
+  std::uint64_t hits = 0;
+
+  /// Root mean square; 0 of none.
+  double mean() const;
+};
+
 /// Counts add up over passes.
 struct RenderCosts {
-  StageCost structure, trace, radius, group, surface, build, estimators, hits, gather, light_maps,
-      estimate, film, release;
+  StageCost structure, trace, exchange, radius, group, surface, build, estimators, hits, gather,
+      light_maps, estimate, film, release;
   std::uint64_t emitted_photons = 0, stored_photons = 0, caustic_photons = 0;
   std::uint64_t group_members = 0, groups = 0, patches = 0;
   std::uint64_t sheets = 0, surface_leaves = 0;
   std::uint64_t light_map_nodes = 0;
-  double light_map_error = 0;              ///< relative, of what was read from nodes that gather
+  ErrorSum light_map_errors;               ///< of what was read from nodes that gather
   std::uint64_t maps = 0, mixed_maps = 0;  ///< of the last pass
   std::vector<std::uint32_t> map_sizes;    ///< of the last pass, as PhotonMapStatistics
   std::uint64_t references = 0, largest_map = 0;
@@ -42,6 +52,15 @@ struct RenderCosts {
   double compile_seconds = 0;                          ///< of all kernels
   double estimate_compile_seconds = 0;                 ///< of them, within `estimate`
   std::vector<std::pair<std::string, double>> shares;  ///< of several devices
+
+  // Where several processes share the rendering: what this one sent to others, and holds.
+  std::uint64_t photons_sent = 0, photon_bytes_sent = 0, photons_held = 0;
+  std::uint64_t hits_sent = 0, hit_bytes_sent = 0;  ///< of the picture
+  std::vector<std::pair<std::string, double>> processes;  ///< figures of all
+
+  /// Replaces counts by those of all processes, and fills in their figures. Times stay those of this
+  /// one. Collective.
+  void add_processes(Communicator& all);
 
   /// Adds what the maps of a further pass have cost.
   void add_pass(const RenderCosts& further);

@@ -43,6 +43,20 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
   }
 }
 
+/// Errors: SettingError for what one process alone can do.
+void check_for_several(const RenderParameters& asked) {
+  if (asked.final_gather_rays > 0) {
+    throw SettingError(setting_named("final_gather_rays"),
+                       "rays that gather from each hit are of one process; leave them out where "
+                       "several share a rendering");
+  }
+  if (is_global(asked.structure)) {
+    throw SettingError(setting_named("structure"),
+                       std::string(name_of(asked.structure)) +
+                           " is over all photons, which several processes share; take uniform-grid");
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(GlossMode mode) {
@@ -78,10 +92,13 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
       asked_passes_(asked.passes),
       scene_(rays.scene().source.filename().string()) {
   check(asked);
+  if (asked.processes) check_for_several(asked);
   if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
   if (!nodes_gather(asked)) used_.light_map_rays = 0;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
-  if (asked.passes == 0) used_.passes = automatic_passes(rays, all_photons(used_), progress);
+  if (asked.passes == 0) {
+    used_.passes = automatic_passes(rays, all_photons(used_), progress, asked.processes);
+  }
   if (asked.light_maps == LightMapMode::automatic) {
     const bool at_hits =
         gathers() || asked.maps == MapMode::naive || (passes() > 1 && !gathers_at_nodes());
@@ -97,6 +114,7 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
 PhotonTracerParameters RenderPlan::tracing(int pass,
                                            const std::vector<std::uint64_t>& paths_before) const {
   PhotonTracerParameters parameters = all_photons(used_);
+  if (used_.processes) parameters.shard = {used_.processes->rank(), used_.processes->size()};
   if (passes() == 1) return parameters;
   const std::uint64_t all = used_.photons.emitted_photons;
   const auto until = [&](int p) { return all / passes() * p + all % passes() * p / passes(); };
@@ -107,10 +125,10 @@ PhotonTracerParameters RenderPlan::tracing(int pass,
 
 double RenderPlan::radius(const Photons& photons, Progress& progress) const {
   if (used_.radius > 0) {
-    if (photons.size() >= 2) note_lonely_photons(photons, used_.radius, progress);
+    if (photons.total() >= 2) note_lonely_photons(photons, used_.radius, progress);
     return used_.radius;
   }
-  if (photons.size() < 2) {
+  if (photons.total() < 2) {
     // Nothing but lamps, mirrors and glass is seen, or rays bring all the light there is.
     if (all_photons(used_).store_direct) {
       progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
@@ -160,8 +178,11 @@ LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const S
                                           const Photons& photons,
                                           std::span<const double> powers) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
-  return light_map_parameters(scene, photons, estimate.neighbours, estimate.radius,
-                              used_.angle_degrees, used_.light_map_detail, powers);
+  LightMapParameters parameters =
+      light_map_parameters(scene, photons, estimate.neighbours, estimate.radius,
+                           used_.angle_degrees, used_.light_map_detail, powers);
+  parameters.processes = used_.processes;
+  return parameters;
 }
 
 LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& scene,
@@ -172,6 +193,7 @@ LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& 
   // A point sees many ends: what their nodes are wrong by between each other cancels out.
   parameters.spacing *= 2;
   parameters.levels = 1;
+  parameters.processes = used_.processes;
   return parameters;
 }
 

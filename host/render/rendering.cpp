@@ -11,6 +11,7 @@
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/path_numbers.hpp"
+#include "render/row_exchange.hpp"
 #include "render/sample_errors.hpp"
 #include "render/setting.hpp"
 
@@ -104,7 +105,11 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   const Stopwatch stopwatch;
   const auto estimators_of = [&](std::vector<PhotonMaps>& built) {
     MapEstimators::Parts parts = parts_of(std::move(built));
-    return MapEstimators(devices_, scene_, std::move(parts.maps), parts.levels, layer_powers_);
+    MapEstimators made(devices_, scene_, std::move(parts.maps), parts.levels, layer_powers_);
+    if (Communicator* const processes = plan_.used().processes) {
+      made.share({*processes, owners_, layer_powers_.size(), rays_.needs().many_lights()});
+    }
+    return made;
   };
   photons_.emplace(estimators_of(maps.photons));
   if (!maps.caustics.empty()) caustics_.emplace(estimators_of(maps.caustics));
@@ -181,22 +186,32 @@ void Rendering::add_pass(const HitSource& source, std::size_t after) {
     film_.runs = std::min(defaults::runs_of_samples, film_.samples_per_pixel);
     runs_ = LightLayers(film_.width * film_.runs, film_.height, scene_);
   }
+  const auto height = static_cast<std::uint64_t>(film_.height);
+  const Shard own = own_rows();
+  const int begin = static_cast<int>(own.begin(height)), end = static_cast<int>(own.end(height));
+  // All processes make as many batches: each may have to estimate for the others.
+  const int most = static_cast<int>((height - 1) / own.count + 1);
+  const OwnerEstimates::Moved moved_before = at_hand().moved();
   const int rows = rows_per_batch(source);
-  PrimaryHitBatch batch = trace_rows(source, 0, std::min(rows, film_.height));
+  PrimaryHitBatch batch = trace_rows(source, begin, std::min(begin + rows, end));
   make_maps(source, batch, rows);
-  progress_->begin("estimate radiance", static_cast<std::uint64_t>(film_.height), "rows");
-  for (int first = 0; first < film_.height; first += rows) {
+  progress_->begin("estimate radiance", static_cast<std::uint64_t>(end - begin), "rows");
+  for (int done = 0; done < most; done += rows) {
     progress_->throw_if_cancelled();
-    const int last = std::min(first + rows, film_.height);
-    if (first > 0) batch = trace_rows(source, first, last);
+    const int first = std::min(begin + done, end), last = std::min(first + rows, end);
+    if (done > 0) batch = trace_rows(source, first, last);
     add_rows(source, std::move(batch), first, last);
     source.show(layers_, first, last, (film_.pass + 1.0) / film_.passes);
     progress_->advance(static_cast<std::uint64_t>(last - first));
   }
   progress_->end();
+  const OwnerEstimates::Moved moved_now = at_hand().moved();
+  costs_.hits_sent += moved_now.hits - moved_before.hits;
+  costs_.hit_bytes_sent += moved_now.bytes - moved_before.bytes;
   if (errors && film_.pass + 1 == film_.passes) {
     add_sample_errors(*errors, runs_);
     runs_ = {};
+    if (Communicator* const processes = plan_.used().processes) bring_rows(*processes, *errors);
   }
   const std::vector<double> shares = at_hand().photons_->shares();
   for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += shares[i] / film_.passes;
@@ -218,7 +233,24 @@ void Rendering::release() {
   costs_.release.add(stopwatch.taken());
 }
 
+Shard Rendering::own_rows() const {
+  const Communicator* const processes = plan_.used().processes;
+  return processes ? Shard{processes->rank(), processes->size()} : Shard{};
+}
+
+OwnerEstimates::Moved Rendering::moved() const {
+  OwnerEstimates::Moved sum;
+  for (const auto* estimators : {&photons_, &caustics_}) {
+    if (!*estimators || !(*estimators)->owners()) continue;
+    const OwnerEstimates::Moved& moved = (*estimators)->owners()->moved();
+    sum.hits += moved.hits;
+    sum.bytes += moved.bytes;
+  }
+  return sum;
+}
+
 RenderResult Rendering::finish() {
+  if (Communicator* const processes = plan_.used().processes) bring_rows(*processes, layers_);
   // Looks at lamps may take more off a surface than light maps, which blur, hold there.
   if (plan_.used().gloss == GlossMode::rays) raise_to_zero(layers_);
   costs_.film.host_bytes = layers_.bytes();
@@ -231,10 +263,12 @@ RenderResult Rendering::finish() {
   RenderParameters used = plan_.used();
   used.film = {film_.width, film_.height, film_.samples_per_pixel};
   used.radius = radius_;
+  RenderCosts costs = costs_;
+  if (used.processes) costs.add_processes(*used.processes);
   return {.layers = std::move(layers_),
-          .statistics = costs_.statistics(),
+          .statistics = costs.statistics(),
           .used = used,
-          .stored_photons = costs_.stored_photons,
+          .stored_photons = costs.stored_photons,
           .device_shares = shares_};
 }
 
@@ -250,6 +284,7 @@ int Rendering::rows_per_batch(const HitSource& source) const {
 }
 
 PrimaryHitBatch Rendering::trace_rows(const HitSource& source, int first, int last) {
+  if (first >= last) return {};
   const Stopwatch hit_watch;
   // Light maps ask for no order, and those of a file for no photons.
   const auto map_of =
@@ -285,7 +320,7 @@ void Rendering::add_rows(const HitSource& source, PrimaryHitBatch batch, int fir
   PrimaryHitBatch reflected;
   reflected.hits = std::move(batch.reflected);
   add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel), {});
-  if (reflected.hits.size() == 0) return;
+  if (reflected.hits.size() == 0 && !(plan_.used().processes && film_.lobe_rays)) return;
   add(reflected, 0.0f, by_photons);  // the pixel's illuminance is not theirs
 }
 
@@ -356,7 +391,7 @@ Estimates Rendering::read_light_maps(const PrimaryHits& hits,
   costs_.light_maps.add(filling - (costs_.build.time - built_before),
                         maps.value_bytes + maps.index_bytes);
   costs_.light_map_nodes += maps.nodes - nodes_before;
-  costs_.light_map_error = light_maps.error();
+  costs_.light_map_errors = light_maps.errors_read();
   costs_.estimate.add(stopwatch.taken() - filling);
   costs_.hit_count += light_maps.hits_alone() - alone_before;
   return estimates;

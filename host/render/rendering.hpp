@@ -10,12 +10,14 @@
 #include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
+#include "photile/shard.hpp"
 #include "photile/surface_index.hpp"
 #include "render/hit_source.hpp"
 #include "render/kernel_preparation.hpp"
 #include "render/light_map_estimates.hpp"
 #include "render/light_map_frames.hpp"
 #include "render/map_estimators.hpp"
+#include "render/map_owners.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
 
@@ -101,6 +103,12 @@ class Rendering {
   /// Chooses nodes for the photons of a pass.
   void choose_light_maps(int pass, const Photons& photons);
   MapEstimators::Parts parts_of(std::vector<PhotonMaps> maps) const;
+  /// Where several processes share the rendering: brings photons to the owners of their maps.
+  void move_to_owners(PhotonTracerResult& traced);
+  /// Rows of the film that this process makes.
+  Shard own_rows() const;
+  /// What was sent to the owners of maps so far.
+  OwnerEstimates::Moved moved() const;
   /// Photons of a pass, with all that is found before there are maps.
   PhotonTracerResult trace(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
   Maps trace_and_build(int pass, PreparedPhotons* prepared, const KeepPhotons* keep);
@@ -139,6 +147,7 @@ class Rendering {
   std::vector<std::uint64_t> paths_before_;  ///< per light
   double radius_ = 0;                        ///< of the first pass, metres
   NeighbourGroups groups_;
+  std::shared_ptr<const MapOwners> owners_;  ///< where several processes share the rendering
   bool one_picture_ = false;
   bool seen_whole_ = false;
   Photons seen_;                   ///< where maps are made as they are looked at

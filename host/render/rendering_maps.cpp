@@ -5,6 +5,7 @@
 
 #include "photile/quiet_progress.hpp"
 #include "render/rendering.hpp"
+#include "render/shared_photons.hpp"
 
 namespace photile {
 namespace {
@@ -16,7 +17,9 @@ constexpr int look_step = 4;
 
 MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps) const {
   MapEstimators::Parts parts{std::move(maps), plan_.estimates(pass_, surface_)};
-  if (plan_.reads_light_maps()) estimate_each_alone(parts.levels, devices_.front());
+  if (plan_.reads_light_maps() || plan_.used().processes) {
+    estimate_each_alone(parts.levels, devices_.front());
+  }
   return parts;
 }
 
@@ -31,6 +34,14 @@ PhotonTracerResult Rendering::trace(int pass, PreparedPhotons* prepared, const K
     traced = trace_photons(rays_, plan_.tracing(pass, paths_before_), *progress_);
   }
   costs_.trace.add(trace_watch.taken(), traced.photons.bytes() + traced.caustics.bytes());
+  if (Communicator* const processes = plan_.used().processes) {
+    const Stopwatch stopwatch;
+    traced.photons.of_all = photons_of_all(*processes, traced.photons);
+    if (plan_.keeps_caustics()) {
+      traced.caustics.of_all = photons_of_all(*processes, traced.caustics);
+    }
+    costs_.exchange.add(stopwatch.taken());
+  }
   count(traced);
   if (pass == 0) {
     const Stopwatch radius_watch;
@@ -38,8 +49,9 @@ PhotonTracerResult Rendering::trace(int pass, PreparedPhotons* prepared, const K
     radius_ = grouped ? prepared->radius : plan_.radius(traced.photons, *progress_);
     costs_.radius.add(radius_watch.taken());
     find_groups(traced.photons, grouped ? prepared : nullptr);  // once: no later radius is larger
-    find_surface(traced.photons);
   }
+  if (plan_.used().processes) move_to_owners(traced);
+  if (pass == 0) find_surface(traced.photons);
   if (plan_.reads_light_maps()) choose_light_maps(pass, traced.photons);
   if (keep) {
     PreparedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
@@ -52,6 +64,26 @@ PhotonTracerResult Rendering::trace(int pass, PreparedPhotons* prepared, const K
   return traced;
 }
 
+void Rendering::move_to_owners(PhotonTracerResult& traced) {
+  const Stopwatch stopwatch;
+  Communicator& processes = *plan_.used().processes;
+  progress_->begin("exchange photons", 0, "");
+  owners_ = std::make_shared<const MapOwners>(scene_, groups_.patches,
+                                              traced.photons.of_all->landed, processes.size());
+  const double radius = plan_.maps(pass_, radius_).radius;
+  const auto move = [&](Photons& photons) {
+    PhotonsMoved moved;
+    photons = to_owners(processes, scene_, groups_, *owners_, radius, std::move(photons), moved);
+    costs_.photons_sent += moved.sent;
+    costs_.photon_bytes_sent += moved.bytes;
+    costs_.photons_held += moved.held;
+  };
+  move(traced.photons);
+  if (traced.caustics.total() > 0) move(traced.caustics);
+  progress_->end();
+  costs_.exchange.add(stopwatch.taken(), traced.photons.bytes() + traced.caustics.bytes());
+}
+
 /// The photons are gone when this returns: the maps hold copies.
 Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
                                            const KeepPhotons* keep) {
@@ -62,7 +94,7 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
   costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
   costs_.map_sizes = maps.photons.front().statistics().map_sizes;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
-  if (traced.caustics.size() > 0) maps.caustics = build(std::move(traced.caustics), parameters);
+  if (traced.caustics.total() > 0) maps.caustics = build(std::move(traced.caustics), parameters);
   const Stopwatch release_watch;
   traced = {};
   costs_.release.add(release_watch.taken());
@@ -72,8 +104,10 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
 std::vector<PhotonMaps> Rendering::build(Photons photons, const PhotonMapParameters& parameters) {
   const Stopwatch stopwatch;
   kernels_->wait();
-  std::vector<PhotonMaps> maps =
-      build_maps_on_each(devices_, scene_, std::move(photons), groups_, parameters, *progress_);
+  std::vector<std::uint8_t> own;
+  if (owners_) own = owners_->maps_of(plan_.used().processes->rank());
+  std::vector<PhotonMaps> maps = build_maps_on_each(devices_, scene_, std::move(photons), groups_,
+                                                    parameters, *progress_, own);
   std::uint64_t device_bytes = 0, spilled_bytes = 0;
   for (const PhotonMaps& one : maps) {
     device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
@@ -90,7 +124,8 @@ void Rendering::note_maps(const PhotonMapStatistics& built) {
 }
 
 bool Rendering::makes_maps_in_sight() const {
-  return one_picture_ && plan_.passes() == 1 && plan_.reads_light_maps() &&
+  return one_picture_ && !plan_.used().processes && plan_.passes() == 1 &&
+         plan_.reads_light_maps() &&
          !plan_.keeps_caustics() && devices_.size() == 1 && !is_global(plan_.used().structure);
 }
 
@@ -156,8 +191,8 @@ void Rendering::count(const PhotonTracerResult& traced) {
     paths_before_[light] += paths;
     costs_.emitted_photons += paths;
   }
-  costs_.stored_photons += traced.photons.size();
-  costs_.caustic_photons += traced.caustics.size();
+  costs_.stored_photons += traced.photons.total();
+  costs_.caustic_photons += traced.caustics.total();
 }
 
 void Rendering::find_groups(const Photons& photons, PreparedPhotons* prepared) {

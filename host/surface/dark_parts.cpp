@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <glm/gtc/constants.hpp>
 
 #include "surface/dark_sides.hpp"
@@ -104,6 +105,20 @@ class PartFinder {
   double least_area_;
 };
 
+/// Those that each process has found, in the order of the sided triangles.
+std::vector<DarkPart> parts_of_all(Communicator& processes, std::span<const DarkPart> own) {
+  std::vector<DarkPart> all;
+  for (const Communicator::Bytes& bytes : processes.gather(std::as_bytes(own))) {
+    const std::size_t before = all.size();
+    all.resize(before + bytes.size() / sizeof(DarkPart));
+    if (!bytes.empty()) std::memcpy(all.data() + before, bytes.data(), bytes.size());
+  }
+  std::stable_sort(all.begin(), all.end(), [](const DarkPart& a, const DarkPart& b) {
+    return a.sided_triangle < b.sided_triangle;
+  });
+  return all;
+}
+
 }  // namespace
 
 std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
@@ -118,11 +133,12 @@ std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& ph
   std::vector<std::vector<DarkPart>> of_side(sides);
   tbb::parallel_for(std::size_t{0}, sides, [&](std::size_t i) {
     const auto s = static_cast<std::uint32_t>(i);
-    if (shared[s] == 0 && dark[s] == 0) finder.find_on(s, of_side[s]);
+    const bool answers = !photons.of_all || photons.of_all->own[s] != 0;
+    if (answers && shared[s] == 0 && dark[s] == 0) finder.find_on(s, of_side[s]);
   });
   std::vector<DarkPart> parts;
   for (const auto& more : of_side) parts.insert(parts.end(), more.begin(), more.end());
-  return parts;
+  return photons.of_all ? parts_of_all(*photons.of_all->processes, parts) : parts;
 }
 
 }  // namespace photile::surface

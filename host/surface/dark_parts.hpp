@@ -15,7 +15,7 @@ namespace photile::surface {
 /// photons, were they as dense there as on the denser half of what it is a half of, and is not
 /// smaller than a thousandth of the largest disc. A half on which next to none landed is a dark
 /// part. In the order of the sided triangles.
-///   photons   sorted by sided triangle
+///   photons   sorted by sided triangle; several processes find those of all together
 ///   dark      sides that are dark as a whole: have no parts
 std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
                                       std::span<const std::uint8_t> dark, double radius);

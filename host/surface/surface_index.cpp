@@ -150,6 +150,7 @@ std::uint32_t SurfaceIndex::sheet_at(std::uint32_t s, const glm::vec3& position)
 }
 
 std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons) {
+  if (photons.of_all) return photons.of_all->landed;
   std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
   for (const std::uint32_t s : photons.sided_triangle) {
     if (s >= landed.size()) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "photile/communicator.hpp"
 #include "photile/defaults.hpp"
 #include "photile/estimator.hpp"
 #include "photile/primary_hits.hpp"
@@ -115,6 +116,9 @@ struct LightMapParameters {
   /// ... and of fewer below this irradiance at the lights' powers, where not so many are found.
   double sparse_irradiance = 0;
   std::vector<double> powers;  ///< per layer of the scene, at which cells are compared
+  /// Processes that fill the same light maps, each for hits of its own: all of them have all nodes.
+  /// Null: this one alone.
+  Communicator* processes = nullptr;
 };
 
 struct LightMapStatistics {

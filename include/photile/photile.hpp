@@ -3,6 +3,7 @@
 
 #include "photile/camera.hpp"
 #include "photile/camera_attributes.hpp"
+#include "photile/communicator.hpp"
 #include "photile/defaults.hpp"
 #include "photile/denoiser.hpp"
 #include "photile/density_kernel.hpp"

@@ -3,9 +3,27 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
+#include "photile/communicator.hpp"
+
 namespace photile {
+
+/// What stages ask of all photons together, where several processes hold them.
+struct PhotonsOfAll {
+  Communicator* processes = nullptr;  ///< that hold them
+  std::uint64_t count = 0;
+  std::vector<std::uint32_t> landed;  ///< per sided triangle: photons there
+  /// Positions of as many as groups::max_subsample, spread evenly, or of all where they are fewer.
+  std::vector<glm::vec3> spread;
+  /// Every n-th, by which groups::PhotonSample judges patches, and their sided triangles.
+  std::vector<glm::vec3> sample;
+  std::vector<std::uint32_t> sample_triangle;
+  /// Per sided triangle: 1 where its photons are all here, and no other process answers for them.
+  /// Empty before photons are where their maps are.
+  std::vector<std::uint8_t> own;
+};
 
 /// Photons in the order of their sided triangles (stable: within one in the order light, path,
 /// bounce). Which arrays are filled depends on SceneNeeds.
@@ -22,7 +40,12 @@ struct Photons {
   std::vector<std::uint32_t> first_of;
   std::vector<std::uint64_t> emitted_per_light;  ///< paths started
 
+  /// Of all photons, where these are the part that one process holds; null: these are all.
+  std::shared_ptr<const PhotonsOfAll> of_all;
+
   std::size_t size() const { return position.size(); }
+  /// Of all processes.
+  std::uint64_t total() const { return of_all ? of_all->count : size(); }
   std::uint64_t bytes() const;
 };
 

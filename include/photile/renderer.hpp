@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "photile/camera.hpp"
+#include "photile/communicator.hpp"
 #include "photile/device.hpp"
 #include "photile/estimate_tuning.hpp"
 #include "photile/estimator.hpp"
@@ -87,6 +88,10 @@ struct RenderParameters {
   /// at finer levels (docs/light-maps.md). 0 = the photon estimate values them.
   int light_map_rays = 0;
   double light_map_detail = 0;  ///< metres between the finest nodes, at most; 0 = by the photons
+  /// Processes that share the rendering (docs/clusters.md), all with the same arguments: paths,
+  /// photon maps and rows of the film are split between them, and rank 0 has the result. Null: this
+  /// process has all. Kept as a reference.
+  Communicator* processes = nullptr;
 };
 
 /// The rays of a whole picture by these parameters, as trace_paths takes them.

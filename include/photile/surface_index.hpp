@@ -74,11 +74,12 @@ SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint32_t>&
                            double radius, double angle_degrees);
 
 /// The same, and finds dark parts.
-///   photons   sorted by sided triangle
+///   photons   sorted by sided triangle; where several processes hold them, those of the maps that
+///             are theirs, and all call this
 SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double radius,
                            double angle_degrees);
 
-/// Photons on each sided triangle.
+/// Photons on each sided triangle, those of other processes among them (Photons::of_all).
 std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons);
 
 /// Per sheet: 1 where a photon landed that is not one of the few on dark triangles, else 0; and 1

@@ -7,6 +7,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "tools/command/commands.hpp"
 #include "tools/command/described_command.hpp"
 #include "tools/command/exit_code.hpp"
+#include "tools/command/processes.hpp"
 #include "tools/command/setting_options.hpp"
 #include "tools/command/terminal.hpp"
 #include "tools/command/version.hpp"
@@ -76,6 +78,14 @@ void define(CLI::App& photile) {
   add_merge_command(photile);
   add_view_command(photile);
   add_bake_command(photile);
+  for (CLI::App* command : photile.get_subcommands([](CLI::App*) { return true; })) {
+    const std::string name = command->get_name();
+    if (name == "render" || name == "measure" || name == "walk") continue;
+    command->preparse_callback([name](std::size_t) {
+      refuse_several("photile " + name, name == "trace" ? "give each process its --shard, without mpirun"
+                                                        : "start it without mpirun");
+    });
+  }
 }
 
 /// The command whose --help knows more about a usage error.
@@ -103,34 +113,54 @@ ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const*
     if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
       throw UsageError(std::string(error.what()) + "; see " + help_command(photile));
     }
-    photile.exit(error);  // prints the help or the version that was asked for
+    std::ostringstream unread;
+    // Prints the help or the version that was asked for.
+    photile.exit(error, leads() ? std::cout : unread, leads() ? std::cerr : unread);
   }
   flush_standard_output();
   return ExitCode::success;
+}
+
+/// Ends the run of all processes, and tells the error of the first that failed. Returns what all
+/// exit with.
+int conclude(ExitCode code, const std::string& problem) {
+  const auto own = static_cast<int>(code);
+  if (!processes()) {
+    if (code != ExitCode::success) print_error(problem);
+    return own;
+  }
+  // A launcher that ends all does not wait until they agree.
+  const bool told = code == ExitCode::interrupted && leads();
+  if (told) print_error(problem);
+  const Communicator::Conclusion end = processes()->conclude(own);
+  if (end.code != 0 && end.rank == processes()->rank() && !told) print_error(problem);
+  return end.code;
 }
 
 }  // namespace
 
 int run_command_line(int argument_count, const char* const* arguments) {
   ExitCode code = ExitCode::failure;
+  std::string problem;
   try {
+    join_processes({arguments, static_cast<std::size_t>(argument_count)});
     CLI::App photile("Photon mapping on OpenCL devices, a layer of the picture per light.",
                      "photile");
     define(photile);
     const RunFiles files;
     code = parse_and_run(photile, argument_count, arguments);
   } catch (const SettingError& error) {
-    print_error(option_of(error.setting) + ": " + error.problem);
+    problem = option_of(error.setting) + ": " + error.problem;
     code = exit_code_of(error);
   } catch (const Error& error) {
-    print_error(error.what());
+    problem = error.what();
     code = exit_code_of(error);
   } catch (const std::bad_alloc&) {
-    print_error("out of memory; render fewer photons, fewer pixels or a smaller scene");
+    problem = "out of memory; render fewer photons, fewer pixels or a smaller scene";
   } catch (const std::exception& error) {
-    print_error(std::string("internal error: ") + error.what());
+    problem = std::string("internal error: ") + error.what();
   }
-  return static_cast<int>(code);
+  return conclude(code, problem);
 }
 
 }  // namespace photile::app

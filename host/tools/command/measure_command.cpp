@@ -16,6 +16,7 @@
 #include "tools/command/commands.hpp"
 #include "tools/command/measure_outputs.hpp"
 #include "tools/command/output_files.hpp"
+#include "tools/command/processes.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
 #include "tools/command/signals.hpp"
@@ -109,6 +110,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   RenderOptions& render = options.render;
   check_settings(render);
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
+  share_rendering(render);
   if (options.planes.empty() && options.points.empty() && options.height.empty()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
@@ -118,7 +120,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const MeasureOutputs outputs(options.outputs);
 
   const ThreadLimit threads(render.threads);
-  TerminalProgress progress(render.quiet);
+  TerminalProgress progress(render.quiet || !leads());
   const Scene scene = load_scene(render.scene, render.load);
   const LightMix mix = mix_of(scene, render);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
@@ -133,6 +135,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (options.cylindrical) parameters.gathering.response = SensorResponse::cylindrical;
   const measuring::Readings readings =
       measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
+  if (!leads()) return;
   const measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   outputs.write(measurement, {scene, mix, parameters});
   for (const auto& line : measuring::measurement_lines(measurement)) std::cout << line << '\n';

@@ -5,6 +5,7 @@
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
+#include "tools/command/processes.hpp"
 #include "tools/command/render_options.hpp"
 
 namespace photile::app {
@@ -19,6 +20,7 @@ void note_inputs_of(const RenderOptions& options) {
 void check_outputs(std::span<const std::filesystem::path> outputs) {
   for (const auto& output : outputs) {
     note_output(output);
+    if (!leads()) continue;
     const OutputFile probe(output);
   }
 }

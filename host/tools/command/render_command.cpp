@@ -25,6 +25,7 @@
 #include "tools/command/commands.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
+#include "tools/command/processes.hpp"
 #include "tools/command/quality_options.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
@@ -258,6 +259,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
                           const std::function<double()>& elapsed, Progress& progress) {
   check_settings(options);
   if (options.integrator == Integrator::path) refuse_photon_map_options(command);
+  share_rendering(options);
   const bool knows_errors =
       options.integrator == Integrator::photon_map && nodes_gather(options.parameters);
   if (!options.errors.empty() && (!knows_errors || keeps_maps(options))) {
@@ -313,6 +315,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   LightLayers reflections;
   const Views views{*hits, options.glare.empty() ? nullptr : &reflections};
   const auto write = [&](const LightLayers& rendered) {
+    if (!leads()) return;
     std::optional<LightLayers> denoised;
     if (denoising) {
       record.stages.push_back(timed_stage("denoise", progress, [&] {
@@ -349,13 +352,13 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   const Stopwatch since_loaded;
   RunRecord record;
   record.stages.push_back(stage("load libraries", {loading}));
-  TerminalProgress progress(options.quiet);
+  TerminalProgress progress(options.quiet || !leads());
   const auto elapsed = [&] { return loading.seconds + since_loaded.seconds(); };
   const Stopwatch since_written = render_to_files(command, options, record, elapsed, progress);
   add_time(record.stages, "release memory", since_written.taken());
   TimeTaken total = since_loaded.taken();
   close(record, total += loading);
-  if (!options.statistics.empty()) {
+  if (!options.statistics.empty() && leads()) {
     write_file(
         options.statistics,
         run_json(record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");

@@ -11,6 +11,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "tools/command/processes.hpp"
 #include "tools/command/scene_options.hpp"
 #include "tools/command/setting_options.hpp"
 #include "tools/command/validators.hpp"
@@ -211,6 +212,22 @@ void add_saved_maps_options(CLI::App& command, RenderOptions& options) {
 
 const char* name_of(Integrator integrator) {
   return integrators[static_cast<std::size_t>(integrator)];
+}
+
+void share_rendering(RenderOptions& options) {
+  options.parameters.processes = processes();
+  const auto refuse = [](bool asked, const char* what) {
+    if (asked) refuse_several(what, "leave it out, or start one process");
+  };
+  refuse(options.integrator == Integrator::path, "--integrator path");
+  refuse(!options.save_maps.empty(), "--save-maps");
+  refuse(!options.load_maps.empty(), "--load-maps");
+  refuse(!options.preview.empty(), "--preview");
+  for (const QualityWish& wish : quality_wishes()) {
+    if (options.target.*wish.value > 0) {
+      refuse_several(fmt::format("--{}", wish.option), "leave it out, or start one process");
+    }
+  }
 }
 
 void check_settings(RenderOptions& options) {

@@ -93,6 +93,10 @@ const char* name_of(Integrator integrator);
 /// Brings --direct into the settings and checks them. Errors: UsageError, SettingError.
 void check_settings(RenderOptions& options);
 
+/// Has the processes that were started together share the rendering. Errors: UsageError for what
+/// one process alone can do.
+void share_rendering(RenderOptions& options);
+
 /// Errors: UsageError that names an option which was given to `command` although the path tracer
 /// has no use for it.
 void refuse_photon_map_options(const CLI::App& command);

@@ -24,6 +24,7 @@
 #include "tools/command/commands.hpp"
 #include "tools/command/frame_record.hpp"
 #include "tools/command/output_files.hpp"
+#include "tools/command/processes.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
 #include "tools/command/run_record.hpp"
@@ -138,6 +139,7 @@ class Walk {
       std::optional<Image> root;
       if (!keeps) root = options_.quick ? draw(frame) : render(frame);
       wait_for_shown();
+      if (!leads()) continue;
       const auto keep = [this, frame, root = std::move(root)] {
         if (options_.quick && root && to_exr_) write_exr(names_.of(number(frame)), *root);
         show(frame, root);
@@ -152,7 +154,7 @@ class Walk {
     wait_for_shown();
     progress_.end();
     if (renderer_) keep_light_maps(renderer_->light_maps(), options_.render, progress_);
-    if (sheet_) write_png(options_.sheet, sheet_->image());
+    if (sheet_ && leads()) write_png(options_.sheet, sheet_->image());
   }
 
  private:
@@ -189,11 +191,12 @@ class Walk {
   std::vector<bool> find_finished() const {
     std::vector<bool> finished(frames_.size(), false);
     if (!to_exr_) return finished;
+    if (!leads()) return as_first_says({});
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       progress_.throw_if_cancelled();
       finished[i] = is_finished(names_.of(number(frames_[i])), settings_of(camera_at(frames_[i])));
     }
-    return finished;
+    return as_first_says(finished);
   }
 
   /// To that of the walk's first frame, which another process may make.
@@ -201,7 +204,8 @@ class Walk {
 
   Image first_frame() {
     const std::string file = names_.of(number(0));
-    if (to_exr_ && is_finished(file, settings_of(camera_at(0)))) return read_image(file);
+    const bool there = leads() && to_exr_ && is_finished(file, settings_of(camera_at(0)));
+    if (as_first_says({there}).front()) return read_image(file);
     if (options_.quick) return draw(0);
     LightLayers layers;
     return picture_of(0, layers)->root();
@@ -217,6 +221,7 @@ class Walk {
   Image render(int frame) {
     LightLayers layers;
     const auto picture = picture_of(frame, layers);
+    if (!leads()) return {};
     if (to_exr_) write_exr(names_.of(number(frame)), *picture);
     for (const std::string& line : picture->overflows()) {
       progress_.note(fmt::format("warning: frame {}: {}", number(frame), line));
@@ -352,10 +357,11 @@ void run_walk(WalkOptions& options) {
   check_share(options);
   RenderOptions& render = options.render;
   check_settings(render);
+  share_rendering(render);
   check_names(options);
 
   const ThreadLimit threads(render.threads);
-  TerminalProgress progress(render.quiet);
+  TerminalProgress progress(render.quiet || !leads());
   const Scene scene = load_scene(render.scene, render.load);
   const LightMix mix = mix_of(scene, render);
   const Camera& camera = choose_camera(scene, render.camera);

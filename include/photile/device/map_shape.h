@@ -19,6 +19,9 @@ typedef struct {
   /* A photon agrees with every member if the cosine of the angle between its normal and the axis of
      its side is at least this; above 1 where none can be sure to. */
   float certain_cosine;
+  /* The box along the axes: who enters must be near both, so that lists of candidates, which are
+     made by this one, decide nothing. */
+  float low_x, low_y, low_z, high_x, high_y, high_z;
   unsigned int triangle; /* place of its corners where photons are compared with just one, else
                             PHOTILE_NO_TRIANGLE */
 } PhotileMapShape;

@@ -1,0 +1,107 @@
+#include "tools/command/processes.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+#include "mpi/communicator.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::app {
+namespace {
+
+Communicator* joined = nullptr;
+
+int number_in(const char* variable) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? 0 : std::atoi(text);
+}
+
+/// Processes that a launcher with MPI has started: mpirun of OpenMPI, of MPICH and its kin, srun
+/// with PMI. 0: none did. Some tell it to MPI alone: then 1.
+int launched_with_mpi() {
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    if (const int count = number_in(variable); count > 0) return count;
+  }
+  return std::getenv("PMIX_RANK") != nullptr ? 1 : 0;
+}
+
+/// The module beside the command, or where it is installed; empty where there is none.
+std::filesystem::path module_file() {
+  std::error_code error;
+  const std::filesystem::path folder =
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  for (const auto& file : {folder / "photile_mpi.so",
+                           folder / ".." / PHOTILE_LIBRARY_FOLDER / "photile" / "photile_mpi.so"}) {
+    if (std::filesystem::exists(file, error)) return file;
+  }
+  return {};
+}
+
+/// Whether each process has a part of its own, so that several do not write the same file.
+bool names_its_part(std::span<const char* const> arguments) {
+  for (const char* argument : arguments) {
+    for (const std::string_view option : {"--shard", "--frames"}) {
+      if (std::string_view(argument).starts_with(option)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void join_processes(std::span<const char* const> arguments) {
+  joined = nullptr;
+  const int launched = launched_with_mpi();
+  if (launched == 0) {
+    const int tasks = std::getenv("SLURM_STEP_ID") ? number_in("SLURM_STEP_NUM_TASKS") : 0;
+    if (tasks > 1 && !names_its_part(arguments)) {
+      throw UsageError(fmt::format(
+          "srun has started {} tasks without MPI; use srun --mpi=pmix or mpirun, or give each task "
+          "its --shard",
+          tasks));
+    }
+    return;
+  }
+  const std::filesystem::path file = module_file();
+  if (file.empty()) {
+    if (launched == 1) return;
+    throw UsageError(fmt::format(
+        "mpirun has started {} processes, and this photile was built without MPI; install "
+        "libopenmpi-dev and build it again, or start one process",
+        launched));
+  }
+  // Global: MPI libraries load parts of their own, which look for the rest.
+  void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
+  void* const found = module ? dlsym(module, "photile_mpi_communicator") : nullptr;
+  if (!found) throw UsageError(fmt::format("{}: {}", file.string(), dlerror()));
+  joined = reinterpret_cast<decltype(&photile_mpi_communicator)>(found)();
+  if (!joined) throw UsageError("MPI cannot be initialised; see what mpirun says");
+}
+
+Communicator* processes() { return joined; }
+
+bool leads() { return joined == nullptr || joined->rank() == 0; }
+
+std::vector<bool> as_first_says(const std::vector<bool>& own) {
+  if (!joined) return own;
+  std::vector<std::byte> bytes;
+  for (const bool one : own) bytes.push_back(std::byte{one});
+  if (!leads()) bytes.clear();
+  const std::vector<Communicator::Bytes> all = joined->gather(bytes);
+  std::vector<bool> said;
+  for (const std::byte one : all.front()) said.push_back(one != std::byte{0});
+  return said;
+}
+
+void refuse_several(const std::string& what, const std::string& remedy) {
+  if (joined == nullptr || joined->size() == 1) return;
+  throw UsageError(fmt::format("{} is of one process, and {} share the work; {}", what,
+                               joined->size(), remedy));
+}
+
+}  // namespace photile::app

@@ -1,0 +1,62 @@
+// Processes that share one rendering, and what they send each other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "photile/errors.hpp"
+
+namespace photile {
+
+/// Another process of a Communicator has failed, and tells its error itself.
+struct OtherProcessFailed : Error {
+  OtherProcessFailed() : Error("another process failed") {}
+};
+
+/// Processes that make the same calls in the same order, each with data of its own: ranks, from 0.
+/// photile has one over MPI (host/mpi); a program may bring its own. All functions but the first
+/// two are collective, and throw OtherProcessFailed once a process has called `conclude` with a
+/// failure in place of them.
+class Communicator {
+ public:
+  using Bytes = std::vector<std::byte>;
+
+  virtual ~Communicator() = default;
+  virtual std::uint32_t rank() const = 0;
+  virtual std::uint32_t size() const = 0;
+
+  /// Sends to_each[r] to rank r, and returns what each rank has sent here, by rank.
+  virtual std::vector<Bytes> exchange(std::vector<Bytes> to_each) = 0;
+
+  /// What each rank gave, by rank, on all of them.
+  virtual std::vector<Bytes> gather(std::span<const std::byte> own) = 0;
+
+  /// Replaces values by their sums over all ranks, which wrap around.
+  virtual void sum(std::span<std::uint64_t> values) = 0;
+
+  /// Sums over the ranks before this one; zeros on rank 0.
+  virtual std::vector<std::uint64_t> sum_before(std::span<const std::uint64_t> values) = 0;
+
+  /// How the work of all has ended.
+  struct Conclusion {
+    std::uint32_t rank = 0;  ///< the first that failed; 0 where none did
+    int code = 0;            ///< its exit code
+  };
+  /// The last call of each: its own exit code, 0 where it did not fail.
+  virtual Conclusion conclude(int code) = 0;
+
+  /// What this rank has sent to others so far, and waited for them.
+  struct Traffic {
+    std::uint64_t bytes = 0;
+    std::uint64_t calls = 0;
+    double seconds = 0;  ///< in calls, wall clock
+  };
+  virtual Traffic traffic() const = 0;
+
+  /// Ranks that run on the machine of this one, itself among them.
+  virtual std::uint32_t on_this_machine() const = 0;
+};
+
+}  // namespace photile
