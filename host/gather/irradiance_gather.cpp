@@ -223,9 +223,9 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
   std::vector<std::uint32_t> own(end - begin);
   std::iota(own.begin(), own.end(), static_cast<std::uint32_t>(begin));
   const std::size_t most = (points.size() + shard.count - 1) / shard.count;
-  const GatheredParts part = gather_own(estimate::reordered(points, 0, own),
-                                        number.subspan(begin, own.size()), rays, looks, most,
-                                        progress);
+  const GatheredParts part =
+      gather_own(estimate::reordered(points, 0, own), number.subspan(begin, own.size()), rays,
+                 looks, most, progress);
   GatheredParts all;
   all.indirect.batches = all.direct.batches = parameters_.batches;
   for (const Communicator::Bytes& bytes : processes->gather(bytes_of(part))) append(bytes, all);

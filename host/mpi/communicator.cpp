@@ -78,7 +78,8 @@ class MpiCommunicator final : public Communicator {
     for (std::uint32_t r = 0; r < size_; ++r) {
       if (r != rank_) from[r].resize(in[r]);
     }
-    const std::uint64_t in_round = std::max<std::uint64_t>(1, defaults::exchange_round_bytes / size_);
+    const std::uint64_t in_round =
+        std::max<std::uint64_t>(1, defaults::exchange_round_bytes / size_);
     std::uint64_t most = std::max(*std::max_element(out.begin(), out.end()),
                                   *std::max_element(in.begin(), in.end()));
     // The rounds of whoever has most.
@@ -101,7 +102,8 @@ class MpiCommunicator final : public Communicator {
     std::vector<Bytes> all;
     for (const std::uint64_t size : sizes) all.emplace_back(size);
     const std::uint64_t most = *std::max_element(sizes.begin(), sizes.end());
-    const std::uint64_t in_round = std::max<std::uint64_t>(1, defaults::exchange_round_bytes / size_);
+    const std::uint64_t in_round =
+        std::max<std::uint64_t>(1, defaults::exchange_round_bytes / size_);
     Bytes round;
     std::vector<int> counts(size_), places(size_);
     for (std::uint64_t begin = 0; begin < most; begin += in_round) {
@@ -249,7 +251,8 @@ photile::Communicator* photile_mpi_communicator() {
   if (!communicator) {
     int given = 0;
     // The thread that makes the calls is the only one.
-    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given) != MPI_SUCCESS) return nullptr;
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given) != MPI_SUCCESS)
+      return nullptr;
     communicator = std::make_unique<photile::MpiCommunicator>();
   }
   return communicator.get();

@@ -17,8 +17,7 @@ std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scen
   std::vector<std::optional<PhotonMaps>> built(devices.size());
   for_each_device(devices, progress, [&](std::size_t i, Progress& shared) {
     if (devices.size() == 1) {
-      built[i].emplace(devices[i], scene, std::move(photons), groups, parameters, shared,
-                       wanted);
+      built[i].emplace(devices[i], scene, std::move(photons), groups, parameters, shared, wanted);
     } else {
       built[i].emplace(devices[i], scene, std::as_const(photons), groups, parameters, shared,
                        wanted);

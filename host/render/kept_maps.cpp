@@ -16,7 +16,8 @@ KeptMaps::KeptMaps(std::shared_ptr<const PreparedScene> scene, std::span<Device>
       rendering_(*scene_, devices, parameters, progress) {
   const RenderPlan& plan = rendering_.plan();
   if (plan.used().processes && (prepared || keep)) {
-    throw UsageError("saved maps are of one process; leave them out where several share a rendering");
+    throw UsageError(
+        "saved maps are of one process; leave them out where several share a rendering");
   }
   if (prepared && !prepared->caustics && plan.keeps_caustics()) {
     throw SettingError(

@@ -91,7 +91,8 @@ Estimates MapEstimators::estimate(const PrimaryHits& hits) {
 
 Estimates MapEstimators::estimate_same(const PrimaryHits& hits) {
   if (!owners_) return estimate_here(hits);
-  return owners_->estimate_same(hits, [this](const PrimaryHits& own) { return estimate_here(own); });
+  return owners_->estimate_same(hits,
+                                [this](const PrimaryHits& own) { return estimate_here(own); });
 }
 
 Estimates MapEstimators::estimate_here(const PrimaryHits& hits) {

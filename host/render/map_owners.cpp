@@ -17,8 +17,7 @@ constexpr int bits_of_axis = 21;
 std::vector<std::uint32_t> along_curve(std::span<const geometry::Box> boxes) {
   geometry::Box bounds;
   for (const geometry::Box& box : boxes) bounds.extend(box);
-  const glm::vec3 extent =
-      glm::max(bounds.size(), glm::vec3(std::numeric_limits<float>::min()));
+  const glm::vec3 extent = glm::max(bounds.size(), glm::vec3(std::numeric_limits<float>::min()));
   std::vector<std::uint64_t> code;
   for (const geometry::Box& box : boxes) {
     const glm::dvec3 place =

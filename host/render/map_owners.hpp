@@ -10,8 +10,8 @@
 
 namespace photile {
 
-/// Pairs of maps, both sides of a triangle or of a patch, in runs along the Morton curve through the
-/// middles of their boxes: each process has one run, with about as many photons as any other.
+/// Pairs of maps, both sides of a triangle or of a patch, in runs along the Morton curve through
+/// the middles of their boxes: each process has one run, with about as many photons as any other.
 class MapOwners {
  public:
   ///   landed   per sided triangle: photons of all processes

@@ -19,8 +19,8 @@ namespace photile {
 std::vector<std::byte> bytes_of(const Estimates& estimates);
 void append_estimates(std::span<const std::byte> bytes, Estimates& estimates);
 
-/// Sends hits to the owners of their maps, and brings their estimates back. What a hit gets must not
-/// depend on the hits beside it.
+/// Sends hits to the owners of their maps, and brings their estimates back. What a hit gets must
+/// not depend on the hits beside it.
 class OwnerEstimates {
  public:
   /// Of hits on maps of this process.
@@ -36,7 +36,8 @@ class OwnerEstimates {
   /// Of this process's hits, by whichever process. Collective.
   Estimates estimate(const PrimaryHits& hits, const Estimate& here);
 
-  /// Of hits that are the same on all processes: each estimates its own, and all have all. Collective.
+  /// Of hits that are the same on all processes: each estimates its own, and all have all.
+  /// Collective.
   Estimates estimate_same(const PrimaryHits& hits, const Estimate& here);
 
   Communicator& processes() const { return processes_; }

@@ -91,10 +91,21 @@ void RenderCosts::add_processes(Communicator& all) {
   getrusage(RUSAGE_SELF, &usage);
   const auto memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
   const Communicator::Traffic traffic = all.traffic();
-  const std::array own{references,  maps,          mixed_maps, largest_map,
-                       rays,        gather_rays,   hit_count,  photons_sent,
-                       photon_bytes_sent, photons_held, hits_sent, hit_bytes_sent,
-                       traffic.bytes, memory, std::bit_cast<std::uint64_t>(light_map_errors.squares),
+  const std::array own{references,
+                       maps,
+                       mixed_maps,
+                       largest_map,
+                       rays,
+                       gather_rays,
+                       hit_count,
+                       photons_sent,
+                       photon_bytes_sent,
+                       photons_held,
+                       hits_sent,
+                       hit_bytes_sent,
+                       traffic.bytes,
+                       memory,
+                       std::bit_cast<std::uint64_t>(light_map_errors.squares),
                        light_map_errors.hits};
   std::vector<std::array<std::uint64_t, own.size()>> of_ranks;
   for (const Communicator::Bytes& bytes : all.gather(std::as_bytes(std::span(own)))) {

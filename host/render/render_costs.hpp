@@ -55,11 +55,11 @@ struct RenderCosts {
 
   // Where several processes share the rendering: what this one sent to others, and holds.
   std::uint64_t photons_sent = 0, photon_bytes_sent = 0, photons_held = 0;
-  std::uint64_t hits_sent = 0, hit_bytes_sent = 0;  ///< of the picture
+  std::uint64_t hits_sent = 0, hit_bytes_sent = 0;        ///< of the picture
   std::vector<std::pair<std::string, double>> processes;  ///< figures of all
 
-  /// Replaces counts by those of all processes, and fills in their figures. Times stay those of this
-  /// one. Collective.
+  /// Replaces counts by those of all processes, and fills in their figures. Times stay those of
+  /// this one. Collective.
   void add_processes(Communicator& all);
 
   /// Adds what the maps of a further pass have cost.

@@ -51,9 +51,10 @@ void check_for_several(const RenderParameters& asked) {
                        "several share a rendering");
   }
   if (is_global(asked.structure)) {
-    throw SettingError(setting_named("structure"),
-                       std::string(name_of(asked.structure)) +
-                           " is over all photons, which several processes share; take uniform-grid");
+    throw SettingError(
+        setting_named("structure"),
+        std::string(name_of(asked.structure)) +
+            " is over all photons, which several processes share; take uniform-grid");
   }
 }
 

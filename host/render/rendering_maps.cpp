@@ -125,8 +125,8 @@ void Rendering::note_maps(const PhotonMapStatistics& built) {
 
 bool Rendering::makes_maps_in_sight() const {
   return one_picture_ && !plan_.used().processes && plan_.passes() == 1 &&
-         plan_.reads_light_maps() &&
-         !plan_.keeps_caustics() && devices_.size() == 1 && !is_global(plan_.used().structure);
+         plan_.reads_light_maps() && !plan_.keeps_caustics() && devices_.size() == 1 &&
+         !is_global(plan_.used().structure);
 }
 
 MapEstimators::Parts Rendering::build_some(std::span<const std::uint8_t> wanted) {

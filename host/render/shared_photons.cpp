@@ -124,8 +124,8 @@ std::vector<std::vector<std::uint32_t>> photons_for(const Destinations& destinat
                                                     const Photons& photons, std::uint32_t ranks) {
   constexpr std::size_t triangles_per_chunk = 256;  // sided ones
   const std::size_t sides = photons.first_of.size() - 1;
-  std::vector<std::vector<std::vector<std::uint32_t>>> chunks(
-      (sides + triangles_per_chunk - 1) / triangles_per_chunk);
+  std::vector<std::vector<std::vector<std::uint32_t>>> chunks((sides + triangles_per_chunk - 1) /
+                                                              triangles_per_chunk);
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
     chunks[c].resize(ranks);
     const std::size_t last = std::min(sides, (c + 1) * triangles_per_chunk);
@@ -181,8 +181,7 @@ std::uint64_t bytes_of_photon(const Photons& photons) {
 /// Of all ranks.
 std::uint64_t largest(Communicator& processes, std::uint64_t own) {
   std::uint64_t most = 0;
-  for (const Communicator::Bytes& bytes :
-       processes.gather(std::as_bytes(std::span(&own, 1)))) {
+  for (const Communicator::Bytes& bytes : processes.gather(std::as_bytes(std::span(&own, 1)))) {
     std::uint64_t other = 0;
     std::memcpy(&other, bytes.data(), sizeof other);
     most = std::max(most, other);
@@ -217,7 +216,8 @@ std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, cons
 
   found.clear();
   const std::uint64_t step = groups::sample_step(all->count);
-  const std::uint64_t samples = all->count < step / 2 + 1 ? 0 : (all->count - step / 2 - 1) / step + 1;
+  const std::uint64_t samples =
+      all->count < step / 2 + 1 ? 0 : (all->count - step / 2 - 1) / step + 1;
   places.for_each(
       samples, [&](std::uint64_t i) { return step / 2 + i * step; },
       [&](std::uint64_t i, std::uint32_t s, std::uint32_t photon) {

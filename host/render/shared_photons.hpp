@@ -25,8 +25,8 @@ struct PhotonsMoved {
 };
 
 /// Sends photons to the processes whose maps they may enter, those near a border to several, in
-/// rounds of defaults::exchange_round_bytes. Returns those of the own maps as one process would have
-/// them: sorted by sided triangle, within it in the order light, path, bounce. Collective.
+/// rounds of defaults::exchange_round_bytes. Returns those of the own maps as one process would
+/// have them: sorted by sided triangle, within it in the order light, path, bounce. Collective.
 ///   own      as photons_of_all; `of_all` is set
 ///   radius   of the maps, metres
 Photons to_owners(Communicator& processes, const Scene& scene, const NeighbourGroups& groups,

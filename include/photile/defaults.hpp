@@ -109,8 +109,8 @@ inline constexpr int view_samples_per_pixel = 16;
 inline constexpr std::uint64_t view_first_photons = 8192;  ///< paths of the first picture
 
 // Several processes
-/// Bytes that a process sends in one round of an exchange, at most: buffers for more would lie beside
-/// the photons.
+/// Bytes that a process sends in one round of an exchange, at most: buffers for more would lie
+/// beside the photons.
 inline constexpr std::uint64_t exchange_round_bytes = std::uint64_t{1} << 24;
 
 // Validation: readings whose noise leaves room for the tolerance of 1%

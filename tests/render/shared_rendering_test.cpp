@@ -26,7 +26,8 @@ Scene glossy_room() {
 }
 
 /// That of rank 0.
-LightLayers shared_picture(const Scene& scene, std::uint32_t processes, RenderParameters parameters) {
+LightLayers shared_picture(const Scene& scene, std::uint32_t processes,
+                           RenderParameters parameters) {
   LightLayers picture;
   on_threads(processes, [&](Communicator& communicator) {
     Device own;
@@ -71,11 +72,10 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
     own.shard = {communicator.rank(), communicator.size()};
     Photons photons = trace_photons(rays, own).photons;
     photons.of_all = photons_of_all(communicator, photons);
-    const bool known = photons.of_all->count == all.size() &&
-                       photons.of_all->landed == landed_on(scene, all) &&
-                       find_map_groups(scene, photons, MapMode::patch, {radius, 60}).members ==
-                           groups.members &&
-                       automatic_radius(photons, 20) == automatic_radius(all, 20);
+    const bool known =
+        photons.of_all->count == all.size() && photons.of_all->landed == landed_on(scene, all) &&
+        find_map_groups(scene, photons, MapMode::patch, {radius, 60}).members == groups.members &&
+        automatic_radius(photons, 20) == automatic_radius(all, 20);
     const MapOwners owners(scene, groups.patches, photons.of_all->landed, processes);
     PhotonsMoved moved;
     photons = to_owners(communicator, scene, groups, owners, radius, std::move(photons), moved);

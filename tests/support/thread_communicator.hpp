@@ -19,7 +19,8 @@ namespace photile::test {
 
 /// What the threads share: a place for what each gives.
 struct ThreadGroup {
-  explicit ThreadGroup(std::uint32_t size) : given(size), meeting(static_cast<std::ptrdiff_t>(size)) {}
+  explicit ThreadGroup(std::uint32_t size)
+      : given(size), meeting(static_cast<std::ptrdiff_t>(size)) {}
   std::vector<std::vector<Communicator::Bytes>> given;  ///< [from][to]
   std::barrier<> meeting;
 };

@@ -82,8 +82,9 @@ void define(CLI::App& photile) {
     const std::string name = command->get_name();
     if (name == "render" || name == "measure" || name == "walk") continue;
     command->preparse_callback([name](std::size_t) {
-      refuse_several("photile " + name, name == "trace" ? "give each process its --shard, without mpirun"
-                                                        : "start it without mpirun");
+      refuse_several("photile " + name, name == "trace"
+                                            ? "give each process its --shard, without mpirun"
+                                            : "start it without mpirun");
     });
   }
 }
