@@ -4,11 +4,13 @@
 
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "daylight/sky_patches.hpp"
 #include "import/photometry/photometric_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -47,12 +49,49 @@ LightProfile LightProfile::parse(const std::string& text) {
   return {light, file};
 }
 
+Site Site::parse(const std::string& text) {
+  const auto numbers = numbers_of(text);
+  if (!numbers || numbers->size() != 3 || std::abs((*numbers)[0]) > 90.0 ||
+      std::abs((*numbers)[1]) > 180.0 || (*numbers)[2] < -12.0 || (*numbers)[2] > 14.0) {
+    throw UsageError(fmt::format(
+        "site '{}': use LATITUDE,LONGITUDE,TIME_ZONE, such as 52.5,13.4,1: degrees north within -90 "
+        "and 90, degrees east within -180 and 180, hours before Greenwich within -12 and 14",
+        text));
+  }
+  return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
+
+LocalTime LocalTime::parse(const std::string& text) {
+  const auto part = [&](std::size_t first, std::size_t count) {
+    const auto value = parse_number<int>(std::string_view(text).substr(first, count));
+    return value && *value >= 0 ? *value : -1;
+  };
+  if (text.size() == 16 && text[4] == '-' && text[7] == '-' && text[10] == 'T' && text[13] == ':') {
+    const int year = part(0, 4), month = part(5, 2), day = part(8, 2), hour = part(11, 2),
+              minute = part(14, 2);
+    const std::chrono::year_month_day date{std::chrono::year(year),
+                                           std::chrono::month(static_cast<unsigned>(month)),
+                                           std::chrono::day(static_cast<unsigned>(day))};
+    if (year > 0 && date.ok() && hour >= 0 && hour < 24 && minute >= 0 && minute < 60)
+      return {year, month, day, hour + minute / 60.0};
+  }
+  throw UsageError(fmt::format(
+      "time '{}': use YYYY-MM-DDTHH:MM, such as 2026-06-21T14:00, in the site's standard time",
+      text));
+}
+
 Sun Sun::parse(const std::string& text) {
   const auto numbers = numbers_of(text);
+  if (numbers && numbers->size() == 1 && numbers->front() > 0.0) {
+    Sun sun{0, 0, numbers->front()};
+    sun.placed_by_time = true;
+    return sun;
+  }
   if (!numbers || numbers->size() < 3 || numbers->size() > 4) {
     throw UsageError(fmt::format(
         "sun '{}': use AZIMUTH,ELEVATION,LUX[,DIAMETER], such as 135,40,80000: degrees from north "
-        "by east, degrees above the horizon, lux on a surface that faces it, degrees of its disc",
+        "by east, degrees above the horizon, lux on a surface that faces it, degrees of its disc; or "
+        "its lux alone where a site and a time are given",
         text));
   }
   Sun sun{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
@@ -70,12 +109,27 @@ Sun Sun::parse(const std::string& text) {
 
 Sky Sky::parse(const std::string& text) {
   constexpr const char* remedy =
-      "use KIND=LUX, such as overcast=10000; the kinds are uniform, overcast and clear";
+      "use KIND=LUX, such as overcast=10000; the kinds are uniform, overcast and clear; or "
+      "perez=DIRECT,DIFFUSE, such as perez=600,120, in W/m2 facing the sun and on open ground; or "
+      "patches=145, 577 or 2305";
   constexpr std::array kinds{std::pair{"uniform", SkyKind::uniform},
                              std::pair{"overcast", SkyKind::overcast},
                              std::pair{"clear", SkyKind::clear}};
   const auto [kind, lux] = sides(text, text.find('='), remedy);
   const auto illuminance = parse_signed(lux);
+  if (kind == "perez") {
+    const auto numbers = numbers_of(lux);
+    const auto in_range = [](double value) {
+      return value >= 0.0 && value <= limits::max_irradiance;
+    };
+    if (numbers && numbers->size() == 2 && in_range((*numbers)[0]) && in_range((*numbers)[1]))
+      return {SkyKind::perez, 0, (*numbers)[0], (*numbers)[1]};
+  }
+  if (kind == "patches" && illuminance) {
+    for (const int count : daylight::patch_counts) {
+      if (*illuminance == count) return {SkyKind::patches, 0, 0, 0, count};
+    }
+  }
   for (const auto& [word, value] : kinds) {
     if (kind == word && illuminance && *illuminance > 0.0) return {value, *illuminance};
   }

@@ -19,6 +19,7 @@
 #include "scene/default_camera.hpp"
 #include "scene/light_names.hpp"
 #include "scene/photometry.hpp"
+#include "trace/portal_search.hpp"
 
 namespace photile {
 namespace {
@@ -150,6 +151,9 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   check_powers(scene, options.emissive_scale);
   group_lights(scene, options.light_groups);
   if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
+  const bool lit_from_beyond = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                           [](const Light& light) { return light.is_distant(); });
+  if (lit_from_beyond) scene.portals = trace::portals_asked_for(scene, options.portals);
   scene.report.warnings = warnings.lines();
   return {std::move(scene), std::move(context.light_sources)};
 }

@@ -11,6 +11,8 @@ namespace {
 using std::numbers::pi;
 constexpr int rows = 512;  // a third of a degree each
 constexpr int columns = 1024;
+/// Of what does not depend on the azimuth: portals show some of them more than others.
+constexpr int even_columns = 64;
 
 /// Luminance of a clear sky over a factor that is the same everywhere: ISO 15469, type 12.
 double clear_luminance(const glm::dvec3& direction, const glm::dvec3& to_sun) {
@@ -35,9 +37,10 @@ glm::dvec3 direction_to(const Sun& sun) {
           -std::cos(elevation) * std::cos(azimuth)};
 }
 
-EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_sun) {
-  // What does not depend on the azimuth needs one column.
-  const int width = kind == SkyKind::clear ? columns : 1;
+EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_sun,
+                       const daylight::PerezSky* perez) {
+  const bool by_azimuth = kind == SkyKind::clear || kind == SkyKind::perez;
+  const int width = by_azimuth ? columns : even_columns;
   const EnvironmentMap places("sky", width, rows,
                               std::vector<glm::vec3>(static_cast<std::size_t>(width * rows)));
   std::vector<double> texels;
@@ -48,12 +51,19 @@ EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_su
       double value = 1;
       // The mean over the row, exactly, so that the closed form of the illuminance holds.
       if (kind == SkyKind::overcast) value = 1 + above + below;
+      if (kind == SkyKind::perez) {
+        const glm::dvec3 direction = places.direction_at(column + 0.5, row, 0.5);
+        value = perez->relative_luminance(
+            std::asin(std::clamp(direction.y, -1.0, 1.0)),
+            std::acos(std::clamp(glm::dot(direction, to_sun), -1.0, 1.0)));
+      }
       if (kind == SkyKind::clear)
         value = clear_luminance(places.direction_at(column + 0.5, row, 0.5), to_sun);
       texels.push_back(value);
       horizontal += value * pi / width * (above * above - below * below);
     }
   }
+  if (!(horizontal > 0)) return sky_map(SkyKind::uniform, illuminance, to_sun);
   std::vector<glm::vec3> scaled(static_cast<std::size_t>(width * rows), glm::vec3(0.0f));
   for (std::size_t i = 0; i < texels.size(); ++i) {
     scaled[i] = glm::vec3(static_cast<float>(texels[i] * illuminance / horizontal));

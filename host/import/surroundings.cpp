@@ -7,7 +7,9 @@
 
 #include "import/finishing.hpp"
 #include "import/radiance_picture.hpp"
+#include "daylight/sky_lights.hpp"
 #include "import/sky_map.hpp"
+#include "import/sky_situation.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_emission.hpp"
@@ -77,17 +79,16 @@ void add_sun(const Sun& sun, const SceneLoadOptions& options, Scene& scene) {
   check_flux<UsageError>(scene, fmt::format("sun of {:g} lux", sun.illuminance), fewer_lux);
 }
 
-void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
-  check_lux("sky", sky.illuminance);
-  glm::dvec3 to_sun(0.0, 1.0, 0.0);
-  if (sky.kind == SkyKind::clear) {
-    if (!options.sun || !(options.sun->elevation_degrees > 0.0)) {
-      throw UsageError("a clear sky needs a sun above the horizon; give one, too");
-    }
-    to_sun = direction_to(*options.sun);
+void add_sky(const SkyLight& sky, const SceneLoadOptions& options, Scene& scene) {
+  if (sky.kind == SkyKind::patches) {
+    daylight::add_sky_lights(daylight::sky_patches(sky.patches), sky.north, scene);
+    return;
   }
-  add_environment_light(
-      "sky", sky_map(sky.kind, in_scene_unit(sky.illuminance, scene, options), to_sun), scene);
+  check_lux("sky", sky.illuminance);
+  add_environment_light("sky",
+                        sky_map(sky.kind, in_scene_unit(sky.illuminance, scene, options),
+                                sky.to_sun, sky.perez ? &*sky.perez : nullptr),
+                        scene);
   check_flux<UsageError>(scene, fmt::format("sky of {:g} lux", sky.illuminance), fewer_lux);
 }
 
@@ -95,8 +96,9 @@ void add_sky(const Sky& sky, const SceneLoadOptions& options, Scene& scene) {
 
 void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
   if (!options.environment.file.empty()) add_picture(options.environment, scene);
-  if (options.sun) add_sun(*options.sun, options, scene);
-  if (options.sky) add_sky(*options.sky, options, scene);
+  const SkySituationLights found = sun_and_sky(options);
+  if (found.sun) add_sun(*found.sun, options, scene);
+  if (found.sky) add_sky(*found.sky, options, scene);
 }
 
 }  // namespace photile::scene_io

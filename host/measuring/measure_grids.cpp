@@ -1,11 +1,13 @@
 #include "measuring/measure_grids.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "photile/light_groups.hpp"
 #include "photile/quiet_progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/flush_denormals.hpp"
+#include "trace/portal_search.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 
@@ -55,6 +57,18 @@ Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, co
   }
   progress.end();
   return readings;
+}
+
+std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorGrid> grids,
+                                     std::span<const std::string> asked) {
+  constexpr double above = 0.01;  // metres: a sensor may lie on a surface
+  const bool lit_from_beyond = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                           [](const Light& light) { return light.is_distant(); });
+  if (!lit_from_beyond) return {};
+  std::vector<glm::dvec3> points;
+  for (const Sensor& sensor : sensors_of(scene, grids))
+    points.push_back(sensor.position + above * sensor.normal);
+  return trace::portals_asked_for(scene, asked, points);
 }
 
 std::size_t covered_sensors(const Scene& scene, std::span<const SensorGrid> grids) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "measuring/readings.hpp"
@@ -15,6 +16,12 @@ namespace photile::measuring {
 Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,
                        std::span<Device> devices, const MeasuringParameters& parameters,
                        Progress& progress);
+
+/// Scene::portals of the rooms of the grids, where light comes from beyond the scene.
+///   asked   as SceneLoadOptions::portals
+/// Errors: those of portals_asked_for.
+std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorGrid> grids,
+                                     std::span<const std::string> asked);
 
 /// Sensors with a surface less than a centimetre in front of them: most are in furniture, or just
 /// below a top.

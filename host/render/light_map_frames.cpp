@@ -107,7 +107,7 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
       surfaces_(scene_.triangle_count()),
       layer_of_(light_groups_of(scene_).group_of),
       emitted_(emitted_radiance_at_unit_power(scene_)),
-      distant_(trace::distant_lights(scene_)),
+      distant_(scene_),
       seconds_per_place_(source.surroundings().rounds > 0 ? seconds_of_rays : seconds_of_photons),
       seconds_per_refinement_(seconds_per_place_) {
   const std::span<const std::uint32_t> chart_of = maps.charts().chart_of();

@@ -86,7 +86,7 @@ class LightMapFrames {
   std::vector<Surface> surfaces_;
   std::vector<std::uint32_t> layer_of_;  ///< per light
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1
-  std::vector<trace::DistantLight> distant_;
+  trace::DistantLights distant_;
   light_maps::NodeMix mixed_;
   std::uint64_t mixed_refinements_ = 0;      ///< of the nodes that are mixed
   std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none

@@ -67,11 +67,12 @@ class SurfacePath {
   }
 
   void add_what_lies_beyond(const glm::vec3& direction) {
-    for (const trace::DistantLight& light : lights_.distant()) {
+    for (const std::uint32_t index : lights_.distant().towards(direction)) {
+      const trace::DistantLight& light = lights_.distant()[index];
       const glm::vec3 radiance = light.radiance(direction);
       if (radiance == glm::vec3(0.0f)) continue;
       add(lights_.layer(light.light()),
-          weights_ * (weight_against(lights_.density(light, direction)) * radiance));
+          weights_ * (weight_against(lights_.density(light, from_, direction)) * radiance));
     }
   }
 

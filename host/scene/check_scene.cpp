@@ -204,7 +204,8 @@ class SceneCheck {
     }
     const float numbers = light.color.x + light.color.y + light.color.z + light.inner_cone_angle +
                           light.outer_cone_angle + light.angular_diameter + light.texel_radiance.x +
-                          light.texel_radiance.y + light.texel_radiance.z;
+                          light.texel_radiance.y + light.texel_radiance.z + light.sky_patch.x +
+                          light.sky_patch.y + light.sky_patch.z + light.sky_patch.w;
     const glm::dvec3 direction(light.direction);
     if (!std::isfinite(numbers) || !std::isfinite(glm::length(direction)) ||
         !std::isfinite(glm::length(glm::dvec3(light.x_axis))) ||

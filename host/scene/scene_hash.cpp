@@ -42,7 +42,7 @@ void add_metallic_roughness(const MetallicRoughness& model, ContentHash& hash) {
 void add_light(const Light& light, ContentHash& hash) {
   const auto& [name, group, kind, color, power, triangles, two_sided, emission_texture,
                texel_radiance, position, direction, inner_cone_angle, outer_cone_angle,
-               distribution, x_axis, angular_diameter, environment] = light;
+               distribution, x_axis, angular_diameter, sky_patch, environment] = light;
   hash.add(name);
   hash.add(group);
   hash.add(kind);
@@ -59,6 +59,7 @@ void add_light(const Light& light, ContentHash& hash) {
   hash.add(distribution);
   hash.add(x_axis);
   hash.add(angular_diameter);
+  hash.add(sky_patch);
   hash.add(environment);
 }
 
@@ -93,7 +94,7 @@ void add_scene(const Scene& scene, ContentHash& hash) {
   const auto& [source, unit, origin, vertices, triangles, front_side, triangle_material,
                triangle_light, corner_uv, corner_emission_uv, corner_normal, corner_tangent,
                shared_meshes, instances, materials, metallic_roughness, textures, lights,
-               distributions, environments, cameras, report] = scene;
+               distributions, environments, portals, cameras, report] = scene;
   hash.add(unit);
   hash.add(origin);
   hash.add(vertices);
@@ -129,6 +130,11 @@ void add_scene(const Scene& scene, ContentHash& hash) {
   }
   hash.add(std::uint64_t{environments.size()});
   for (const EnvironmentMap& map : environments) add_environment(map, hash);
+  for (const auto& [corner, u, v] : portals) {
+    hash.add(corner);
+    hash.add(u);
+    hash.add(v);
+  }
 }
 
 }  // namespace photile

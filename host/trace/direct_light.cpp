@@ -69,10 +69,11 @@ class DirectLight {
  private:
   void add_what_lies_beyond(const glm::vec3& direction, float density,
                             const LightWeights& weights) {
-    for (const DistantLight& light : lamps_.distant()) {
+    for (const std::uint32_t index : lamps_.distant().towards(direction)) {
+      const DistantLight& light = lamps_.distant()[index];
       const glm::vec3 radiance = light.radiance(direction);
       if (radiance == glm::vec3(0.0f)) continue;
-      const float weight = power_heuristic(density, lamps_.density(light, direction));
+      const float weight = power_heuristic(density, lamps_.density(light, point_.position, direction));
       add(lamps_.layer(light.light()), weights * (weight * radiance));
     }
   }

@@ -1,5 +1,6 @@
 #include "trace/distant_light.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -8,7 +9,38 @@
 
 namespace photile::trace {
 
+namespace {
+
+// Cells of the sphere, by elevation and azimuth: some for each patch of the finest skies.
+constexpr int sphere_rows = 90, sphere_columns = 180;
+constexpr std::size_t few_lights = 4;  ///< that are not worth a look-up
+
+/// Clockwise from -z as seen from above, in [0, 2 pi).
+double azimuth_of(const glm::dvec3& direction) {
+  const double azimuth = std::atan2(direction.x, -direction.z);
+  return azimuth < 0 ? azimuth + glm::two_pi<double>() : azimuth;
+}
+
+glm::dvec3 sky_direction(double azimuth, double sine) {
+  const double cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
+  return {cosine * std::sin(azimuth), sine, -cosine * std::cos(azimuth)};
+}
+
+bool sees_patch(const glm::vec4& patch, const glm::dvec3& direction) {
+  // The bounds are floats, and so is the sine.
+  if (direction.y < static_cast<double>(patch.z)) return false;
+  if (direction.y >= static_cast<double>(patch.w) && patch.w < 1.0f) return false;
+  const double from = patch.x, width = static_cast<double>(patch.y) - from;
+  if (width >= glm::two_pi<double>() - 1e-5) return true;
+  double turned = std::fmod(azimuth_of(direction) - from, glm::two_pi<double>());
+  if (turned < 0) turned += glm::two_pi<double>();
+  return turned < width;
+}
+
+}  // namespace
+
 bool sees_disc(const Light& sun, const glm::vec3& direction) {
+  if (sun.is_sky_patch()) return sees_patch(sun.sky_patch, glm::dvec3(direction));
   // By the sine: near 1 a cosine of floats could not tell the disc's border.
   const glm::dvec3 seen(direction), centre(-sun.direction);
   return glm::dot(seen, centre) > 0 &&
@@ -17,6 +49,8 @@ bool sees_disc(const Light& sun, const glm::vec3& direction) {
 }
 
 double disc_solid_angle(const Light& sun) {
+  const glm::dvec4 patch(sun.sky_patch);
+  if (sun.is_sky_patch()) return (patch.y - patch.x) * (patch.w - patch.z);
   const double half_sine = std::sin(0.25 * static_cast<double>(sun.angular_diameter));
   return 4 * glm::pi<double>() * half_sine * half_sine;  // 2 pi (1 - cos)
 }
@@ -37,15 +71,57 @@ glm::vec3 DistantLight::radiance(const glm::vec3& direction) const {
   return sees_disc(*lamp_, direction) ? factor_ : glm::vec3(0.0f);
 }
 
-std::vector<DistantLight> distant_lights(const Scene& scene) {
-  std::vector<DistantLight> found;
+DistantLights::DistantLights(const Scene& scene) {
   const LightGroups groups = light_groups_of(scene);
+  const double radius = bounding_sphere(scene).radius;
   for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     if (light.has_size() && light.kind != LightKind::area)
-      found.emplace_back(scene, i, groups.share[i], bounding_sphere(scene).radius);
+      lights_.emplace_back(scene, i, groups.share[i], radius);
   }
-  return found;
+  const auto count = static_cast<std::uint32_t>(lights_.size());
+  cells_.resize(count <= few_lights ? 1 : sphere_rows * sphere_columns);
+  for (std::uint32_t index = 0; index < count; ++index) {
+    const Light& light = lights_[index].lamp();
+    if (cells_.size() == 1 || light.kind == LightKind::environment) {
+      for (auto& cell : cells_) cell.push_back(index);
+      continue;
+    }
+    // Whatever is nearer to a cell's middle than the light and the cell reach.
+    const DistantSampler sampler(scene, light);
+    const glm::dvec3 middle = sampler.middle();
+    const glm::dvec4 patch(light.sky_patch);
+    double reach = 0.5 * static_cast<double>(light.angular_diameter);
+    if (light.is_sky_patch()) {
+      for (const double azimuth : {patch.x, 0.5 * (patch.x + patch.y), patch.y}) {
+        for (const double sine : {patch.z, patch.w}) {
+          const double cosine = glm::dot(middle, sky_direction(azimuth, sine));
+          reach = std::max(reach, std::acos(std::clamp(cosine, -1.0, 1.0)));
+        }
+      }
+      // The borders between corners bulge where a patch goes far round.
+      if (patch.y - patch.x > 1.1) reach = glm::pi<double>();
+    }
+    constexpr double cell_reach = 0.7072 * glm::pi<double>() / sphere_rows + 1e-4;
+    for (int row = 0; row < sphere_rows; ++row) {
+      const double polar = glm::pi<double>() * (row + 0.5) / sphere_rows;
+      for (int column = 0; column < sphere_columns; ++column) {
+        const double azimuth = glm::two_pi<double>() * (column + 0.5) / sphere_columns;
+        const double cosine = glm::dot(middle, sky_direction(azimuth, std::cos(polar)));
+        if (std::acos(std::clamp(cosine, -1.0, 1.0)) > reach + cell_reach) continue;
+        cells_[static_cast<std::size_t>(row * sphere_columns + column)].push_back(index);
+      }
+    }
+  }
+}
+
+std::size_t DistantLights::cell_towards(const glm::vec3& direction) {
+  const double polar = std::acos(std::clamp(static_cast<double>(direction.y), -1.0, 1.0));
+  const double azimuth = azimuth_of(glm::dvec3(direction));
+  const int row = std::min(sphere_rows - 1, static_cast<int>(polar / glm::pi<double>() * sphere_rows));
+  const int column =
+      std::min(sphere_columns - 1, static_cast<int>(azimuth / glm::two_pi<double>() * sphere_columns));
+  return static_cast<std::size_t>(row * sphere_columns + column);
 }
 
 DistantSampler::DistantSampler(const Scene& scene, const Light& light) : light_(&light) {
@@ -54,6 +130,13 @@ DistantSampler::DistantSampler(const Scene& scene, const Light& light) : light_(
 
 DistantSampler::Sample DistantSampler::sample(const RandomBlock& random) const {
   if (map_) return map_->sample(random);
+  if (light_->is_sky_patch()) {
+    const glm::dvec4 patch(light_->sky_patch);
+    const double sine = patch.z + random.uniform_double(0) * (patch.w - patch.z);
+    const double azimuth = patch.x + double{random.uniform(2)} * (patch.y - patch.x);
+    return {glm::vec3(sky_direction(azimuth, sine)), light_->color,
+            static_cast<float>(1 / disc_solid_angle(*light_))};
+  }
   const double half_sine = std::sin(0.25 * static_cast<double>(light_->angular_diameter));
   const double below_one = random.uniform_double(0) * 2 * half_sine * half_sine;  // 1 - cosine
   const double sine = std::sqrt(below_one * (2 - below_one));
@@ -63,6 +146,16 @@ DistantSampler::Sample DistantSampler::sample(const RandomBlock& random) const {
       frame.to_world(glm::vec3(sine * std::cos(phi), sine * std::sin(phi), 1 - below_one));
   return {glm::normalize(direction), light_->color,
           static_cast<float>(1 / disc_solid_angle(*light_))};
+}
+
+glm::dvec3 DistantSampler::middle() const {
+  if (!light_->is_sky_patch()) return -glm::dvec3(light_->direction);
+  const glm::dvec4 patch(light_->sky_patch);
+  if (patch.y - patch.x >= glm::two_pi<double>() - 1e-5) {
+    return {0.0, patch.z + patch.w < 0 ? -1.0 : 1.0, 0.0};  // a cap
+  }
+  return sky_direction(0.5 * (patch.x + patch.y),
+                      std::sin(0.5 * (std::asin(patch.z) + std::asin(std::min(1.0, patch.w)))));
 }
 
 float DistantSampler::density(const glm::vec3& direction) const {

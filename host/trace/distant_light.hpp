@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "photile/scene.hpp"
@@ -21,6 +22,7 @@ class DistantLight {
   DistantLight(const Scene& scene, std::uint32_t light, double share, double radius);
 
   std::uint32_t light() const { return light_; }
+  const Light& lamp() const { return *lamp_; }
   /// Radiance that arrives from a unit direction where the layer's power is 1.
   glm::vec3 radiance(const glm::vec3& direction) const;
 
@@ -31,12 +33,32 @@ class DistantLight {
   glm::vec3 factor_;  ///< radiance of the disc, or what the map's radiance is multiplied by
 };
 
-/// Those lights of the scene.
-std::vector<DistantLight> distant_lights(const Scene& scene);
+/// All of a scene. Where they are many, most are patches of a sky and discs of suns: which of them a
+/// direction can meet is found by cells of the sphere.
+class DistantLights {
+ public:
+  explicit DistantLights(const Scene& scene);
 
-/// Whether a unit direction points into the disc of a directional light.
+  bool empty() const { return lights_.empty(); }
+  auto begin() const { return lights_.begin(); }
+  auto end() const { return lights_.end(); }
+  const DistantLight& operator[](std::size_t index) const { return lights_[index]; }
+
+  /// Those that may shine from a unit direction, as indices; all that do are among them.
+  std::span<const std::uint32_t> towards(const glm::vec3& direction) const {
+    return cells_.size() == 1 ? cells_.front() : cells_[cell_towards(direction)];
+  }
+
+ private:
+  static std::size_t cell_towards(const glm::vec3& direction);
+
+  std::vector<DistantLight> lights_;
+  std::vector<std::vector<std::uint32_t>> cells_;
+};
+
+/// Whether a unit direction points into the disc of a directional light, or into its patch.
 bool sees_disc(const Light& sun, const glm::vec3& direction);
-/// Solid angle of the disc of a directional light, steradian.
+/// Solid angle of the disc, or of the patch, of a directional light, steradian.
 double disc_solid_angle(const Light& sun);
 
 /// Chooses directions towards a light beyond the scene, in proportion to its luminance.
@@ -47,6 +69,8 @@ class DistantSampler {
 
   using Sample = EnvironmentSampler::Sample;
   Sample sample(const RandomBlock& random) const;
+  /// The middle of a disc or of a patch, unit.
+  glm::dvec3 middle() const;
   /// Per steradian, of a unit direction.
   float density(const glm::vec3& direction) const;
 

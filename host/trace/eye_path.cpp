@@ -95,11 +95,12 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
         next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, ray.holes);
     if (!met) {
       if (!sees_lamps) return std::nullopt;
-      for (const DistantLight& light : *setup.distant) {
+      for (const std::uint32_t index : setup.distant->towards(ray.direction)) {
+        const DistantLight& light = (*setup.distant)[index];
         const glm::vec3 radiance = light.radiance(ray.direction);
         if (radiance == glm::vec3(0.0f)) continue;
         const float weight =
-            other ? weight_against(other->lamps.density(light, ray.direction, other->chances))
+            other ? weight_against(other->lamps.density(light, start, ray.direction, other->chances))
                   : 1.0f;
         record.emission.push_back(
             {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});

@@ -65,7 +65,7 @@ struct EyeSetup {
   /// Per light, of white texels, and what rays that leave the scene see. Both null where rays look
   /// for surfaces alone.
   const std::vector<glm::vec3>* emitted_radiance = nullptr;
-  const std::vector<DistantLight>* distant = nullptr;
+  const DistantLights* distant = nullptr;
   const DirectRays* direct = nullptr;  ///< null where photons bring all light
   const LobeRays* lobes = nullptr;     ///< null where hits reflect with their lobes
   /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.

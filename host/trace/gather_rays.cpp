@@ -130,7 +130,7 @@ PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensor
                             const PrimaryHitParameters& film, int first_row, int last_row,
                             std::span<const std::uint32_t> map_of) {
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
-  const std::vector<DistantLight> distant = distant_lights(rays.scene());
+  const DistantLights distant(rays.scene());
   const EyeSetup setup{.rays = &impl_of(rays),
                        .parameters = &film,
                        .emitted_radiance = &radiance,

@@ -1,8 +1,11 @@
 #include "trace/light_emitter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 
+#include "photile/defaults.hpp"
 #include "trace/sampling.hpp"
 #include "trace/spot_falloff.hpp"
 #include "trace/surface.hpp"
@@ -11,7 +14,9 @@ namespace photile::trace {
 
 namespace {
 
-enum Block : std::uint32_t { place_block = 0, direction_block = 1 };
+enum Block : std::uint32_t { place_block = 0, direction_block = 1, portal_block = 2 };
+
+constexpr int least_map_columns = 32;
 
 /// A place on the disc of the bounding sphere through which parallel light enters the scene.
 glm::vec3 entrance(const BoundingSphere& bounds, const glm::vec3& direction, float u1, float u2) {
@@ -23,15 +28,32 @@ glm::vec3 entrance(const BoundingSphere& bounds, const glm::vec3& direction, flo
 
 }  // namespace
 
-LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds)
-    : scene_(&scene), light_(&scene.lights[light]), bounds_(bounds) {
+LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds,
+                           std::shared_ptr<const Portals> portals)
+    : scene_(&scene),
+      light_(&scene.lights[light]),
+      bounds_(bounds),
+      portals_(std::move(portals)) {
   if (light_->kind == LightKind::area) area_.emplace(scene, *light_);
   if (light_->distribution != none) intensity_.emplace(scene, *light_);
   if (light_->has_size() && light_->kind != LightKind::area) distant_.emplace(scene, *light_);
+  if (!light_->is_distant() || portals_->empty()) return;
+  const auto shown = [this](const glm::dvec3& towards) { return portals_->area_facing(-towards); };
+  bool reached = false;
+  if (light_->kind == LightKind::environment) {
+    const EnvironmentMap& map = scene.environments[light_->environment];
+    // What portals show of a wide texel says little of the directions in it.
+    if (map.width() < least_map_columns) return;
+    reached = !towards_portals_.emplace(map, shown).empty();
+  } else {
+    reached = shown(distant_ ? distant_->middle() : -glm::dvec3(light_->direction)) > 0;
+  }
+  if (reached) portal_share_ = defaults::portal_photons;
 }
 
 EmittedRay LightEmitter::emit(const RandomStream& random) const {
   if (area_) return emit_from_area(random);
+  if (portal_share_ > 0) return emit_through_portals(random);
   if (distant_) return emit_from_beyond(random);
 
   const RandomBlock numbers = random.block(Purpose::emission, direction_block);
@@ -59,6 +81,47 @@ EmittedRay LightEmitter::emit_from_beyond(const RandomStream& random) const {
   const RandomBlock numbers = random.block(Purpose::emission, place_block);
   return {entrance(bounds_, -from.direction, numbers.uniform(0), numbers.uniform(1)),
           -from.direction, from.color};
+}
+
+EmittedRay LightEmitter::emit_through_portals(const RandomStream& random) const {
+  const RandomBlock numbers = random.block(Purpose::emission, place_block);
+  const RandomBlock place = random.block(Purpose::emission, portal_block);
+  const bool through = place.uniform_double(0) < portal_share_;
+  const RandomBlock direction = random.block(Purpose::emission, direction_block);
+  DistantSampler::Sample from{-light_->direction, light_->color, 0.0f};
+  if (through && towards_portals_) {
+    from = towards_portals_->sample(direction);
+  } else if (distant_) {
+    from = distant_->sample(direction);
+  }
+  const glm::dvec3 travel(-from.direction);
+  glm::vec3 origin = entrance(bounds_, glm::vec3(travel), numbers.uniform(0), numbers.uniform(1));
+  if (through) {
+    // Of a disc or a patch a part may lie behind all portals.
+    if (!(portals_->area_facing(travel) > 0)) return {origin, -glm::vec3(travel), glm::vec3(0.0f)};
+    const glm::dvec3 point = portals_->entrance(travel, double{place.uniform(2)},
+                                                double{numbers.uniform(0)}, double{numbers.uniform(1)});
+    const double back = glm::dot(point - bounds_.center, travel) + bounds_.radius;
+    origin = glm::vec3(point - back * travel);
+  }
+  // A line through a portal's border may miss it by rounding.
+  const int entered = std::max(portals_->entered_by(glm::dvec3(origin), travel), through ? 1 : 0);
+  return {origin, glm::vec3(travel), from.color * static_cast<float>(flux_of_line(travel, entered))};
+}
+
+/// Its density on the disc of the bounding sphere over that among both techniques.
+double LightEmitter::flux_of_line(const glm::dvec3& travel, int entered) const {
+  double through = 0;  // density by portals over that on the disc
+  if (entered > 0) {
+    const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
+    through = entered * disc / portals_->area_facing(travel);
+    if (towards_portals_) {
+      const glm::vec3 towards(-travel);
+      const auto even = static_cast<double>(distant_->density(towards));
+      through *= even > 0 ? static_cast<double>(towards_portals_->density(towards)) / even : 0.0;
+    }
+  }
+  return 1 / ((1 - portal_share_) + portal_share_ * through);
 }
 
 EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 
 #include "photile/scene.hpp"
 #include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"
 #include "trace/intensity_sampler.hpp"
+#include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
 
@@ -24,18 +26,26 @@ struct EmittedRay {
 /// their area by what it emits and with the cosine law; points uniformly over the sphere, or by
 /// their intensities; spots by the falloff of KHR_lights_punctual; directional lights and
 /// environments by the luminance of each direction, and uniformly over a disc of the scene's
-/// bounding sphere that faces it.
+/// bounding sphere that faces it. Where the scene has portals, most lines of the latter go through
+/// them, and each photon carries its flux over the density of its line among both (the balance
+/// heuristic, Veach and Guibas 1995): what is estimated stays the same, whatever portals there are.
 class LightEmitter {
  public:
   /// `scene` must outlive this; `bounds` is its bounding sphere, which only light from beyond uses.
   /// Errors: InputError for an area light without area.
-  LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds);
+  ///   portals   of the scene
+  LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds,
+               std::shared_ptr<const Portals> portals);
+  LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds)
+      : LightEmitter(scene, light, bounds, std::make_shared<Portals>(scene)) {}
 
   EmittedRay emit(const RandomStream& random) const;
 
  private:
   EmittedRay emit_from_area(const RandomStream& random) const;
   EmittedRay emit_from_beyond(const RandomStream& random) const;
+  EmittedRay emit_through_portals(const RandomStream& random) const;
+  double flux_of_line(const glm::dvec3& travel, int entered) const;
   glm::vec3 color_of(const SurfacePoint& point) const;
   float spot_cosine(double u) const;
 
@@ -45,6 +55,10 @@ class LightEmitter {
   std::optional<IntensitySampler> intensity_;  ///< of points with a distribution
   std::optional<DistantSampler> distant_;      ///< of environments and suns with a disc
   BoundingSphere bounds_;
+  std::shared_ptr<const Portals> portals_;
+  /// Of photons that start through portals; 0 where the light reaches none.
+  double portal_share_ = 0;
+  std::optional<EnvironmentSampler> towards_portals_;  ///< of environments
 };
 
 }  // namespace photile::trace

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
+#include "photile/defaults.hpp"
 #include "photile/primary_hits.hpp"
 #include "trace/lamp_axes.hpp"
 #include "trace/photon_quota.hpp"
@@ -19,7 +20,8 @@ LightSampler::LightSampler(const Scene& scene)
       share_(light_shares(scene.lights, PhotonQuota::balanced)),
       pieces_(scene, share_, bounds_),
       radiance_(emitted_radiance_at_unit_power(scene)),
-      distant_(distant_lights(scene)),
+      distant_(scene),
+      portals_(scene),
       distant_of_(scene.lights.size(), none) {
   double sum = 0;
   for (const double share : share_) share_up_to_.push_back(sum += share);
@@ -28,22 +30,35 @@ LightSampler::LightSampler(const Scene& scene)
     area_of_.push_back(area ? static_cast<std::uint32_t>(areas_.size()) : none);
     if (area) areas_.emplace_back(scene, light);
   }
+  double beyond = 0;
   for (const DistantLight& light : distant_) {
     distant_of_[light.light()] = static_cast<std::uint32_t>(distant_samplers_.size());
     distant_samplers_.emplace_back(scene, scene.lights[light.light()]);
+    beyond += share_[light.light()];
   }
+  if (!portals_.empty()) portal_share_ = defaults::portal_looks * std::min(1.0, beyond);
 }
 
 /// Of a light that is chosen as a whole.
 float LightSampler::chance(std::uint32_t light, const LampChances& chances) const {
-  if (!chances.up_to.empty()) return static_cast<float>(chances.of(pieces_.whole(light)));
+  const double others = 1 - portal_share_;
+  if (!chances.up_to.empty())
+    return static_cast<float>(others * chances.of(pieces_.whole(light)));
   const double before = light == 0 ? 0.0 : share_up_to_[light - 1];
-  return static_cast<float>((share_up_to_[light] - before) / share_up_to_.back());
+  return static_cast<float>(others * (share_up_to_[light] - before) / share_up_to_.back());
 }
 
 std::optional<LightSample> LightSampler::sample(const glm::vec3& position,
-                                                const RandomBlock& choice, const RandomBlock& place,
+                                                const RandomBlock& chosen_by,
+                                                const RandomBlock& place,
                                                 const LampChances& chances) const {
+  RandomBlock choice = chosen_by;
+  if (portal_share_ > 0) {
+    const double number = chosen_by.uniform_double(0);
+    if (number < portal_share_)
+      return through_portal(number / portal_share_, position, place, chances);
+    choice = RandomBlock::of(std::min((number - portal_share_) / (1 - portal_share_), 1 - 0x1p-53));
+  }
   std::uint32_t light, triangle = none;
   if (chances.up_to.empty()) {
     // The last entry is larger than the target, so there always is one.
@@ -129,17 +144,62 @@ LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& 
   const std::uint32_t index = distant_of_[light];
   const DistantSampler::Sample chosen = distant_samplers_[index].sample(place);
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
+  const float alone = chance(light, chances) * chosen.density;
+  const float all = portal_share_ > 0
+                        ? density(distant_[index], position, chosen.direction, chances)
+                        : alone;
   // Density is in proportion to luminance, and both integrate to 1 over the sphere.
   return {groups_.group_of[light], chosen.direction, beyond(position, chosen.direction),
-          glm::vec3(glm::dvec3(chosen.color) * groups_.share[light] /
-                    (disc * double{chance(light, chances)})),
-          chance(light, chances) * chosen.density};
+          glm::vec3(glm::dvec3(chosen.color) * groups_.share[light] * double{chosen.density} /
+                    (disc * double{std::max(alone, all)})),
+          std::max(alone, all)};
 }
 
-float LightSampler::density(const DistantLight& light, const glm::vec3& direction,
-                            const LampChances& chances) const {
-  return chance(light.light(), chances) *
-         distant_samplers_[distant_of_[light.light()]].density(direction);
+std::optional<LightSample> LightSampler::through_portal(double number, const glm::vec3& position,
+                                                        const RandomBlock& place,
+                                                        const LampChances& chances) const {
+  thread_local std::vector<double> weights;
+  const double sum = portals_.weigh(glm::dvec3(position), weights);
+  if (!(sum > 0)) return std::nullopt;
+  const glm::vec3 direction(portals_.look(glm::dvec3(position), weights, sum,
+                                          double{place.uniform(0)}, double{place.uniform(2)},
+                                          double{place.uniform(3)}));
+  // One of the lights there, each as likely.
+  const auto there = distant_.towards(direction);
+  const auto shines = [&](std::uint32_t index) {
+    return distant_[index].radiance(direction) != glm::vec3(0.0f);
+  };
+  const auto count = std::count_if(there.begin(), there.end(), shines);
+  if (count == 0) return std::nullopt;
+  auto skipped = static_cast<std::ptrdiff_t>(number * static_cast<double>(count));
+  for (const std::uint32_t index : there) {
+    if (!shines(index) || skipped-- > 0) continue;
+    const DistantLight& light = distant_[index];
+    const float all = density(light, position, direction, chances);
+    if (!(all > 0.0f)) return std::nullopt;
+    return LightSample{groups_.group_of[light.light()], direction, beyond(position, direction),
+                       light.radiance(direction) / all, all};
+  }
+  return std::nullopt;
+}
+
+float LightSampler::density(const DistantLight& light, const glm::vec3& position,
+                            const glm::vec3& direction, const LampChances& chances) const {
+  const float alone = chance(light.light(), chances) *
+                      distant_samplers_[distant_of_[light.light()]].density(direction);
+  if (!(portal_share_ > 0)) return alone;
+  thread_local std::vector<double> weights;
+  const double sum = portals_.weigh(glm::dvec3(position), weights);
+  if (!(sum > 0) || light.radiance(direction) == glm::vec3(0.0f)) return alone;
+  const double through =
+      portals_.density(glm::dvec3(position), glm::dvec3(direction), weights, sum);
+  if (!(through > 0)) return alone;
+  const auto there = distant_.towards(direction);
+  const auto count = std::count_if(there.begin(), there.end(), [&](std::uint32_t index) {
+    return distant_[index].radiance(direction) != glm::vec3(0.0f);
+  });
+  return alone + static_cast<float>(portal_share_ * through /
+                                    static_cast<double>(std::max<std::ptrdiff_t>(1, count)));
 }
 
 float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitting,
@@ -156,7 +216,7 @@ float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitt
              static_cast<float>(areas_[area_of_[light]].density(emitting.where));
   } else {
     const std::uint32_t piece = pieces_.piece_of(triangle);
-    chosen = static_cast<float>(chances.of(piece) / pieces_.area(piece));
+    chosen = static_cast<float>((1 - portal_share_) * chances.of(piece) / pieces_.area(piece));
   }
   return chosen * squared_distance / cosine;
 }

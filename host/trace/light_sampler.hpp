@@ -11,6 +11,7 @@
 #include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"
 #include "trace/lamp_pieces.hpp"
+#include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
 
@@ -31,7 +32,8 @@ struct LightSample {
 
 /// Chooses one lamp of all, half by power and half equally as PhotonQuota::balanced does, and on an
 /// area light a point by what it emits, of light from beyond the scene a direction by its
-/// luminance. Looks from one point may prefer what is near it and faces it.
+/// luminance, or one through a portal, towards whatever shines there: densities are those of both
+/// together. Looks from one point may prefer what is near it and faces it.
 class LightSampler {
  public:
   /// References are kept. Errors: InputError for an area light without area.
@@ -57,8 +59,8 @@ class LightSampler {
 
   /// Lights beyond the scene that rays can meet, and the density per steradian with which `sample`
   /// would have chosen a direction towards one of them.
-  const std::vector<DistantLight>& distant() const { return distant_; }
-  float density(const DistantLight& light, const glm::vec3& direction,
+  const DistantLights& distant() const { return distant_; }
+  float density(const DistantLight& light, const glm::vec3& position, const glm::vec3& direction,
                 const LampChances& chances = by_shares_alone) const;
 
   /// Radiance that a point of an area light emits at the power 1 of its layer.
@@ -75,6 +77,11 @@ class LightSampler {
                                           const LampChances& chances) const;
   std::optional<LightSample> towards_point(std::uint32_t light, const glm::vec3& position,
                                            const LampChances& chances) const;
+  /// Through a portal, towards what shines from there.
+  ///   number   in [0, 1)
+  std::optional<LightSample> through_portal(double number, const glm::vec3& position,
+                                            const RandomBlock& place,
+                                            const LampChances& chances) const;
   LightSample towards_sun(std::uint32_t light, const glm::vec3& position,
                           const LampChances& chances) const;
   LightSample towards_distant(std::uint32_t light, const glm::vec3& position,
@@ -91,7 +98,9 @@ class LightSampler {
   std::vector<glm::vec3> radiance_;     ///< per light, of white texels; black without area
   std::vector<std::uint32_t> area_of_;  ///< per light: its sampler, or `none`
   std::vector<AreaSampler> areas_;
-  std::vector<DistantLight> distant_;
+  DistantLights distant_;
+  Portals portals_;
+  double portal_share_ = 0;  ///< of looks that go through portals
   std::vector<DistantSampler> distant_samplers_;
   std::vector<std::uint32_t> distant_of_;  ///< per light: into both, or `none`
 };

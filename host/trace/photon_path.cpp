@@ -38,6 +38,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
   const RandomStream random(setup.parameters->seed, path, setup.light);
   const EmittedRay emitted = setup.emitter->emit(random);
   glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
+  if (!(largest(flux) > 0.0f)) return;
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
   std::uint32_t holes = 0;
   bool straight = true;  // but for panes and holes, which looking at lamps sees through

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -65,10 +66,11 @@ std::vector<Chunk> chunks_of(const std::vector<std::uint64_t>& paths_per_light,
 
 std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
   const BoundingSphere bounds = bounding_sphere(scene);
+  const auto portals = std::make_shared<trace::Portals>(scene);
   std::vector<trace::LightEmitter> emitters;
   emitters.reserve(scene.lights.size());
   for (std::uint32_t light = 0; light < scene.lights.size(); ++light)
-    emitters.emplace_back(scene, light, bounds);
+    emitters.emplace_back(scene, light, bounds, portals);
   return emitters;
 }
 

@@ -49,7 +49,7 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
                            std::span<const std::uint32_t> map_of, bool reflections_only) {
   check(parameters, first_row, last_row);
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(ray_scene.scene());
-  const std::vector<trace::DistantLight> distant = trace::distant_lights(ray_scene.scene());
+  const trace::DistantLights distant(ray_scene.scene());
   std::optional<trace::LightSampler> lamps;
   std::optional<trace::DirectRays> direct;
   std::optional<trace::LobeRays> lobes;

@@ -121,6 +121,19 @@ inline constexpr int validation_paths = 500'000;  ///< of each seed, over the se
 // Lights
 inline constexpr double sun_diameter_degrees = 0.533;  ///< as seen from the Earth, the mean
 
+// Portals
+/// Photons of a sun or a sky that start through portals; the others bring what comes another way.
+inline constexpr double portal_photons = 0.85;
+/// Looks through portals, of those at suns and skies.
+inline constexpr double portal_looks = 0.6;
+
+// Daylight
+inline constexpr int sky_patches = 577;             ///< Reinhart's, of a year of daylight
+inline constexpr double ground_reflectance = 0.2;   ///< of the ground that surrounds a scene
+inline constexpr double daylight_lux = 300;         ///< of daylight autonomy: LM-83 and EN 17037
+inline constexpr double lamp_efficacy = 100;        ///< lm/W, of lamps that dim with daylight
+inline constexpr int daylight_repeats = 4;
+
 // Measuring: a mean of repeats with photons of their own, whose scatter tells the standard error
 inline constexpr int measuring_rays = 1'024;  ///< of each sensor and repeat
 inline constexpr int measuring_repeats = 8;

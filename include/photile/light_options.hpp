@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,12 +33,38 @@ struct EnvironmentPicture {
   double rotation_degrees = 0;  ///< clockwise as seen from above
 };
 
-/// The sun; parsed from AZIMUTH,ELEVATION,LUX.
+/// A place on Earth; parsed from LATITUDE,LONGITUDE,TIME_ZONE.
+struct Site {
+  double latitude_degrees = 0;   ///< north of the equator
+  double longitude_degrees = 0;  ///< east of Greenwich
+  double time_zone = 0;          ///< hours before Greenwich: 1 in Berlin, -5 in New York
+  /// Errors: UsageError for other than three numbers, or one out of range.
+  static Site parse(const std::string& text);
+};
+
+/// A moment of the site's standard time; parsed from YYYY-MM-DDTHH:MM.
+struct LocalTime {
+  int year = 2026, month = 1, day = 1;
+  double hour = 12;  ///< from midnight, in [0, 24)
+  /// Errors: UsageError for another form, or a day that there is not.
+  static LocalTime parse(const std::string& text);
+};
+
+/// What tells where the sun stands and how bright the sky is.
+struct SkySituation {
+  std::optional<Site> site = std::nullopt;  ///< of the weather file where it is not given
+  std::optional<LocalTime> time = std::nullopt;
+  double north_degrees = 0;            ///< of north, clockwise from -z as seen from above
+  std::filesystem::path weather = {};  ///< an EPW file, "" = none
+};
+
+/// The sun; parsed from AZIMUTH,ELEVATION,LUX, or from LUX alone where a time tells the place.
 struct Sun {
   double azimuth_degrees = 0;    ///< clockwise from north, which is -z; east is +x
   double elevation_degrees = 0;  ///< above the horizon, y upwards
   double illuminance = 0;        ///< lux on a surface that faces it
   double diameter_degrees = defaults::sun_diameter_degrees;  ///< of its disc; 0 = parallel light
+  bool placed_by_time = false;  ///< azimuth and elevation are those of SkySituation
   /// Errors: UsageError for other than three numbers, or one out of range.
   static Sun parse(const std::string& text);
 };
@@ -45,13 +72,18 @@ struct Sun {
 enum class SkyKind {
   uniform,   ///< the same luminance everywhere
   overcast,  ///< CIE overcast sky: three times as bright at the zenith as at the horizon
-  clear      ///< CIE standard clear sky (ISO 15469, type 12); it needs a sun
+  clear,     ///< CIE standard clear sky (ISO 15469, type 12); it needs a sun
+  perez,     ///< all-weather sky of Perez, Seals and Michalsky (1993); it needs a sun
+  patches    ///< even patches of 1 cd/m2 each, a light apiece, for relighting by time
 };
 
 /// The upper half of the surroundings, black below the horizon.
 struct Sky {
   SkyKind kind = SkyKind::overcast;
   double illuminance = 0;  ///< lux on a horizontal surface that sees all of it, without the sun
+  double direct_normal = 0;       ///< W/m2 on a surface that faces the sun, of a Perez sky
+  double diffuse_horizontal = 0;  ///< W/m2 on a horizontal surface, of a Perez sky
+  int patches = 0;                ///< 145, 577 or 2305
   /// Errors: UsageError.
   static Sky parse(const std::string& text);
 };

@@ -77,6 +77,9 @@ inline constexpr double min_color_temperature = 1'000, max_color_temperature = 4
 /// Lumens or watts of a light: over any area above a square millimetre, floats hold its radiance.
 inline constexpr double max_light_power = 1e30;
 inline constexpr double max_illuminance = 1e30;  ///< lux of a sun or a sky
+inline constexpr double max_irradiance = 10'000;  ///< W/m2 of a sun or a sky, seven times the sun's
+/// Each line of photons and each look at the sky is held against all of them.
+inline constexpr std::size_t max_portals = 64;
 /// Degrees of a sun's disc: the light of a wider one is that of an environment.
 inline constexpr double max_sun_diameter_degrees = 90;
 
@@ -111,6 +114,8 @@ inline constexpr std::uint64_t max_input_text_bytes = 256ull << 20;
 
 // Measuring
 inline constexpr std::uint64_t max_sensors = 1'000'000;
+/// Hours times points of a year of daylight: 4 bytes each, twice.
+inline constexpr std::uint64_t max_profile_values = 250'000'000;
 inline constexpr int max_repeats = 1'000;  ///< each traces photons of its own
 
 // Walks

@@ -144,19 +144,32 @@ struct Light {
   /// Unit, perpendicular to `direction`: the x axis of a lamp whose -z axis is `direction`.
   glm::vec3 x_axis{1.0f, 0.0f, 0.0f};
   float angular_diameter = 0.0f;  ///< radians, of a directional light's disc; 0 = parallel light
+  /// Of a directional light that is an even patch of the sky in place of a disc: azimuths from and
+  /// to, radians clockwise from -z as seen from above, and the sines of the elevations from and to.
+  /// All 0 = none.
+  glm::vec4 sky_patch{0.0f};
 
   std::uint32_t environment = none;  ///< of an environment light: into Scene::environments
 
   /// Whether rays can meet the light: a surface, a disc in the sky or surroundings.
   bool has_size() const {
     return kind == LightKind::area || kind == LightKind::environment ||
-           (kind == LightKind::directional && angular_diameter > 0.0f);
+           (kind == LightKind::directional && (angular_diameter > 0.0f || is_sky_patch()));
   }
+  bool is_sky_patch() const { return sky_patch.y > sky_patch.x; }
 
   /// Whether it lies beyond the scene.
   bool is_distant() const {
     return kind == LightKind::directional || kind == LightKind::environment;
   }
+};
+
+/// A rectangle through which light from beyond the scene comes in: a window. Photons and looks at
+/// the sky prefer lines through portals; what is estimated does not depend on them.
+struct Portal {
+  glm::vec3 corner{0.0f};  ///< metres
+  glm::vec3 u{0.0f};       ///< its sides, at a right angle; light comes in along u x v
+  glm::vec3 v{0.0f};
 };
 
 /// A mesh that several places of the scene repeat, in a space of its own around its centre.
@@ -224,6 +237,7 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<IntensityDistribution> distributions;
   std::vector<EnvironmentMap> environments;
+  std::vector<Portal> portals;  ///< at most limits::max_portals
   std::vector<Camera> cameras;  ///< never empty after load_scene
   ImportReport report;
 
@@ -272,6 +286,10 @@ struct SceneLoadOptions {
   EnvironmentPicture environment = {};
   std::optional<Sun> sun = std::nullopt;
   std::optional<Sky> sky = std::nullopt;
+  SkySituation situation = {};
+  /// Windows for the light of suns and skies: "auto" finds them, "off" takes none, else globs of
+  /// the names of materials that fill them.
+  std::vector<std::string> portals = {};  ///< empty = auto
   /// Turns what is given in lumens or lux into the watts of an OBJ scene.
   double lumen_per_watt = defaults::lumen_per_watt;
 };

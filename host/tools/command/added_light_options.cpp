@@ -24,6 +24,26 @@ CLI::Option* add_repeatable(CLI::App& command, const char* name, const char* typ
 
 }  // namespace
 
+void add_situation_options(CLI::App& command, SkySituation& situation, const std::string& group) {
+  command
+      .add_option_function<std::string>(
+          "--site", [&situation](const std::string& text) { situation.site = Site::parse(text); },
+          "degrees north, degrees east, hours before Greenwich; default: that of --weather")
+      ->type_name("LAT,LON,TZ")
+      ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--time",
+          [&situation](const std::string& text) { situation.time = LocalTime::parse(text); },
+          "the sun's place by the site's standard time, such as 2026-06-21T14:00; with --weather "
+          "the sky of that hour, too")
+      ->type_name("YYYY-MM-DDTHH:MM")
+      ->group(group);
+  command.add_option("--weather", situation.weather, "EnergyPlus weather file")
+      ->type_name("FILE.epw")
+      ->group(group);
+}
+
 void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::string& group) {
   add_repeatable(command, "--light-group", "GLOB=NAME",
                  "lights whose names match become one layer; repeatable", options.light_groups)
@@ -62,14 +82,31 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
       .add_option_function<std::string>(
           "--sun", [&options](const std::string& text) { options.sun = Sun::parse(text); },
           "degrees from north (-z) by east (+x), degrees above the horizon, lux facing it, and "
-          "degrees of its disc, 0.533 if not given")
-      ->type_name("AZIMUTH,ELEVATION,LUX[,DIAMETER]")
+          "degrees of its disc, 0.533 if not given; or its lux alone, with --site and --time")
+      ->type_name("AZIMUTH,ELEVATION,LUX[,DIAMETER]|LUX")
       ->group(group);
   command
       .add_option_function<std::string>(
           "--sky", [&options](const std::string& text) { options.sky = Sky::parse(text); },
-          "uniform, overcast or clear (with --sun), and its lux on a horizontal surface")
-      ->type_name("KIND=LUX")
+          "uniform, overcast or clear (with --sun), and its lux on a horizontal surface; perez: W/m2 "
+          "facing the sun and on a horizontal surface; patches: 145, 577 or 2305 lights, for "
+          "relight --time")
+      ->type_name("KIND=LUX|perez=DIRECT,DIFFUSE|patches=N")
+      ->group(group);
+  add_situation_options(command, options.situation, group);
+  command
+      .add_option("--north", options.situation.north_degrees,
+                  "where north lies, clockwise from -z as seen from above")
+      ->type_name("DEGREES")
+      ->transform(number_between(-360, 360))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--portals", options.portals,
+                  "windows that photons of suns and skies start through: auto finds them, off, or "
+                  "globs of the materials of their panes; repeatable")
+      ->type_name("auto|off|GLOB")
+      ->allow_extra_args(false)
       ->group(group);
 }
 

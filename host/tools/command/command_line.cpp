@@ -69,6 +69,7 @@ void define(CLI::App& photile) {
   add_relight_command(photile);
   add_compare_command(photile);
   add_measure_command(photile);
+  add_daylight_command(photile);
   add_trade_command(photile);
   add_devices_command(photile);
   add_info_command(photile);

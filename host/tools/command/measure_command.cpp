@@ -7,15 +7,14 @@
 #include <vector>
 
 #include "common/run_files.hpp"
-#include "measuring/furniture.hpp"
 #include "measuring/measure_grids.hpp"
 #include "measuring/sensor_files.hpp"
-#include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/measure_outputs.hpp"
 #include "tools/command/output_files.hpp"
+#include "tools/command/place_options.hpp"
 #include "tools/command/processes.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
@@ -34,29 +33,29 @@ struct MeasureOptions {
   MeasuringParameters parameters;
   std::vector<std::string> planes;  ///< files
   std::vector<std::string> points;  ///< files
-  std::string height;               ///< of the working plane; "" = none
-  double wall_band = defaults::wall_band;
-  double spacing = 0;  ///< metres; 0 = that of EN 12464-1
-  std::string up = "y";
-  std::vector<double> inside;  ///< a point in the room; empty = by the camera
-  double clearance = 0;        ///< metres; 0 = furniture is not looked for
+  PlaneOptions plane;
   bool cylindrical = false;
+  bool daylight_factor = false;
 };
 
-/// Errors: UsageError where no point is left.
-void leave_out_furniture(const Scene& scene, double clearance, measuring::SensorGrid& grid,
-                         Progress& progress) {
-  const std::size_t all = grid.sensors.size();
-  const std::size_t left_out = measuring::leave_out_furniture(scene, clearance, grid);
-  if (grid.sensors.empty()) {
-    throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
-                                 clearance, all, grid.name));
+/// An overcast sky of 100 lux: what it gives is a daylight factor in per cent.
+/// Errors: UsageError where another sky is asked for.
+void take_overcast_sky(SceneLoadOptions& load) {
+  if (load.sky || load.sun || load.situation.time || !load.environment.file.empty()) {
+    throw UsageError("--daylight-factor takes the CIE overcast sky; leave out --sky, --sun, "
+                     "--time and --environment");
   }
-  if (left_out > 0) {
-    progress.note(
-        fmt::format("{}: {} of {} points lie in furniture, or less than {} m from some; "
-                    "they are left out",
-                    grid.name, left_out, all, clearance));
+  load.sky = Sky{SkyKind::overcast, 100};
+}
+
+/// Leaves what the sky gives alone.
+void keep_sky(measuring::Measurement& measurement) {
+  for (measuring::GridValues& values : measurement) {
+    for (const measuring::LightValues& light : values.lights) {
+      if (light.light != "sky") continue;
+      values.lights = {measuring::LightValues{"", light.sensors, light.statistics}};
+      break;
+    }
   }
 }
 
@@ -68,19 +67,8 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
     for (auto& grid : measuring::read_planes(file)) grids.push_back(std::move(grid));
   }
   for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
-  if (!options.height.empty()) {
-    measuring::WorkingPlane plane = measuring::parse_working_plane(options.height);
-    plane.wall_band = options.wall_band;
-    plane.spacing = options.spacing;
-    plane.up = options.up[0] - 'x';
-    if (!options.inside.empty()) {
-      plane.inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
-    }
-    grids.push_back(measuring::working_plane_grid(scene, plane));
-  }
-  if (options.clearance > 0) {
-    for (auto& grid : grids) leave_out_furniture(scene, options.clearance, grid, progress);
-  }
+  if (!options.plane.height.empty()) grids.push_back(plane_of(options.plane, scene));
+  for (auto& grid : grids) clear_of_furniture(options.plane, scene, grid, progress);
   std::size_t sensors = 0;
   for (const auto& grid : grids) sensors += grid.sensors.size();
   if (sensors > limits::max_sensors) {
@@ -111,20 +99,23 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   check_settings(render);
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   share_rendering(render);
-  if (options.planes.empty() && options.points.empty() && options.height.empty()) {
+  if (options.planes.empty() && options.points.empty() && options.plane.height.empty()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
+  if (options.daylight_factor) take_overcast_sky(render.load);
   note_inputs_of(render);
   for (const auto& file : options.planes) note_input(file);
   for (const auto& file : options.points) note_input(file);
+  options.outputs.daylight_factor = options.daylight_factor;
   const MeasureOutputs outputs(options.outputs);
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet || !leads());
-  const Scene scene = load_scene(render.scene, render.load);
+  Scene scene = load_scene(render.scene, render.load);
   const LightMix mix = mix_of(scene, render);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
   outputs.check_names(grids);
+  scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);
   warn(scene, grids, progress);
@@ -136,9 +127,11 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const measuring::Readings readings =
       measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
   if (!leads()) return;
-  const measuring::Measurement measurement = measuring::measurement_of(grids, readings);
+  measuring::Measurement measurement = measuring::measurement_of(grids, readings);
+  if (options.daylight_factor) keep_sky(measurement);
   outputs.write(measurement, {scene, mix, parameters});
-  for (const auto& line : measuring::measurement_lines(measurement)) std::cout << line << '\n';
+  for (const auto& line : measuring::measurement_lines(measurement, outputs.unit()))
+    std::cout << line << '\n';
 }
 
 void add_places(CLI::App& command, MeasureOptions& options) {
@@ -152,40 +145,11 @@ void add_places(CLI::App& command, MeasureOptions& options) {
   files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
   CLI::Option* plane =
       command
-          .add_option("--plane", options.height,
+          .add_option("--plane", options.plane.height,
                       "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
           ->type_name("HEIGHT")
           ->group("Places");
-  command
-      .add_option("--inside", options.inside,
-                  "a point in the room whose floor --plane follows; default: the first camera's "
-                  "room")
-      ->type_name("X,Y,Z")
-      ->delimiter(',')
-      ->expected(3)
-      ->needs(plane)
-      ->group("Places");
-  command.add_option("--wall-band", options.wall_band, "metres left out along the walls")
-      ->type_name("M")
-      ->transform(number_between(0, limits::max_coordinate))
-      ->capture_default_str()
-      ->group("Places");
-  command.add_option("--spacing", options.spacing, "metres; default: that of EN 12464-1")
-      ->type_name("M")
-      ->transform(positive_number())
-      ->group("Places");
-  command
-      .add_option("--clearance", options.clearance,
-                  "leaves out points inside furniture, or with a surface less than M before or "
-                  "behind them")
-      ->type_name("M")
-      ->transform(positive_number())
-      ->group("Places");
-  command.add_option("--up", options.up, "axis that points up, for --plane")
-      ->type_name("")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->capture_default_str()
-      ->group("Places");
+  add_plane_options(command, plane, options.plane);
 }
 
 void add_measuring(CLI::App& command, MeasureOptions& options) {
@@ -193,6 +157,10 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
   command
       .add_flag("--cylindrical", options.cylindrical,
                 "cylindrical illuminance round each point's direction, which points up")
+      ->group("Measuring");
+  command
+      .add_flag("--daylight-factor", options.daylight_factor,
+                "per cent of the lux on open ground under the CIE overcast sky; .csv, .json, .svg")
       ->group("Measuring");
   command
       .add_option("--maintenance", parameters.maintenance,

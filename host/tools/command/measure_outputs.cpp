@@ -23,12 +23,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json run_json(const measuring::Measurement& measurement, const MeasureRun& run) {
+Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
+              const std::string& unit) {
   const MeasuringParameters& parameters = run.parameters;
   const bool planar = parameters.gathering.response == SensorResponse::planar;
   Json record{{"photile", version_number()},
               {"scene", run.scene.source.filename().string()},
-              {"unit", "lux"},
+              {"unit", unit},
               {"response", planar ? "planar" : "cylindrical"},
               {"maintenance_factor", parameters.maintenance},
               {"integrator", parameters.by_paths ? "path" : "photon-map"},
@@ -101,7 +102,10 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
 }
 
 MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
-    : colours_(options.false_colour.of("lux")), honeybee_(options.honeybee) {
+    : unit_(options.daylight_factor ? "DF %" : "lux"),
+      colours_(options.false_colour.of(unit_)),
+      honeybee_(options.honeybee) {
+  if (options.daylight_factor) colours_.scale = 0;  // thousands of lux would show nothing
   const std::map<std::string, std::vector<std::filesystem::path>*> lists{
       {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}};
   std::vector<std::filesystem::path> all;
@@ -109,6 +113,11 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
     const auto list = lists.find(file.extension().string());
     if (list == lists.end()) {
       throw UsageError(fmt::format("{}: an output ends in .csv, .json, .svg or .html; rename it",
+                                   file.string()));
+    }
+    if (options.daylight_factor && list->first == ".html") {
+      throw UsageError(fmt::format("{}: reports are in lux; write daylight factors to .csv, .json "
+                                   "or .svg",
                                    file.string()));
     }
     list->second->push_back(file);
@@ -143,11 +152,11 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
       write_file(honeybee_ / name, text);
     }
   }
-  for (const auto& file : csv_) write_file(file, measuring::measurement_csv(measurement));
+  for (const auto& file : csv_) write_file(file, measuring::measurement_csv(measurement, unit_));
   for (const auto& file : json_) {
     write_file(
         file,
-        run_json(measurement, run).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+        run_json(measurement, run, unit_).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   }
   std::vector<const measuring::GridValues*> planes;
   for (const auto& values : measurement) {

@@ -22,6 +22,7 @@ struct MeasureOutputOptions {
   std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg or .html
   FalseColourOptions false_colour;
   std::string honeybee;  ///< folder, "" = none
+  bool daylight_factor = false;  ///< values are per cent of the sky's lux
 };
 
 /// Adds -o, --honeybee and the options of false colour.
@@ -46,11 +47,15 @@ class MeasureOutputs {
   /// one file; those of note_output.
   void check_names(const std::vector<measuring::SensorGrid>& grids) const;
 
+  /// "lux", or "DF %" of daylight factors.
+  const std::string& unit() const { return unit_; }
+
   /// Errors: OutputError.
   void write(const measuring::Measurement& measurement, const MeasureRun& run) const;
 
  private:
   std::vector<std::filesystem::path> csv_, json_, svg_, html_;
+  std::string unit_;
   measuring::FalseColour colours_;
   std::filesystem::path honeybee_;
 };

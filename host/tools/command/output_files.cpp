@@ -14,6 +14,7 @@ void note_inputs_of(const RenderOptions& options) {
   note_input(options.scene);
   for (const LightProfile& profile : options.load.profiles) note_input(profile.file);
   note_input(options.load.environment.file);
+  note_input(options.load.situation.weather);
   note_input(options.load_maps);
 }
 

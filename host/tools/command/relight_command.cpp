@@ -3,14 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "common/run_files.hpp"
+#include "import/relit_sky.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
 #include "tools/command/picture_outputs.hpp"
+#include "tools/command/scene_options.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 
@@ -20,6 +23,12 @@ namespace {
 struct RelightOptions {
   std::string input;
   std::vector<std::string> lights;
+  SkySituation situation;
+  std::optional<Sky> sky;
+
+  bool by_time() const {
+    return sky || situation.time || situation.site || !situation.weather.empty();
+  }
   PictureOptions pictures;
 };
 
@@ -33,6 +42,8 @@ void print_lights(const LightMix& mix) {
 void run_relight(const RelightOptions& options) {
   handle_signals();
   std::vector<LightChange> changes;
+  if (options.by_time())
+    changes = scene_io::sky_changes(read_light_mix(options.input), options.situation, options.sky);
   for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
   const PictureOutputs outputs(options.pictures);
   if (outputs.empty() && !changes.empty()) {
@@ -65,6 +76,13 @@ void add_relight_command(CLI::App& photile) {
                    "power in the light's unit, a factor (x2), a colour or off; repeatable")
       ->type_name("NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off")
       ->allow_extra_args(false);
+  add_situation_options(*command, options->situation, "Sky of patches");
+  command
+      ->add_option_function<std::string>(
+          "--sky", [options](const std::string& text) { options->sky = Sky::parse(text); },
+          "W/m2 facing the sun and on a horizontal surface; default: those of --weather")
+      ->type_name("perez=DIRECT,DIFFUSE")
+      ->group("Sky of patches");
   add_picture_options(*command, options->pictures);
   command->callback([options] { run_relight(*options); });
 }

@@ -18,4 +18,7 @@ void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::
 /// line.
 void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::string& group);
 
+/// Adds --site, --time and --weather.
+void add_situation_options(CLI::App& command, SkySituation& situation, const std::string& group);
+
 }  // namespace photile::app

@@ -75,8 +75,9 @@ std::string ratio_with_error(const Measured& measured) {
 
 }  // namespace
 
-std::string measurement_csv(const Measurement& measurement) {
-  std::string text = "grid,point,x,y,z,dx,dy,dz,lux,standard_error";
+std::string measurement_csv(const Measurement& measurement, const std::string& unit) {
+  std::string text =
+      fmt::format("grid,point,x,y,z,dx,dy,dz,{},standard_error", csv_field(unit));
   const auto& lights = measurement.front().lights;
   for (std::size_t i = 1; i < lights.size(); ++i) {
     text += fmt::format(",{},{}", csv_field("lux " + lights[i].light),
@@ -116,13 +117,14 @@ Json measurement_json(const Measurement& measurement) {
   return grids;
 }
 
-std::vector<std::string> measurement_lines(const Measurement& measurement) {
+std::vector<std::string> measurement_lines(const Measurement& measurement,
+                                           const std::string& unit) {
   std::size_t width = 12;
   for (const LightValues& light : measurement.front().lights) {
     width = std::max(width, light.light.size() + 2);
   }
   std::vector<std::string> lines{fmt::format("{:<{}}{:>9}{:11}{:>9}{:11}{:>9}{:11}{:>6}{:9}{:>6}",
-                                             "lux", width, "Em", "", "Emin", "", "Emax", "", "Uo",
+                                             unit, width, "Em", "", "Emin", "", "Emax", "", "Uo",
                                              "", "Ud")};
   for (const GridValues& values : measurement) {
     std::string heading =

@@ -1,0 +1,123 @@
+#include "daylight/daylight_metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace photile::daylight {
+namespace {
+
+// IES LM-83-12.
+constexpr double sun_lux = 1'000, sun_hours = 250;
+constexpr double half = 0.5;
+/// Bounds of useful daylight illuminance (Mardaljevic 2015), lux.
+constexpr std::array<double, 3> useful_bounds{100, 300, 3'000};
+
+/// EN 17037:2018, table A.1: lux that half of the room and 95% of it have.
+struct Level {
+  const char* name;
+  double target, minimum_target;
+};
+constexpr std::array<Level, 3> levels{{{"high", 750, 500}, {"medium", 500, 300},
+                                       {"minimum", 300, 100}}};
+
+/// What a share of the values reach or exceed.
+double reached_by(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end(), std::greater<>());
+  const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  return values[std::clamp<std::size_t>(count, 1, values.size()) - 1];
+}
+
+}  // namespace
+
+std::vector<bool> occupied_hours(const std::vector<SkyHour>& hours, const Occupancy& occupancy) {
+  std::vector<bool> occupied;
+  for (const SkyHour& hour : hours)
+    occupied.push_back(hour.hour > occupancy.from && hour.hour < occupancy.to);
+  return occupied;
+}
+
+std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours) {
+  std::vector<std::size_t> order(hours.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return hours[a].diffuse_lux > hours[b].diffuse_lux;
+  });
+  std::vector<bool> daylight(hours.size(), false);
+  for (std::size_t i = 0; i < hours.size() / 2; ++i) daylight[order[i]] = true;
+  return daylight;
+}
+
+PointDaylight point_daylight(std::span<const float> lux, std::span<const float> sun,
+                             const std::vector<bool>& occupied, const std::vector<bool>& daylight,
+                             double wanted_lux) {
+  PointDaylight point;
+  double hours = 0;
+  std::vector<double> by_day;
+  for (std::size_t h = 0; h < lux.size(); ++h) {
+    const double value = lux[h];
+    point.mean_lux += value / static_cast<double>(lux.size());
+    if (daylight[h]) by_day.push_back(value);
+    if (!occupied[h]) continue;
+    ++hours;
+    point.autonomy += value >= wanted_lux ? 1 : 0;
+    point.continuous_autonomy += std::min(1.0, value / wanted_lux);
+    const auto bin = std::upper_bound(useful_bounds.begin(), useful_bounds.end(), value);
+    ++point.useful[static_cast<std::size_t>(bin - useful_bounds.begin())];
+    point.sun_hours += !sun.empty() && double{sun[h]} > sun_lux ? 1 : 0;
+  }
+  if (hours > 0) {
+    point.autonomy /= hours;
+    point.continuous_autonomy /= hours;
+    for (double& share : point.useful) share /= hours;
+  }
+  point.median_lux = reached_by(std::move(by_day), half);
+  return point;
+}
+
+RoomDaylight room_daylight(std::span<const PointDaylight> points) {
+  RoomDaylight room;
+  std::vector<double> medians;
+  const double share = 1 / static_cast<double>(std::max<std::size_t>(1, points.size()));
+  for (const PointDaylight& point : points) {
+    room.mean_lux += share * point.mean_lux;
+    room.autonomy += share * point.autonomy;
+    room.spatial_autonomy += point.autonomy >= half ? share : 0;
+    room.sunlight_exposure += point.sun_hours > sun_hours ? share : 0;
+    for (std::size_t i = 0; i < room.useful.size(); ++i) room.useful[i] += share * point.useful[i];
+    medians.push_back(point.median_lux);
+  }
+  room.target_lux = reached_by(medians, half);
+  room.minimum_target_lux = reached_by(medians, 0.95);
+  room.level = "none";
+  for (const Level& level : levels) {
+    if (room.target_lux < level.target || room.minimum_target_lux < level.minimum_target) continue;
+    room.level = level.name;
+    break;
+  }
+  return room;
+}
+
+std::vector<LampEnergy> lamp_energy(std::span<const double> mean_daylight,
+                                    const std::vector<bool>& occupied,
+                                    const std::vector<std::string>& lamps,
+                                    std::span<const double> lamp_mean,
+                                    std::span<const double> watts, double wanted_lux) {
+  const double full = std::accumulate(lamp_mean.begin(), lamp_mean.end(), 0.0);
+  double dimmed_hours = 0, hours = 0;
+  for (std::size_t h = 0; h < mean_daylight.size(); ++h) {
+    if (!occupied[h]) continue;
+    ++hours;
+    const double lacking = wanted_lux - mean_daylight[h];
+    if (lacking > 0) dimmed_hours += full > 0 ? std::min(1.0, lacking / full) : 1.0;
+  }
+  std::vector<LampEnergy> energies;
+  for (std::size_t i = 0; i < lamps.size(); ++i) {
+    energies.push_back({lamps[i], watts[i], watts[i] * dimmed_hours / 1000,
+                        watts[i] * hours / 1000});
+  }
+  return energies;
+}
+
+}  // namespace photile::daylight

@@ -1,0 +1,45 @@
+// The sky in patches: Tregenza's 145, or Reinhart's finer ones.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "daylight/perez_sky.hpp"
+#include "daylight/sun_position.hpp"
+
+namespace photile::daylight {
+
+/// An even piece of the sky between two elevations and two azimuths.
+struct SkyPatch {
+  double azimuth_from = 0, azimuth_to = 0;  ///< radians clockwise from north
+  double sine_from = 0, sine_to = 1;        ///< of the elevations
+  double azimuth = 0, elevation = 0;        ///< of its middle, radians
+
+  double solid_angle() const { return (azimuth_to - azimuth_from) * (sine_to - sine_from); }
+};
+
+/// Unit; east is +x, up +y, south +z.
+glm::dvec3 direction_of(double azimuth, double elevation);
+
+/// All patches of a sky, in the order of Radiance's gendaymtx without its ground: rows from the
+/// horizon to the zenith, each clockwise from north, where the first patch has its middle.
+/// Tregenza ("Subdivision of the sky hemisphere for luminance measurements", 1987) has rows of 30,
+/// 30, 24, 24, 18, 12 and 6 patches and a cap; Reinhart (2001) parts each row and patch in two or
+/// four.
+///   count   145, 577 or 2305
+std::vector<SkyPatch> sky_patches(int count);
+inline constexpr int patch_counts[] = {145, 577, 2305};
+
+/// Luminance of each patch, cd/m2: that of the model in its middle, scaled together so that they
+/// give the diffuse illuminance. Without the sun itself.
+std::vector<double> patch_luminances(const std::vector<SkyPatch>& patches, const PerezSky& sky,
+                                     const SunPosition& sun);
+
+/// What stands for the sun: the four patches nearest to it, as gendaymtx has them.
+struct PatchShare {
+  std::size_t patch;
+  double share;  ///< of the sun's light; all sum to 1
+};
+std::vector<PatchShare> sun_patches(const std::vector<SkyPatch>& patches, const SunPosition& sun);
+
+}  // namespace photile::daylight

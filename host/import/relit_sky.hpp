@@ -1,0 +1,20 @@
+// The sky of another hour for a picture whose sky is patches.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "photile/light_mix.hpp"
+#include "photile/light_options.hpp"
+
+namespace photile::scene_io {
+
+/// Changes that give each patch of a picture the luminance of the situation's Perez sky, and the
+/// four patches nearest to the sun its light. The sky is that of the weather file's hour unless one
+/// is given; the patches know where north is.
+/// Errors: UsageError where the picture has no patches (the remedy says how to render some), or
+/// where the place, the time or the sky is missing; those of read_weather.
+std::vector<LightChange> sky_changes(const LightMix& mix, const SkySituation& situation,
+                                     const std::optional<Sky>& sky);
+
+}  // namespace photile::scene_io

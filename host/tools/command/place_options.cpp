@@ -1,0 +1,75 @@
+#include "tools/command/place_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "measuring/furniture.hpp"
+#include "measuring/working_plane.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "tools/command/validators.hpp"
+
+namespace photile::app {
+
+void add_plane_options(CLI::App& command, CLI::Option* plane, PlaneOptions& options) {
+  command
+      .add_option("--inside", options.inside,
+                  "a point in the room whose floor is followed; default: the first camera's room")
+      ->type_name("X,Y,Z")
+      ->delimiter(',')
+      ->expected(3)
+      ->needs(plane)
+      ->group("Places");
+  command.add_option("--wall-band", options.wall_band, "metres left out along the walls")
+      ->type_name("M")
+      ->transform(number_between(0, limits::max_coordinate))
+      ->capture_default_str()
+      ->group("Places");
+  command.add_option("--spacing", options.spacing, "metres; default: that of EN 12464-1")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Places");
+  command
+      .add_option("--clearance", options.clearance,
+                  "leaves out points inside furniture, or with a surface less than M before or "
+                  "behind them")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Places");
+  command.add_option("--up", options.up, "axis that points up")
+      ->type_name("")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str()
+      ->group("Places");
+}
+
+measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene) {
+  measuring::WorkingPlane plane = measuring::parse_working_plane(options.height);
+  plane.wall_band = options.wall_band;
+  plane.spacing = options.spacing;
+  plane.up = options.up_axis();
+  if (!options.inside.empty()) {
+    plane.inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
+  }
+  return measuring::working_plane_grid(scene, plane);
+}
+
+void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
+                        measuring::SensorGrid& grid, Progress& progress) {
+  if (!(options.clearance > 0)) return;
+  const std::size_t all = grid.sensors.size();
+  const std::size_t left_out = measuring::leave_out_furniture(scene, options.clearance, grid);
+  if (grid.sensors.empty()) {
+    throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
+                                 options.clearance, all, grid.name));
+  }
+  if (left_out > 0) {
+    progress.note(
+        fmt::format("{}: {} of {} points lie in furniture, or less than {} m from some; "
+                    "they are left out",
+                    grid.name, left_out, all, options.clearance));
+  }
+}
+
+}  // namespace photile::app

@@ -1,0 +1,384 @@
+#include "trace/portal_search.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/ray_scene.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/sampling.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+namespace {
+
+// The search. None of these changes what is estimated, only how soon.
+constexpr std::uint64_t first_paths = 16'384, most_paths = 131'072;
+constexpr int path_bounces = 3;
+constexpr std::size_t enough_escapes = 400;
+/// Of the rays from a camera that leave at once: beyond, it stands outside.
+constexpr double outside_share = 0.4;
+constexpr std::size_t most_planes = 256;  ///< of the largest area
+constexpr double least_share = 0.02;      ///< of what escapes that a portal takes
+constexpr double wanted_share = 0.97;     ///< of what escapes that all take
+/// Of the disc of the bounding sphere: beyond, portals would gain little.
+constexpr double most_portal_area = 0.25;
+
+/// A straight way out of the scene, from the last surface that scatters.
+struct Escape {
+  glm::dvec3 from, direction;
+};
+
+/// Where a ray ends on a surface that light does not pass straight through; nothing where it
+/// leaves.
+std::optional<SurfacePoint> opaque_surface(const RayScene& rays, glm::vec3 origin,
+                                           const glm::vec3& direction) {
+  const Scene& scene = rays.scene();
+  for (int surfaces = 0; surfaces < 256; ++surfaces) {
+    const auto hit = intersect(rays, origin, direction);
+    if (!hit) return std::nullopt;
+    const SurfacePoint point = surface_hit(scene, *hit, direction);
+    const bool glass = material_of(scene, point).interaction == Interaction::glass;
+    if (!glass && !(luminance(glm::dvec3(transmittance(scene, point, direction))) > 0.5)) {
+      return point;
+    }
+    origin = point.origin_towards(direction);
+  }
+  return std::nullopt;
+}
+
+/// Ways out on paths from a point; none where it stands outside.
+std::vector<Escape> escapes_from(const RayScene& rays, const glm::vec3& start) {
+  std::vector<Escape> escapes;
+  std::uint64_t at_once = 0;
+  for (std::uint64_t path = 0; path < most_paths; ++path) {
+    if (path == first_paths && static_cast<double>(at_once) > outside_share * first_paths) return {};
+    if (path >= first_paths && escapes.size() >= enough_escapes) break;
+    const RandomStream random(0, path, 0);
+    const RandomBlock first = random.block(Purpose::eye_scattering, 0);
+    glm::vec3 origin = start, direction = sample_sphere(first.uniform(0), first.uniform(1));
+    for (int bounce = 0; bounce <= path_bounces; ++bounce) {
+      const auto end = opaque_surface(rays, origin, direction);
+      if (!end) {
+        at_once += bounce == 0 ? 1 : 0;
+        escapes.push_back({glm::dvec3(origin), glm::dvec3(direction)});
+        break;
+      }
+      const RandomBlock numbers =
+          random.block(Purpose::eye_scattering, static_cast<std::uint32_t>(bounce) + 1);
+      direction = Frame(end->normal)
+                      .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
+      origin = end->origin_towards(direction);
+    }
+  }
+  return escapes;
+}
+
+struct Plane {
+  glm::dvec3 normal{0.0};  ///< unit
+  double offset = 0;       ///< metres along the normal
+  double area = 0;         ///< of the triangles in it
+
+  glm::dvec3 s() const {
+    return std::abs(normal.y) < 0.999 ? glm::normalize(glm::cross(glm::dvec3(0, 1, 0), normal))
+                                      : glm::dvec3(1, 0, 0);
+  }
+  glm::dvec3 t() const { return glm::cross(normal, s()); }
+};
+
+/// The planes of the scene's triangles with the most area.
+std::vector<Plane> planes_of(const Scene& scene) {
+  std::map<std::array<long, 4>, Plane> found;
+  for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
+    glm::dvec3 normal = sided_normal(scene, sided(triangle, 0));
+    if (std::tie(normal.x, normal.y, normal.z) < std::make_tuple(0.0, 0.0, 0.0)) normal = -normal;
+    const double offset = glm::dot(normal, glm::dvec3(scene.corners(triangle)[0]));
+    if (!std::isfinite(offset)) continue;
+    Plane& plane = found[{std::lround(500 * normal.x), std::lround(500 * normal.y),
+                          std::lround(500 * normal.z),
+                          std::lround(std::clamp(100 * offset, -1e15, 1e15))}];
+    if (!(plane.area > 0)) plane = {normal, offset, 0};
+    plane.area += triangle_area(scene, triangle);
+  }
+  std::vector<Plane> planes;
+  for (const auto& [key, plane] : found) planes.push_back(plane);
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const Plane& a, const Plane& b) { return a.area > b.area; });
+  if (planes.size() > most_planes) planes.resize(most_planes);
+  return planes;
+}
+
+/// Crossings of a plane that lie close together: perhaps a window.
+struct Opening {
+  Portal portal;
+  double area = 0;                ///< m2
+  std::vector<std::size_t> rays;  ///< of the escapes
+};
+
+struct Crossing {
+  std::size_t ray;
+  double x, y;  ///< along the plane's axes, metres
+};
+
+Opening opening_of(const Plane& plane, bool along_normal, const std::vector<Crossing>& crossings,
+                   double cell) {
+  Opening opening;
+  double left = std::numeric_limits<double>::infinity(), right = -left, low = left, high = -left;
+  for (const Crossing& crossing : crossings) {
+    opening.rays.push_back(crossing.ray);
+    left = std::min(left, crossing.x);
+    right = std::max(right, crossing.x);
+    low = std::min(low, crossing.y);
+    high = std::max(high, crossing.y);
+  }
+  left -= 0.5 * cell;
+  low -= 0.5 * cell;
+  const glm::dvec3 u = (right - left + 0.5 * cell) * plane.s();
+  const glm::dvec3 v = (high - low + 0.5 * cell) * plane.t();
+  opening.area = glm::length(u) * glm::length(v);
+  opening.portal.corner =
+      glm::vec3(plane.offset * plane.normal + left * plane.s() + low * plane.t());
+  // Light comes in against the rays; s x t is the normal.
+  opening.portal.u = glm::vec3(along_normal ? v : u);
+  opening.portal.v = glm::vec3(along_normal ? u : v);
+  return opening;
+}
+
+/// Crossings of a plane in one direction, parted where cells between them are empty.
+void part(const Plane& plane, bool along_normal, const std::vector<Crossing>& crossings,
+          double cell, std::size_t least, std::vector<Opening>& openings) {
+  using Cell = std::pair<long, long>;
+  std::map<Cell, std::vector<Crossing>> cells;
+  for (const Crossing& crossing : crossings)
+    cells[{std::lround(crossing.x / cell), std::lround(crossing.y / cell)}].push_back(crossing);
+  while (!cells.empty()) {
+    std::vector<Cell> edge{cells.begin()->first};
+    std::vector<Crossing> together = std::move(cells.begin()->second);
+    cells.erase(cells.begin());
+    while (!edge.empty()) {
+      const Cell at = edge.back();
+      edge.pop_back();
+      for (long dx = -1; dx <= 1; ++dx) {
+        for (long dy = -1; dy <= 1; ++dy) {
+          const auto beside = cells.find({at.first + dx, at.second + dy});
+          if (beside == cells.end()) continue;
+          together.insert(together.end(), beside->second.begin(), beside->second.end());
+          edge.push_back(beside->first);
+          cells.erase(beside);
+        }
+      }
+    }
+    if (together.size() >= least)
+      openings.push_back(opening_of(plane, along_normal, together, cell));
+  }
+}
+
+std::vector<Opening> openings_of(const Scene& scene, const std::vector<Escape>& escapes,
+                                 std::size_t least) {
+  const BoundingSphere bounds = bounding_sphere(scene);
+  const double cell = std::clamp(bounds.radius / 40, 0.02, 0.25);
+  std::vector<Opening> openings;
+  for (const Plane& plane : planes_of(scene)) {
+    std::array<std::vector<Crossing>, 2> crossings;  // along the normal, against it
+    for (std::size_t ray = 0; ray < escapes.size(); ++ray) {
+      const auto& [from, direction] = escapes[ray];
+      const double cosine = glm::dot(direction, plane.normal);
+      const double distance = (plane.offset - glm::dot(from, plane.normal)) / cosine;
+      if (!(distance > 1e-3) || !std::isfinite(distance)) continue;
+      const glm::dvec3 point = from + distance * direction;
+      if (glm::distance(point, bounds.center) > 1.01 * bounds.radius) continue;
+      crossings[cosine > 0 ? 0 : 1].push_back(
+          {ray, glm::dot(point, plane.s()), glm::dot(point, plane.t())});
+    }
+    for (const bool along : {true, false}) {
+      const auto& these = crossings[along ? 0 : 1];
+      if (these.size() >= least) part(plane, along, these, cell, least, openings);
+    }
+  }
+  return openings;
+}
+
+/// Those that together take most of what escapes, by as little area as can be.
+std::vector<Portal> narrowest(const std::vector<Opening>& openings, std::size_t escapes,
+                              std::size_t least, double most_area) {
+  std::vector<bool> taken(escapes, false);
+  std::vector<Portal> portals;
+  double area = 0;
+  std::size_t left = escapes;
+  while (portals.size() < limits::max_portals &&
+         static_cast<double>(left) > (1 - wanted_share) * static_cast<double>(escapes)) {
+    const Opening* best = nullptr;
+    double best_score = 0;
+    for (const Opening& opening : openings) {
+      const auto fresh = static_cast<std::size_t>(
+          std::count_if(opening.rays.begin(), opening.rays.end(),
+                        [&](std::size_t ray) { return !taken[ray]; }));
+      const double score = static_cast<double>(fresh) / opening.area;
+      if (fresh < least || score <= best_score) continue;
+      best = &opening;
+      best_score = score;
+    }
+    if (best == nullptr) break;
+    for (const std::size_t ray : best->rays) {
+      left -= taken[ray] ? 0 : 1;
+      taken[ray] = true;
+    }
+    portals.push_back(best->portal);
+    area += best->area;
+  }
+  return area <= most_area ? portals : std::vector<Portal>{};
+}
+
+/// Share of rays from a rectangle to one of its sides that leave the scene.
+double open_share(const RayScene& rays, const Portal& portal, const glm::vec3& normal) {
+  constexpr int count = 256;
+  int escaped = 0;
+  const float above = 1e-3f * std::sqrt(glm::length(glm::cross(portal.u, portal.v)));
+  for (int i = 0; i < count; ++i) {
+    const RandomBlock numbers =
+        RandomStream(1, static_cast<std::uint64_t>(i), 0).block(Purpose::eye_scattering, 0);
+    const glm::vec3 point = portal.corner + numbers.uniform(0) * portal.u +
+                            numbers.uniform(1) * portal.v + above * normal;
+    const glm::vec3 direction =
+        Frame(normal).to_world(sample_cosine_hemisphere(numbers.uniform(2), numbers.uniform(3)));
+    escaped += opaque_surface(rays, point, direction) ? 0 : 1;
+  }
+  return static_cast<double>(escaped) / count;
+}
+
+/// Turns a rectangle so that light comes in from the side that sees more of the sky.
+Portal facing_in(const RayScene& rays, Portal portal) {
+  const glm::vec3 normal = glm::normalize(glm::cross(portal.u, portal.v));
+  if (open_share(rays, portal, normal) > open_share(rays, portal, -normal))
+    std::swap(portal.u, portal.v);
+  return portal;
+}
+
+/// The triangles of some materials, by plane and where they hang together.
+std::vector<std::vector<std::uint32_t>> panes_of(const Scene& scene,
+                                                 const std::vector<bool>& chosen) {
+  std::map<std::tuple<float, float, float>, std::uint32_t> number_of_place;
+  std::vector<std::uint32_t> parent;
+  const auto root = [&](std::uint32_t place) {
+    while (parent[place] != place) place = parent[place] = parent[parent[place]];
+    return place;
+  };
+  std::map<std::array<long, 4>, std::map<std::uint32_t, std::vector<std::uint32_t>>> panes;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_triangle;  // and a place of it
+  for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
+    if (!chosen[scene.triangle_material[triangle]]) continue;
+    std::array<std::uint32_t, 3> places{};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const glm::vec3 p = scene.corners(triangle)[corner];
+      const auto [entry, fresh] =
+          number_of_place.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(parent.size()));
+      if (fresh) parent.push_back(entry->second);
+      places[corner] = entry->second;
+    }
+    parent[root(places[1])] = root(places[0]);
+    parent[root(places[2])] = root(places[0]);
+    of_triangle.emplace_back(triangle, places[0]);
+  }
+  for (const auto& [triangle, place] : of_triangle) {
+    const glm::dvec3 normal = sided_normal(scene, sided(triangle, 0));
+    const double offset = glm::dot(normal, glm::dvec3(scene.corners(triangle)[0]));
+    panes[{std::lround(500 * normal.x), std::lround(500 * normal.y), std::lround(500 * normal.z),
+           std::lround(std::clamp(100 * offset, -1e15, 1e15))}][root(place)]
+        .push_back(triangle);
+  }
+  std::vector<std::vector<std::uint32_t>> found;
+  for (const auto& [plane, parts] : panes) {
+    for (const auto& [place, triangles] : parts) found.push_back(triangles);
+  }
+  return found;
+}
+
+Portal rectangle_around(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
+  const glm::dvec3 normal = sided_normal(scene, sided(triangles.front(), 0));
+  const Plane plane{normal, glm::dot(normal, glm::dvec3(scene.corners(triangles.front())[0])), 0};
+  std::vector<Crossing> corners;
+  for (const std::uint32_t triangle : triangles) {
+    for (const glm::vec3& corner : scene.corners(triangle)) {
+      corners.push_back(
+          {0, glm::dot(glm::dvec3(corner), plane.s()), glm::dot(glm::dvec3(corner), plane.t())});
+    }
+  }
+  return opening_of(plane, true, corners, 1e-4).portal;
+}
+
+}  // namespace
+
+std::vector<Portal> find_portals(const Scene& scene, std::span<const glm::dvec3> points) {
+  std::vector<glm::dvec3> starts;
+  const std::size_t step = (points.size() + most_search_points - 1) / most_search_points;
+  for (std::size_t i = 0; i < points.size(); i += step) starts.push_back(points[i]);
+  if (starts.empty()) {
+    for (const Camera& camera : scene.cameras) starts.push_back(camera.position);
+  }
+  const RayScene rays(scene);
+  const FlushDenormals flush_denormals;
+  std::vector<Escape> escapes;
+  for (const glm::dvec3& start : starts) {
+    for (const Escape& escape : escapes_from(rays, glm::vec3(start))) escapes.push_back(escape);
+  }
+  if (escapes.empty()) return {};
+  const std::size_t least =
+      std::max<std::size_t>(8, static_cast<std::size_t>(least_share *
+                                                        static_cast<double>(escapes.size())));
+  const double radius = bounding_sphere(scene).radius;
+  return narrowest(openings_of(scene, escapes, least), escapes.size(), least,
+                   most_portal_area * glm::pi<double>() * radius * radius);
+}
+
+std::vector<Portal> portals_of_materials(const Scene& scene, std::span<const std::string> globs) {
+  std::vector<bool> chosen(scene.materials.size(), false);
+  for (const std::string& glob : globs) {
+    bool matched = false;
+    for (std::size_t material = 0; material < scene.materials.size(); ++material) {
+      if (::fnmatch(glob.c_str(), scene.materials[material].name.c_str(), 0) != 0) continue;
+      chosen[material] = matched = true;
+    }
+    if (!matched) {
+      throw UsageError(fmt::format("--portals {}: no material of {} matches; photile info lists "
+                                   "them, or use auto or off",
+                                   glob, scene.source.string()));
+    }
+  }
+  const auto panes = panes_of(scene, chosen);
+  if (panes.size() > limits::max_portals) {
+    throw UsageError(fmt::format("--portals: {} panes, more than {}; name fewer, or use auto",
+                                 panes.size(), limits::max_portals));
+  }
+  const RayScene rays(scene);
+  const FlushDenormals flush_denormals;
+  std::vector<Portal> portals;
+  for (const auto& pane : panes) portals.push_back(facing_in(rays, rectangle_around(scene, pane)));
+  return portals;
+}
+
+std::vector<Portal> portals_asked_for(const Scene& scene, std::span<const std::string> asked,
+                                      std::span<const glm::dvec3> points) {
+  for (const char* word : {"auto", "off"}) {
+    if (asked.size() > 1 && std::find(asked.begin(), asked.end(), word) != asked.end())
+      throw UsageError(fmt::format("--portals {}: give it alone, or materials alone", word));
+  }
+  if (asked.empty() || asked.front() == "auto") return find_portals(scene, points);
+  if (asked.front() == "off") return {};
+  return portals_of_materials(scene, asked);
+}
+
+}  // namespace photile::trace

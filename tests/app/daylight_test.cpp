@@ -1,0 +1,126 @@
+// `photile daylight`, daylight factors and skies of other hours on the command line.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "box_scene.hpp"
+#include "child_process.hpp"
+#include "file_folder.hpp"
+#include "weather_text.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+std::string write_weather(const FileFolder& folder) {
+  const auto by_day = [](int lux) {
+    return [lux](int, int, int hour) { return hour > 8 && hour < 17 ? lux : 0; };
+  };
+  return folder.write("year.epw", weather_text(by_day(400), by_day(150)));
+}
+
+/// The box with a wall left out.
+std::string write_open_box(const FileFolder& folder) {
+  std::string obj = box_obj();
+  const std::string wall = "f 1 4 8 5\n";
+  obj.erase(obj.find(wall), wall.size());
+  folder.write("box.mtl", box_mtl());
+  return folder.write("open.obj", obj);
+}
+
+std::vector<std::string> quick(const std::string& command, const std::string& scene,
+                               std::vector<std::string> more) {
+  std::vector<std::string> arguments{command,  scene, "--photons", "20k",    "--rays",
+                                     "64",     "--repeats", "2",   "--quiet", "--plane",
+                                     "floor+0.75", "--wall-band", "0.2"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+}  // namespace
+
+TEST_CASE("a year of daylight fills its files") {
+  const FileFolder folder;
+  const std::string scene = write_open_box(folder), weather = write_weather(folder);
+  const Outcome outcome = run_photile(
+      quick("daylight", scene,
+            {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--lamps-to", "500",
+             "-o", folder / "a.csv", "-o", folder / "a.json", "--honeybee", folder / "bee"}));
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("sDA 300") && Contains("ASE") && Contains("UDI") &&
+                                 Contains("EN 17037") && Contains("kWh"));
+  const auto record = nlohmann::json::parse(folder.read("a.json"));
+  const auto& grid = record.at(0);
+  const std::size_t points = grid["points"];
+  REQUIRE(grid["sensors"].size() == points);
+  CHECK(grid["mean_lux"].get<double>() > 10);
+  CHECK(grid["lamps"].size() == 2);
+  std::istringstream ill(folder.read("bee/working_plane.ill")), up(folder.read("bee/sun-up-hours.txt"));
+  std::size_t hours = 0, lines = 0;
+  for (std::string line; std::getline(up, line);) ++hours;
+  CHECK(hours > 4300);
+  CHECK(hours < 4500);
+  for (std::string line; std::getline(ill, line); ++lines) {
+    std::istringstream words(line);
+    std::size_t values = 0;
+    for (double lux = 0; words >> lux;) ++values;
+    CHECK(values == hours);
+  }
+  CHECK(lines == points);
+}
+
+TEST_CASE("daylight without weather, or with a sky of its own, is refused in a line") {
+  const FileFolder folder;
+  const std::string scene = write_open_box(folder);
+  const auto refused = [&](std::vector<std::string> more) {
+    const Outcome outcome = run_photile(quick("daylight", scene, std::move(more)));
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.output.empty());
+    return outcome.errors;
+  };
+  CHECK_THAT(refused({}), Contains("--weather"));
+  CHECK_THAT(refused({"--weather", write_weather(folder), "--sky", "overcast=1000"}),
+             Contains("--sky"));
+  CHECK_THAT(refused({"--weather", write_weather(folder), "--occupied", "9"}),
+             Contains("--occupied"));
+}
+
+TEST_CASE("daylight factors are per cent of the sky's lux") {
+  const FileFolder folder;
+  const std::string scene = write_open_box(folder);
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--inside", "0,0,0", "-o", folder / "df.json"});
+    const Outcome outcome = run_photile(quick("measure", scene, std::move(more)));
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    return nlohmann::json::parse(folder.read("df.json"));
+  };
+  const auto factors = run({"--daylight-factor"});
+  CHECK(factors["unit"] == "DF %");
+  const auto lux = run({"--sky", "overcast=5000"});
+  const double sky = lux["grids"][0]["lights"]["sky"]["Em"]["value"];
+  CHECK(factors["grids"][0]["statistics"]["Em"]["value"].get<double>() == Approx(sky / 50));
+}
+
+TEST_CASE("a picture of patches takes the sky of another hour") {
+  const FileFolder folder;
+  const std::string scene = write_open_box(folder), weather = write_weather(folder);
+  const Outcome rendered = run_photile({"render", scene, "--sky", "patches=145", "--quality",
+                                        "draft", "--photons", "20k", "--size", "8x6", "--quiet",
+                                        "-o", folder / "sky.exr"});
+  INFO(rendered.errors);
+  REQUIRE(rendered.exit_code == 0);
+  const Outcome noon =
+      run_photile({"relight", folder / "sky.exr", "--weather", weather, "--time",
+                   "2026-06-21T12:00", "-o", folder / "noon.png"});
+  INFO(noon.errors);
+  CHECK(noon.exit_code == 0);
+  const Outcome lacking = run_photile(
+      {"relight", folder / "sky.exr", "--time", "2026-06-21T12:00", "-o", folder / "x.png"});
+  CHECK(lacking.exit_code == 2);
+  CHECK_THAT(lacking.errors, Contains("--weather"));
+}
+
+}  // namespace photile::test

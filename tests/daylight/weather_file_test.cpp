@@ -1,0 +1,98 @@
+// EPW files, whole and damaged.
+#include "import/weather_file.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <functional>
+#include <random>
+
+#include "photile/errors.hpp"
+#include "temporary_folder.hpp"
+#include "weather_text.hpp"
+
+namespace photile::test {
+
+using namespace photile::scene_io;
+
+namespace {
+
+/// Direct irradiance tells month and day, diffuse the hour.
+std::string text_of_year() {
+  return weather_text([](int month, int day, int) { return 10 * month + day; },
+                      [](int, int, int hour) { return hour; });
+}
+
+std::string error_of(const TemporaryFolder& folder, const std::string& text) {
+  const auto file = folder.path / "bad.epw";
+  std::ofstream(file, std::ios::binary) << text;
+  try {
+    read_weather(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("the hours of a weather file are read, their middle half an hour before their name") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "good.epw";
+  std::ofstream(file, std::ios::binary) << text_of_year();
+  const WeatherYear year = read_weather(file);
+  CHECK(year.site.latitude_degrees == 52.5);
+  CHECK(year.site.longitude_degrees == 13.4);
+  CHECK(year.site.time_zone == 1);
+  REQUIRE(year.hours.size() == 8760);
+  const WeatherHour& hour = hour_at(year, {2026, 6, 21, 14.25});
+  CHECK(hour.month == 6);
+  CHECK(hour.day == 21);
+  CHECK(hour.hour == 14.5);
+  CHECK(hour.irradiance.direct_normal == 81);
+  CHECK(hour.irradiance.diffuse_horizontal == 15);
+  CHECK(hour.irradiance.dew_point == 5.5);
+}
+
+TEST_CASE("a damaged weather file is refused in a line that names it and where") {
+  const TemporaryFolder folder;
+  const std::string good = text_of_year();
+  const auto refused = [&](const std::string& text, const std::string& part) {
+    const std::string error = error_of(folder, text);
+    INFO(error);
+    CHECK(error.find("bad.epw") != std::string::npos);
+    CHECK(error.find(part) != std::string::npos);
+    CHECK(error.find('\n') == std::string::npos);
+  };
+  refused("", "EPW");
+  refused(replaced(good, "LOCATION", "PLACE"), "line 1");
+  refused(replaced(good, ",52.50,", ",152.50,"), "latitude");
+  refused(replaced(good, "2005,1,1,3,", "2005,13,1,3,"), "line 11");
+  refused(replaced(good, "2005,1,1,3,", "2005,1,1,25,"), "hour");
+  refused(replaced(good, "2005,2,28,24,", "2005,2,30,24,"), "day");
+  refused(replaced(good, ",300,0,11,1,", ",300,0,nan,1,"), "direct normal");
+  refused(replaced(good, ",300,0,11,1,", ",300,0,9999,1,"), "missing");
+  refused(replaced(good, ",300,0,11,1,", ",300,0,11,-5,"), "diffuse");
+  refused(good.substr(0, good.size() / 2), "hours");
+  refused(good + good.substr(good.find("2005,1,1,1,")), "hours");
+}
+
+TEST_CASE("random bytes in a weather file never do worse than an error") {
+  const TemporaryFolder folder;
+  const std::string good = text_of_year();
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::string text = good.substr(0, trial % 2 == 0 ? good.size() : random() % good.size());
+    for (int change = 0; change < 40 && !text.empty(); ++change)
+      text[random() % text.size()] = static_cast<char>(random());
+    const std::string error = error_of(folder, text);
+    CHECK(error.find('\n') == std::string::npos);
+  }
+}
+
+}  // namespace photile::test

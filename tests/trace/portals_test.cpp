@@ -1,0 +1,187 @@
+// Photons and looks through windows: what they find is what there is without them, sooner.
+#include "trace/portals.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "photile/errors.hpp"
+#include "photile/photon_tracer.hpp"
+#include "photile/sensors.hpp"
+#include "room_with_window.hpp"
+#include "statistical_tests.hpp"
+#include "tools/validation/form_factors.hpp"
+#include "trace/portal_search.hpp"
+
+namespace photile::test {
+
+using namespace photile::trace;
+
+namespace {
+
+using std::numbers::pi;
+using Room = RoomWithWindow;
+
+Scene room_under_even_sky(const Material& walls) {
+  Scene scene = Room::builder(walls).build();
+  add_environment(scene, even_surroundings());
+  return scene;
+}
+
+/// Photons that the walls of the room hold on their inside.
+struct Inside {
+  double flux = 0;
+  std::size_t count = 0;
+};
+Inside inside(const Scene& scene, std::uint64_t seed, std::uint64_t paths) {
+  const Photons photons =
+      trace_photons(RayScene(scene), {.emitted_photons = paths, .seed = seed}).photons;
+  Inside found;
+  for (std::size_t i = 0; i < photons.size(); ++i) {
+    if (!Room::inside(scene, photons.sided_triangle[i])) continue;
+    found.flux += luminance(photons.flux[i]);
+    ++found.count;
+  }
+  return found;
+}
+
+std::vector<double> fluxes_inside(const Scene& scene, std::uint64_t paths) {
+  std::vector<double> fluxes;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed)
+    fluxes.push_back(inside(scene, seed, paths).flux);
+  return fluxes;
+}
+
+std::vector<double> irradiances(const Scene& scene, const Sensor& sensor, int rays) {
+  std::vector<double> values;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const auto layers =
+        gather_by_paths(scene, std::span(&sensor, 1), {.rays = rays}, seed).layers.dense();
+    values.push_back(double{layers.layers.at(0).illuminance.at(0)} * scene.lights[0].power);
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("what enters a window under an even sky is pi L A, whatever part of it is a portal",
+          "[portals]") {
+  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.0f)));
+  // Of the light's 1 lm: pi L A over 4 pi L times the disc.
+  const double disc = pi * std::pow(bounding_sphere(scene).radius, 2);
+  const double truth = Room::window_area / (4 * disc);
+  SECTION("none") { CHECK_VERDICT(mean_is(fluxes_inside(scene, 100'000), truth, 0.2 * truth)); }
+  SECTION("the window") {
+    scene.portals = {Room::window()};
+    CHECK_VERDICT(mean_is(fluxes_inside(scene, 20'000), truth, 0.05 * truth));
+  }
+  SECTION("half of it, twice") {
+    scene.portals = {Room::window(0.5f), Room::window(0.5f)};
+    CHECK_VERDICT(mean_is(fluxes_inside(scene, 50'000), truth, 0.1 * truth));
+  }
+  SECTION("a rectangle that is no window") {
+    scene.portals = {{{0.5f, 0.2f, 3.0f}, {1, 0, 0}, {0, 2, 0}}};
+    CHECK_VERDICT(mean_is(fluxes_inside(scene, 100'000), truth, 0.35 * truth));
+  }
+}
+
+TEST_CASE("a sun through a window brings its lux times what the window shows", "[portals]") {
+  Scene scene = Room::builder(diffuse(glm::vec3(0.0f))).build();
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::directional;
+  sun.direction = glm::normalize(glm::vec3(0.1f, -0.4f, 1.0f));
+  sun.angular_diameter = GENERATE(0.0f, 0.0093f);
+  sun.power = 1;
+  scene.lights.push_back(sun);
+  scene.portals = {Room::window()};
+  const double disc = pi * std::pow(bounding_sphere(scene).radius, 2);
+  const double truth = Room::window_area * static_cast<double>(sun.direction.z) / disc;
+  CHECK_VERDICT(mean_is(fluxes_inside(scene, 20'000), truth, 0.03 * truth));
+}
+
+TEST_CASE("reflected light is the same with portals and without", "[portals]") {
+  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
+  const auto without = fluxes_inside(scene, 100'000);
+  scene.portals = {Room::window()};
+  const auto with = fluxes_inside(scene, 20'000);
+  const double mean = std::accumulate(with.begin(), with.end(), 0.0) / 16;
+  CHECK_VERDICT(mean_is(without, mean, 0.15 * mean));
+}
+
+TEST_CASE("portals bring at least ten times the photons", "[portals]") {
+  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
+  const std::size_t without = inside(scene, 1, 100'000).count;
+  scene.portals = {Room::window()};
+  CHECK(inside(scene, 1, 100'000).count > 10 * without);
+}
+
+TEST_CASE("looks through a portal find pi L times the window's form factor", "[portals]") {
+  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.0f)));
+  const glm::dvec3 corner(Room::left, Room::sill, 0), u(1.2, 0, 0), v(0, 1, 0);
+  for (const glm::dvec3& normal : {glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(0.2, 1, -1))}) {
+    const Sensor sensor{{1.5, 0.8, 3.5}, normal};
+    const double truth =
+        pi * validation::rectangle_factor(sensor.position, normal, corner, u, v);
+    scene.portals = {Room::window()};
+    CHECK_VERDICT(mean_is(irradiances(scene, sensor, 1024), truth, 0.02 * truth));
+    scene.portals = {Room::window(0.3f)};
+    CHECK_VERDICT(mean_is(irradiances(scene, sensor, 2048), truth, 0.05 * truth));
+  }
+}
+
+TEST_CASE("a lamp is as bright beside portals", "[portals]") {
+  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.0f)));
+  builder.add(point_light("lamp", {2, 2, 2}));
+  Scene scene = builder.build();
+  add_environment(scene, even_surroundings());
+  scene.portals = {Room::window()};
+  const Sensor sensor{{2, 0.5, 2}, {0, 1, 0}};
+  std::vector<double> values;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const auto layers =
+        gather_by_paths(scene, std::span(&sensor, 1), {.rays = 512}, seed).layers.dense();
+    values.push_back(double{layers.layers.at(0).illuminance.at(0)});
+  }
+  const double truth = 1 / (4 * pi * 1.5 * 1.5);
+  CHECK_VERDICT(mean_is(values, truth, 0.03 * truth));
+}
+
+TEST_CASE("an opening is found from the camera's room, and faces inwards", "[portals]") {
+  const Scene scene = Room::builder(diffuse(glm::vec3(0.5f))).build();
+  const auto portals = find_portals(scene);
+  REQUIRE(portals.size() == 1);
+  const glm::vec3 across = glm::cross(portals[0].u, portals[0].v);
+  CHECK(glm::length(across) > 0.95 * Room::window_area);
+  CHECK(glm::length(across) < 1.5 * Room::window_area);
+  CHECK(across.z > 0.99f * glm::length(across));
+  const glm::vec3 middle = portals[0].corner + 0.5f * (portals[0].u + portals[0].v);
+  CHECK(glm::distance(middle, glm::vec3(1.8f, 1.4f, 0.0f)) < 0.2f);
+}
+
+TEST_CASE("panes of a named material are portals that face inwards", "[portals]") {
+  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.5f)));
+  Material pane = glass(1.5f, true);
+  pane.name = "window pane";
+  const std::uint32_t material = builder.add(pane);
+  builder.quad({Room::left, Room::sill, 0}, {Room::right, Room::sill, 0},
+               {Room::right, Room::head, 0}, {Room::left, Room::head, 0}, material);
+  const Scene scene = builder.build();
+  const std::vector<std::string> globs{"window*"};
+  const auto portals = portals_of_materials(scene, globs);
+  REQUIRE(portals.size() == 1);
+  const glm::vec3 across = glm::cross(portals[0].u, portals[0].v);
+  CHECK(across.z == Approx(Room::window_area).epsilon(0.01));
+  const std::vector<std::string> unknown{"door"};
+  CHECK_THROWS_AS(portals_of_materials(scene, unknown), UsageError);
+  const std::vector<std::string> both{"auto", "window*"};
+  CHECK_THROWS_AS(portals_asked_for(scene, both), UsageError);
+}
+
+TEST_CASE("outside there are no portals, nor in a closed room", "[portals]") {
+  CHECK(find_portals(closed_box(diffuse(glm::vec3(0.5f)))).empty());
+  CHECK(find_portals(plate(diffuse(glm::vec3(0.5f)), 2)).empty());
+}
+
+}  // namespace photile::test
