@@ -13,6 +13,7 @@
 #include "import/lamp_instances.hpp"
 #include "import/light_changes.hpp"
 #include "import/light_source.hpp"
+#include "import/luminaires.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
@@ -128,6 +129,9 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
       context.light_sources.push_back(source_of(origin, context));
     }
     finish_directional_lights(context);
+    if (!options.luminaires.empty()) {
+      add_luminaires(options.luminaires, options.lumen_per_watt, scene, warnings);
+    }
     add_surroundings(scene, options);
     context.light_sources.resize(scene.lights.size());
     if (scene.lights.empty()) {

@@ -319,8 +319,10 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   glm::vec3 radiance = (reflectance.albedo + reflectance.f0) * glm::one_over_pi<float>() * light;
   if (surface.kind == Surface::lamp && trace::emits(scene_, point)) {
     const std::uint32_t lamp = scene_.triangle_light[triangle];
-    radiance +=
-        mixed_.powers()[layer_of_[lamp]] * emitted_[lamp] * trace::emission_texel(scene_, point);
+    const bool even = scene_.lights[lamp].distribution == none;
+    if (!even) point = trace::surface_point(scene_, point.where, side);
+    radiance += mixed_.powers()[layer_of_[lamp]] * emitted_[lamp] *
+                trace::emission_towards(scene_, point, -direction);
   }
   return radiance;
 }

@@ -61,7 +61,7 @@ class SurfacePath {
     } else if (trace::emits(scene_, *point)) {
       const std::uint32_t light = scene_.triangle_light[point->where.triangle];
       add(lights_.layer(light),
-          weights_ * (weight_against(lights_.density(from_, *point)) * lights_.radiance(*point)));
+          weights_ * (weight_against(lights_.density(from_, *point)) * lights_.radiance(*point, -direction)));
     }
     return point;
   }

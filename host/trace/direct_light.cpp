@@ -57,7 +57,7 @@ class DirectLight {
       if (emits(scene_, met)) {
         const std::uint32_t light = scene_.triangle_light[met.where.triangle];
         const float weight = power_heuristic(density, lamps_.density(point_.position, met));
-        add(lamps_.layer(light), weights * (weight * lamps_.radiance(met)));
+        add(lamps_.layer(light), weights * (weight * lamps_.radiance(met, -*direction)));
       }
       const glm::vec3 passes = transmittance(scene_, met, *direction);
       if (passes == glm::vec3(0.0f)) return;

@@ -114,7 +114,7 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
           other ? weight_against(other->lamps.density(start, point, other->chances)) : 1.0f;
       record.emission.push_back({ray.pixel, light,
                                  weight * ray.radiance_weight() * (*setup.emitted_radiance)[light] *
-                                     emission_texel(scene, point)});
+                                     emission_towards(scene, point, -ray.direction)});
     }
     if (material_of(scene, point).interaction == Interaction::opaque) {
       if (seen_directly && !material_of(scene, point).glossy()) return std::nullopt;

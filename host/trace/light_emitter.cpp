@@ -14,7 +14,7 @@ namespace photile::trace {
 
 namespace {
 
-enum Block : std::uint32_t { place_block = 0, direction_block = 1, portal_block = 2 };
+enum Block : std::uint32_t { place_block = 0, direction_block = 1, portal_block = 2, luminaire_block = 1u << 20 };
 
 constexpr int least_map_columns = 32;
 
@@ -125,6 +125,7 @@ double LightEmitter::flux_of_line(const glm::dvec3& travel, int entered) const {
 }
 
 EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {
+  if (intensity_) return emit_from_luminaire(random);
   const TriangleHit where = area_->sample(random.block(Purpose::emission, place_block));
   const RandomBlock numbers = random.block(Purpose::emission, direction_block);
   const std::uint32_t front = scene_->front_side[where.triangle];
@@ -133,6 +134,17 @@ EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {
   const glm::vec3 direction =
       Frame(point.normal)
           .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
+  return {point.origin_towards(direction), direction, color_of(point)};
+}
+
+EmittedRay LightEmitter::emit_from_luminaire(const RandomStream& random) const {
+  // Directions take as many blocks from 0 on as their rejection asks for.
+  const TriangleHit where = area_->sample(random.block(Purpose::emission, luminaire_block));
+  const glm::vec3 direction = intensity_->sample(random);
+  const std::uint32_t front = scene_->front_side[where.triangle];
+  const SurfacePoint seen = surface_point(*scene_, where, front);
+  const bool forwards = glm::dot(direction, seen.normal) > 0.0f;
+  const SurfacePoint point = forwards ? seen : surface_point(*scene_, where, 1 - front);
   return {point.origin_towards(direction), direction, color_of(point)};
 }
 

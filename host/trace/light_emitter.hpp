@@ -43,6 +43,7 @@ class LightEmitter {
 
  private:
   EmittedRay emit_from_area(const RandomStream& random) const;
+  EmittedRay emit_from_luminaire(const RandomStream& random) const;
   EmittedRay emit_from_beyond(const RandomStream& random) const;
   EmittedRay emit_through_portals(const RandomStream& random) const;
   double flux_of_line(const glm::dvec3& travel, int entered) const;
@@ -52,7 +53,7 @@ class LightEmitter {
   const Scene* scene_;
   const Light* light_;
   std::optional<AreaSampler> area_;            ///< of area lights
-  std::optional<IntensitySampler> intensity_;  ///< of points with a distribution
+  std::optional<IntensitySampler> intensity_;  ///< of lights with a distribution
   std::optional<DistantSampler> distant_;      ///< of environments and suns with a disc
   BoundingSphere bounds_;
   std::shared_ptr<const Portals> portals_;

@@ -95,7 +95,7 @@ std::optional<LightSample> LightSampler::towards_area(std::uint32_t light, Surfa
   const float seen = density(position, point, chances);
   if (!(seen > 0.0f) || !(seen < std::numeric_limits<float>::infinity())) return std::nullopt;
   return LightSample{groups_.group_of[light], direction, point.origin_towards(-direction),
-                     radiance_[light] * emission_texel(*scene_, point) / seen, seen};
+                     radiance_[light] * emission_towards(*scene_, point, -direction) / seen, seen};
 }
 
 std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,

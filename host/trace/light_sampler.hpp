@@ -63,10 +63,10 @@ class LightSampler {
   float density(const DistantLight& light, const glm::vec3& position, const glm::vec3& direction,
                 const LampChances& chances = by_shares_alone) const;
 
-  /// Radiance that a point of an area light emits at the power 1 of its layer.
-  glm::vec3 radiance(const SurfacePoint& emitting) const {
+  /// Radiance that a point of an area light emits in a unit direction, at the power 1 of its layer.
+  glm::vec3 radiance(const SurfacePoint& emitting, const glm::vec3& direction) const {
     return radiance_[scene_->triangle_light[emitting.where.triangle]] *
-           emission_texel(*scene_, emitting);
+           emission_towards(*scene_, emitting, direction);
   }
   std::uint32_t layer(std::uint32_t light) const { return groups_.group_of[light]; }
 

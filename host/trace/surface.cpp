@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "photile/device/bsdf.h"
+#include "trace/lamp_axes.hpp"
 #include "trace/largest.hpp"
 #include "trace/normal_map.hpp"
 
@@ -110,6 +112,22 @@ glm::vec3 emission_texel(const Scene& scene, const SurfacePoint& point) {
   if (light == none || scene.lights[light].emission_texture == none) return glm::vec3(1.0f);
   return scene.textures[scene.lights[light].emission_texture].sample(
       interpolate(scene.corner_emission_uv[point.where.triangle], point.where));
+}
+
+glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
+                           const glm::vec3& direction) {
+  const glm::vec3 texel = emission_texel(scene, point);
+  const std::uint32_t number = scene.triangle_light[point.where.triangle];
+  if (number == none || scene.lights[number].distribution == none) return texel;
+  constexpr double grazing = 1e-3;  // nearer to the surface an intensity has no radiance
+  const Light& light = scene.lights[number];
+  const IntensityDistribution& distribution = scene.distributions[light.distribution];
+  const double cosine = std::max(
+      grazing, std::abs(glm::dot(glm::dvec3(point.normal), glm::dvec3(direction))));
+  const double sides = light.two_sided ? 2 : 1;
+  const double intensity =
+      distribution.intensity(LampAxes(light).to_lamp(glm::dvec3(direction))) / distribution.flux();
+  return texel * static_cast<float>(glm::pi<double>() * sides * intensity / cosine);
 }
 
 scene_io::Reflectance reflectance(const Scene& scene, const SurfacePoint& point) {

@@ -127,7 +127,9 @@ struct Light {
   /// the flux that crosses discs of the radius of `bounding_sphere`, each facing its direction.
   double power = 0;
 
-  // Area lights: radiance over the triangles' front sides, or both sides, uniform or textured.
+  // Area lights: radiance over the triangles' front sides, or both sides, uniform or textured; with
+  // a `distribution` each point sends its share of the intensities, and less or more of radiance
+  // by direction.
   std::vector<std::uint32_t> triangles;
   bool two_sided = false;
   std::uint32_t emission_texture = none;
@@ -139,7 +141,8 @@ struct Light {
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit, where the light shines to
   float inner_cone_angle = 0.0f;           ///< radians, spot
   float outer_cone_angle = 0.7853982f;     ///< radians, spot
-  /// Of a point light: into Scene::distributions; `none` = the same intensity everywhere.
+  /// Of a point or area light: into Scene::distributions; `none` = the same intensity, or radiance,
+  /// everywhere.
   std::uint32_t distribution = none;
   /// Unit, perpendicular to `direction`: the x axis of a lamp whose -z axis is `direction`.
   glm::vec3 x_axis{1.0f, 0.0f, 0.0f};
@@ -287,6 +290,7 @@ struct SceneLoadOptions {
   std::optional<Sun> sun = std::nullopt;
   std::optional<Sky> sky = std::nullopt;
   SkySituation situation = {};
+  std::filesystem::path luminaires = {};  ///< lamps to place, JSON (docs/luminaires.md); "" = none
   /// Windows for the light of suns and skies: "auto" finds them, "off" takes none, else globs of
   /// the names of materials that fill them.
   std::vector<std::string> portals = {};  ///< empty = auto

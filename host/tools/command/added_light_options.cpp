@@ -56,6 +56,11 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
                  "a luminous rectangle, in metres, at a node of a glTF file; repeatable",
                  options.panels)
       ->group(group);
+  command
+      .add_option("--luminaires", options.luminaires,
+                  "lamps to place, by their photometric files, alone or in arrays")
+      ->type_name("FILE.json")
+      ->group(group);
   add_repeatable(command, "--light-temperature", "NAME=KELVIN",
                  "colour of a light, whose flux stays; repeatable", options.temperatures)
       ->group(group);

@@ -15,6 +15,7 @@ void note_inputs_of(const RenderOptions& options) {
   for (const LightProfile& profile : options.load.profiles) note_input(profile.file);
   note_input(options.load.environment.file);
   note_input(options.load.situation.weather);
+  note_input(options.load.luminaires);
   note_input(options.load_maps);
 }
 
