@@ -112,9 +112,8 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset) {
   // Shadow borders stand at the finer levels: there looks at lamps matter more than other rays.
   // Nine of these are averaged. Beside the sun a shadow has a hundredth of the light, and few
-  // looks find the sky through a window that is no portal: there what single looks bring would show.
-  const bool open = scene.portals.empty() &&
-                    std::any_of(scene.lights.begin(), scene.lights.end(),
+  // looks find the sky through a window: there what single looks bring would show.
+  const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
   const int fine = (coarse + 3) / 4;
   if (open) {
