@@ -48,7 +48,7 @@ void set_worth(const std::vector<SkyLight>& sky, const std::vector<double>& mean
   double most = 0, lamps = 0, all = 0;
   for (const SkyLight& patch : sky) {
     const trace::DistantSampler sampler(scene, scene.lights[patch.light]);
-    facing.push_back(portals.empty() ? 1.0 : portals.area_facing(-sampler.middle()));
+    facing.push_back(portals.empty() ? 1.0 : trace::area_facing(portals, sampler));
     most = std::max(most, facing.back());
   }
   for (const Light& light : scene.lights) lamps += light.is_sky_patch() ? 0.0 : light.power;

@@ -46,7 +46,8 @@ LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const Boundi
     if (map.width() < least_map_columns) return;
     reached = !towards_portals_.emplace(map, shown).empty();
   } else {
-    reached = shown(distant_ ? distant_->middle() : -glm::dvec3(light_->direction)) > 0;
+    reached = (distant_ ? area_facing(*portals_, *distant_)
+                        : portals_->area_facing(glm::dvec3(light_->direction))) > 0;
   }
   if (reached) portal_share_ = defaults::portal_photons;
 }

@@ -100,17 +100,32 @@ struct Plane {
   glm::dvec3 t() const { return glm::cross(normal, s()); }
 };
 
+/// The normal of a triangle's plane, the same for whatever lies in it.
+glm::dvec3 plane_normal(const Scene& scene, std::uint32_t triangle) {
+  const glm::dvec3 normal = sided_normal(scene, sided(triangle, 0));
+  constexpr double level = 1e-6;  // roundings of 0
+  const double first = std::abs(normal.x) > level   ? normal.x
+                       : std::abs(normal.y) > level ? normal.y
+                                                    : normal.z;
+  return first < 0 ? -normal : normal;
+}
+
+using PlaneKey = std::array<long, 4>;
+
+/// The same for triangles in about one plane.
+PlaneKey plane_key(const glm::dvec3& normal, double offset) {
+  return {std::lround(500 * normal.x), std::lround(500 * normal.y), std::lround(500 * normal.z),
+          std::lround(std::clamp(100 * offset, -1e15, 1e15))};
+}
+
 /// The planes of the scene's triangles with the most area.
 std::vector<Plane> planes_of(const Scene& scene) {
-  std::map<std::array<long, 4>, Plane> found;
+  std::map<PlaneKey, Plane> found;
   for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
-    glm::dvec3 normal = sided_normal(scene, sided(triangle, 0));
-    if (std::tie(normal.x, normal.y, normal.z) < std::make_tuple(0.0, 0.0, 0.0)) normal = -normal;
+    const glm::dvec3 normal = plane_normal(scene, triangle);
     const double offset = glm::dot(normal, glm::dvec3(scene.corners(triangle)[0]));
     if (!std::isfinite(offset)) continue;
-    Plane& plane = found[{std::lround(500 * normal.x), std::lround(500 * normal.y),
-                          std::lround(500 * normal.z),
-                          std::lround(std::clamp(100 * offset, -1e15, 1e15))}];
+    Plane& plane = found[plane_key(normal, offset)];
     if (!(plane.area > 0)) plane = {normal, offset, 0};
     plane.area += triangle_area(scene, triangle);
   }
@@ -277,7 +292,7 @@ std::vector<std::vector<std::uint32_t>> panes_of(const Scene& scene,
     while (parent[place] != place) place = parent[place] = parent[parent[place]];
     return place;
   };
-  std::map<std::array<long, 4>, std::map<std::uint32_t, std::vector<std::uint32_t>>> panes;
+  std::map<PlaneKey, std::map<std::uint32_t, std::vector<std::uint32_t>>> panes;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of_triangle;  // and a place of it
   for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
     if (!chosen[scene.triangle_material[triangle]]) continue;
@@ -294,11 +309,9 @@ std::vector<std::vector<std::uint32_t>> panes_of(const Scene& scene,
     of_triangle.emplace_back(triangle, places[0]);
   }
   for (const auto& [triangle, place] : of_triangle) {
-    const glm::dvec3 normal = sided_normal(scene, sided(triangle, 0));
+    const glm::dvec3 normal = plane_normal(scene, triangle);
     const double offset = glm::dot(normal, glm::dvec3(scene.corners(triangle)[0]));
-    panes[{std::lround(500 * normal.x), std::lround(500 * normal.y), std::lround(500 * normal.z),
-           std::lround(std::clamp(100 * offset, -1e15, 1e15))}][root(place)]
-        .push_back(triangle);
+    if (std::isfinite(offset)) panes[plane_key(normal, offset)][root(place)].push_back(triangle);
   }
   std::vector<std::vector<std::uint32_t>> found;
   for (const auto& [plane, parts] : panes) {

@@ -97,4 +97,15 @@ double Portals::density(const glm::dvec3& from, const glm::dvec3& direction,
   return density / sum;
 }
 
+double area_facing(const Portals& portals, const DistantSampler& light) {
+  constexpr int directions = 64;
+  double sum = 0;
+  for (int i = 0; i < directions; ++i) {
+    const RandomStream random(0, static_cast<std::uint64_t>(i), 0);
+    const glm::vec3 towards = light.sample(random.block(Purpose::emission, 0)).direction;
+    sum += portals.area_facing(-glm::dvec3(towards));
+  }
+  return sum / directions;
+}
+
 }  // namespace photile::trace

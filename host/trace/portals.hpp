@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photile/scene.hpp"
-#include "trace/random_stream.hpp"
+#include "trace/distant_light.hpp"
 
 namespace photile::trace {
 
@@ -48,5 +48,9 @@ class Portals {
 
   std::vector<Rectangle> portals_;
 };
+
+/// What portals show to a sun's disc or a patch of the sky, on average over its solid angle, square
+/// metres.
+double area_facing(const Portals& portals, const DistantSampler& light);
 
 }  // namespace photile::trace

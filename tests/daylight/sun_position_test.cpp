@@ -13,7 +13,7 @@ using namespace photile::daylight;
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
+constexpr double per_radian = 180 / std::numbers::pi;
 
 /// The highest that the sun stands on a day, and where, in degrees.
 SunPosition highest(const Site& site, int month, int day) {
@@ -22,7 +22,7 @@ SunPosition highest(const Site& site, int month, int day) {
     const SunPosition at = sun_position(site, {2026, month, day, minute / 60.0});
     if (minute == 0 || at.elevation > best.elevation) best = at;
   }
-  return {best.azimuth * degrees, best.elevation * degrees};
+  return {best.azimuth * per_radian, best.elevation * per_radian};
 }
 
 }  // namespace
@@ -31,8 +31,8 @@ TEST_CASE("the sun stands where the example of NREL's solar position algorithm h
   // Reda and Andreas 2004: zenith 50.11162 with refraction (0.014 degrees), azimuth 194.34024.
   const SunPosition sun =
       sun_position({39.742476, -105.1786, -7}, {2003, 10, 17, 12 + 30 / 60.0 + 30 / 3600.0});
-  CHECK(sun.elevation * degrees == Approx(90 - 50.11162 - 0.014).margin(0.02));
-  CHECK(sun.azimuth * degrees == Approx(194.34024).margin(0.02));
+  CHECK(sun.elevation * per_radian == Approx(90 - 50.11162 - 0.014).margin(0.02));
+  CHECK(sun.azimuth * per_radian == Approx(194.34024).margin(0.02));
 }
 
 TEST_CASE("at noon of a solstice the sun is 23.44 degrees from where it is at an equinox") {
@@ -58,7 +58,7 @@ TEST_CASE("fifteen degrees to the west the same sun stands an hour later") {
 
 TEST_CASE("in the morning the sun is in the east") {
   const SunPosition sun = sun_position({52.5, 13.4, 1}, {2026, 3, 20, 7.0});
-  CHECK(sun.azimuth * degrees == Approx(97).margin(4));
+  CHECK(sun.azimuth * per_radian == Approx(97).margin(4));
 }
 
 TEST_CASE("days count from the first of January") {
