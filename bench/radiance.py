@@ -176,7 +176,7 @@ def rows_to_measure(options):
     if program(options, "rtrace") and program(options, "oconv"):
         for tool, settings in RTRACE.items():
             for rank, setting in enumerate(settings[quick]):
-                dear = 2 if tool == "rtrace" else 1  # with an ambient cache minutes go into a row
+                dear = 3 if tool == "rtrace" else 1  # with an ambient cache minutes go into a row
                 yield dear * rank, tool, setting, lambda subject, setting=setting: subject.traced(setting)
         if program(options, "mkpmap"):
             for rank, (photons, setting) in enumerate(PHOTON_MAPS[quick]):
@@ -268,10 +268,18 @@ def scene_section(name, scene):
             f"a measured row for an error:\n\n{short}\n\n{long}")
 
 
+def all_settings():
+    """(tool, setting) of each row that there should be."""
+    maps = [("mkpmap, rtrace", f"-apg {photons}; -ap 50 {setting}") for photons, setting in PHOTON_MAPS]
+    return maps + [(tool, setting) for tools in (RTRACE, PHOTILE) for tool, settings in tools.items()
+                   for setting in settings]
+
+
 def page(record):
-    missing = [tool for tool in TOOLS
-               if not any(row["tool"] == tool for scene in record["scenes"].values() for row in scene["rows"])]
-    lacking = f"\n\nNot there, so not measured: {', '.join(missing)}." if missing else ""
+    missing = [f"{tool} `{setting}` ({name})" for name, scene in record["scenes"].items()
+               for tool, setting in all_settings()
+               if (tool, setting) not in {(row["tool"], row["setting"]) for row in scene["rows"]}]
+    lacking = f"\n\nNot measured: {'; '.join(missing)}." if missing else ""
     sections = "\n\n".join(scene_section(name, scene) for name, scene in record["scenes"].items())
     return f"""# Beside Radiance
 

@@ -81,7 +81,7 @@ class Errors(unittest.TestCase):
                             "references": [{"lux": [100, 200], "standard_error": [1, 2]}]}}})
         self.assertIn("| rtrace | 2 s | 3 s | not reached |", page)
         self.assertIn("the reference's own error is 1.00%", page)
-        self.assertIn("Not there, so not measured: rtrace -aa 0, mkpmap, rtrace, photile, maps, photile, paths.", page)
+        self.assertIn("Not measured: mkpmap, rtrace `-apg 50k; ", page)
 
 
 if __name__ == "__main__":
