@@ -1,13 +1,14 @@
 // Every collective call begins with an agreement that nobody has failed. A process that fails makes
 // that agreement in place of the call that the others make, and all end: no process waits for one
-// that is gone, and none has to be aborted. Waiting processes sleep between looks, since ranks may
-// be more than cores.
+// that is gone, and none has to be aborted. It also tells the others, who look out for that while
+// they work, so that none of them finishes a long stage first. Waiting processes sleep between
+// looks, since ranks may be more than cores.
 #include "mpi/communicator.hpp"
 
 #include <mpi.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <chrono>
 #include <climits>
 #include <cstring>
@@ -48,6 +49,8 @@ class MpiCommunicator final : public Communicator {
     int rank = 0, size = 1, near = 1;
     MPI_Comm_rank(all_, &rank);
     MPI_Comm_size(all_, &size);
+    MPI_Comm_dup(MPI_COMM_WORLD, &news_);
+    MPI_Irecv(&heard_code_, 1, MPI_INT, MPI_ANY_SOURCE, 0, news_, &news_request_);
     MPI_Comm machine = MPI_COMM_NULL;
     MPI_Comm_split_type(all_, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &machine);
     MPI_Comm_size(machine, &near);
@@ -151,10 +154,23 @@ class MpiCommunicator final : public Communicator {
   Conclusion conclude(int code) override {
     // Others wait within a call that this process has left: mpirun ends them when it exits.
     if (broken_) return {rank_, code};
-    const Conclusion end = agree(code);
+    if (code != 0 && !heard_ && !failed_) tell(code);
+    // Who stopped because of another has not failed.
+    const Conclusion end = agree(heard_ ? 0 : code);
+    MPI_Cancel(&news_request_);
+    MPI_Request_free(&news_request_);
     MPI_Comm_free(&all_);
     MPI_Finalize();
     return end;
+  }
+
+  bool other_failed() {
+    if (std::this_thread::get_id() == thread_ && !heard_ && !broken_) {
+      int there = 0;
+      MPI_Request_get_status(news_request_, &there, MPI_STATUS_IGNORE);
+      heard_ = there != 0;
+    }
+    return heard_;
   }
 
  private:
@@ -177,6 +193,16 @@ class MpiCommunicator final : public Communicator {
     int before_ = std::uncaught_exceptions();
     Clock::time_point begin_ = Clock::now();
   };
+
+  void tell(int code) {
+    told_code_ = code;
+    for (std::uint32_t r = 0; r < size_; ++r) {
+      if (r == rank_) continue;
+      MPI_Request request;
+      MPI_Isend(&told_code_, 1, MPI_INT, static_cast<int>(r), 0, news_, &request);
+      MPI_Request_free(&request);  // the agreement that follows says that it has arrived
+    }
+  }
 
   /// The least rank that has a code, and the code.
   Conclusion agree(int code) {
@@ -236,7 +262,11 @@ class MpiCommunicator final : public Communicator {
     }
   }
 
-  MPI_Comm all_ = MPI_COMM_NULL;
+  MPI_Comm all_ = MPI_COMM_NULL, news_ = MPI_COMM_NULL;
+  MPI_Request news_request_ = MPI_REQUEST_NULL;
+  int heard_code_ = 0, told_code_ = 0;
+  std::atomic<bool> heard_{false};
+  const std::thread::id thread_ = std::this_thread::get_id();
   std::uint32_t rank_ = 0, size_ = 1, near_ = 1;
   Traffic traffic_;
   std::unique_ptr<Conclusion> failed_;  ///< what all know of
@@ -246,8 +276,15 @@ class MpiCommunicator final : public Communicator {
 }  // namespace
 }  // namespace photile
 
+namespace {
+
+std::unique_ptr<photile::MpiCommunicator> communicator;
+
+}  // namespace
+
+bool photile_mpi_other_failed() { return communicator && communicator->other_failed(); }
+
 photile::Communicator* photile_mpi_communicator() {
-  static std::unique_ptr<photile::MpiCommunicator> communicator;
   if (!communicator) {
     int given = 0;
     // The thread that makes the calls is the only one.

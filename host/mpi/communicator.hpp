@@ -9,4 +9,8 @@ extern "C" {
 /// Null where MPI cannot be initialised.
 __attribute__((visibility("default"))) photile::Communicator* photile_mpi_communicator();
 
+/// Whether another process has failed, as far as is known between collective calls. Any thread; the
+/// one that has called the above finds out, the others hear of it.
+__attribute__((visibility("default"))) bool photile_mpi_other_failed();
+
 }  // extern "C"

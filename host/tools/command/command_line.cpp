@@ -18,6 +18,7 @@
 #include "tools/command/exit_code.hpp"
 #include "tools/command/processes.hpp"
 #include "tools/command/setting_options.hpp"
+#include "tools/command/signals.hpp"
 #include "tools/command/terminal.hpp"
 #include "tools/command/version.hpp"
 
@@ -132,7 +133,7 @@ int conclude(ExitCode code, const std::string& problem) {
     return own;
   }
   // A launcher that ends all does not wait until they agree.
-  const bool told = code == ExitCode::interrupted && leads();
+  const bool told = code == ExitCode::interrupted && leads() && stop_requested();
   if (told) print_error(problem);
   const Communicator::Conclusion end = processes()->conclude(own);
   if (end.code != 0 && end.rank == processes()->rank() && !told) print_error(problem);

@@ -15,6 +15,7 @@ namespace photile::app {
 namespace {
 
 Communicator* joined = nullptr;
+decltype(&photile_mpi_other_failed) other_failed_of_module = nullptr;
 
 int number_in(const char* variable) {
   const char* text = std::getenv(variable);
@@ -78,12 +79,16 @@ void join_processes(std::span<const char* const> arguments) {
   // Global: MPI libraries load parts of their own, which look for the rest.
   void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   void* const found = module ? dlsym(module, "photile_mpi_communicator") : nullptr;
-  if (!found) throw UsageError(fmt::format("{}: {}", file.string(), dlerror()));
+  void* const failed = module ? dlsym(module, "photile_mpi_other_failed") : nullptr;
+  if (!found || !failed) throw UsageError(fmt::format("{}: {}", file.string(), dlerror()));
+  other_failed_of_module = reinterpret_cast<decltype(&photile_mpi_other_failed)>(failed);
   joined = reinterpret_cast<decltype(&photile_mpi_communicator)>(found)();
   if (!joined) throw UsageError("MPI cannot be initialised; see what mpirun says");
 }
 
 Communicator* processes() { return joined; }
+
+bool other_failed() { return joined != nullptr && other_failed_of_module(); }
 
 bool leads() { return joined == nullptr || joined->rank() == 0; }
 

@@ -22,6 +22,9 @@ Communicator* processes();
 /// Whether this process tells and writes what all have made.
 bool leads();
 
+/// Whether another process has failed: what this one makes is of no use then. Any thread.
+bool other_failed();
+
 /// What rank 0 says, on all ranks. Collective.
 std::vector<bool> as_first_says(const std::vector<bool>& own);
 

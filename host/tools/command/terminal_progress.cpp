@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "tools/command/processes.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal.hpp"
 
@@ -57,7 +58,7 @@ void TerminalProgress::note(const std::string& line) {
   if (active_ && style_ == Style::bar) draw();
 }
 
-bool TerminalProgress::cancelled() const { return stop_requested(); }
+bool TerminalProgress::cancelled() const { return stop_requested() || other_failed(); }
 
 void TerminalProgress::keep_drawing(std::stop_token stop) {
   std::unique_lock lock(mutex_);
