@@ -22,7 +22,6 @@
 #include "tools/command/commands.hpp"
 #include "tools/command/output_files.hpp"
 #include "tools/command/place_options.hpp"
-#include "tools/command/processes.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
 #include "tools/command/signals.hpp"
@@ -164,7 +163,6 @@ void check_lights(const DaylightOptions& options) {
 
 void run_daylight(DaylightOptions& options) {
   handle_signals();
-  refuse_several("photile daylight", "run it in one process");
   RenderOptions& render = options.render;
   check_settings(render);
   check_lights(options);
