@@ -44,7 +44,7 @@ STEPS = (
     ("How do they differ? Red is where work is brighter, blue where the evening is.",
      "photile compare work.exr evening.exr -o moods.png",
      {"moods.png": "Work, evening, and the difference of their luminances"},
-     ("error", "picture  ")),
+     ("work.exr", "luminance,", "illuminance,")),
     ("What is left of the light on the plane in the evening?",
      f"photile measure living-room.gltf {EVENING} --plane floor+0.75 --clearance 0.1 "
      "--maintenance 0.8 -s 600 --cb -o evening.svg",

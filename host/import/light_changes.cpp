@@ -29,7 +29,9 @@ Light& light_named(const std::string& name, const char* change, Scene& scene) {
                                listed_names(names)));
 }
 
-IntensityDistribution read_user_file(const std::filesystem::path& file, Warnings& warnings) {
+}  // namespace
+
+IntensityDistribution read_user_photometry(const std::filesystem::path& file, Warnings& warnings) {
   std::vector<unsigned char> bytes;
   try {
     bytes = read_regular_file(file, limits::max_photometry_bytes);
@@ -45,8 +47,6 @@ IntensityDistribution read_user_file(const std::filesystem::path& file, Warnings
   }
 }
 
-}  // namespace
-
 void apply_profiles(Scene& scene, std::span<const LightProfile> profiles, Warnings& warnings) {
   for (const LightProfile& profile : profiles) {
     Light& light = light_named(profile.light, "photometric file for", scene);
@@ -56,7 +56,7 @@ void apply_profiles(Scene& scene, std::span<const LightProfile> profiles, Warnin
                       "name one of those",
                       profile.light));
     }
-    IntensityDistribution distribution = read_user_file(profile.file, warnings);
+    IntensityDistribution distribution = read_user_photometry(profile.file, warnings);
     light.kind = LightKind::point;
     light.power = distribution.flux();
     light.distribution = static_cast<std::uint32_t>(scene.distributions.size());

@@ -8,6 +8,10 @@
 
 namespace photile::scene_io {
 
+/// Reads a photometric file that the user names. Errors: InputError for one that is missing or
+/// malformed.
+IntensityDistribution read_user_photometry(const std::filesystem::path& file, Warnings& warnings);
+
 /// Gives lights photometric files: each becomes a point light with the file's flux, and keeps its
 /// place, direction and colour. Names of lights must be final.
 /// Errors: UsageError for a light that is not there, or neither point nor spot; InputError for a

@@ -14,6 +14,7 @@
 #include "import/light_changes.hpp"
 #include "import/light_source.hpp"
 #include "import/luminaires.hpp"
+#include "import/material_changes.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
@@ -152,6 +153,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   make_light_names_unique(scene.lights);
   apply_profiles(scene, options.profiles, warnings);
   apply_temperatures(scene, options.temperatures);
+  apply_reflectances(scene, options.reflectances);
   check_powers(scene, options.emissive_scale);
   group_lights(scene, options.light_groups);
   if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));

@@ -1,5 +1,7 @@
 #include "measuring/furniture.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bitset>
@@ -17,6 +19,7 @@ namespace {
 /// Surfaces this near to one another count as one crossing: sheets that lie on each other.
 constexpr double beyond_hit = 1e-4;  // metres
 constexpr int most_crossings = 1000;
+constexpr double off_surface = 1e-3;  // metres
 
 glm::dvec3 place_of(const Scene& scene, const TriangleHit& hit) {
   const auto corners = scene.corners(hit.triangle);
@@ -65,6 +68,7 @@ Parities usual_parities(const std::vector<Parities>& all) {
 }
 
 bool has_surface_near(const RayScene& rays, const Sensor& sensor, double clearance) {
+  if (!(clearance > 0)) return false;
   const glm::dvec3 reach = clearance * sensor.normal;
   return trace::occluded(rays, glm::vec3(sensor.position - reach),
                          glm::vec3(sensor.position + reach));
@@ -79,14 +83,23 @@ std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid
   std::vector<bool> near;
   for (const Sensor& sensor : grid.sensors) {
     const Sensor in_scene{sensor.position - scene.origin, sensor.normal};
-    parities.push_back(parities_at(rays, in_scene));
+    // Rays along a surface that the sensor lies on would meet its edges by chance.
+    parities.push_back(
+        parities_at(rays, {in_scene.position + off_surface * sensor.normal, sensor.normal}));
     near.push_back(has_surface_near(rays, in_scene, clearance));
   }
   const Parities usual = usual_parities(parities);
   std::vector<Sensor> sensors;
   std::vector<std::uint32_t> cells;
   for (std::size_t i = 0; i < grid.sensors.size(); ++i) {
-    if (near[i] || (parities[i] ^ usual).count() >= rays_turned_inside) continue;
+    const bool inside = (parities[i] ^ usual).count() >= rays_turned_inside;
+    if (near[i] || inside) {
+      grid.blanks.push_back({grid.sensors[i],
+                             inside ? "inside a solid or beyond the walls"
+                                    : fmt::format("less than {} m from a surface", clearance),
+                             sensors.size()});
+      continue;
+    }
     sensors.push_back(grid.sensors[i]);
     if (grid.layout) cells.push_back(grid.layout->cells[i]);
   }

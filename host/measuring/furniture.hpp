@@ -8,14 +8,14 @@
 
 namespace photile::measuring {
 
-/// Takes those sensors, and the cells of a plane that are theirs, out of a grid:
-/// - with a surface nearer than `clearance` metres, along or against their direction;
-/// - inside a solid: of six rays, along and across their direction, at least five cross an odd
-/// number
+/// Makes those sensors of a grid blank, and takes the cells of a plane that are theirs:
+/// - with a surface nearer than `clearance` metres, along or against their direction; 0 = none;
+/// - inside a solid, or beyond the walls that most of the grid stands within: of six rays, along
+/// and across their direction, at least five cross an odd number
 ///   of surfaces where the same ray of most sensors of the grid crosses an even one, or the other
 ///   way round. Whichever way a closed mesh is wound, a ray from inside leaves it once more than it
 ///   enters it; a single sheet, such as a pane, turns no more than one or two of the rays.
-/// Returns how many were taken out.
+/// Returns how many.
 std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid& grid);
 
 }  // namespace photile::measuring

@@ -19,7 +19,8 @@ std::vector<Sensor> sensors_of(const Scene& scene, std::span<const SensorGrid> g
   std::vector<Sensor> sensors;
   for (const SensorGrid& grid : grids) {
     for (const Sensor& sensor : grid.sensors) {
-      sensors.push_back({sensor.position - scene.origin, sensor.normal});
+      sensors.push_back(sensor);
+      sensors.back().position -= scene.origin;
     }
   }
   return sensors;

@@ -1,9 +1,12 @@
 #include "measuring/room.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "photile/errors.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 
@@ -100,6 +103,23 @@ std::optional<Room> Room::of_camera(const RayScene& rays, const PlanAxes& axes,
     return around(rays, axes, point);
   }
   return std::nullopt;
+}
+
+std::optional<Room> Room::meant(const RayScene& rays, const PlanAxes& axes,
+                                const std::optional<glm::dvec3>& inside) {
+  const Scene& scene = rays.scene();
+  if (!inside) {
+    if (scene.cameras.empty()) return std::nullopt;
+    return of_camera(rays, axes, scene.cameras.front());
+  }
+  std::optional<Room> room = around(rays, axes, *inside - scene.origin);
+  if (!room) {
+    throw UsageError(
+        fmt::format("point {},{},{}: is in no room with a floor below and a ceiling above, each "
+                    "less than {} m away; give another point",
+                    inside->x, inside->y, inside->z, most_height));
+  }
+  return room;
 }
 
 /// Reaches cell after cell. False where there is no end.

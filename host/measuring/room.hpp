@@ -38,6 +38,12 @@ class Room {
   static std::optional<Room> of_camera(const RayScene& rays, const PlanAxes& axes,
                                        const Camera& camera);
 
+  /// The one around `inside` (metres in the file's world), or where none is given of_camera of the
+  /// scene's first. None: the camera comes to no room. Errors: UsageError where the point is in
+  /// none.
+  static std::optional<Room> meant(const RayScene& rays, const PlanAxes& axes,
+                                   const std::optional<glm::dvec3>& inside);
+
   /// Corners of the upright rectangle around its plan.
   const glm::dvec2& low() const { return low_; }
   const glm::dvec2& high() const { return high_; }
@@ -46,6 +52,8 @@ class Room {
   /// Places in the cut, spread evenly: one for each `cell_area`.
   std::vector<glm::dvec3> places() const;
   double cell_area() const { return cell_ * cell_; }
+  /// Of the cut along `up`, metres: just below the ceiling.
+  double cut_height() const { return glm::dot(seed_, axes_.up); }
 
  private:
   using Cell = glm::i32vec2;

@@ -63,6 +63,31 @@ SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
   return grid_on_plane(plane.text("name", name), std::move(layout));
 }
 
+/// The band of so many metres around a task, as a grid of cells like the task's.
+SensorGrid surroundings_of(const SensorGrid& task, double band) {
+  const PlaneLayout& inner = *task.layout;
+  const double across = glm::length(inner.u), along = glm::length(inner.v);
+  const glm::dvec3 u = inner.u / across, v = inner.v / along;
+  PlaneLayout outer;
+  outer.origin = inner.origin - band * (u + v);
+  outer.u = (across + 2 * band) * u;
+  outer.v = (along + 2 * band) * v;
+  const double spacing = std::min(inner.spacing(), band);
+  outer.columns = std::max(1, static_cast<int>(std::round((across + 2 * band) / spacing)));
+  outer.rows = std::max(1, static_cast<int>(std::round((along + 2 * band) / spacing)));
+  const auto cells =
+      static_cast<std::uint32_t>(outer.columns) * static_cast<std::uint32_t>(outer.rows);
+  for (std::uint32_t cell = 0; cell < cells; ++cell) {
+    const glm::dvec3 from = outer.middle_of(cell) - inner.origin;
+    const double x = glm::dot(from, u), y = glm::dot(from, v);
+    if (x > 0 && x < across && y > 0 && y < along) continue;
+    outer.cells.push_back(cell);
+  }
+  SensorGrid grid = grid_on_plane(task.name + " surroundings", std::move(outer));
+  grid.role = GridRole::surroundings;
+  return grid;
+}
+
 }  // namespace
 
 std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
@@ -72,9 +97,16 @@ std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
   std::vector<SensorGrid> grids;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string number = list.size() > 1 ? std::to_string(i + 1) : "";
-    const JsonObject plane(list[i], fmt::format("{}: plane {}", file.string(), i + 1),
-                           {"name", "origin", "u", "v", "spacing", "columns", "rows"});
+    const JsonObject plane(
+        list[i], fmt::format("{}: plane {}", file.string(), i + 1),
+        {"name", "origin", "u", "v", "spacing", "columns", "rows", "surroundings"});
     grids.push_back(grid_of(plane, file.stem().string() + number));
+    if (!plane.has("surroundings")) continue;
+    SensorGrid around = surroundings_of(grids.back(), plane.metres("surroundings"));
+    if (around.sensors.size() > limits::max_sensors) {
+      plane.refuse(fmt::format("'surroundings' makes more than {} points", limits::max_sensors));
+    }
+    grids.push_back(std::move(around));
   }
   return grids;
 }

@@ -10,8 +10,9 @@ namespace photile::measuring {
 
 /// Reads a JSON object {"name", "origin", "u", "v"} with either "spacing" or "columns" and "rows",
 /// or a list of such: a rectangle from a corner along two sides at a right angle, metres in the
-/// scene file's world, which faces u x v. Without a spacing it is that of EN 12464-1. Errors:
-/// InputError naming the file, the plane and the key.
+/// scene file's world, which faces u x v. Without a spacing it is that of EN 12464-1. With
+/// "surroundings" the band of so many metres around it is a grid of its own. Errors: InputError
+/// naming the file, the plane and the key.
 std::vector<SensorGrid> read_planes(const std::filesystem::path& file);
 
 /// Reads lines of six numbers: x y z of a point in metres and the direction that it faces, of any

@@ -26,10 +26,23 @@ struct PlaneLayout {
   double spacing() const { return glm::length(u) / columns; }  ///< metres, along u
 };
 
+/// A point of a grid that is not measured.
+struct BlankPoint {
+  Sensor sensor;
+  std::string reason;      ///< "inside a solid or beyond the walls"
+  std::size_t before = 0;  ///< number of sensors that stand before it in the grid
+};
+
+/// What a grid is of, for the requirements of standards.
+enum class GridRole { task, surroundings, wall, ceiling, cylindrical, other };
+
 struct SensorGrid {
   std::string name;
-  std::vector<Sensor> sensors;        ///< in the scene file's world
-  std::optional<PlaneLayout> layout;  ///< of a plane
+  std::vector<Sensor> sensors;          ///< in the scene file's world
+  std::optional<PlaneLayout> layout;    ///< of a plane
+  std::vector<BlankPoint> blanks = {};  ///< in the order of the grid
+  GridRole role = GridRole::task;
+  std::string remark = {};  ///< what the user should know of its place; "" = nothing
 };
 
 /// Sensors in the middles of the layout's cells.

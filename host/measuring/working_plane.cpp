@@ -18,23 +18,6 @@ int cells_along(double metres, double spacing) {
   return static_cast<int>(std::clamp(std::round(metres / spacing), 1.0, 1e6));
 }
 
-/// Errors: UsageError where the given point is in no room.
-std::optional<Room> room_of(const RayScene& rays, const PlanAxes& axes, const WorkingPlane& plane) {
-  const Scene& scene = rays.scene();
-  if (!plane.inside) {
-    if (scene.cameras.empty()) return std::nullopt;
-    return Room::of_camera(rays, axes, scene.cameras.front());
-  }
-  std::optional<Room> room = Room::around(rays, axes, *plane.inside - scene.origin);
-  if (!room) {
-    throw UsageError(
-        fmt::format("point {},{},{}: is in no room with a floor below and a ceiling above, each "
-                    "less than {} m away; give another point",
-                    plane.inside->x, plane.inside->y, plane.inside->z, Room::most_height));
-  }
-  return room;
-}
-
 }  // namespace
 
 WorkingPlane parse_working_plane(const std::string& text) {
@@ -57,7 +40,7 @@ WorkingPlane parse_working_plane(const std::string& text) {
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   const PlanAxes axes = PlanAxes::of(plane.up);
   const RayScene rays(scene);
-  const std::optional<Room> room = room_of(rays, axes, plane);
+  const std::optional<Room> room = Room::meant(rays, axes, plane.inside);
   const Floor floor = find_floor(rays, axes, room ? &*room : nullptr);
   if (floor.triangles.empty()) {
     throw InputError(fmt::format("{}: no floor found; describe the plane by a grid of points",
@@ -100,7 +83,13 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
                     scene.source.string(), plane.wall_band));
   }
   layout.origin += scene.origin;
-  return grid_on_plane("working plane", std::move(layout));
+  SensorGrid grid = grid_on_plane("working plane", std::move(layout));
+  if (!room) {
+    grid.remark =
+        "the camera comes to no room with a ceiling: this is the widest floor of the scene; name a "
+        "point in the room by --inside X,Y,Z";
+  }
+  return grid;
 }
 
 }  // namespace photile::measuring

@@ -1,6 +1,8 @@
 #include "photile/camera.hpp"
 
+#include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 namespace photile {
 
@@ -24,16 +26,46 @@ Camera Camera::look_at(const glm::dvec3& position, const glm::dvec3& target,
   return camera;
 }
 
-FilmDirections::FilmDirections(const glm::dvec3& forward, const glm::dvec3& right,
-                               const glm::dvec3& up, double half_height, int width, int height)
-    : forward_(forward),
-      half_right_(half_height * width / height * right),
-      half_up_(half_height * up),
-      width_(width),
-      height_(height) {}
-
-FilmDirections Camera::directions(int width, int height) const {
-  return {forward, right, up, std::tan(0.5 * vertical_field_of_view), width, height};
+std::string_view name_of(Projection projection) {
+  constexpr std::array names{"perspective", "fisheye", "angular", "equirectangular",
+                             "orthographic"};
+  return names[static_cast<std::size_t>(projection)];
 }
+
+FilmDirections::FilmDirections(const Camera& camera, int width, int height)
+    : forward_(camera.forward),
+      width_(width),
+      height_(height),
+      projection_(camera.projection),
+      half_angle_(0.5 * camera.vertical_field_of_view) {
+  double half_height = 1;
+  if (projection_ == Projection::perspective) half_height = std::tan(half_angle_);
+  if (projection_ == Projection::orthographic) half_height = 0.5 * camera.orthographic_height;
+  half_right_ = half_height * width / height * camera.right;
+  half_up_ = half_height * camera.up;
+}
+
+glm::dvec3 FilmDirections::curved(double x, double y) const {
+  const double across = 2.0 * x / width_ - 1.0, upwards = 1.0 - 2.0 * y / height_;
+  if (projection_ == Projection::orthographic) return forward_;
+  if (projection_ == Projection::equirectangular) {
+    const double longitude = glm::pi<double>() * across;
+    const double latitude = glm::half_pi<double>() * upwards;
+    return std::cos(latitude) * (std::cos(longitude) * forward_ +
+                                 std::sin(longitude) * glm::normalize(half_right_)) +
+           std::sin(latitude) * half_up_;
+  }
+  const glm::dvec3 aside = across * half_right_ + upwards * half_up_;
+  const double radius = glm::length(aside);  // 1 at the circle
+  if (!(radius <= 1.0)) return glm::dvec3(0.0);
+  if (!(radius > 0.0)) return forward_;
+  const double sine = projection_ == Projection::fisheye ? radius * std::sin(half_angle_)
+                                                         : std::sin(radius * half_angle_);
+  const double cosine = projection_ == Projection::fisheye ? std::sqrt(1.0 - sine * sine)
+                                                           : std::cos(radius * half_angle_);
+  return cosine * forward_ + sine / radius * aside;
+}
+
+FilmDirections Camera::directions(int width, int height) const { return {*this, width, height}; }
 
 }  // namespace photile

@@ -31,6 +31,18 @@ std::size_t interval_of(const std::vector<double>& angles, double angle) {
 
 }  // namespace
 
+double LuminousOpening::projected_area(const PhotometricAxes& axes,
+                                       const glm::dvec3& direction) const {
+  const double down = std::abs(glm::dot(direction, axes.pole));
+  if (round) {
+    return 0.25 * pi * along_zero * along_zero * down +
+           along_zero * height * std::sqrt(std::max(0.0, 1.0 - down * down));
+  }
+  return along_zero * along_quarter * down +
+         height * (along_quarter * std::abs(glm::dot(direction, axes.zero)) +
+                   along_zero * std::abs(glm::dot(direction, axes.quarter)));
+}
+
 IntensityDistribution::IntensityDistribution(std::string name, const PhotometricAxes& axes,
                                              const std::vector<double>& polar,
                                              const std::vector<double>& azimuth,

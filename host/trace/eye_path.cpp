@@ -83,6 +83,7 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
   const Scene& scene = *setup.rays->scene;
   const glm::vec3 start = ray.origin;
   // Lamps seen in mirrors or through refracting glass are found by following alone.
+  const bool sees_near_lamps = other == nullptr || !other->distant_only;
   const auto weight_against = [&](float found) {
     return ray.straight ? power_heuristic(other->density, found) : 1.0f;
   };
@@ -108,7 +109,7 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
       return std::nullopt;
     }
     const SurfacePoint& point = *met;
-    if (emits(scene, point) && sees_lamps) {
+    if (emits(scene, point) && sees_lamps && (sees_near_lamps || !ray.straight)) {
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
       const float weight =
           other ? weight_against(other->lamps.density(start, point, other->chances)) : 1.0f;
@@ -164,7 +165,9 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   const glm::dvec2 offset = sobol_point(index, of_pixel.block(Purpose::film_position, 0));
   const auto place = static_cast<std::uint32_t>(sample * film.runs / film.samples_per_pixel) +
                      pixel * static_cast<std::uint32_t>(film.runs);
-  EyeRay ray{setup.eye, glm::vec3((*setup.film)(x + offset.x, y + offset.y)),
+  const glm::vec3 direction((*setup.film)(x + offset.x, y + offset.y));
+  if (direction == glm::vec3(0.0f)) return;  // beyond the circle of a fisheye
+  EyeRay ray{setup.eye + glm::vec3(setup.film->offset(x + offset.x, y + offset.y)), direction,
              glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), place};
   std::optional<LookSamples> looks;
   if (setup.direct) {

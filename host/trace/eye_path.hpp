@@ -105,6 +105,8 @@ struct LampTechnique {
   float density;                                 ///< of the ray's direction, per steradian
   bool only = false;                             ///< lamps that it does not find count nothing
   const LampChances& chances = by_shares_alone;  ///< at the ray's start
+  /// Lamps within the scene that the ray meets at once, or through panes, count nothing.
+  bool distant_only = false;
 };
 
 /// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to

@@ -19,7 +19,7 @@ namespace photile::trace {
 namespace {
 
 glm::vec3 origin_of(const Sensor& sensor, SensorResponse response) {
-  if (response == SensorResponse::cylindrical) return glm::vec3(sensor.position);
+  if (response != SensorResponse::planar) return glm::vec3(sensor.position);
   // A plane sensor may lie on a surface: its rays start a little above.
   const glm::dvec3 size = glm::abs(sensor.position);
   const double clearance = clearance_per_coordinate * std::max({size.x, size.y, size.z, 1e-3});
@@ -32,10 +32,13 @@ class Photometer {
   Photometer(const Sensor& sensor, SensorResponse response)
       : origin_(origin_of(sensor, response)),
         normal_(sensor.normal),
+        facing_(sensor.facing),
         response_(response),
+        sees_lamps_(sensor.sees_lamps),
         frame_(normal_) {}
 
   const glm::vec3& origin() const { return origin_; }
+  bool sees_lamps() const { return sees_lamps_; }
 
   /// Density of `sample`, per steradian: the response over pi.
   float density(const glm::vec3& direction) const {
@@ -44,21 +47,31 @@ class Photometer {
       return glm::one_over_pi<float>() * std::max(0.0f, cosine);
     }
     const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
-    return glm::one_over_pi<float>() * glm::one_over_pi<float>() * sine;
+    const float round = glm::one_over_pi<float>() * glm::one_over_pi<float>() * sine;
+    if (response_ == SensorResponse::cylindrical) return round;
+    return round + glm::one_over_pi<float>() * glm::one_over_pi<float>() *
+                       glm::dot(direction, facing_);  // sine x cosine of the angle to `facing`
   }
 
-  /// A direction for two numbers that are spread over the unit square and one of its own.
-  glm::vec3 sample(const glm::dvec2& spread, float own) const {
+  /// A direction for two numbers that are spread over the unit square and two of its own.
+  glm::vec3 sample(const glm::dvec2& spread, float own, float side) const {
     const glm::vec3 local =
         sample_cosine_hemisphere(static_cast<float>(spread.x), static_cast<float>(spread.y));
     if (response_ == SensorResponse::planar) return frame_.to_world(local);
     // Round the axis all vertical planes are alike: one at random, then as on a plane.
-    return Frame(frame_.to_world(direction_at(0.0f, own))).to_world(local);
+    const glm::vec3 round = Frame(frame_.to_world(direction_at(0.0f, own))).to_world(local);
+    if (response_ == SensorResponse::cylindrical) return round;
+    // As often as (1 - cos alpha) / 2 says it goes to the other side, which is seen that much more.
+    const float along = glm::dot(round, normal_);
+    const float sine = std::sqrt(std::max(1e-12f, 1.0f - along * along));
+    if (side >= 0.5f * (1.0f - glm::dot(round, facing_) / sine)) return round;
+    return 2.0f * along * normal_ - round;
   }
 
  private:
-  glm::vec3 origin_, normal_;
+  glm::vec3 origin_, normal_, facing_;
   SensorResponse response_;
+  bool sees_lamps_;
   Frame frame_;
 };
 
@@ -93,11 +106,11 @@ class Gatherer {
   }
 
   void follow(const RandomStream& random, const glm::dvec2& spread, EyeRecord& record) const {
-    const glm::vec3 direction =
-        photometer_.sample(spread, random.block(Purpose::sensor_direction, 1).uniform(0));
+    const RandomBlock own = random.block(Purpose::sensor_direction, 1);
+    const glm::vec3 direction = photometer_.sample(spread, own.uniform(0), own.uniform(1));
     const float density = photometer_.density(direction);
     if (!(density > 0.0f)) return;
-    const LampTechnique looking{lamps_, density};
+    const LampTechnique looking{lamps_, density, false, by_shares_alone, !photometer_.sees_lamps()};
     follow_eye_ray(setup_, {photometer_.origin(), direction, weight(), pixel_}, random, record,
                    &looking);
   }
@@ -106,7 +119,7 @@ class Gatherer {
                     std::vector<SeenEmission>& lamps) const {
     const auto lamp = lamps_.sample(photometer_.origin(), RandomBlock::of(choice),
                                     random.block(Purpose::sensor_light, 1));
-    if (!lamp) return;
+    if (!lamp || !(photometer_.sees_lamps() || lamp->distant)) return;
     const float density = photometer_.density(lamp->direction);
     if (!(density > 0.0f)) return;
     glm::vec3 arrives = density * weight() * lamp->received *
@@ -141,7 +154,7 @@ PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensor
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const FlushDenormals flush_denormals;
     const auto pixel = static_cast<std::uint32_t>(first_row) + static_cast<std::uint32_t>(i);
-    const Photometer photometer(sensors[pixel], response);
+    const Photometer photometer(sensors[pixel], sensors[pixel].response.value_or(response));
     Gatherer(rays, lamps, setup, photometer, pixel).trace(rows[i], seen[i]);
   });
   PrimaryHitBatch batch = batch_of(rays, std::move(rows), map_of);

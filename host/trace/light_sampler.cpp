@@ -7,9 +7,8 @@
 
 #include "photile/defaults.hpp"
 #include "photile/primary_hits.hpp"
-#include "trace/lamp_axes.hpp"
+#include "trace/lamp_intensity.hpp"
 #include "trace/photon_quota.hpp"
-#include "trace/spot_falloff.hpp"
 
 namespace photile::trace {
 
@@ -106,15 +105,7 @@ std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
   const double squared_distance = glm::dot(offset, offset);
   if (!(squared_distance > 0)) return std::nullopt;
   const glm::dvec3 direction = offset / std::sqrt(squared_distance);
-  double intensity = 0.25 * glm::one_over_pi<double>();  // candela for each lumen
-  if (lamp.distribution != none) {
-    const IntensityDistribution& distribution = scene_->distributions[lamp.distribution];
-    intensity = distribution.intensity(LampAxes(lamp).to_lamp(-direction)) / distribution.flux();
-  } else if (lamp.kind == LightKind::spot) {
-    const SpotFalloff spot(lamp);
-    intensity = spot.at(-glm::dot(direction, glm::dvec3(lamp.direction))) /
-                (glm::two_pi<double>() * spot.integral());
-  }
+  const double intensity = candela_per_lumen(*scene_, lamp, -direction);
   if (!(intensity > 0)) return std::nullopt;
   return LightSample{groups_.group_of[light], glm::vec3(direction), lamp.position,
                      glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] * intensity /
@@ -132,10 +123,13 @@ LightSample LightSampler::towards_sun(std::uint32_t light, const glm::vec3& posi
   const Light& lamp = scene_->lights[light];
   // Its flux falls on the disc of the bounding sphere, which the line of sight leaves.
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
-  return {groups_.group_of[light], -lamp.direction, beyond(position, -lamp.direction),
+  return {groups_.group_of[light],
+          -lamp.direction,
+          beyond(position, -lamp.direction),
           glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] /
                     (disc * double{chance(light, chances)})),
-          0.0f};
+          0.0f,
+          true};
 }
 
 LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& position,
@@ -152,7 +146,7 @@ LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& 
   return {groups_.group_of[light], chosen.direction, beyond(position, chosen.direction),
           glm::vec3(glm::dvec3(chosen.color) * groups_.share[light] * double{chosen.density} /
                     (disc * double{std::max(alone, all)})),
-          std::max(alone, all)};
+          std::max(alone, all), true};
 }
 
 std::optional<LightSample> LightSampler::through_portal(double number, const glm::vec3& position,
@@ -178,7 +172,7 @@ std::optional<LightSample> LightSampler::through_portal(double number, const glm
     const float all = density(light, position, direction, chances);
     if (!(all > 0.0f)) return std::nullopt;
     return LightSample{groups_.group_of[light.light()], direction, beyond(position, direction),
-                       light.radiance(direction) / all, all};
+                       light.radiance(direction) / all, all, true};
   }
   return std::nullopt;
 }

@@ -28,6 +28,7 @@ struct LightSample {
   /// Of the direction, per steradian, the choice of the lamp included. 0 for lamps without size,
   /// which no other technique can find.
   float density;
+  bool distant = false;  ///< from beyond the scene
 };
 
 /// Chooses one lamp of all, half by power and half equally as PhotonQuota::balanced does, and on an

@@ -2,6 +2,7 @@
 // here, so the help text cannot drift from the behaviour.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace photile::defaults {
@@ -12,6 +13,8 @@ inline constexpr int image_height = 384;              ///< pixels
 inline constexpr int samples_per_pixel = 4;           ///< primary hits a pixel
 inline constexpr double exposure = 0.0;               ///< stops, on top of the automatic exposure
 inline constexpr double vertical_field_of_view = 40;  ///< degrees, for a camera photile places
+inline constexpr double fisheye_field_of_view = 180;  ///< degrees across the circle
+inline constexpr double orthographic_height = 4;      ///< metres that parallel rays are high
 
 // Photons
 inline constexpr std::uint64_t emitted_photons = 1'000'000;  ///< over all lights
@@ -107,6 +110,8 @@ inline constexpr int pilot_height = 96;  ///< pixels
 inline constexpr double view_frames_per_second = 30;
 inline constexpr int view_samples_per_pixel = 16;
 inline constexpr std::uint64_t view_first_photons = 8192;  ///< paths of the first picture
+inline constexpr int clicked_rays = 1'024;                 ///< of each repeat at a clicked point
+inline constexpr std::size_t clicked_repeats = 64;
 
 // Several processes
 /// Bytes that a process sends in one round of an exchange, at most: buffers for more would lie
@@ -143,8 +148,25 @@ inline constexpr double maintenance_factor = 1.0;  ///< none: the light of a new
 // False colour, as Radiance's falsecolor has them
 inline constexpr int legend_steps = 8;
 
-// Glare
+// Reflections that are marked
 inline constexpr double glare_limit = 5;  ///< times the mean luminance, as evalglare's -b
+
+// Glare ratings
+inline constexpr double eye_height = 1.2;           ///< metres, seated (EN 12464-1)
+inline constexpr int glare_directions = 4;          ///< of view at each point of a grid
+inline constexpr int glare_picture_side = 512;      ///< pixels of a fisheye
+inline constexpr int luminaire_looks = 256;         ///< at the luminous openings of a luminaire
+inline constexpr double small_source_area = 0.005;  ///< m2 projected: CIE 147, small sources
+inline constexpr double large_source_area = 1.5;    ///< m2: CIE 147, large sources
+/// cd/m2 of a glare source in a picture, the angle (radians) within which its pixels are one
+/// source, and the luminance of peaks that are sources of their own: those of evalglare 3.
+inline constexpr double glare_source_luminance = 2'000;
+inline constexpr double glare_source_angle = 0.1;
+inline constexpr double glare_peak_luminance = 50'000;
+inline constexpr double largest_position_index = 16;  ///< of sources in pictures, as evalglare
+/// UGR tables: spacing of luminaires over their height above the eyes. Data sheets have 0.25; the
+/// example of CIE 190 has 1.
+inline constexpr double ugr_table_spacing = 0.25;
 
 // Contact sheets of walks
 inline constexpr int contact_sheet_width = 256;  ///< pixels, of a frame

@@ -58,6 +58,13 @@ void write_exr(const std::filesystem::path& file, const Image& image);
 /// Writes an 8-bit sRGB PNG of the channels R, G, B, through a temporary name and a rename.
 void write_png(const std::filesystem::path& file, const Image& display_referred);
 
+/// Writes a Radiance picture (RGBE) of the channels R, G, B, through a temporary name and a rename.
+/// Values times the attribute `whiteLuminance` are cd/m2; in the file 179 times the bright of
+/// Radiance's primaries are as many, exactly but for its 8 bits: colours are theirs scaled. Its
+/// VIEW is the attribute `photile.view`. Errors: OutputError naming the file; an existing file is
+/// kept then. InputError without R, G, B or `whiteLuminance`.
+void write_hdr(const std::filesystem::path& file, const Image& scene_referred);
+
 /// How scene-referred colours, white at 1, become those of a display.
 enum class DisplayView {
   /// Khronos PBR Neutral, by its specification (Khronos Group, "PBR Neutral Tone Mapper", 2024):

@@ -16,6 +16,19 @@ struct PhotometricAxes {
   glm::dvec3 quarter{0.0, 1.0, 0.0};  ///< unit; polar angle 90 degrees, azimuth 90 degrees
 };
 
+/// The part of a lamp that shines, as its photometric file gives it: a box, or an upright cylinder,
+/// around the lamp's axis. All zero where the file says nothing.
+struct LuminousOpening {
+  double along_zero = 0;     ///< metres along PhotometricAxes::zero; of a round one its diameter
+  double along_quarter = 0;  ///< metres along PhotometricAxes::quarter
+  double height = 0;         ///< metres along the pole, of sides that shine too
+  bool round = false;
+
+  /// m2 of its projection onto a plane that faces `direction`.
+  ///   direction   unit, in the lamp's space, away from it
+  double projected_area(const PhotometricAxes& axes, const glm::dvec3& direction) const;
+};
+
 /// Intensities on a grid of polar angles and azimuths, bilinear in the two angles between them and
 /// zero beyond the outermost. One point emits all light: the lamp's own size is left out, which is
 /// the approximation of the files themselves (far-field photometry).
@@ -35,6 +48,10 @@ class IntensityDistribution {
   double flux() const { return flux_; }
 
   const std::string& name() const { return name_; }
+  const PhotometricAxes& axes() const { return axes_; }
+
+  const LuminousOpening& opening() const { return opening_; }
+  void set_opening(const LuminousOpening& opening) { opening_ = opening; }
 
   // Cells of the grid: column of azimuths x row of polar angles.
   std::size_t columns() const { return azimuth_.size() - 1; }
@@ -62,6 +79,7 @@ class IntensityDistribution {
   PhotometricAxes axes_;
   std::vector<double> polar_, azimuth_;  ///< radians
   std::vector<float> intensity_;
+  LuminousOpening opening_;
   double flux_ = 0;
 };
 

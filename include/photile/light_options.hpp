@@ -1,4 +1,4 @@
-// Lights that the user adds to a scene, or changes in it, while it is loaded.
+// Lights and materials that the user adds to a scene, or changes in it, while it is loaded.
 #pragma once
 
 #include <filesystem>
@@ -95,6 +95,14 @@ struct LuminousPanel {
   double lumens = 0;
   /// Splits at the last '='. Errors: UsageError.
   static LuminousPanel parse(const std::string& text);
+};
+
+/// The reflectance of materials; parsed from MATERIAL=SHARE.
+struct ReflectanceChange {
+  std::string glob;  ///< of material names: *, ? and [...] as in a shell
+  double share = 0;  ///< luminous, of light from all directions, 0 to 1
+  /// Splits at the last '='. SHARE is 0.5 or 50%. Errors: UsageError.
+  static ReflectanceChange parse(const std::string& text);
 };
 
 /// The colour of a light by its temperature; parsed from NAME=KELVIN.

@@ -289,6 +289,8 @@ struct SceneLoadOptions {
   EnvironmentPicture environment = {};
   std::optional<Sun> sun = std::nullopt;
   std::optional<Sky> sky = std::nullopt;
+  std::vector<ReflectanceChange> reflectances = {};
+  bool lambertian = false;  ///< dielectrics have no specular lobe
   SkySituation situation = {};
   std::filesystem::path luminaires = {};  ///< lamps to place, JSON (docs/luminaires.md); "" = none
   /// Windows for the light of suns and skies: "auto" finds them, "off" takes none, else globs of

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 
 #include "photile/path_tracer.hpp"
@@ -9,10 +10,25 @@
 
 namespace photile {
 
+/// How a sensor in the air weighs light by where it comes from.
+enum class SensorResponse {
+  planar,       ///< cosine to the normal: illuminance of a plane
+  cylindrical,  ///< sine to the normal over pi: illuminance of a small upright cylinder, the mean
+                ///< of all planes that contain the normal (EN 12464-1)
+  /// (1 + cos alpha) sine over pi, alpha being the angle round the normal to `facing`: the half
+  /// cylinder that faces there (EN 13201-3)
+  semi_cylindrical
+};
+
 /// A place where light is measured.
 struct Sensor {
   glm::dvec3 position{0.0};          ///< metres
   glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; also where radiance is seen from
+  /// `gather` only. False: light straight from lamps within the scene, or through panes, is left
+  /// out: what remains is indirect light, and that of sun and sky.
+  bool sees_lamps = true;
+  std::optional<SensorResponse> response = std::nullopt;  ///< `gather` only; none = its own
+  glm::dvec3 facing{1.0, 0.0, 0.0};  ///< of half a cylinder: unit, at a right angle to `normal`
 };
 
 /// The light at sensors on opaque surfaces that face their normals, within a millimetre, by
@@ -25,13 +41,6 @@ RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::s
 /// The same by `trace_paths`, from `paths` paths of each sensor.
 PathTracerResult measure_by_paths(const Scene& scene, std::span<const Sensor> sensors, int paths,
                                   std::uint64_t seed, Progress& progress = Progress::none());
-
-/// How a sensor in the air weighs light by where it comes from.
-enum class SensorResponse {
-  planar,      ///< cosine to the normal: illuminance of a plane
-  cylindrical  ///< sine to the normal over pi: illuminance of a small upright cylinder, the mean
-               ///< of all planes that contain the normal (EN 12464-1)
-};
 
 struct GatherParameters {
   SensorResponse response = SensorResponse::planar;

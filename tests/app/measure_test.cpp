@@ -132,4 +132,45 @@ TEST_CASE("measure refuses what it cannot do with one line and the right exit co
   CHECK_THAT(error({"--plane", "floor", "--integrator", "path"}, 2), Contains("--photons"));
 }
 
+TEST_CASE("a target is judged in the table, the JSON and the report") {
+  const FileFolder folder;
+  const Outcome outcome = run_photile(
+      measure(write_box(folder),
+              {"--plane", "floor+0.75", "--walls", "--ceiling", "--cylindrical-at", "floor+1.2",
+               "--semi-cylindrical-at", "floor+1.2", "--target", "Em=1,Uo=0.999,Ewall=1", "-o",
+               folder / "a.json", "-o", folder / "a.html"}));
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("working plane: Em") && Contains("at least 1: met") &&
+                                 Contains("NOT MET") && Contains("wall at 90 degrees") &&
+                                 Contains("semi-cylindrical at 270 degrees"));
+  const auto record = nlohmann::json::parse(folder.read("a.json"));
+  CHECK(record["target"]["judgements"][0]["met"] == true);
+  CHECK(record["target"]["judgements"][1]["met"] == false);
+  CHECK(record["grids"].size() == 1 + 4 + 1 + 1 + 4);
+  CHECK_THAT(folder.read("a.html"), Contains("not met"));
+  CHECK_THAT(
+      only_error(run_photile(measure(write_box(folder), {"--plane", "1", "--target", "desk"})), 2),
+      Contains("office-desk"));
+}
+
+TEST_CASE("a point beyond the walls is blank in every file, and the others keep their places") {
+  const FileFolder folder;
+  const std::string points =
+      folder.write("p.pts", "0 0 0 0 1 0\n9 0 0.1 0 1 0\n0.3 0 0.2 0 1 0\n-0.3 0.1 0.2 0 1 0\n");
+  const Outcome outcome =
+      run_photile(measure(write_box(folder), {"--points", points, "-o", folder / "a.csv", "-o",
+                                              folder / "a.json", "--honeybee", folder / "bee"}));
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("p: 3 points, and 1 blank"));
+  CHECK_THAT(folder.read("a.csv"), Contains("p,1,9,0,0.1,0,1,0,,,,,,,inside a solid or beyond"));
+  const std::string res = folder.read("bee/p.res");
+  CHECK(std::count(res.begin(), res.end(), '\n') == 4);
+  CHECK_THAT(res, Contains("\nnan\n"));
+  const auto grid = nlohmann::json::parse(folder.read("a.json"))["grids"][0];
+  CHECK(grid["blank"][0]["before"] == 1);
+  CHECK(grid["statistics"]["Emin"]["value"].get<double>() > 0);
+}
+
 }  // namespace photile::test

@@ -136,6 +136,53 @@ TEST_CASE("in a furnace every sensor reads pi L / (1 - rho), planar and cylindri
   }
 }
 
+TEST_CASE("a sensor that sees no lamps reads what is reflected, and the sky") {
+  constexpr double reflectance = 0.5, sky = 3;
+  const bool closed = GENERATE(true, false);
+  test::SceneBuilder builder("box or plate");
+  const auto wall = builder.add(test::diffuse(glm::vec3(static_cast<float>(reflectance))));
+  const auto lamp = builder.add(test::area_light("walls"));
+  if (closed) {
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::vec3 u(0.0f), v(0.0f), across(0.0f);
+      u[(axis + 1) % 3] = v[(axis + 2) % 3] = across[axis] = 1.0f;
+      builder.grid(glm::vec3(0.0f), u, v, 1, wall, lamp);
+      builder.grid(across, v, u, 1, wall, lamp);
+    }
+  } else {
+    builder.grid({-1, -1, 2}, {0, 2, 0}, {2, 0, 0}, 1, builder.add(test::diffuse(glm::vec3(0.0f))),
+                 lamp);
+    builder.add(test::point_light("point", {0.2f, 0.3f, 1.0f}));
+  }
+  Scene scene = builder.build();
+  if (!closed) {
+    test::add_environment(scene,
+                          EnvironmentMap("sky", 2, 1, std::vector<glm::vec3>(2, glm::vec3(sky))));
+  }
+  Sensor sensor{{0.3, 0.6, 0.4}, up};
+  sensor.sees_lamps = false;
+  std::vector<double> values;
+  double whole_sky = 0;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const auto layers = gather_by_paths(scene, std::span(&sensor, 1), {.rays = 4096}, seed).layers;
+    double sum = luminous(layers, 0, 0);
+    if (!closed) {
+      CHECK(sum == 0);                     // the panel
+      CHECK(luminous(layers, 1, 0) == 0);  // the point light
+      sum = luminous(layers, 2, 0);
+      whole_sky = scene.lights[2].power;
+    }
+    values.push_back(sum);
+  }
+  // Of a furnace's light the share of reflectance is reflected. Of the sky, all but the panel's
+  // part.
+  const double hidden =
+      validation::rectangle_factor(sensor.position, up, {-1, -1, 2}, {2, 0, 0}, {0, 2, 0});
+  const double truth =
+      closed ? reflectance / 6 / (1 - reflectance) : pi * sky * (1 - hidden) / whole_sky;
+  CHECK_VERDICT(test::mean_is(values, truth, 0.05 * truth));
+}
+
 TEST_CASE("under an even sky a sensor reads pi L, a deviation of 1% would be seen") {
   constexpr double radiance = 5;
   Scene scene = test::plate(test::diffuse(glm::vec3(0)), 2);

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <sstream>
 
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
@@ -49,6 +50,26 @@ TEST_CASE("a mood comes back from its file as it was kept") {
 
 TEST_CASE("the moods of a scene lie beside it") {
   CHECK(Moods::file_of("rooms/hall.gltf") == "rooms/hall.moods.json");
+}
+
+TEST_CASE("a file has powers of four digits, and a mood is what --light would say") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "room.moods.json";
+  LightBoard board(lamps());
+  board.controls()[0].power = 199.98374;
+  board.controls()[1].on = false;
+  board.controls()[0].kelvin = 2699.7;
+  Moods(file).keep("evening", board);
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  CHECK_THAT(text.str(), Contains("200.0") && !Contains("199.98") && Contains("2700"));
+  const auto changes = Moods(file).changes("evening", lamps());
+  REQUIRE(changes.size() == 3);
+  CHECK(changes[0].value == "200lm");
+  CHECK(changes[1].value == "2700K");
+  CHECK(changes[2].name == "floor lamp");
+  CHECK(changes[2].value == "off");
+  CHECK_THROWS_WITH(Moods(file).changes("day", lamps()), Contains("'evening'"));
 }
 
 TEST_CASE("removing one mood keeps the others") {

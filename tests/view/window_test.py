@@ -26,7 +26,7 @@ PATIENCE = 120
 # Buttons under "Display", with one lamp, one mood and a line of news.
 PICTURE, ILLUMINANCE = (28, 326), (107, 326)
 # Rows and columns that neither the panel, the reading nor the legend covers.
-BESIDE_PANELS = slice(110, 340), slice(315, 385)
+BESIDE_PANELS = slice(230, 340), slice(315, 385)
 LAMP_ROWS = 181, 163  # of the only lamp, first under "Lights", with and without a line of news above
 
 

@@ -71,6 +71,7 @@ MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
     model.specular_color =
         glm::max(vector_member(*specular, "specularColorFactor", glm::dvec3(1.0)), 0.0);
   }
+  if (context_.options.lambertian) model.specular_factor = 0;
   return model;
 }
 

@@ -78,13 +78,15 @@ void set_mirror(const glm::vec3& specular, Material& material) {
   material.specular = specular;
 }
 
-void set_surface(const tinyobj::material_t& source, Material& material, Warnings& warnings) {
+void set_surface(const tinyobj::material_t& source, bool lambertian, Material& material,
+                 Warnings& warnings) {
   const bool has_texture = !source.diffuse_texname.empty();
   if (source.roughness > 0 || source.metallic > 0) {
     MetallicRoughness model;
     model.base_color = color(source.diffuse);
     model.metallic = source.metallic;
     model.roughness = source.roughness;
+    if (lambertian) model.specular_factor = 0;
     set_metallic_roughness(model, material);
     return;
   }
@@ -98,7 +100,7 @@ void set_surface(const tinyobj::material_t& source, Material& material, Warnings
     return set_mirror(specular, material);
   }
   material.diffuse = diffuse;
-  if (specular_model) {
+  if (specular_model && !lambertian) {
     material.specular = specular;
     material.roughness = ggx_alpha_from_phong_exponent(source.shininess);
     if (conserve_energy(material)) {
@@ -174,7 +176,7 @@ void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
                       ImportContext& context) {
   Material material;
   material.name = source.name;
-  set_surface(source, material, context.warnings);
+  set_surface(source, context.options.lambertian, material, context.warnings);
   warn_about_ignored(source, context.warnings);
   if (!source.diffuse_texname.empty() && material.interaction == Interaction::opaque) {
     try {

@@ -16,7 +16,7 @@ namespace {
 
 // Lines of the format, counted from 1.
 constexpr std::size_t symmetry_line = 3, plane_count_line = 4, angle_count_line = 6,
-                      conversion_line = 24, set_count_line = 26;
+                      opening_line = 16, conversion_line = 24, set_count_line = 26;
 constexpr std::size_t lines_per_set = 6, flux_in_set = 3, direct_ratios = 10;
 
 /// Symmetry indicator of the format.
@@ -42,6 +42,13 @@ class Lines {
     return *value;
   }
 
+  double number_or_0(std::size_t line) const {
+    if (line > lines_.size()) return 0.0;
+    std::string text(trimmed(lines_[line - 1]));
+    std::replace(text.begin(), text.end(), ',', '.');
+    return parse_signed(text).value_or(0.0);
+  }
+
   std::size_t count(const std::string& what, std::size_t line, std::uint64_t lowest,
                     std::uint64_t highest) const {
     const double value = number(what, line);
@@ -56,6 +63,20 @@ class Lines {
  private:
   std::vector<std::string_view> lines_;
 };
+
+/// Length (along C90), width (0 = round) and the heights towards C0, C90, C180 and C270, of which
+/// the mean counts; millimetres in the file. A line that holds no number says nothing of it.
+LuminousOpening opening_of(const Lines& lines) {
+  const auto metres = [&](std::size_t line) {
+    return std::abs(lines.number_or_0(opening_line + line)) / 1000.0;
+  };
+  const double length = metres(0), width = metres(1);
+  const double height = 0.25 * (metres(2) + metres(3) + metres(4) + metres(5));
+  return {.along_zero = width > 0 ? width : length,
+          .along_quarter = length,
+          .height = height,
+          .round = !(width > 0)};
+}
 
 /// Numbers of the C planes whose intensities follow, counted from 0.
 struct PlaneRange {
@@ -171,7 +192,9 @@ IntensityDistribution read_eulumdat(const std::string& name, std::string_view te
     const auto first = measured.begin() + static_cast<std::ptrdiff_t>(plane.measured * angles);
     intensity.insert(intensity.end(), first, first + static_cast<std::ptrdiff_t>(angles));
   }
-  return {name, PhotometricAxes{}, polar, azimuth, std::move(intensity)};
+  IntensityDistribution distribution(name, PhotometricAxes{}, polar, azimuth, std::move(intensity));
+  distribution.set_opening(opening_of(lines));
+  return distribution;
 }
 
 }  // namespace photile::scene_io

@@ -146,6 +146,16 @@ IntensityDistribution type_a_or_b(const std::string& name, const Web& web, Photo
   return {name, axes, polar, azimuth, std::move(intensity)};
 }
 
+/// Width (across the plane of azimuth 0), length (along it) and height; of round openings the
+/// diameter has a minus (LM-63-2019, table 1).
+LuminousOpening opening_of(const std::vector<double>& size, bool feet) {
+  const double metres = feet ? 0.3048 : 1.0;
+  return {.along_zero = metres * std::abs(size[1]),
+          .along_quarter = metres * std::abs(size[0]),
+          .height = metres * std::abs(size[2]),
+          .round = size[0] < 0 || size[1] < 0};
+}
+
 /// Whether the number after the ballast factor is a factor, too. From 1995 on it is reserved, and
 /// in 2019 it tells how the file was made.
 bool has_ballast_lamp_factor(std::string_view first_line) {
@@ -167,8 +177,9 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text, W
   const std::size_t horizontal =
       reader.count("number of horizontal angles", 1, limits::max_photometric_angles);
   const auto type = static_cast<Photometry>(reader.count("photometric type", 1, 3));
-  reader.count("type of units", 1, 2);  // of the size, which a far field has no use for
-  reader.numbers("size of the luminous opening", 3);
+  const bool feet = reader.count("type of units", 1, 2) == 1;
+  const LuminousOpening opening =
+      opening_of(reader.numbers("size of the luminous opening", 3), feet);
   factor *= positive("ballast factor", reader);
   const double next = reader.number("ballast-lamp photometric factor");
   if (has_ballast_lamp_factor(trimmed(lines.front())) && next > 0.0) factor *= next;
@@ -181,7 +192,10 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text, W
     throw ResourceError("a file of photometric type A or B has at least 2 horizontal angles");
   }
   const Web web = read_web(vertical, horizontal, type, factor, reader);
-  return type == Photometry::type_c ? type_c(name, web) : type_a_or_b(name, web, type);
+  IntensityDistribution distribution =
+      type == Photometry::type_c ? type_c(name, web) : type_a_or_b(name, web, type);
+  if (type == Photometry::type_c) distribution.set_opening(opening);
+  return distribution;
 }
 
 }  // namespace photile::scene_io

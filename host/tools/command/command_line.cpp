@@ -71,9 +71,11 @@ void define(CLI::App& photile) {
   add_compare_command(photile);
   add_measure_command(photile);
   add_daylight_command(photile);
+  add_glare_command(photile);
   add_trade_command(photile);
   add_devices_command(photile);
   add_info_command(photile);
+  add_ies_command(photile);
   add_validate_command(photile);
   add_walk_command(photile);
   add_trace_command(photile);

@@ -13,6 +13,8 @@ void add_relight_command(CLI::App& photile);
 void add_compare_command(CLI::App& photile);
 void add_measure_command(CLI::App& photile);
 void add_daylight_command(CLI::App& photile);
+void add_glare_command(CLI::App& photile);
+void add_ies_command(CLI::App& photile);
 void add_trade_command(CLI::App& photile);
 void add_devices_command(CLI::App& photile);
 void add_info_command(CLI::App& photile);

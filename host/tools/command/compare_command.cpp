@@ -12,7 +12,10 @@
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
 #include "tools/command/commands.hpp"
+#include "tools/command/mood_options.hpp"
+#include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/tone_mapping_options.hpp"
@@ -23,10 +26,12 @@ namespace photile::app {
 namespace {
 
 struct CompareOptions {
-  std::string first, second;
-  std::string picture;  ///< file, "" = none
-  std::string json;     ///< file, "" = none
-  double scale = 0;     ///< 0 = automatic
+  std::string first, second;       ///< the second may be "" where moods are compared
+  std::vector<std::string> moods;  ///< of the first picture, or none
+  std::string moods_file;          ///< "" = beside its scene or itself
+  std::string picture;             ///< file, "" = none
+  std::string json;                ///< file, "" = none
+  double scale = 0;                ///< 0 = automatic
   ToneMapping tone_mapping;
 };
 
@@ -41,6 +46,11 @@ std::string words_of(const PictureError& error) {
   return line;
 }
 
+void print_missing(const image::PictureComparison& comparison) {
+  for (const auto& light : comparison.only_a) std::cout << light << ": only in the first\n";
+  for (const auto& light : comparison.only_b) std::cout << light << ": only in the second\n";
+}
+
 void print(const image::PictureComparison& comparison) {
   std::cout << fmt::format("{:<24}{:>11}{:>10}{:>11}{:>10}\n", "", "error", "mean", "PSNR",
                            "worst");
@@ -48,8 +58,7 @@ void print(const image::PictureComparison& comparison) {
     std::cout << fmt::format("{:<24}{}\n", part.light.empty() ? "picture" : part.light,
                              part.error ? words_of(*part.error) : "  the second is black");
   }
-  for (const auto& light : comparison.only_a) std::cout << light << ": only in the first\n";
-  for (const auto& light : comparison.only_b) std::cout << light << ": only in the second\n";
+  print_missing(comparison);
 }
 
 nlohmann::ordered_json part_json(const image::ComparedPart& part) {
@@ -82,34 +91,127 @@ nlohmann::ordered_json record_of(const CompareOptions& options,
   return record;
 }
 
+/// A picture that is compared, under the name that tables give it.
+struct Compared {
+  std::string name;
+  std::unique_ptr<LayeredPicture> layers;  ///< null where it has no layers of lights
+  Image whole;
+};
+
+Compared in_mood(const CompareOptions& options, const std::string& mood) {
+  Compared compared{
+      mood,
+      relit_picture(options.first, mood_of_picture({mood, options.moods_file}, options.first)),
+      {}};
+  compared.whole = to_image(*compared.layers);
+  return compared;
+}
+
+Compared from_file(const std::string& file) {
+  Compared compared{std::filesystem::path(file).filename().string(), nullptr, read_image(file)};
+  try {
+    compared.layers = relit_picture(file, {});
+  } catch (const InputError&) {  // no lights: compared as a whole
+  }
+  return compared;
+}
+
+std::string ratio_text(double a, double b) {
+  return b > 0 ? fmt::format("{:.3g}", a / b) : a > 0 ? "-" : "1";
+}
+
+void print(const image::LevelComparison& comparison, const std::string& a, const std::string& b) {
+  std::cout << fmt::format("{:<24}{:>16}{:>16}{:>10}\n", "", a, b, "ratio");
+  for (const auto& level : comparison.levels) {
+    std::cout << fmt::format(
+        "{:<24}{:>16}{:>16}{:>10}\n", level.what, fmt::format("{:.4g} {}", level.a, level.unit),
+        fmt::format("{:.4g} {}", level.b, level.unit), ratio_text(level.a, level.b));
+  }
+  for (const auto& power : comparison.powers) {
+    std::cout << fmt::format("{:<24}{:>16}{:>16}{:>10}\n", power.light,
+                             format_power(power.a, power.unit), format_power(power.b, power.unit),
+                             ratio_text(power.a, power.b));
+  }
+}
+
+nlohmann::ordered_json levels_json(const image::LevelComparison& comparison) {
+  nlohmann::ordered_json json{{"levels", nlohmann::ordered_json::array()},
+                              {"powers", nlohmann::ordered_json::array()}};
+  for (const auto& level : comparison.levels) {
+    json["levels"].push_back(
+        {{"what", level.what}, {"unit", level.unit}, {"first", level.a}, {"second", level.b}});
+  }
+  for (const auto& power : comparison.powers) {
+    json["powers"].push_back({{"light", power.light},
+                              {"unit", unit_symbol(power.unit)},
+                              {"first", power.a},
+                              {"second", power.b}});
+  }
+  return json;
+}
+
+void check_moods(const CompareOptions& options) {
+  if (options.moods.empty()) {
+    if (options.second.empty()) {
+      throw UsageError("nothing to compare with; give a second picture, or --mood twice");
+    }
+    return;
+  }
+  if (options.moods.size() != 2 || !options.second.empty()) {
+    throw UsageError("moods are compared by two: give one picture, and --mood twice");
+  }
+}
+
+void write_record(const CompareOptions& options, const nlohmann::ordered_json& record) {
+  if (options.json.empty()) return;
+  write_file(options.json,
+             record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
 void run_compare(const CompareOptions& options) {
   handle_signals();
+  check_moods(options);
   std::vector<std::filesystem::path> outputs;
   if (!options.picture.empty()) outputs.emplace_back(options.picture);
   if (!options.json.empty()) outputs.emplace_back(options.json);
   note_input(options.first);
-  note_input(options.second);
+  if (!options.second.empty()) note_input(options.second);
   check_outputs(outputs);
 
-  const Image first = read_image(options.first), second = read_image(options.second);
-  const image::PictureComparison comparison = image::compare_pictures(first, second);
+  const bool moods = !options.moods.empty();
+  const Compared first = moods ? in_mood(options, options.moods[0]) : from_file(options.first);
+  const Compared second = moods ? in_mood(options, options.moods[1]) : from_file(options.second);
   throw_if_stop_requested();
   if (!options.picture.empty()) {
-    const auto unit = first.attributes.find("photile.units");
-    write_png(options.picture,
-              image::draw_comparison(first, second,
-                                     {std::filesystem::path(options.first).filename().string(),
-                                      std::filesystem::path(options.second).filename().string(),
-                                      unit == first.attributes.end() ? "luminance" : unit->second,
-                                      options.scale, options.tone_mapping}));
+    const auto unit = first.whole.attributes.find("photile.units");
+    write_png(
+        options.picture,
+        image::draw_comparison(first.whole, second.whole,
+                               {first.name, second.name,
+                                unit == first.whole.attributes.end() ? "luminance" : unit->second,
+                                options.scale, options.tone_mapping}));
   }
-  if (!options.json.empty()) {
-    write_file(options.json,
-               record_of(options, comparison)
-                       .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                   "\n");
+  if (moods) {
+    const image::LevelComparison levels =
+        image::compare_levels(*first.layers, *second.layers, first.whole, second.whole);
+    nlohmann::ordered_json record{{"first", first.name}, {"second", second.name}};
+    record.update(levels_json(levels));
+    write_record(options, record);
+    print(levels, first.name, second.name);
+    return;
   }
-  print(comparison);
+  const image::PictureComparison comparison = image::compare_pictures(first.whole, second.whole);
+  nlohmann::ordered_json record = record_of(options, comparison);
+  if (first.layers && second.layers && image::lights_differ(first.whole, second.whole)) {
+    const image::LevelComparison levels =
+        image::compare_levels(*first.layers, *second.layers, first.whole, second.whole);
+    record.update(levels_json(levels));
+    print(levels, first.name, second.name);
+    print_missing(comparison);
+  } else {
+    print(comparison);
+  }
+  write_record(options, record);
 }
 
 }  // namespace
@@ -117,11 +219,20 @@ void run_compare(const CompareOptions& options) {
 void add_compare_command(CLI::App& photile) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command = photile.add_subcommand(
-      "compare", "Two pictures side by side: difference and error, layer by layer");
+      "compare",
+      "Two pictures side by side: difference and error, layer by layer; levels of two moods");
   command->add_option("FIRST", options->first, "picture")->required()->type_name("");
   command->add_option("SECOND", options->second, "picture that the first is compared with")
-      ->required()
       ->type_name("");
+  command
+      ->add_option("--mood", options->moods,
+                   "give two: the first picture in both, as the window kept them")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--moods", options->moods_file,
+                   "file of moods; default: beside the picture, by the scene's name or its own")
+      ->type_name("FILE");
   command->add_option("-o,--output", options->picture, "both and their difference in false colour")
       ->type_name("FILE.png")
       ->check(file_ending_in({".png"}));

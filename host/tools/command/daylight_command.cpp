@@ -224,13 +224,12 @@ void add_places(CLI::App& command, DaylightOptions& options) {
   };
   files("--grid", options.planes, "planes of points as JSON; repeatable");
   files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
-  CLI::Option* plane =
-      command
-          .add_option("--plane", options.plane.height,
-                      "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
-          ->type_name("HEIGHT")
-          ->group("Places");
-  add_plane_options(command, plane, options.plane);
+  command
+      .add_option("--plane", options.plane.height,
+                  "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
+      ->type_name("HEIGHT")
+      ->group("Places");
+  add_plane_options(command, options.plane);
 }
 
 void add_year(CLI::App& command, DaylightOptions& options) {

@@ -3,11 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/run_files.hpp"
 #include "measuring/measure_grids.hpp"
+#include "measuring/requirements.hpp"
+#include "measuring/room_surfaces.hpp"
 #include "measuring/sensor_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -34,8 +37,17 @@ struct MeasureOptions {
   std::vector<std::string> planes;  ///< files
   std::vector<std::string> points;  ///< files
   PlaneOptions plane;
+  bool walls = false, ceiling = false;
+  std::string cylindrical_at, semi_cylindrical_at;  ///< heights, "" = none
+  std::string target;                               ///< "" = none
   bool cylindrical = false;
   bool daylight_factor = false;
+
+  /// Whether something is asked for that follows from the room.
+  bool of_room() const {
+    return !plane.height.empty() || walls || ceiling || !cylindrical_at.empty() ||
+           !semi_cylindrical_at.empty();
+  }
 };
 
 /// An overcast sky of 100 lux: what it gives is a daylight factor in per cent.
@@ -68,6 +80,21 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
   }
   for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
   if (!options.plane.height.empty()) grids.push_back(plane_of(options.plane, scene));
+  const auto add = [&](std::vector<measuring::SensorGrid> more) {
+    for (auto& grid : more) grids.push_back(std::move(grid));
+  };
+  if (options.walls) add(measuring::wall_grids(scene, plane_at(options.plane, "floor")));
+  if (options.ceiling) {
+    grids.push_back(measuring::ceiling_grid(scene, plane_at(options.plane, "floor")));
+  }
+  if (!options.cylindrical_at.empty()) {
+    grids.push_back(
+        measuring::cylindrical_grid(scene, plane_at(options.plane, options.cylindrical_at)));
+  }
+  if (!options.semi_cylindrical_at.empty()) {
+    add(measuring::semi_cylindrical_grids(scene,
+                                          plane_at(options.plane, options.semi_cylindrical_at)));
+  }
   for (auto& grid : grids) clear_of_furniture(options.plane, scene, grid, progress);
   std::size_t sensors = 0;
   for (const auto& grid : grids) sensors += grid.sensors.size();
@@ -99,9 +126,11 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   check_settings(render);
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   share_rendering(render);
-  if (options.planes.empty() && options.points.empty() && options.plane.height.empty()) {
+  if (options.planes.empty() && options.points.empty() && !options.of_room()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
+  std::optional<measuring::Requirement> requirement;
+  if (!options.target.empty()) requirement = measuring::parse_requirement(options.target);
   if (options.daylight_factor) take_overcast_sky(render.load);
   note_inputs_of(render);
   for (const auto& file : options.planes) note_input(file);
@@ -129,9 +158,14 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) keep_sky(measurement);
-  outputs.write(measurement, {scene, mix, parameters});
+  outputs.write(measurement, {scene, mix, parameters, render.mood.mood, requirement});
   for (const auto& line : measuring::measurement_lines(measurement, outputs.unit()))
     std::cout << line << '\n';
+  if (requirement) {
+    for (const auto& line : measuring::requirement_lines(measurement, *requirement)) {
+      std::cout << line << '\n';
+    }
+  }
 }
 
 void add_places(CLI::App& command, MeasureOptions& options) {
@@ -143,13 +177,19 @@ void add_places(CLI::App& command, MeasureOptions& options) {
   };
   files("--grid", options.planes, "planes of points as JSON; repeatable");
   files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
-  CLI::Option* plane =
-      command
-          .add_option("--plane", options.plane.height,
-                      "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
-          ->type_name("HEIGHT")
-          ->group("Places");
-  add_plane_options(command, plane, options.plane);
+  const auto height = [&](const char* name, std::string& text, const char* what) {
+    command.add_option(name, text, what)->type_name("HEIGHT")->group("Places");
+  };
+  height("--plane", options.plane.height,
+         "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres");
+  command.add_flag("--walls", options.walls, "a grid on each wall of the room")->group("Places");
+  command.add_flag("--ceiling", options.ceiling, "a grid on the ceiling of the room")
+      ->group("Places");
+  height("--cylindrical-at", options.cylindrical_at,
+         "cylindrical illuminance over the floor: floor+1.2 of people who sit");
+  height("--semi-cylindrical-at", options.semi_cylindrical_at,
+         "semi-cylindrical illuminance over the floor, towards four sides");
+  add_plane_options(command, options.plane);
 }
 
 void add_measuring(CLI::App& command, MeasureOptions& options) {
@@ -161,6 +201,11 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
   command
       .add_flag("--daylight-factor", options.daylight_factor,
                 "per cent of the lux on open ground under the CIE overcast sky; .csv, .json, .svg")
+      ->group("Measuring");
+  command
+      .add_option("--target", options.target,
+                  "what is required, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)")
+      ->type_name("NAME|VALUES")
       ->group("Measuring");
   command
       .add_option("--maintenance", parameters.maintenance,

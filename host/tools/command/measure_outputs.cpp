@@ -23,6 +23,27 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json target_json(const measuring::Measurement& measurement,
+                 const measuring::Requirement& requirement) {
+  Json json{{"name", requirement.name},
+            {"reference", requirement.reference},
+            {"ugr_limit", requirement.glare},
+            {"ra", requirement.rendering},
+            {"judgements", Json::array()}};
+  for (const auto& values : measurement) {
+    for (const auto& judgement : measuring::judge(values, requirement)) {
+      json["judgements"].push_back({{"grid", judgement.grid},
+                                    {"figure", judgement.figure},
+                                    {"required", judgement.required},
+                                    {"value", judgement.measured.value},
+                                    {"standard_error", judgement.measured.standard_error},
+                                    {"met", judgement.met()},
+                                    {"doubtful", judgement.doubtful()}});
+    }
+  }
+  return json;
+}
+
 Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
               const std::string& unit) {
   const MeasuringParameters& parameters = run.parameters;
@@ -40,11 +61,13 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
     record["photons"] = parameters.photons.photons.emitted_photons;
     record["neighbours"] = parameters.photons.neighbours;
   }
+  if (!run.mood.empty()) record["mood"] = run.mood;
   record["lumen_per_watt"] = run.mix.lumen_per_watt;
   for (const MixedLight& light : run.mix.lights) {
     record["lights"].push_back(
         {{"name", light.name}, {"power", light.power}, {"unit", unit_symbol(light.unit)}});
   }
+  if (run.requirement) record["target"] = target_json(measurement, *run.requirement);
   record["grids"] = measuring::measurement_json(measurement);
   return record;
 }
@@ -64,6 +87,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run)
                                          parameters.photons.photons.emitted_photons)),
                                      parameters.photons.neighbours)},
       {"errors", "standard errors of the mean of the repeats"}};
+  if (!run.mood.empty()) facts.emplace_back("mood", run.mood);
   for (const MixedLight& light : run.mix.lights) {
     facts.emplace_back("light " + light.name,
                        format_power_in_both(light.power, light.unit, run.mix.lumen_per_watt));
@@ -170,7 +194,8 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
   }
   const std::string title = run.scene.source.filename().string();
   for (const auto& file : html_) {
-    write_file(file, measuring::report_html(measurement, {title, facts_of(run)}, colours_));
+    write_file(file, measuring::report_html(measurement, {title, facts_of(run), run.requirement},
+                                            colours_));
   }
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "measuring/measure_grids.hpp"
 #include "measuring/measurement.hpp"
+#include "measuring/requirements.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
 #include "tools/command/false_colour_options.hpp"
@@ -33,6 +35,8 @@ struct MeasureRun {
   const Scene& scene;
   const LightMix& mix;
   const MeasuringParameters& parameters;
+  std::string mood = {};  ///< "" = none
+  std::optional<measuring::Requirement> requirement = std::nullopt;
 };
 
 class MeasureOutputs {

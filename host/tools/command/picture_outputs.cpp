@@ -14,7 +14,9 @@
 
 namespace photile::app {
 void add_picture_options(CLI::App& command, PictureOptions& options) {
-  command.add_option("-o,--output", options.outputs, "picture to write, .exr or .png; repeatable")
+  command
+      .add_option("-o,--output", options.outputs,
+                  "picture to write, .exr, .png or .hdr; repeatable")
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group("Output");
@@ -47,11 +49,11 @@ PictureOutputs::PictureOutputs(const PictureOptions& options)
       tone_mapping_(options.tone_mapping),
       false_colour_(options.false_colour) {
   for (const std::string& file : options.outputs) {
-    const bool exr = ends_in(file, ".exr");
-    if (!exr && !ends_in(file, ".png")) {
-      throw UsageError(fmt::format("{}: an output ends in .exr or .png; rename it", file));
+    const bool exr = ends_in(file, ".exr"), hdr = ends_in(file, ".hdr");
+    if (!exr && !hdr && !ends_in(file, ".png")) {
+      throw UsageError(fmt::format("{}: an output ends in .exr, .png or .hdr; rename it", file));
     }
-    (exr ? exr_ : png_).emplace_back(file);
+    (exr ? exr_ : hdr ? hdr_ : png_).emplace_back(file);
   }
   png_.insert(png_.end(), options.png.begin(), options.png.end());
 }
@@ -59,6 +61,7 @@ PictureOutputs::PictureOutputs(const PictureOptions& options)
 std::vector<std::filesystem::path> PictureOutputs::files() const {
   std::vector<std::filesystem::path> all = exr_;
   all.insert(all.end(), png_.begin(), png_.end());
+  all.insert(all.end(), hdr_.begin(), hdr_.end());
   if (!illuminance_.empty()) all.push_back(illuminance_);
   if (!luminance_.empty()) all.push_back(luminance_);
   return all;
@@ -80,6 +83,7 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
 
   for (const auto& file : exr_) write_exr(file, picture);
   for (const auto& file : png_) write_png(file, displayed);
+  for (const auto& file : hdr_) write_hdr(file, root);
   const auto draw = [&](const std::filesystem::path& file, const std::vector<float>& values,
                         const char* unit) {
     if (file.empty()) return;

@@ -12,14 +12,13 @@
 
 namespace photile::app {
 
-void add_plane_options(CLI::App& command, CLI::Option* plane, PlaneOptions& options) {
+void add_plane_options(CLI::App& command, PlaneOptions& options) {
   command
       .add_option("--inside", options.inside,
                   "a point in the room whose floor is followed; default: the first camera's room")
       ->type_name("X,Y,Z")
       ->delimiter(',')
       ->expected(3)
-      ->needs(plane)
       ->group("Places");
   command.add_option("--wall-band", options.wall_band, "metres left out along the walls")
       ->type_name("M")
@@ -44,31 +43,43 @@ void add_plane_options(CLI::App& command, CLI::Option* plane, PlaneOptions& opti
       ->group("Places");
 }
 
-measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene) {
-  measuring::WorkingPlane plane = measuring::parse_working_plane(options.height);
+measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height) {
+  measuring::WorkingPlane plane = measuring::parse_working_plane(height);
   plane.wall_band = options.wall_band;
   plane.spacing = options.spacing;
   plane.up = options.up_axis();
   if (!options.inside.empty()) {
     plane.inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
   }
-  return measuring::working_plane_grid(scene, plane);
+  return plane;
+}
+
+measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene) {
+  return measuring::working_plane_grid(scene, plane_at(options, options.height));
 }
 
 void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
                         measuring::SensorGrid& grid, Progress& progress) {
-  if (!(options.clearance > 0)) return;
+  if (!grid.remark.empty()) {
+    progress.note(fmt::format("warning: {}: {}", grid.name, grid.remark));
+  }
   const std::size_t all = grid.sensors.size();
-  const std::size_t left_out = measuring::leave_out_furniture(scene, options.clearance, grid);
+  const std::size_t blank = measuring::leave_out_furniture(scene, options.clearance, grid);
   if (grid.sensors.empty()) {
     throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
                                  options.clearance, all, grid.name));
   }
-  if (left_out > 0) {
+  if (blank == 0) return;
+  if (options.clearance > 0) {
     progress.note(
         fmt::format("{}: {} of {} points lie in furniture, or less than {} m from some; "
                     "they are left out",
-                    grid.name, left_out, all, options.clearance));
+                    grid.name, blank, all, options.clearance));
+  } else {
+    progress.note(
+        fmt::format("{}: {} of {} points are blank: they lie inside a solid or beyond the "
+                    "walls that the others stand within",
+                    grid.name, blank, all));
   }
 }
 

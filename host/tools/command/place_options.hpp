@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "measuring/sensor_grid.hpp"
+#include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
 
 namespace CLI {
 class App;
-class Option;
-}  // namespace CLI
+}
 
 namespace photile::app {
 
@@ -27,15 +27,19 @@ struct PlaneOptions {
   int up_axis() const { return up[0] - 'x'; }
 };
 
-/// Adds --inside, which needs `plane`, --wall-band, --spacing, --clearance and --up, in the group
+/// Adds --inside, --wall-band, --spacing, --clearance and --up, in the group
 /// Places.
-void add_plane_options(CLI::App& command, CLI::Option* plane, PlaneOptions& options);
+void add_plane_options(CLI::App& command, PlaneOptions& options);
+
+/// What these options say of a level at `height`. Errors: those of parse_working_plane.
+measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height);
 
 /// The grid over the floor. Errors: those of parse_working_plane and working_plane_grid.
 measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene);
 
-/// Leaves out what furniture stands on, where --clearance asks for it, and tells how much that is.
-/// Errors: UsageError where no point is left.
+/// Makes points blank that lie inside solids or beyond the walls, and those nearer to furniture
+/// than
+/// --clearance, and tells how many there are. Errors: UsageError where no point is left.
 void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
                         measuring::SensorGrid& grid, Progress& progress);
 

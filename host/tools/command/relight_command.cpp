@@ -10,6 +10,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "tools/command/commands.hpp"
+#include "tools/command/mood_options.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
 #include "tools/command/picture_outputs.hpp"
@@ -23,6 +24,7 @@ namespace {
 struct RelightOptions {
   std::string input;
   std::vector<std::string> lights;
+  MoodOptions mood;
   SkySituation situation;
   std::optional<Sky> sky;
 
@@ -46,7 +48,7 @@ void run_relight(const RelightOptions& options) {
     changes = scene_io::sky_changes(read_light_mix(options.input), options.situation, options.sky);
   for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
   const PictureOutputs outputs(options.pictures);
-  if (outputs.empty() && !changes.empty()) {
+  if (outputs.empty() && (!changes.empty() || options.mood.asked())) {
     throw UsageError("no output; give -o FILE.exr or -o FILE.png");
   }
   note_input(options.input);
@@ -56,7 +58,8 @@ void run_relight(const RelightOptions& options) {
     print_lights(read_light_mix(options.input));
     return;
   }
-  const std::unique_ptr<LayeredPicture> picture = relit_picture(options.input, changes);
+  const std::unique_ptr<LayeredPicture> picture =
+      relit_picture(options.input, joined(mood_of_picture(options.mood, options.input), changes));
   throw_if_stop_requested();
   TerminalProgress notes(false);
   outputs.write(*picture, notes, options.input);
@@ -76,6 +79,7 @@ void add_relight_command(CLI::App& photile) {
                    "power in the light's unit, a factor (x2), a colour or off; repeatable")
       ->type_name("NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off")
       ->allow_extra_args(false);
+  add_mood_options(*command, options->mood, "Options");
   add_situation_options(*command, options->situation, "Sky of patches");
   command
       ->add_option_function<std::string>(

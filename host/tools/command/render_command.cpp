@@ -126,6 +126,8 @@ std::unique_ptr<HitSource> hits_of(const Camera& camera, LightLayers* errors,
   auto preview =
       std::make_shared<image::LivePreview>(options.preview, record.scene, record.mix, progress);
   if (!preview->connected()) return std::make_unique<CameraHits>(camera, errors);
+  // A first picture is drawn by a pinhole's packets of rays.
+  const bool pinhole = camera.projection == Projection::perspective;
   return std::make_unique<WatchedHits>(
       camera, errors,
       [preview](const LightLayers& layers, int first, int last, double share) {
@@ -133,9 +135,11 @@ std::unique_ptr<HitSource> hits_of(const Camera& camera, LightLayers* errors,
       },
       WatchedHits::FirstWatcher{
           view::scales_of(record.mix),
-          [preview](int width, int height, std::span<const glm::vec3> picture) {
-            preview->picture(width, height, picture);
-          }});
+          pinhole
+              ? std::function([preview](int width, int height, std::span<const glm::vec3> picture) {
+                  preview->picture(width, height, picture);
+                })
+              : nullptr});
 }
 
 /// Takes what was found on the way to a picture.
@@ -290,7 +294,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
                                       [&] { scene = load_scene(options.scene, options.load); }));
   record.mix = mix_of(scene, options);
   tell_scene(scene, record.mix, progress);
-  const Camera& camera = choose_camera(scene, options.camera);
+  const Camera camera = projected(choose_camera(scene, options.camera), options);
   set_film_size(options.parameters.film, options.size, camera);
   record.scene = scene.source.filename().string();
   record.camera = camera.name;

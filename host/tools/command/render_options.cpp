@@ -88,6 +88,7 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
       ->required()
       ->type_name("");
   add_lights(command, options);
+  add_mood_options(command, options.mood, "Picture");
   add_settings(command, options.parameters, without);
   add_scene_options(command, options.load, "Scene");
   add_light_options(command, options.load, "Lights");
@@ -127,11 +128,38 @@ void add_integrator_option(CLI::App& command, RenderOptions& options) {
       ->group("Picture");
 }
 
+void add_projection_options(CLI::App& command, RenderOptions& options) {
+  std::vector<std::string_view> names;
+  for (const Projection projection : all_projections) names.push_back(name_of(projection));
+  command
+      .add_option_function<std::string>(
+          "--projection",
+          [&options](const std::string& word) {
+            for (const Projection projection : all_projections) {
+              if (name_of(projection) == word) options.projection = projection;
+            }
+          },
+          "of the camera: Radiance's -vtv, -vth and -vta, the whole sphere, -vtl")
+      ->type_name("perspective|fisheye|angular|equirectangular|orthographic")
+      ->transform(within(Words{names}))
+      ->default_str(std::string(name_of(options.projection)))
+      ->group("Picture");
+  command
+      .add_option("--field-of-view", options.field_of_view,
+                  fmt::format("degrees from the lower border to the upper; of orthographic metres; "
+                              "default: the camera's, of fisheyes {}, of orthographic {}",
+                              defaults::fisheye_field_of_view, defaults::orthographic_height))
+      ->type_name("X")
+      ->transform(positive_number())
+      ->group("Picture");
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   add_picture_options(command, options.pictures);
   set_quality(options.quality_options(), Quality::good);
   add_quality_wishes(command, options.quality_options());
   add_picture_settings(command, options);
+  add_projection_options(command, options);
   add_integrator_option(command, options);
   command
       .add_flag("--tuned", options.tuned,
@@ -271,9 +299,33 @@ const Camera& choose_camera(const Scene& scene, const std::string& selector) {
       fmt::format("no camera '{}' in {}; it has {}", selector, scene.source.string(), known));
 }
 
+Camera projected(Camera camera, const RenderOptions& options) {
+  camera.projection = options.projection;
+  const bool round =
+      options.projection == Projection::fisheye || options.projection == Projection::angular;
+  if (round) camera.aspect_ratio = 1;
+  if (options.projection == Projection::equirectangular) camera.aspect_ratio = 2;
+  if (options.projection == Projection::orthographic) {
+    if (options.field_of_view > 0) camera.orthographic_height = options.field_of_view;
+    return camera;
+  }
+  double degrees = options.field_of_view;
+  if (!(degrees > 0) && round) degrees = defaults::fisheye_field_of_view;
+  if (!(degrees > 0)) return camera;
+  const double most = options.projection == Projection::angular       ? 360.0
+                      : options.projection == Projection::perspective ? 179.0
+                                                                      : 180.0;
+  if (degrees > most) {
+    throw UsageError(fmt::format("--field-of-view {:g}: is more than the {:g} degrees of a {} view",
+                                 degrees, most, name_of(options.projection)));
+  }
+  camera.vertical_field_of_view = glm::radians(degrees);
+  return camera;
+}
+
 LightMix mix_of(const Scene& scene, const RenderOptions& options) {
   LightMix mix = LightMix::of(scene, options.load.lumen_per_watt);
-  change_lights(mix, options.lights);
+  change_lights(mix, joined(changes_of(options.mood, mix, options.scene), options.lights));
   return mix;
 }
 

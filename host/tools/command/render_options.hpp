@@ -13,6 +13,7 @@
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 #include "photile/shard.hpp"
+#include "tools/command/mood_options.hpp"
 #include "tools/command/picture_outputs.hpp"
 #include "tools/command/quality_options.hpp"
 #include "tools/trade/quality_target.hpp"
@@ -39,8 +40,11 @@ struct RenderOptions {
   QualityTarget target;              ///< settings are chosen to meet it
   bool tuned = false;                ///< use the tuning that `photile devices --tune` stored
   std::string camera;
-  std::string size;                 ///< "" = by the camera
+  std::string size;  ///< "" = by the camera
+  Projection projection = Projection::perspective;
+  double field_of_view = 0;         ///< degrees, or metres of parallel rays; 0 = by the camera
   std::vector<LightChange> lights;  ///< what --light asks for
+  MoodOptions mood;                 ///< before them
   DeviceOptions device;
   SceneLoadOptions load;
   int threads = 0;
@@ -105,8 +109,12 @@ void refuse_photon_map_options(const CLI::App& command);
 /// Errors: UsageError listing those there are.
 const Camera& choose_camera(const Scene& scene, const std::string& selector);
 
-/// The scene's lights as they are, then as --light asks for.
-/// Errors: UsageError where no light has the name.
+/// The camera with the projection and the field of view that are asked for. Errors: UsageError for
+/// an angle that the projection cannot have.
+Camera projected(Camera camera, const RenderOptions& options);
+
+/// The scene's lights as they are, then as --mood and --light ask for.
+/// Errors: UsageError where no light has the name; those of changes_of.
 LightMix mix_of(const Scene& scene, const RenderOptions& options);
 
 /// Width and height into `film`: `size` if given, else the default height and the camera's aspect

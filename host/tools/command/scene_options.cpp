@@ -29,6 +29,23 @@ void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::
       .add_flag("--allow-outside", options.allow_outside,
                 "the scene may name files outside its folder")
       ->group(group);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--reflectance",
+          [&options](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) {
+              options.reflectances.push_back(ReflectanceChange::parse(text));
+            }
+          },
+          "share of light that materials whose names match reflect; their colours are made "
+          "brighter or darker; repeatable")
+      ->type_name("MATERIAL=SHARE")
+      ->allow_extra_args(false)
+      ->group(group);
+  command
+      .add_flag("--lambertian", options.lambertian,
+                "no specular lobe on dielectrics, such as the 4% that glTF has by default")
+      ->group(group);
 }
 
 }  // namespace photile::app

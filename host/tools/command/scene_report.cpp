@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "scene/material_reflectance.hpp"
 #include "scene/open_glass.hpp"
 #include "tools/command/number_format.hpp"
 
@@ -17,6 +19,18 @@ using nlohmann::json;
 // An interior in millimetres is thousands of units wide, one in metres hardly ever 500.
 constexpr double doubtfully_large = 500;   // metres
 constexpr double doubtfully_small = 0.05;  // metres
+
+/// "reflectance 0.52", and why it is not the colour that the file has; "" of glass.
+std::string reflectance_text(const Scene& scene, const Material& material) {
+  const auto reflectance = scene_io::reflectance_of(scene, material);
+  if (!reflectance) return "";
+  std::string text = fmt::format(", reflectance {:.3g}", reflectance->whole);
+  if (!material.glossy()) return text;
+  const bool changed = std::abs(reflectance->whole - reflectance->matt) >= 0.005;
+  if (!changed || !(reflectance->matt > 0)) return text;
+  return text + fmt::format(" ({:.3g} entered, and {:.2g} specular; --lambertian removes that)",
+                            reflectance->matt, luminance(glm::dvec3(material.specular)));
+}
 
 /// "1 camera", "2 cameras"
 std::string counted(std::size_t count, const char* noun) {
@@ -115,6 +129,10 @@ json material_json(const Scene& scene, const Material& material, std::size_t tri
              {"roughness", material.roughness},
              {"opacity", material.opacity},
              {"opacity_cutoff", material.opacity_cutoff}};
+  if (const auto reflectance = scene_io::reflectance_of(scene, material)) {
+    entry["reflectance"] = reflectance->whole;
+    entry["matt_reflectance"] = reflectance->matt;
+  }
   const auto add_texture = [&](const char* member, std::uint32_t texture) {
     if (texture != none) entry[member] = scene.textures[texture].name();
   };
@@ -199,8 +217,8 @@ std::vector<std::string> material_summary(const Scene& scene) {
     const Material& material = scene.materials[i];
     const bool textured = material.diffuse_texture != none;
     lines.push_back(fmt::format(
-        "material: {}: {}, {}{}", material.name, interaction_name(material),
-        counted(triangles[i], "triangle"),
+        "material: {}: {}, {}{}{}", material.name, interaction_name(material),
+        counted(triangles[i], "triangle"), reflectance_text(scene, material),
         textured ? ", texture " + scene.textures[material.diffuse_texture].name() : ""));
   }
   return lines;

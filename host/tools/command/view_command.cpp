@@ -46,6 +46,7 @@ void run_view(ViewOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const Scene scene = load_scene(render.scene, render.load);
+  render.mood.edited = true;
   const LightMix mix = mix_of(scene, render);
   const Camera& camera = choose_camera(scene, render.camera);
   set_film_size(render.parameters.film, render.size, camera);
@@ -56,6 +57,7 @@ void run_view(ViewOptions& options) {
   parameters.frames_per_second = options.frames_per_second;
   parameters.outputs = options.outputs;
   parameters.view = options.view;
+  parameters.moods = render.mood.file;
   parameters.prepared = load_maps(scene, render, progress);
   // Progress is shown in the window from here on.
   parameters.keep = keep_maps(scene, render, Progress::none());

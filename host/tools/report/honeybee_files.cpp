@@ -42,9 +42,16 @@ std::map<std::string, std::string> honeybee_files(const Measurement& measurement
   for (const GridValues& values : measurement) {
     const std::string identifier = identifier_of(values.grid.name);
     std::string lines;
-    for (const Measured& sensor : values.total().sensors) {
-      lines += fmt::format("{:.6g}\n", sensor.value);
+    auto blank = values.grid.blanks.begin();  // lines stay those of the grid's points
+    const auto add_blanks = [&](std::size_t before) {
+      for (; blank != values.grid.blanks.end() && blank->before == before; ++blank)
+        lines += "nan\n";
+    };
+    for (std::size_t sensor = 0; sensor < values.grid.sensors.size(); ++sensor) {
+      add_blanks(sensor);
+      lines += fmt::format("{:.6g}\n", values.total().sensors[sensor].value);
     }
+    add_blanks(values.grid.sensors.size());
     if (!files.emplace(identifier + ".res", lines).second) {
       throw UsageError(fmt::format("two grids are named '{}'; rename one", values.grid.name));
     }
@@ -52,7 +59,7 @@ std::map<std::string, std::string> honeybee_files(const Measurement& measurement
                      {"identifier", identifier},
                      {"full_id", identifier},
                      {"group", ""},
-                     {"count", values.grid.sensors.size()}});
+                     {"count", values.grid.sensors.size() + values.grid.blanks.size()}});
     const GridStatistics& statistics = values.total().statistics;
     summary += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.4g}\n", identifier, identifier,
                            statistics.mean.value, statistics.minimum.value,

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "image/layer_set.hpp"
 #include "photile/errors.hpp"
+#include "photile/light_mix.hpp"
+#include "tools/report/false_colour_picture.hpp"
 
 namespace photile::image {
 namespace {
@@ -40,6 +43,77 @@ Image layer_picture(const Image& image, const LayerChannels& channels) {
 }
 
 }  // namespace
+
+namespace {
+
+constexpr double high_percentile = 0.95;
+
+double quantile(std::vector<float>& values, double share) {
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return static_cast<double>(*place);
+}
+
+void add_levels(const std::string& what, const std::string& unit, std::vector<float> a,
+                std::vector<float> b, LevelComparison& result) {
+  const auto mean = [](const std::vector<float>& values) {
+    double sum = 0;
+    for (const float value : values) sum += static_cast<double>(value);
+    return sum / static_cast<double>(std::max<std::size_t>(1, values.size()));
+  };
+  if (a.empty() || b.empty()) return;
+  result.levels.push_back({what + ", mean", unit, mean(a), mean(b)});
+  result.levels.push_back({what + ", median", unit, quantile(a, 0.5), quantile(b, 0.5)});
+  result.levels.push_back(
+      {what + ", 95% below", unit, quantile(a, high_percentile), quantile(b, high_percentile)});
+}
+
+/// Illuminance of the pixels that see a surface in either picture; empty where it is not known.
+std::vector<float> surface_illuminance(const LayeredPicture& picture) {
+  try {
+    return measuring::illuminance_of(picture);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+LevelComparison compare_levels(const LayeredPicture& a, const LayeredPicture& b,
+                               const PictureHeader& header_a, const PictureHeader& header_b) {
+  if (a.header().width != b.header().width || a.header().height != b.header().height) {
+    throw UsageError("the pictures differ in size; render them with the same --size");
+  }
+  LevelComparison result;
+  add_levels("luminance", "cd/m2", measuring::luminance_of(a.root()),
+             measuring::luminance_of(b.root()), result);
+  add_levels("illuminance", "lux", surface_illuminance(a), surface_illuminance(b), result);
+  const LightMix of_a = read_light_mix(header_a), of_b = read_light_mix(header_b);
+  for (const MixedLight& light : of_a.lights) {
+    const auto other = std::find_if(of_b.lights.begin(), of_b.lights.end(),
+                                    [&](const auto& each) { return each.name == light.name; });
+    if (other == of_b.lights.end()) continue;
+    result.powers.push_back({light.name, light.power, other->power, light.unit});
+  }
+  return result;
+}
+
+bool lights_differ(const PictureHeader& a, const PictureHeader& b) {
+  try {
+    const LightMix of_a = read_light_mix(a), of_b = read_light_mix(b);
+    for (const MixedLight& light : of_a.lights) {
+      for (const MixedLight& other : of_b.lights) {
+        if (light.name != other.name) continue;
+        const double larger = std::max(light.power, other.power);
+        if (std::abs(light.power - other.power) > 1e-6 * larger) return true;
+        if (glm::length(light.tint - other.tint) > 1e-4f) return true;
+      }
+    }
+  } catch (const InputError&) {  // no lights
+  }
+  return false;
+}
 
 PictureComparison compare_pictures(const Image& a, const Image& b) {
   PictureComparison result;

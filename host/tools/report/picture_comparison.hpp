@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "photile/image.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/picture_error.hpp"
 
 namespace photile::image {
@@ -16,6 +17,38 @@ struct ComparedPart {
   /// Of a against b; none where b is black.
   std::optional<PictureError> error;
 };
+
+/// How bright two pictures are, of the pixels that see a surface.
+struct ComparedLevel {
+  std::string what;  ///< "luminance, mean"
+  std::string unit;  ///< "cd/m2", "lux"
+  double a = 0, b = 0;
+};
+
+/// A light's power in both.
+struct ComparedPower {
+  std::string light;
+  double a = 0, b = 0;
+  PowerUnit unit = PowerUnit::lumen;
+};
+
+/// Two states of the lamps in one view.
+struct LevelComparison {
+  std::vector<ComparedLevel> levels;
+  std::vector<ComparedPower> powers;
+};
+
+/// Levels of luminance, and of illuminance where both pictures know it: mean, median and the 95th
+/// percentile over the pixels.
+///   header_a, header_b   of the whole pictures, with the names of their channels
+/// Errors: UsageError where sizes differ; InputError where a picture does not say how many cd/m2
+/// its values are.
+LevelComparison compare_levels(const LayeredPicture& a, const LayeredPicture& b,
+                               const PictureHeader& header_a, const PictureHeader& header_b);
+
+/// Whether the lights of two pictures have other powers or colours: then the pictures are states of
+/// one room, and no error of one against the other.
+bool lights_differ(const PictureHeader& a, const PictureHeader& b);
 
 struct PictureComparison {
   std::vector<ComparedPart> parts;  ///< the whole picture first

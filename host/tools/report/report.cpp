@@ -58,6 +58,27 @@ std::string grid_heading(const SensorGrid& grid) {
                             glm::length(layout.v), layout.spacing());
 }
 
+/// What is required, and whether it is met.
+std::string target_section(const Measurement& measurement, const Requirement& requirement) {
+  std::string text = fmt::format(
+      "<h2>Target: {}</h2>\n<table>\n<tr><th>{}</th><th></th><th>required</th><th>measured</th>"
+      "<th></th></tr>\n",
+      escaped_xml(requirement.name),
+      escaped_xml(requirement.reference.empty() ? ""
+                                                : requirement.reference + ", " + requirement.what));
+  for (const GridValues& values : measurement) {
+    for (const Judgement& judgement : judge(values, requirement)) {
+      const std::string value =
+          judgement.figure == "Uo" ? ratio_cell(judgement.measured) : lux_cell(judgement.measured);
+      text += fmt::format("<tr><td>{}</td><td>{}</td><td>{} {:g}</td>{}<td>{}</td></tr>\n",
+                          escaped_xml(judgement.grid), judgement.figure,
+                          judgement.at_most ? "at most" : "at least", judgement.required, value,
+                          judgement.met() ? "met" : "<b>not met</b>");
+    }
+  }
+  return text + "</table>\n";
+}
+
 std::string section(const GridValues& values, const FalseColour& colours) {
   std::string text = fmt::format(
       "<h2>{}</h2>\n<table>\n<tr><th></th><th>E<sub>m</sub> lux</th><th>E<sub>min</sub></th>"
@@ -90,6 +111,7 @@ std::string report_html(const Measurement& measurement, const ReportText& text,
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{0}</title>\n"
       "{1}</head>\n<body>\n<h1>Illuminance: {0}</h1>\n",
       escaped_xml(text.title), style);
+  if (text.requirement) page += target_section(measurement, *text.requirement);
   for (const GridValues& values : measurement) page += section(values, colours);
   page += "<h2>How it was measured</h2>\n<dl>\n";
   for (const auto& [name, value] : text.facts) {

@@ -5,23 +5,13 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "tools/report/csv_field.hpp"
 #include "tools/report/number_text.hpp"
 
 namespace photile::measuring {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A field of a CSV file (RFC 4180).
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
 
 Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
@@ -79,21 +69,35 @@ std::string measurement_csv(const Measurement& measurement, const std::string& u
   std::string text =
       fmt::format("grid,point,x,y,z,dx,dy,dz,{},standard_error", csv_field(unit));
   const auto& lights = measurement.front().lights;
+  const bool any_blank =
+      std::any_of(measurement.begin(), measurement.end(),
+                  [](const GridValues& values) { return !values.grid.blanks.empty(); });
   for (std::size_t i = 1; i < lights.size(); ++i) {
     text += fmt::format(",{},{}", csv_field("lux " + lights[i].light),
                         csv_field("standard_error " + lights[i].light));
   }
+  if (any_blank) text += ",blank";
   text += "\n";
   for (const GridValues& values : measurement) {
-    for (std::size_t sensor = 0; sensor < values.grid.sensors.size(); ++sensor) {
-      const auto& [p, n] = values.grid.sensors[sensor];
+    std::size_t point = 0;
+    const auto start = [&](const Sensor& sensor) {
+      const glm::dvec3 &p = sensor.position, &n = sensor.normal;
       text += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g}",
-                          csv_field(values.grid.name), sensor, p.x, p.y, p.z, n.x, n.y, n.z);
+                          csv_field(values.grid.name), point++, p.x, p.y, p.z, n.x, n.y, n.z);
+    };
+    auto blank = values.grid.blanks.begin();
+    for (std::size_t sensor = 0; sensor <= values.grid.sensors.size(); ++sensor) {
+      for (; blank != values.grid.blanks.end() && blank->before == sensor; ++blank) {
+        start(blank->sensor);
+        text += std::string(2 * values.lights.size() + 1, ',') + csv_field(blank->reason) + "\n";
+      }
+      if (sensor == values.grid.sensors.size()) break;
+      start(values.grid.sensors[sensor]);
       for (const LightValues& light : values.lights) {
         text += fmt::format(",{:.6g},{:.3g}", light.sensors[sensor].value,
                             light.sensors[sensor].standard_error);
       }
-      text += "\n";
+      text += any_blank ? ",\n" : "\n";
     }
   }
   return text;
@@ -111,6 +115,12 @@ Json measurement_json(const Measurement& measurement) {
     grid["sensors"] = Json::array();
     for (std::size_t sensor = 0; sensor < values.grid.sensors.size(); ++sensor) {
       grid["sensors"].push_back(sensor_json(values, sensor));
+    }
+    for (const BlankPoint& blank : values.grid.blanks) {
+      grid["blank"].push_back({{"position", vector_json(blank.sensor.position)},
+                               {"direction", vector_json(blank.sensor.normal)},
+                               {"reason", blank.reason},
+                               {"before", blank.before}});
     }
     grids.push_back(std::move(grid));
   }
@@ -131,6 +141,9 @@ std::vector<std::string> measurement_lines(const Measurement& measurement,
         fmt::format("{}: {} points", values.grid.name, values.grid.sensors.size());
     if (values.grid.layout) {
       heading += fmt::format(", {:.2f} m apart", values.grid.layout->spacing());
+    }
+    if (!values.grid.blanks.empty()) {
+      heading += fmt::format(", and {} blank", values.grid.blanks.size());
     }
     lines.push_back(heading);
     for (const LightValues& light : values.lights) {

@@ -37,6 +37,9 @@ double kelvin_of(double value) {
                                           limits::max_color_temperature));
 }
 
+/// With four digits that count: a slider's other ones say nothing.
+double rounded(double power) { return *parse_number<double>(fmt::format("{:.4g}", power)); }
+
 PowerUnit unit_of(const std::string& word) {
   if (word == "lm") return PowerUnit::lumen;
   if (word == "W") return PowerUnit::watt;
@@ -92,7 +95,8 @@ void Moods::keep(const std::string& name, const LightBoard& board) {
   auto moods = moods_;
   Mood& mood = moods[name];
   for (const LightControl& control : board.controls()) {
-    mood[control.name] = {control.power, control.unit, control.on, control.color, control.kelvin};
+    mood[control.name] = {rounded(control.power), control.unit, control.on, control.color,
+                          std::round(control.kelvin)};
   }
   write(moods);
   moods_ = std::move(moods);
@@ -105,14 +109,42 @@ void Moods::remove(const std::string& name) {
   moods_ = std::move(moods);
 }
 
-void Moods::apply(const std::string& name, LightBoard& board) const {
+const Moods::Mood& Moods::named(const std::string& name) const {
   const auto found = moods_.find(name);
-  if (found == moods_.end()) {
-    throw UsageError(fmt::format("{}: there is no mood '{}'", file_.string(), name));
+  if (found != moods_.end()) return found->second;
+  std::string known;
+  for (const auto& [other, mood] : moods_) known += (known.empty() ? "'" : ", '") + other + "'";
+  throw UsageError(fmt::format("{}: there is no mood '{}'; there {}", file_.string(), name,
+                               known.empty() ? "are none" : "is " + known));
+}
+
+std::vector<LightChange> Moods::changes(const std::string& name, const LightMix& mix) const {
+  const Mood& mood = named(name);
+  std::vector<LightChange> changes;
+  for (const MixedLight& light : mix.lights) {
+    const auto found = mood.find(light.name);
+    if (found == mood.end() || found->second.unit != light.unit) continue;
+    const Setting& setting = found->second;
+    if (!setting.on || setting.power == 0) {
+      changes.push_back({light.name, "off"});
+      continue;
+    }
+    const char* unit = light.unit == PowerUnit::lumen ? "lm" : "W";
+    changes.push_back({light.name, fmt::format("{}{}", setting.power, unit)});
+    if (setting.kelvin > 0) {
+      changes.push_back({light.name, fmt::format("{}K", setting.kelvin)});
+    } else if (setting.color) {
+      changes.push_back({light.name, hex_of(*setting.color)});
+    }
   }
+  return changes;
+}
+
+void Moods::apply(const std::string& name, LightBoard& board) const {
+  const Mood& mood = named(name);
   for (LightControl& control : board.controls()) {
-    const auto setting = found->second.find(control.name);
-    if (setting == found->second.end() || setting->second.unit != control.unit) continue;
+    const auto setting = mood.find(control.name);
+    if (setting == mood.end() || setting->second.unit != control.unit) continue;
     control.power = setting->second.power;
     control.on = setting->second.on;
     control.color = setting->second.color;

@@ -29,13 +29,16 @@ class Moods {
   std::vector<std::string> names() const;
 
   /// Keeps the board's settings under a name and writes the file, through a temporary name and a
-  /// rename. Errors: OutputError; the file is then as it was.
+  /// rename; powers have four digits there. Errors: OutputError; the file is then as it was.
   void keep(const std::string& name, const LightBoard& board);
   void remove(const std::string& name);  ///< errors: as keep
 
   /// Sets the board. Lights that the scene no longer has are passed over. Errors: UsageError when
-  /// there is no such mood.
+  /// there is no such mood; it lists those there are.
   void apply(const std::string& name, LightBoard& board) const;
+
+  /// What a mood asks of the lights of a mix that it names, for change_lights. Errors: as apply.
+  std::vector<LightChange> changes(const std::string& name, const LightMix& mix) const;
 
   const std::filesystem::path& file() const { return file_; }
 
@@ -49,6 +52,7 @@ class Moods {
   };
   using Mood = std::map<std::string, Setting>;  ///< by light
 
+  const Mood& named(const std::string& name) const;
   void write(const std::map<std::string, Mood>& moods) const;
 
   std::filesystem::path file_;

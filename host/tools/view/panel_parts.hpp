@@ -14,6 +14,15 @@ bool draw_moods(PanelState& state, PanelEvents& events);
 /// Pixels between panels and the window's border.
 constexpr float border = 10;
 
+/// What the newest clicked point reads, in all and by each light.
+void draw_newest_point(PanelState& state);
+
+/// The list of clicked points with their settings.
+void draw_points(PanelState& state, PanelEvents& events);
+
+/// Rings with their numbers where the points are, over the picture.
+void draw_point_markers(const PanelState& state, const Frame* frame);
+
 void draw_display(PanelState& state, const PanelReadings& readings, PanelEvents& events);
 
 /// The legend of illuminances, in the corner of the window, where they are shown.

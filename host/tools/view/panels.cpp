@@ -71,8 +71,9 @@ std::string text_of(const Measured& measured) {
   return measuring::text_with_error(measured.value, measured.standard_error);
 }
 
-/// What reaches the clicked place, in all and by each light.
-void draw_probe(PanelState& state, const Frame* frame) {
+/// What reaches the clicked place, and the list of all.
+void draw_probe(PanelState& state, const Frame* frame, PanelEvents& events) {
+  draw_point_markers(state, frame);
   if (!state.probe || !frame) return;
   bool open = true;
   constexpr float width = 320;
@@ -83,22 +84,13 @@ void draw_probe(PanelState& state, const Frame* frame) {
     const LightMix mix = state.lights.mix();
     const int x = static_cast<int>(state.probe->x * frame->layers.width);
     const int y = static_cast<int>(state.probe->y * frame->layers.height);
-    const auto readings = readings_at(*frame, mix, x, y);
-    const LightReading sum = sum_of(readings);
-    ImGui::Text("illuminance %s lx", text_of(sum.illuminance).c_str());
+    const LightReading sum = sum_of(readings_at(*frame, mix, x, y));
     ImGui::Text("luminance   %s %s", text_of(sum.luminance).c_str(), luminance_unit(mix));
     if (ImGui::IsItemHovered()) {
       ImGui::SetTooltip("+- standard error of an estimate from the nearest photons");
     }
-    ImGui::Separator();
-    for (std::size_t light = 0; light < readings.size(); ++light) {
-      const LightReading& its = readings[light];
-      if (its.illuminance.value == 0 && its.luminance.value == 0) continue;
-      // Names last: they may be long.
-      ImGui::TextWrapped("%12s lx %4.0f%%  %s", text_of(its.illuminance).c_str(),
-                         100 * its.illuminance.value / std::max(sum.illuminance.value, 1e-300),
-                         mix.lights[light].name.c_str());
-    }
+    draw_newest_point(state);
+    draw_points(state, events);
   }
   ImGui::End();
   if (!open) state.probe.reset();
@@ -127,14 +119,15 @@ PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
       }
       ImGui::TextWrapped(
           "W A S D walk, E and Q rise and sink, Shift hurries. Left button looks, right button "
-          "orbits, wheel goes ahead. A click reads the light there. F2 hides the panels, F12 keeps "
-          "a screenshot, Ctrl+S the picture with its layers. Ctrl+Z takes back what was set on the "
+          "orbits, wheel goes ahead. A click measures the light there. F2 hides the panels, F12 "
+          "keeps a screenshot, Ctrl+S the picture with its layers. Ctrl+Z takes back what was set "
+          "on the "
           "lamps, Ctrl+Y sets it again.");
     }
     ImGui::PopItemWidth();
   }
   ImGui::End();
-  draw_probe(state, readings.frame);
+  draw_probe(state, readings.frame, events);
   draw_legend(state, readings.frame);
   return events;
 }

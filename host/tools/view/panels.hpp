@@ -11,12 +11,20 @@
 #include "tools/view/moods.hpp"
 #include "tools/view/photon_map_view.hpp"
 #include "tools/view/photon_worker.hpp"
+#include "tools/view/point_worker.hpp"
 
 namespace photile::view {
 
 /// What a click on the picture asked for.
 struct Probe {
   double x = 0, y = 0;  ///< in the picture, as shares of its width and height
+};
+
+/// What values at clicked points are multiplied by and held against.
+struct PointSettings {
+  double maintenance = defaults::maintenance_factor;
+  std::string target_name = "none";
+  double target = 0;  ///< lux; 0 = none
 };
 
 /// What the panels show and set.
@@ -27,8 +35,11 @@ struct PanelState {
   RenderParameters& parameters;
   double& speed;  ///< of walking, metres per second
   std::optional<Probe>& probe;
-  std::string& message;   ///< the last error or news; "" = none
-  std::string& new_mood;  ///< the name being typed
+  std::string& message;                     ///< the last error or news; "" = none
+  std::string& new_mood;                    ///< the name being typed
+  const std::vector<ClickedPoint>& points;  ///< the newest last
+  PointSettings& point_settings;
+  glm::dvec3 origin;  ///< of the scene, in the file's world
 };
 
 /// What they show alone.
@@ -45,6 +56,8 @@ struct PanelEvents {
   bool display_changed = false;  ///< colour again
   bool maps_changed = false;     ///< trace and build again, with other parameters
   bool expose = false;           ///< set the exposure by the picture
+  int removed_point = 0;         ///< its number; 0 = none
+  bool keep_points = false;      ///< write the list of points
   std::string mood_to_scene;     ///< write this one into a copy of the scene; "" = none
 };
 

@@ -127,6 +127,17 @@ void PhotonInspector::pick(const Frame& frame, double x, double y) {
   map_.reset();
 }
 
+std::optional<PhotonInspector::Place> PhotonInspector::place_at(const Frame& frame, double x,
+                                                                double y) {
+  const trace::FlushDenormals flush_denormals;
+  const int width = frame.layers.width, height = frame.layers.height;
+  const glm::dvec3 direction = frame.camera.direction(x * width, y * height, width, height);
+  const SeenPoint seen = seen_along(rays(), frame.camera.position, direction);
+  if (seen.sided_triangle == none) return std::nullopt;
+  return Place{frame.camera.position + seen.distance * direction,
+               sided_normal(scene_, seen.sided_triangle)};
+}
+
 void PhotonInspector::draw(const Frame& frame, DisplayedFrame& shown) {
   if (picked_ == none || !frame.photons) return;
   if (!map_ || photons_ != frame.photons) {

@@ -43,6 +43,13 @@ class PhotonInspector {
   /// nothing.
   void pick(const Frame& frame, double x, double y);
 
+  /// The place on a surface that a frame shows there, in the scene's coordinates, and the unit
+  /// normal of the side seen; nothing where that is nothing.
+  struct Place {
+    glm::dvec3 position, normal;
+  };
+  std::optional<Place> place_at(const Frame& frame, double x, double y);
+
   /// Draws what is picked, by the photons of the frame.
   void draw(const Frame& frame, DisplayedFrame& shown);
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "common/output_file.hpp"
 #include "export/edited_scene.hpp"
 #include "photile/errors.hpp"
 #include "tools/preview/live_preview.hpp"
@@ -20,6 +21,7 @@
 #include "tools/view/navigation.hpp"
 #include "tools/view/panels.hpp"
 #include "tools/view/photon_map_overlay.hpp"
+#include "tools/view/point_worker.hpp"
 #include "tools/view/snapshots.hpp"
 #include "tools/view/viewpoint.hpp"
 #include "tools/view/window.hpp"
@@ -44,13 +46,14 @@ class Viewer {
         parameters_(std::move(parameters)),
         open_devices_(std::move(open_devices)),
         lights_(mix),
-        moods_(Moods::file_of(scene.source)),
+        moods_(parameters_.moods.empty() ? Moods::file_of(scene.source) : parameters_.moods),
         viewpoint_(camera),
         navigation_(walked_share * bounding_sphere(scene).radius,
                     orbit_share * bounding_sphere(scene).radius),
         window_(fmt::format("{} - photile", scene.source.filename().string()),
                 parameters_.render.film.width, parameters_.render.film.height),
         inspector_(scene),
+        points_(scene),
         frames_(parameters_.render.film.samples_per_pixel, parameters_.frames_per_second) {
     if (!parameters_.preview.empty()) {
       preview_.emplace(parameters_.preview, scene.source.filename().string(), mix,
@@ -68,6 +71,7 @@ class Viewer {
       const bool new_frame = take_frame();
       take_errors();
       picked_ = pick_triangle();
+      measure_clicked();
       PanelEvents events = panels_shown_ ? show_panels() : PanelEvents();
       events.lights_changed |= std::exchange(lights_restored_, false);
       if (events.expose && frame_) set_exposure();
@@ -83,6 +87,8 @@ class Viewer {
       if (preview_ && frame_ && (new_frame || events.lights_changed)) show_preview();
       if (events.maps_changed) build_maps(std::nullopt, {});
       if (!events.mood_to_scene.empty()) write_scene(events.mood_to_scene);
+      if (events.removed_point > 0) points_.remove(events.removed_point);
+      if (events.keep_points) keep_points();
       window_.draw_frame();
       keep_screenshot();
       window_.show_frame();
@@ -166,6 +172,23 @@ class Viewer {
     return true;
   }
 
+  /// A click is a measurement, unless it asks for a triangle's photons.
+  void measure_clicked() {
+    if (!clicked_ || display_.photon_map || !frame_ || !probe_) return;
+    if (const auto place = inspector_.place_at(*frame_, probe_->x, probe_->y)) {
+      points_.add(place->position + scene_.origin, place->normal);
+    }
+  }
+
+  void keep_points() {
+    const std::vector<ClickedPoint> points = points_.points();
+    keep("points", ".pts",
+         [&](const std::filesystem::path& file) { write_file(file, points_text(points)); });
+    keep("points", ".csv", [&](const std::filesystem::path& file) {
+      write_file(file, points_csv(points, lights_.mix(), point_settings_.maintenance));
+    });
+  }
+
   /// Frames of a moving viewer are too many to be of use elsewhere, or too small.
   void show_preview() {
     const int width = frame_->layers.width, height = frame_->layers.height;
@@ -224,8 +247,9 @@ class Viewer {
   }
 
   PanelEvents show_panels() {
-    PanelState state{lights_, moods_,   display_, parameters_.render, navigation_.speed(),
-                     probe_,  message_, new_mood_};
+    const std::vector<ClickedPoint> points = points_.points();
+    PanelState state{lights_,  moods_,    display_, parameters_.render, navigation_.speed(), probe_,
+                     message_, new_mood_, points,   point_settings_,    scene_.origin};
     const LightBoard before = lights_;
     const PanelEvents events =
         draw_panels(state, {frame_.get(), photons_->progress(), milliseconds_,
@@ -270,6 +294,8 @@ class Viewer {
   Navigation navigation_;
   Window window_;
   PhotonInspector inspector_;
+  PointWorker points_;
+  PointSettings point_settings_;
   std::optional<image::LivePreview> preview_;
   std::optional<Probe> probe_;
   std::string message_, new_mood_;

@@ -24,6 +24,7 @@ struct ViewerParameters {
   RenderParameters render;  ///< film: size of the window and most samples, standing still
   double frames_per_second = defaults::view_frames_per_second;  ///< aimed at while moving
   std::filesystem::path outputs = ".";  ///< folder of screenshots and pictures
+  std::filesystem::path moods = {};     ///< file of moods; "" = beside the scene
   std::uint64_t light_map_bytes = 0;    ///< that nodes may take; 0 = no bound
   /// Photons of an earlier run in place of all tracing, or none.
   std::optional<PreparedPhotons> prepared;

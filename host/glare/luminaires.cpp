@@ -1,0 +1,200 @@
+#include "glare/luminaires.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <span>
+
+#include "photile/defaults.hpp"
+#include "photile/primary_hits.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/lamp_axes.hpp"
+#include "trace/lamp_intensity.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::glare {
+namespace {
+
+/// Triangles that share corners, as lists; corners at the same place are one.
+std::vector<std::vector<std::uint32_t>> connected_parts(const Scene& scene,
+                                                        std::span<const std::uint32_t> triangles) {
+  std::vector<std::size_t> part(triangles.size());
+  std::iota(part.begin(), part.end(), std::size_t{0});
+  const auto root = [&](std::size_t i) {
+    while (part[i] != i) i = part[i] = part[part[i]];
+    return i;
+  };
+  std::map<std::array<float, 3>, std::size_t> first_at;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (const glm::vec3& corner : scene.corners(triangles[i])) {
+      const auto [place, is_new] = first_at.try_emplace({corner.x, corner.y, corner.z}, i);
+      if (is_new) continue;
+      const std::size_t a = root(i), b = root(place->second);
+      part[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  std::map<std::size_t, std::vector<std::uint32_t>> parts;
+  for (std::size_t i = 0; i < triangles.size(); ++i) parts[root(i)].push_back(triangles[i]);
+  std::vector<std::vector<std::uint32_t>> lists;
+  for (auto& [first, list] : parts) lists.push_back(std::move(list));
+  return lists;
+}
+
+/// Place i of any number of them evenly spread over a triangle (Roberts, "The unreasonable
+/// effectiveness of quasirandom sequences", 2018), as weights of its second and third corner.
+glm::vec2 place_in_triangle(int i) {
+  constexpr double plastic = 1.32471795724474602596;  // the root of x^3 = x + 1
+  glm::dvec2 place = glm::fract(0.5 + (i + 1.0) * glm::dvec2(1 / plastic, 1 / (plastic * plastic)));
+  if (place.x + place.y > 1) place = 1.0 - place;
+  return glm::vec2(place);
+}
+
+/// cd/m2 (or lm for lux) of a layer's radiance at its power in the mix.
+glm::dvec3 power_of(const LightMix& mix, std::uint32_t layer) {
+  const MixedLight& light = mix.lights[layer];
+  const double lumens = light.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
+  return light.power * lumens * glm::dvec3(light.tint);
+}
+
+}  // namespace
+
+Luminaires::Luminaires(const RayScene& rays, int looks)
+    : rays_(rays), groups_(light_groups_of(rays.scene())) {
+  const Scene& scene = rays.scene();
+  const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(scene);
+  for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
+    const LightKind kind = scene.lights[light].kind;
+    if (kind == LightKind::area) {
+      add_area_light(light, radiance[light], looks);
+    } else if (kind == LightKind::point || kind == LightKind::spot) {
+      luminaires_.push_back({scene.lights[light].name, light, glm::vec3(0.0f), {}});
+    }
+  }
+}
+
+void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, int looks) {
+  const Scene& scene = rays_.scene();
+  const auto parts = connected_parts(scene, scene.lights[light].triangles);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Luminaire luminaire{scene.lights[light].name, light, radiance, {}};
+    if (parts.size() > 1) luminaire.name += fmt::format(" {}", i + 1);
+    double whole = 0;
+    for (const std::uint32_t triangle : parts[i]) whole += triangle_area(scene, triangle);
+    for (const std::uint32_t triangle : parts[i]) {
+      const double area = triangle_area(scene, triangle);
+      const int count = std::max(1, static_cast<int>(std::ceil(looks * area / whole)));
+      for (int place = 0; place < count; ++place) {
+        const glm::vec2 uv = place_in_triangle(place);
+        for (const std::uint32_t side : {0u, 1u}) {
+          const trace::SurfacePoint point =
+              trace::surface_point(scene, {triangle, uv.x, uv.y}, side);
+          if (!trace::emits(scene, point)) continue;
+          luminaire.patches.push_back({point, static_cast<float>(area / count)});
+        }
+      }
+    }
+    if (!luminaire.patches.empty()) luminaires_.push_back(std::move(luminaire));
+  }
+}
+
+SeenLuminaire Luminaires::surface_seen(const Luminaire& luminaire, const Observer& observer,
+                                       const glm::dvec3& eye, const glm::dvec3& power) const {
+  SeenLuminaire seen{luminaire.name};
+  double light = 0, weighed = 0;
+  for (const Patch& patch : luminaire.patches) {
+    const glm::dvec3 way = glm::dvec3(patch.point.position) - eye;
+    const double distance = glm::length(way);
+    const glm::dvec3 direction = way / distance;
+    const double cosine = -glm::dot(direction, glm::dvec3(patch.point.normal));
+    const double ahead = glm::dot(direction, observer.forward);
+    if (!(cosine > 0) || !(ahead > 0)) continue;
+    const glm::dvec3 passes(trace::transmittance(
+        rays_, glm::vec3(eye), patch.point.origin_towards(glm::vec3(-direction))));
+    if (passes == glm::dvec3(0.0)) continue;
+    const double area = cosine * static_cast<double>(patch.area);
+    const double solid_angle = area / (distance * distance);
+    const double p = position_index(observer, direction);
+    const glm::vec3 radiance =
+        luminaire.radiance *
+        trace::emission_towards(rays_.scene(), patch.point, glm::vec3(-direction));
+    const double flux = solid_angle * luminance(power * glm::dvec3(radiance) * passes);
+    seen.projected_area += area;
+    seen.solid_angle += solid_angle;
+    seen.illuminance += ahead * flux;
+    seen.direction += solid_angle * direction;
+    light += flux;
+    weighed += solid_angle / (p * p);
+  }
+  if (!(light > 0)) return seen;
+  seen.luminance = light / seen.solid_angle;
+  seen.position_index = std::sqrt(seen.solid_angle / weighed);
+  seen.direction = glm::normalize(seen.direction);
+  return seen;
+}
+
+SeenLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& observer,
+                                    const glm::dvec3& eye, const glm::dvec3& power) const {
+  SeenLuminaire seen{luminaire.name};
+  const Scene& scene = rays_.scene();
+  const Light& lamp = scene.lights[luminaire.light];
+  const glm::dvec3 way = glm::dvec3(lamp.position) - eye;
+  const double distance = glm::length(way);
+  const glm::dvec3 direction = way / distance;
+  const double ahead = glm::dot(direction, observer.forward);
+  if (!(distance > 0) || !(ahead > 0)) return seen;
+  const double share = groups_.share[luminaire.light];
+  const double candela =
+      share * trace::candela_per_lumen(scene, lamp, -direction) *
+      luminance(power * glm::dvec3(lamp.color) *
+                glm::dvec3(trace::transmittance(rays_, glm::vec3(eye), lamp.position)));
+  if (!(candela > 0)) return seen;
+  double area = 0;
+  if (lamp.distribution != none) {
+    const IntensityDistribution& distribution = scene.distributions[lamp.distribution];
+    area = distribution.opening().projected_area(distribution.axes(),
+                                                 trace::LampAxes(lamp).to_lamp(-direction));
+  }
+  seen.projected_area = std::max(area, defaults::small_source_area);
+  seen.luminance = candela / seen.projected_area;
+  seen.solid_angle = seen.projected_area / (distance * distance);
+  seen.position_index = position_index(observer, direction);
+  seen.illuminance = ahead * candela / (distance * distance);
+  seen.direction = direction;
+  return seen;
+}
+
+std::vector<SeenLuminaire> Luminaires::seen_by(const Observer& observer,
+                                               const LightMix& mix) const {
+  const trace::FlushDenormals flush_denormals;
+  const glm::dvec3 eye = observer.position - rays_.scene().origin;
+  std::vector<SeenLuminaire> all;
+  for (const Luminaire& luminaire : luminaires_) {
+    const glm::dvec3 power = power_of(mix, groups_.group_of[luminaire.light]);
+    if (!(luminance(power) > 0)) continue;
+    SeenLuminaire seen = luminaire.patches.empty() ? lamp_seen(luminaire, observer, eye, power)
+                                                   : surface_seen(luminaire, observer, eye, power);
+    if (seen.luminance > 0) all.push_back(std::move(seen));
+  }
+  return all;
+}
+
+double Luminaires::large_area(const glm::dvec3& up) const {
+  double sum = 0;
+  for (const Luminaire& luminaire : luminaires_) {
+    double area = 0, downwards = 0;
+    for (const Patch& patch : luminaire.patches) {
+      area += static_cast<double>(patch.area);
+      downwards +=
+          static_cast<double>(patch.area) * std::max(0.0, -glm::dot(glm::dvec3(patch.point.normal), up));
+    }
+    if (area > defaults::large_source_area) sum += downwards;
+  }
+  return sum;
+}
+
+}  // namespace photile::glare

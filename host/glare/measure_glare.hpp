@@ -1,0 +1,63 @@
+// The glare ratings of observers in a scene.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "glare/luminaires.hpp"
+#include "glare/picture_sources.hpp"
+#include "photile/device.hpp"
+#include "photile/illuminance.hpp"
+#include "photile/light_layers.hpp"
+#include "photile/progress.hpp"
+
+namespace photile::glare {
+
+struct GlareParameters {
+  MeasuringParameters measuring;  ///< of the illuminance at the eyes; its photons are the pictures'
+  bool by_pictures = true;  ///< whether daylight ratings are asked for: they take a picture each
+  int picture_side = defaults::glare_picture_side;  ///< pixels
+  SourceSearch search;
+  int looks = defaults::luminaire_looks;  ///< at each luminaire
+};
+
+/// What one observer has before the eyes.
+struct ObserverGlare {
+  Observer observer;
+  Measured illuminance;  ///< lux at the eye, on a plane that faces forward
+  Measured background;   ///< cd/m2: without what comes straight from luminaires, over pi
+  std::vector<SeenLuminaire> luminaires;
+  std::optional<Measured> ugr;  ///< none where no luminaire is seen, or nothing lies behind them
+  std::optional<double> ggr;    ///< where luminaires are larger than large_source_area
+  std::optional<PictureGlare> picture;
+
+  // Where there is a picture, with the illuminance above.
+  std::optional<Measured> dgp;
+  std::optional<Measured> dgp_low_light;  ///< times low_light_correction
+  std::optional<double> dgi;              ///< none without glare sources
+};
+
+/// A picture of an observer's view, as it was rendered.
+using KeepPicture =
+    std::function<void(std::size_t observer, const Camera& camera, const LightLayers& layers)>;
+
+/// Rates the glare of each observer.
+///   coverage   of the ceiling by luminaires, as `ggr` takes it
+///   devices    may be empty for paths
+///   keep       is called with each picture
+/// Errors: those of `gather` and `render`.
+std::vector<ObserverGlare> measure_glare(const Scene& scene, std::span<const Observer> observers,
+                                         const LightMix& mix, double coverage,
+                                         std::span<Device> devices,
+                                         const GlareParameters& parameters,
+                                         const KeepPicture& keep = {},
+                                         Progress& progress = Progress::none());
+
+/// The camera of an observer's pictures: 180 degrees of the angular projection, in the scene's
+/// coordinates.
+Camera eye_of(const Scene& scene, const Observer& observer);
+
+}  // namespace photile::glare

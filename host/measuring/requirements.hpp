@@ -1,0 +1,62 @@
+// What standards require of the light in a room, and whether a measurement has it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "measuring/measurement.hpp"
+
+namespace photile::measuring {
+
+/// A row of EN 12464-1:2021, or one of the user's own. 0 = nothing is required.
+struct Requirement {
+  std::string name;        ///< "office-desk"
+  std::string reference;   ///< "EN 12464-1:2021, table 34"
+  std::string what;        ///< "writing, typing, reading, data processing"
+  double mean = 0;         ///< E_m, lux, maintained, on the task area
+  double uniformity = 0;   ///< U_o there
+  double glare = 0;        ///< R_UGL: the highest UGR
+  double rendering = 0;    ///< R_a, which photile cannot measure
+  double cylindrical = 0;  ///< E_m,z, lux
+  double wall = 0;         ///< E_m,wall, lux
+  double ceiling = 0;      ///< E_m,ceiling, lux
+};
+
+/// The rows that are known by name.
+std::span<const Requirement> known_requirements();
+
+/// "office-desk", or values of one's own: "Em=300,Uo=0.6,UGR=19", any of Em, Uo, UGR, Ra, Ez,
+/// Ewall, Eceiling. Errors: UsageError that lists the names.
+Requirement parse_requirement(const std::string& text);
+
+/// One figure of a grid beside what is required.
+struct Judgement {
+  std::string grid;
+  std::string figure;  ///< "Em", "Uo", "UGR"
+  double required = 0;
+  Measured measured;
+  bool at_most = false;  ///< whether the requirement is an upper limit
+  /// Whether it is met. Within two standard errors of the limit it could be either.
+  bool met() const;
+  bool doubtful() const;
+};
+
+/// Of the mean and, of tasks and their surroundings, the uniformity: walls, ceilings and
+/// cylindrical illuminance have a uniformity of 0.10, the immediate surroundings 0.40 and the mean
+/// of table 2 of the standard. Grids of another role are not judged.
+std::vector<Judgement> judge(const GridValues& values, const Requirement& requirement);
+
+/// All grids' judgements under a heading, and what a program cannot judge.
+std::vector<std::string> requirement_lines(const Measurement& measurement,
+                                           const Requirement& requirement);
+
+/// E_m of the immediate surroundings of a task: EN 12464-1:2021, table 2.
+double mean_of_surroundings(double task_mean);
+
+/// "office-desk: working plane: Em 512 lux, at least 500: met"
+std::string judgement_text(const Judgement& judgement);
+
+}  // namespace photile::measuring

@@ -1,0 +1,161 @@
+// Luminaires as observers see them, and their ratings, against closed forms.
+#include "glare/luminaires.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "glare/measure_glare.hpp"
+#include "test_scenes.hpp"
+#include "tools/validation/form_factors.hpp"
+
+namespace photile::test {
+namespace {
+
+using namespace photile::glare;
+
+/// At the origin, looking along y with z up.
+const Observer eye{"eye", glm::dvec3(0), {0, 1, 0}, {0, 0, 1}};
+
+/// A square of 2 h metres that faces the eye from `distance` metres, `above` the line of sight.
+void add_panel(SceneBuilder& builder, double h, double distance, double above, double lumens,
+               const std::string& name = "panel") {
+  const auto black = builder.add(diffuse(glm::vec3(0)));
+  const auto light = builder.add(area_light(name, lumens));
+  builder.grid(glm::vec3(-h, distance, above - h), glm::vec3(2 * h, 0, 0), glm::vec3(0, 0, 2 * h),
+               1, black, light);
+}
+
+/// Solid angle of a rectangle a x b seen from `distance` straight before its middle.
+double solid_angle(double a, double b, double distance) {
+  return 4 * std::asin(
+                 a * b /
+                 std::sqrt((a * a + 4 * distance * distance) * (b * b + 4 * distance * distance)));
+}
+
+LightMix mix_of(const Scene& scene) { return LightMix::of(scene, 683); }
+
+}  // namespace
+
+TEST_CASE("a panel before the eye has its luminance, solid angle and illuminance") {
+  SceneBuilder builder("panel");
+  add_panel(builder, 0.5, 2, 0, 1000);
+  const Scene scene = builder.build();
+  const RayScene rays(scene);
+  const auto seen = Luminaires(rays, 1024).seen_by(eye, mix_of(scene));
+  REQUIRE(seen.size() == 1);
+  CHECK(seen[0].name == "panel");
+  CHECK(seen[0].luminance == Approx(1000 / glm::pi<double>()).epsilon(1e-4));  // 1 m2
+  CHECK(seen[0].solid_angle == Approx(solid_angle(1, 1, 2)).epsilon(2e-3));
+  CHECK(seen[0].projected_area == Approx(1).epsilon(0.07));
+  const double factor = validation::rectangle_factor(eye.position, eye.forward, {-0.5, 2, -0.5},
+                                                     {1, 0, 0}, {0, 0, 1});
+  CHECK(seen[0].illuminance == Approx(1000 * factor).epsilon(5e-3));
+  CHECK(seen[0].direction.y == Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("a screen hides its part of a panel, a pane of glass weakens it") {
+  const bool glass = GENERATE(false, true);
+  SceneBuilder builder("panel");
+  add_panel(builder, 0.5, 2, 0, 1000);
+  const auto screen = builder.add(glass ? test::glass(1.5f, true) : diffuse(glm::vec3(0)));
+  builder.grid({0, 1, -1}, {1, 0, 0}, {0, 0, 2}, 1, screen);  // the right half
+  const Scene scene = builder.build();
+  const RayScene rays(scene);
+  const auto seen = Luminaires(rays, 1024).seen_by(eye, mix_of(scene));
+  REQUIRE(seen.size() == 1);
+  const double whole = solid_angle(1, 1, 2);
+  if (glass) {
+    CHECK(seen[0].solid_angle == Approx(whole).epsilon(2e-3));
+    CHECK(seen[0].luminance < 0.97 * 1000 / glm::pi<double>());
+    CHECK(seen[0].luminance >
+          0.94 * 1000 / glm::pi<double>());  // half of it through 4% at each of two sides
+  } else {
+    CHECK(seen[0].solid_angle == Approx(0.5 * whole).epsilon(0.02));
+    CHECK(seen[0].luminance == Approx(1000 / glm::pi<double>()).epsilon(1e-4));
+  }
+}
+
+TEST_CASE(
+    "what lies behind the eye, shines away or is off is not seen; parts apart are luminaires") {
+  SceneBuilder builder("panels");
+  const auto black = builder.add(diffuse(glm::vec3(0)));
+  const auto both = builder.add(area_light("both", 100));
+  builder.grid({-2, 3, 0}, {1, 0, 0}, {0, 0, 1}, 1, black, both);
+  builder.grid({1, 3, 0}, {1, 0, 0}, {0, 0, 1}, 1, black, both);
+  const auto away = builder.add(area_light("away", 100));
+  builder.grid({-2, 4, 3}, {0, 0, 1}, {1, 0, 0}, 1, black, away);
+  const auto behind = builder.add(area_light("behind", 100));
+  builder.grid({-1, -3, 0}, {0, 0, 1}, {1, 0, 0}, 1, black, behind);
+  const Scene scene = builder.build();
+  const RayScene rays(scene);
+  LightMix mix = mix_of(scene);
+  const Luminaires luminaires(rays, 64);
+  const auto seen = luminaires.seen_by(eye, mix);
+  REQUIRE(seen.size() == 2);
+  CHECK(seen[0].name == "both 1");
+  CHECK(seen[1].name == "both 2");
+  CHECK(seen[0].luminance == Approx(50 / glm::pi<double>()).epsilon(1e-4));
+  mix.lights[0].power = 0;
+  CHECK(luminaires.seen_by(eye, mix).empty());
+}
+
+TEST_CASE("a photometric lamp is as bright as its intensity over its opening") {
+  SceneBuilder builder("lamp");
+  builder.grid({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, 1, builder.add(diffuse(glm::vec3(0))));
+  Light lamp = point_light("lamp", {0, 4, 3});
+  lamp.direction = {0, 0, -1};
+  builder.add(lamp);
+  Scene scene = builder.build();
+  IntensityDistribution even("even", {}, {0, 90}, {0, 360}, {500, 500, 500, 500});
+  even.set_opening({.along_zero = 1.2, .along_quarter = 0.3, .height = 0});
+  scene.lights[0].distribution = 0;
+  scene.lights[0].power = even.flux();
+  scene.distributions.push_back(even);
+  const RayScene rays(scene);
+  const auto seen = Luminaires(rays, 64).seen_by(eye, mix_of(scene));
+  REQUIRE(seen.size() == 1);
+  const double area = 1.2 * 0.3 * 3 / 5;  // by the cosine at 3 m up and 4 m ahead
+  CHECK(seen[0].luminance == Approx(500 / area).epsilon(1e-5));
+  CHECK(seen[0].solid_angle == Approx(area / 25).epsilon(1e-5));
+  CHECK(seen[0].illuminance == Approx(500.0 / 25 * 0.8).epsilon(1e-5));
+}
+
+TEST_CASE("a small lamp before an even background has UGR and DGP in closed form") {
+  constexpr double background = 120;
+  SceneBuilder builder("lamp before a sky");
+  add_panel(builder, 0.1, 3, 1.2, 400);
+  Scene scene = builder.build();
+  add_environment(scene,
+                  EnvironmentMap("sky", 2, 1, std::vector<glm::vec3>(2, glm::vec3(background))));
+  GlareParameters parameters;
+  parameters.measuring.by_paths = true;
+  parameters.measuring.gathering.rays = 4096;
+  parameters.measuring.repeats = 4;
+  parameters.measuring.photons.film.samples_per_pixel = 4;
+  parameters.picture_side = 256;
+  const auto all = measure_glare(scene, std::span(&eye, 1), mix_of(scene), 1, {}, parameters);
+  REQUIRE(all.size() == 1);
+  const ObserverGlare& glare = all.front();
+  const double luminance = 400 / (glm::pi<double>() * 0.04);
+  const double distance2 = 9 + 1.44, cosine = 3 / std::sqrt(distance2);
+  const double omega = 0.04 * cosine / distance2;
+  const double p = position_index(eye, glm::normalize(glm::dvec3(0, 3, 1.2)));
+  CHECK(glare.background.value == Approx(background).epsilon(0.01));
+  REQUIRE(glare.ugr);
+  CHECK(glare.ugr->value ==
+        Approx(8 * std::log10(0.25 / background * luminance * luminance * omega / (p * p)))
+            .margin(0.05));
+  CHECK_FALSE(glare.ggr);
+  const double at_eye = glm::pi<double>() * background + luminance * omega * cosine;
+  CHECK(glare.illuminance.value == Approx(at_eye).epsilon(0.01));
+  REQUIRE(glare.dgp);
+  REQUIRE(glare.picture->sources.size() == 1);
+  CHECK(glare.dgp->value == Approx(5.87e-5 * at_eye + 0.16 +
+                                   0.0918 * std::log10(1 + luminance * luminance * omega /
+                                                               (std::pow(at_eye, 1.87) * p * p)))
+                                .epsilon(0.02));
+  CHECK(glare.picture->illuminance == Approx(at_eye).epsilon(0.02));
+}
+
+}  // namespace photile::test
