@@ -43,6 +43,7 @@ libfcl-dev             | tests: an independent triangle distance
 libnanoflann-dev       | tests and benches: an independent nearest-neighbour search
 libbenchmark-dev       | benches
 python3-matplotlib     | benches: plots
+weasyprint             | prints reports as PDF
 xvfb                   | tests: a screen without a screen
 xauth                  | the same
 xdotool                | tests: keys and mouse for the window

@@ -71,7 +71,31 @@ TEST_CASE("measure writes the same values to all of its files") {
   CHECK_FALSE(std::getline(res, value));
   CHECK_THAT(folder.read("a.svg"), Contains("<svg") && Contains("lux") && Contains("</svg>"));
   CHECK_THAT(folder.read("a.html"),
-             Contains("E<sub>m</sub>") && Contains("</svg>") && Contains("</html>"));
+             Contains("E<sub>m</sub>") && Contains("</svg>") && Contains("</html>") &&
+                 Contains("<h2>Lamps</h2>") && Contains("<td>right</td>") &&
+                 Contains("<h2>Reflectances</h2>") && Contains("<dt>seed</dt>"));
+}
+
+TEST_CASE("a report shows the moods of a picture, and is printed as PDF") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  folder.write("moods.json",
+               R"({"photile_moods": 1, "moods": {"dusk": {"left": {"power": 1, "unit": "W"}}}})");
+  REQUIRE(run_photile({"render", scene, "-o", folder / "box.exr", "--size", "16x12", "--quality",
+                       "draft", "--photons", "2k", "-k", "20", "--quiet"})
+              .exit_code == 0);
+  const Outcome outcome = run_photile(
+      measure(scene, {"--plane", "floor+0.75", "--wall-band", "0.2", "-o", folder / "a.html", "-o",
+                      folder / "a.pdf", "--picture", folder / "box.exr", "--moods",
+                      folder / "moods.json"}));
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(folder.read("a.html"), Contains("data:image/png;base64,iVBORw0KGgo") &&
+                                        Contains("<figcaption>as rendered</figcaption>") &&
+                                        Contains("<figcaption>dusk</figcaption>"));
+  CHECK_THAT(folder.read("a.pdf"), Catch::StartsWith("%PDF"));
+  CHECK(run_photile(measure(scene, {"--plane", "floor+0.75", "--picture", folder / "box.exr"}))
+            .exit_code == 2);
 }
 
 TEST_CASE("points of Radiance are measured in their order, with paths or photons alike") {

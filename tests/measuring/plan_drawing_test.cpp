@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <regex>
 
+#include "tools/report/illuminance_steps.hpp"
 #include "tools/report/palette.hpp"
 
 namespace photile::test {
@@ -66,16 +67,37 @@ TEST_CASE("the legend has the middles of its steps, the label and the plane's na
         std::vector<std::string>{"25", "75", "125", "175"});
 }
 
-TEST_CASE("the isoline of a slope runs where the slope has its level") {
-  // 100, 200, 300 along u in both rows: the level 250 lies at 2 m of 3.
+TEST_CASE("the isolines of a slope run where the slope has the steps of the standard") {
+  // 100, 200, 300 along u in both rows: 150 lux lie at 1 m of 3, 200 at 1.5 m.
   const GridValues values = plane("slope", {100, 200, 300, 100, 200, 300});
   const std::string svg = plan(values, {.scale = 500, .steps = 1});
   const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
-  REQUIRE(lines.size() == 1);
+  REQUIRE(lines.size() == 2);
   // The plan is 560 pixels wide and begins at 20.
+  for (const std::string& x : all(lines[0], "[ML]([0-9.]+) ")) {
+    CHECK(std::stod(x) == Approx(20 + 1.0 / 3 * 560).margin(0.01));
+  }
+  for (const std::string& x : all(lines[1], "[ML]([0-9.]+) ")) {
+    CHECK(std::stod(x) == Approx(20 + 1.5 / 3 * 560).margin(0.01));
+  }
+}
+
+TEST_CASE("isolines alone lie in the middles of the legend's steps") {
+  const GridValues values = plane("slope", {100, 200, 300, 100, 200, 300});
+  const std::string svg = plan(values, {.scale = 500, .steps = 1, .contours = Contours::lines});
+  const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
+  REQUIRE(lines.size() == 1);  // 250 lux
   for (const std::string& x : all(lines[0], "[ML]([0-9.]+) ")) {
     CHECK(std::stod(x) == Approx(20 + 2.0 / 3 * 560).margin(0.01));
   }
+}
+
+TEST_CASE("steps of illuminance are those of EN 12464-1") {
+  CHECK(illuminance_steps(40, 1200) ==
+        std::vector<double>{50, 75, 100, 150, 200, 300, 500, 750, 1000});
+  CHECK(illuminance_steps(300, 500).empty());
+  CHECK(illuminance_steps(0, 0).empty());
+  CHECK(illuminance_steps(0, 1e-3).size() < 20);
 }
 
 TEST_CASE("a level has its number beside those of cells, or none") {

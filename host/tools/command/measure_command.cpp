@@ -20,6 +20,7 @@
 #include "tools/command/place_options.hpp"
 #include "tools/command/processes.hpp"
 #include "tools/command/render_options.hpp"
+#include "tools/command/report_contents.hpp"
 #include "tools/command/run_notes.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
@@ -158,9 +159,11 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) keep_sky(measurement);
-  outputs.write(measurement, {scene, mix, parameters, render.mood.mood, requirement});
-  for (const auto& line : measuring::measurement_lines(measurement, outputs.unit()))
+  outputs.write(measurement, {scene, mix, parameters, render.mood.mood, requirement,
+                              moods_of_report(render.mood.file, render.scene)});
+  for (const auto& line : measuring::measurement_lines(measurement, outputs.unit())) {
     std::cout << line << '\n';
+  }
   if (requirement) {
     for (const auto& line : measuring::requirement_lines(measurement, *requirement)) {
       std::cout << line << '\n';

@@ -4,17 +4,23 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
+#include "photile/ray_scene.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/output_files.hpp"
+#include "tools/command/report_contents.hpp"
+#include "tools/command/validators.hpp"
 #include "tools/command/version.hpp"
 #include "tools/report/honeybee_files.hpp"
 #include "tools/report/plan_drawing.hpp"
+#include "tools/report/plan_surroundings.hpp"
+#include "tools/report/print_page.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/sensor_tables.hpp"
 
@@ -72,6 +78,14 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
   return record;
 }
 
+/// Such as 2026-11-23.
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  return fmt::format("{:04}-{:02}-{:02}", local.tm_year + 1900, local.tm_mon + 1, local.tm_mday);
+}
+
 std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run) {
   const MeasuringParameters& parameters = run.parameters;
   const bool planar = parameters.gathering.response == SensorResponse::planar;
@@ -86,14 +100,25 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run)
                                      format_count(static_cast<double>(
                                          parameters.photons.photons.emitted_photons)),
                                      parameters.photons.neighbours)},
-      {"errors", "standard errors of the mean of the repeats"}};
+      {"errors", "standard errors of the mean of the repeats"},
+      {"seed", std::to_string(parameters.photons.seed)}};
   if (!run.mood.empty()) facts.emplace_back("mood", run.mood);
-  for (const MixedLight& light : run.mix.lights) {
-    facts.emplace_back("light " + light.name,
-                       format_power_in_both(light.power, light.unit, run.mix.lumen_per_watt));
-  }
   facts.emplace_back("program", "photile " + version_number());
+  facts.emplace_back("date", today());
   return facts;
+}
+
+/// Of each grid.
+std::vector<measuring::PlanSurroundings> surroundings_of(const measuring::Measurement& measurement,
+                                                         const MeasureRun& run) {
+  const RayScene rays(run.scene);
+  std::vector<measuring::PlanSurroundings> surroundings;
+  for (const auto& values : measurement) {
+    const auto& layout = values.grid.layout;
+    surroundings.push_back(layout ? measuring::surroundings_of(rays, *layout)
+                                  : measuring::PlanSurroundings());
+  }
+  return surroundings;
 }
 
 /// The file of each plane's plan.
@@ -113,7 +138,7 @@ std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file,
 void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options) {
   command
       .add_option("-o,--output", options.outputs,
-                  "table (.csv, .json), plan (.svg) or report (.html) to write; repeatable")
+                  "table (.csv, .json), plan (.svg) or report (.html, .pdf) to write; repeatable")
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group("Output");
@@ -122,24 +147,31 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
                   "folder for <grid>.res, grids_info.json and grid_summary.csv")
       ->type_name("FOLDER")
       ->group("Output");
+  command
+      .add_option("--picture", options.picture,
+                  "EXR of the scene, whose moods the report shows in pictures and in lux")
+      ->type_name("FILE.exr")
+      ->check(file_ending_in({".exr"}))
+      ->group("Output");
   add_false_colour_options(command, options.false_colour);
 }
 
 MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
     : unit_(options.daylight_factor ? "DF %" : "lux"),
       colours_(options.false_colour.of(unit_)),
-      honeybee_(options.honeybee) {
+      honeybee_(options.honeybee),
+      picture_(options.picture) {
   if (options.daylight_factor) colours_.scale = 0;  // thousands of lux would show nothing
   const std::map<std::string, std::vector<std::filesystem::path>*> lists{
-      {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}};
+      {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}, {".pdf", &pdf_}};
   std::vector<std::filesystem::path> all;
   for (const std::filesystem::path file : options.outputs) {
     const auto list = lists.find(file.extension().string());
     if (list == lists.end()) {
-      throw UsageError(fmt::format("{}: an output ends in .csv, .json, .svg or .html; rename it",
+      throw UsageError(fmt::format("{}: an output ends in .csv, .json, .svg, .html or .pdf; rename it",
                                    file.string()));
     }
-    if (options.daylight_factor && list->first == ".html") {
+    if (options.daylight_factor && (list->first == ".html" || list->first == ".pdf")) {
       throw UsageError(fmt::format("{}: reports are in lux; write daylight factors to .csv, .json "
                                    "or .svg",
                                    file.string()));
@@ -150,6 +182,12 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
   if (!honeybee_.empty()) {
     make_folder(honeybee_);
     for (const char* name : measuring::honeybee_tables) all.push_back(honeybee_ / name);
+  }
+  if (!picture_.empty()) {
+    if (html_.empty() && pdf_.empty()) {
+      throw UsageError("--picture is for reports; give -o FILE.html or -o FILE.pdf, too");
+    }
+    note_input(picture_);
   }
   check_outputs(all);
 }
@@ -186,17 +224,24 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
   for (const auto& values : measurement) {
     if (values.grid.layout) planes.push_back(&values);
   }
+  if (svg_.empty() && html_.empty() && pdf_.empty()) return;
+  const std::vector<measuring::PlanSurroundings> surroundings = surroundings_of(measurement, run);
   for (const auto& file : svg_) {
     const auto names = plan_names(file, planes.size());
     for (std::size_t i = 0; i < planes.size(); ++i) {
-      write_file(names[i], measuring::plan_svg(*planes[i], planes[i]->total(), colours_));
+      const auto grid = static_cast<std::size_t>(planes[i] - measurement.data());
+      write_file(names[i],
+                 measuring::plan_svg(*planes[i], planes[i]->total(), colours_,
+                                     measuring::PlanSize::whole, surroundings[grid]));
     }
   }
-  const std::string title = run.scene.source.filename().string();
-  for (const auto& file : html_) {
-    write_file(file, measuring::report_html(measurement, {title, facts_of(run), run.requirement},
-                                            colours_));
-  }
+  if (html_.empty() && pdf_.empty()) return;
+  measuring::ReportText text{run.scene.source.filename().string(), facts_of(run), run.requirement,
+                             {lamp_schedule(run.scene, run.mix), reflectances(run.scene)}, {}};
+  if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
+  const std::string page = measuring::report_html(measurement, text, colours_, surroundings);
+  for (const auto& file : html_) write_file(file, page);
+  for (const auto& file : pdf_) write_file(file, measuring::pdf_of(page));
 }
 
 }  // namespace photile::app

@@ -21,9 +21,10 @@ class App;
 namespace photile::app {
 
 struct MeasureOutputOptions {
-  std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg or .html
+  std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg, .html or .pdf
   FalseColourOptions false_colour;
   std::string honeybee;  ///< folder, "" = none
+  std::string picture;   ///< EXR for the report, "" = none
   bool daylight_factor = false;  ///< values are per cent of the sky's lux
 };
 
@@ -37,6 +38,7 @@ struct MeasureRun {
   const MeasuringParameters& parameters;
   std::string mood = {};  ///< "" = none
   std::optional<measuring::Requirement> requirement = std::nullopt;
+  std::filesystem::path moods = {};  ///< file of those that a report shows; "" = none
 };
 
 class MeasureOutputs {
@@ -58,10 +60,10 @@ class MeasureOutputs {
   void write(const measuring::Measurement& measurement, const MeasureRun& run) const;
 
  private:
-  std::vector<std::filesystem::path> csv_, json_, svg_, html_;
+  std::vector<std::filesystem::path> csv_, json_, svg_, html_, pdf_;
   std::string unit_;
   measuring::FalseColour colours_;
-  std::filesystem::path honeybee_;
+  std::filesystem::path honeybee_, picture_;
 };
 
 }  // namespace photile::app

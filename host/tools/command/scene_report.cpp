@@ -37,23 +37,6 @@ std::string counted(std::size_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-const char* kind_name(const Light& light) {
-  if (light.distribution != none) return "photometric";
-  switch (light.kind) {
-    case LightKind::area:
-      return "area";
-    case LightKind::point:
-      return "point";
-    case LightKind::spot:
-      return "spot";
-    case LightKind::directional:
-      return light.has_size() ? "sun" : "directional";
-    case LightKind::environment:
-      return "environment";
-  }
-  return "";
-}
-
 const char* interaction_name(const Material& material) {
   switch (material.interaction) {
     case Interaction::opaque:
@@ -103,16 +86,6 @@ json group_json(const MixedLight& group, double lumen_per_watt) {
   return entry;
 }
 
-/// Power of each light in the mix; lights of a group change together.
-std::vector<double> powers_of(const Scene& scene, const LightMix& mix) {
-  const LightGroups groups = light_groups_of(scene);
-  std::vector<double> powers;
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    powers.push_back(groups.share[i] * mix.lights[groups.group_of[i]].power);
-  }
-  return powers;
-}
-
 std::vector<std::size_t> triangles_of_materials(const Scene& scene) {
   std::vector<std::size_t> triangles(scene.materials.size(), 0);
   for (const std::uint32_t material : scene.triangle_material) ++triangles[material];
@@ -158,6 +131,32 @@ json camera_json(const Camera& camera) {
 }
 
 }  // namespace
+
+const char* kind_name(const Light& light) {
+  if (light.distribution != none) return "photometric";
+  switch (light.kind) {
+    case LightKind::area:
+      return "area";
+    case LightKind::point:
+      return "point";
+    case LightKind::spot:
+      return "spot";
+    case LightKind::directional:
+      return light.has_size() ? "sun" : "directional";
+    case LightKind::environment:
+      return "environment";
+  }
+  return "";
+}
+
+std::vector<double> powers_of(const Scene& scene, const LightMix& mix) {
+  const LightGroups groups = light_groups_of(scene);
+  std::vector<double> powers;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    powers.push_back(groups.share[i] * mix.lights[groups.group_of[i]].power);
+  }
+  return powers;
+}
 
 Extents extents_of(const Scene& scene) {
   Extents extents{glm::dvec3(std::numeric_limits<double>::infinity()),

@@ -22,6 +22,12 @@ Extents extents_of(const Scene& scene);
 /// few millimetres.
 std::string doubtful_unit(const Extents& extents);
 
+/// "area", "point", "spot", "photometric", "sun", "directional" or "environment".
+const char* kind_name(const Light& light);
+
+/// Power of each light in the mix; lights of a group change together.
+std::vector<double> powers_of(const Scene& scene, const LightMix& mix);
+
 /// The counts, every light and every group of lights with its power in `mix`, a line each.
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
 

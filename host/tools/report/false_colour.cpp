@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 namespace photile::measuring {
 namespace {
@@ -11,8 +13,20 @@ constexpr double band_begin = 0.4, band_end = 0.6;
 
 }  // namespace
 
-ColourScale::ColourScale(const FalseColour& options, double largest)
-    : top_(options.scale > 0 ? options.scale : largest),
+double automatic_top(std::span<const float> values) {
+  constexpr double share_above = 0.02;
+  std::vector<float> known;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(known),
+               [](float value) { return std::isfinite(value) && value > 0; });
+  if (known.empty()) return 0;
+  const auto above = static_cast<std::size_t>(share_above * static_cast<double>(known.size()));
+  const auto top = known.begin() + static_cast<std::ptrdiff_t>(known.size() - 1 - above);
+  std::nth_element(known.begin(), top, known.end());
+  return static_cast<double>(*top);
+}
+
+ColourScale::ColourScale(const FalseColour& options, double automatic)
+    : top_(options.scale > 0 ? options.scale : automatic),
       decades_(options.decades),
       steps_(options.steps),
       stepped_(options.contours == Contours::steps),

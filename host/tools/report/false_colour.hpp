@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,7 @@ enum class Contours {
 };
 
 struct FalseColour {
-  double scale = 1000;        ///< top of the scale (-s); 0 = the largest value there is (-s auto)
+  double scale = 1000;        ///< top of the scale (-s); 0 = automatic_top (-s auto)
   std::string label = "lux";  ///< -l
   int steps = defaults::legend_steps;  ///< of the legend, and isolines (-n)
   double decades = 0;                  ///< > 0: a logarithmic scale over these (-log)
@@ -28,11 +29,15 @@ struct FalseColour {
   Contours contours = Contours::none;
 };
 
-/// A FalseColour for values up to `largest`.
+/// The largest of the values but the uppermost 2%, such as lamps that are seen; 0 where none is
+/// positive. NaN and infinities do not count.
+double automatic_top(std::span<const float> values);
+
+/// A FalseColour whose automatic scale ends at `automatic`.
 class ColourScale {
  public:
   /// Errors: UsageError for an unknown palette.
-  ColourScale(const FalseColour& options, double largest);
+  ColourScale(const FalseColour& options, double automatic);
 
   /// The colour of a value; of the middle of its step with Contours::steps.
   std::string hex(double value) const { return palette_.hex(drawn_share(value)); }

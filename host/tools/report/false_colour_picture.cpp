@@ -21,14 +21,6 @@ namespace {
 // Sizes in pixels.
 constexpr int gap = 12, bar_width = 20, title_height = 24, least_step = 16;
 
-double largest_of(std::span<const float> values) {
-  double largest = 0;
-  for (const float value : values) {
-    if (std::isfinite(value)) largest = std::max(largest, static_cast<double>(value));
-  }
-  return largest;
-}
-
 /// Bars of the legend's steps with the values of their middles, the largest at the top.
 struct Legend {
   std::string label;
@@ -113,7 +105,7 @@ std::vector<float> luminance_of(const Image& picture) {
 
 void draw_false_colour(std::span<const float> values, int width, const FalseColour& options,
                        std::span<std::uint8_t> rgb) {
-  const ColourScale scale(options, largest_of(values));
+  const ColourScale scale(options, automatic_top(values));
   const auto columns = static_cast<std::size_t>(width);
   const auto value_at = [&](std::size_t pixel) { return static_cast<double>(values[pixel]); };
   const auto on_line = [&](std::size_t pixel) {
@@ -136,7 +128,7 @@ Image false_colour_picture(std::span<const float> values, const Image& displayed
                            const FalseColour& options) {
   std::vector<std::uint8_t> rgb = image::srgb8_texels(displayed);
   draw_false_colour(values, displayed.width, options, rgb);
-  const Legend legend(options, ColourScale(options, largest_of(values)));
+  const Legend legend(options, ColourScale(options, automatic_top(values)));
   const int left = displayed.width + gap, width = left + legend.width();
   const int height = std::max(displayed.height, legend.least_height());
   image::Sheet sheet(width, height);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/xml_text.hpp"
+#include "tools/report/illuminance_steps.hpp"
 #include "tools/report/isolines.hpp"
 #include "tools/report/number_text.hpp"
 
@@ -26,22 +27,30 @@ constexpr double title_baseline = 20, title_size = 14;
 constexpr double letter_width = 0.6;
 constexpr std::size_t most_numbered_cells = 400;
 
+std::vector<float> illuminances(const LightValues& light) {
+  std::vector<float> values;
+  for (const Measured& sensor : light.sensors) values.push_back(static_cast<float>(sensor.value));
+  return values;
+}
+
 /// One drawing under way.
 class Plan {
  public:
   Plan(const GridValues& values, const LightValues& light, const FalseColour& options,
-       PlanSize size)
+       PlanSize size, const PlanSurroundings& surroundings)
       : layout_(*values.grid.layout),
         options_(options),
+        surroundings_(surroundings),
         small_(size == PlanSize::small),
         sizes_(small_ ? small_sizes : whole_sizes),
         values_(static_cast<std::size_t>(layout_.columns) * static_cast<std::size_t>(layout_.rows),
                 std::numeric_limits<double>::quiet_NaN()),
-        scale_(options, light.statistics.maximum.value) {
+        scale_(options, automatic_top(illuminances(light))) {
     for (std::size_t i = 0; i < layout_.cells.size(); ++i) {
       values_[layout_.cells[i]] = light.sensors[i].value;
     }
-    const double u = glm::length(layout_.u), v = glm::length(layout_.v);
+    const double around = 2 * surroundings.reach;
+    const double u = glm::length(layout_.u) + around, v = glm::length(layout_.v) + around;
     per_metre_ = sizes_.longer_side / std::max(u, v);
     numbered_ = !small_ && values_.size() <= most_numbered_cells;
     width_ = u * per_metre_;
@@ -69,9 +78,12 @@ class Plan {
     if (options_.contours == Contours::bands) add_bands();  // below the cells' numbers
     add_cells();
     if (options_.contours == Contours::none || options_.contours == Contours::lines) add_isolines();
+    add_surroundings();
+    const glm::dvec2 low = at({0, 0}), high = at({layout_.columns, layout_.rows});
     add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"none\" "
         "stroke=\"#000000\"/>\n",
-        margin, title_height, width_, height_);
+        low.x, high.y, high.x - low.x, low.y - high.y);
+    if (!small_) add_coordinates();
     add_ruler();
     add_legend(margin + width_ + margin, legend_height);
     add("</svg>\n");
@@ -86,8 +98,10 @@ class Plan {
 
   /// Pixels of a place in cells.
   glm::dvec2 at(const glm::dvec2& cells) const {
-    return {margin + cells.x / layout_.columns * width_,
-            title_height + (1 - cells.y / layout_.rows) * height_};
+    const glm::dvec2 metres(cells.x / layout_.columns * glm::length(layout_.u),
+                            cells.y / layout_.rows * glm::length(layout_.v));
+    return {margin + (metres.x + surroundings_.reach) * per_metre_,
+            title_height + height_ - (metres.y + surroundings_.reach) * per_metre_};
   }
 
   /// In cells.
@@ -97,7 +111,8 @@ class Plan {
   }
 
   void add_cells() {
-    const double w = width_ / layout_.columns, h = height_ / layout_.rows;
+    const double w = glm::length(layout_.u) * per_metre_ / layout_.columns;
+    const double h = glm::length(layout_.v) * per_metre_ / layout_.rows;
     for (std::size_t cell = 0; cell < values_.size(); ++cell) {
       if (std::isnan(values_[cell])) continue;
       const glm::dvec2 middle = middle_of_cell(cell);
@@ -111,11 +126,14 @@ class Plan {
     }
   }
 
-  /// A number that is legible on any colour.
+  /// A number that is legible on any colour. Its pale border is a text of its own: programs that
+  /// print do not all know paint-order.
   void add_label(const glm::dvec2& middle, double value, int size, const char* weight) {
-    add("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{}\" font-weight=\"{}\" "
+    add("<text x=\"{0:.2f}\" y=\"{1:.2f}\" style=\"font-size:{2}px\" font-weight=\"{3}\" "
         "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"2\" stroke-opacity=\"0.7\" "
-        "paint-order=\"stroke\">{}</text>\n",
+        "fill=\"none\">{4}</text>\n"
+        "<text x=\"{0:.2f}\" y=\"{1:.2f}\" font-size=\"{2}\" font-weight=\"{3}\" "
+        "text-anchor=\"middle\">{4}</text>\n",
         middle.x, middle.y + 0.35 * size, size, weight, number_text(value, 3));
   }
 
@@ -182,21 +200,66 @@ class Plan {
     }
   }
 
+  /// Of a plan in colours, at the steps of the standard; of isolines alone, as falsecolor has them.
+  std::vector<double> isoline_levels() const {
+    if (options_.contours == Contours::lines) return scale_.levels();
+    double low = std::numeric_limits<double>::infinity(), high = 0;
+    for (const double value : values_) {
+      if (std::isnan(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    return illuminance_steps(low, high);
+  }
+
   void add_isolines() {
-    for (const double level : scale_.levels()) {
+    for (const double level : isoline_levels()) {
       const auto segments = isoline(values_, layout_.columns, layout_.rows, level);
       if (segments.empty()) continue;
-      add("<path fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" d=\"",
-          options_.contours == Contours::lines ? scale_.hex(level) : "#000000");
-      for (const Segment& segment : segments) {
-        const glm::dvec2 a = at(segment[0]), b = at(segment[1]);
-        add("M{:.2f} {:.2f}L{:.2f} {:.2f}", a.x, a.y, b.x, b.y);
-      }
-      add("\"/>\n");
+      const std::string colour =
+          options_.contours == Contours::lines ? scale_.hex(level) : "#000000";
+      add_segments(segments, colour.c_str(), 1.5);
       std::vector<glm::dvec2> middles;
       for (const auto& [a, b] : segments) middles.push_back(at(0.5 * (a + b)));
       add_level(middles, level);
     }
+  }
+
+  void add_segments(const std::vector<Segment>& segments, const char* colour, double width) {
+    if (segments.empty()) return;
+    add("<path fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" d=\"", colour, width);
+    for (const Segment& segment : segments) {
+      const glm::dvec2 a = at(segment[0]), b = at(segment[1]);
+      add("M{:.2f} {:.2f}L{:.2f} {:.2f}", a.x, a.y, b.x, b.y);
+    }
+    add("\"/>\n");
+  }
+
+  /// Lamps are circles with their numbers in the schedule.
+  void add_surroundings() {
+    add_segments(surroundings_.furniture, "#707070", 0.7);
+    add_segments(surroundings_.walls, "#000000", small_ ? 1.0 : 2.0);
+    if (small_) return;
+    constexpr double radius = 7;
+    for (const LampMark& lamp : surroundings_.lamps) {
+      const glm::dvec2 place = at(lamp.place);
+      add("<circle cx=\"{0:.2f}\" cy=\"{1:.2f}\" r=\"{2}\" fill=\"#ffffff\" stroke=\"#000000\"/>\n"
+          "<text x=\"{0:.2f}\" y=\"{3:.2f}\" font-size=\"10\" text-anchor=\"middle\">{4}</text>\n",
+          place.x, place.y, radius, place.y + 3, lamp.number);
+    }
+  }
+
+  /// Of two corners, in the scene's world.
+  void add_coordinates() {
+    const auto write = [&](const glm::dvec2& place, const char* anchor, const glm::dvec3& world) {
+      add("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"8\" text-anchor=\"{}\">"
+          "({:.2f}, {:.2f}, {:.2f}) m</text>\n",
+          place.x, place.y, anchor, world.x, world.y, world.z);
+    };
+    const double outside = surroundings_.reach > 0 ? 11 : -4;
+    write(at({0, 0}) + glm::dvec2(0, outside), "start", layout_.origin);
+    write(at({layout_.columns, layout_.rows}) - glm::dvec2(0, 4), "end",
+          layout_.origin + layout_.u + layout_.v);
   }
 
   /// 1, 2 or 5 times a power of ten, a quarter of the plan's width at most.
@@ -226,6 +289,7 @@ class Plan {
 
   const PlaneLayout& layout_;
   const FalseColour& options_;
+  const PlanSurroundings& surroundings_;
   const bool small_;
   const Sizes sizes_;
   std::vector<double> values_;  ///< per cell; NaN without a sensor
@@ -239,8 +303,8 @@ class Plan {
 }  // namespace
 
 std::string plan_svg(const GridValues& values, const LightValues& light, const FalseColour& options,
-                     PlanSize size) {
-  return Plan(values, light, options, size).draw();
+                     PlanSize size, const PlanSurroundings& surroundings) {
+  return Plan(values, light, options, size, surroundings).draw();
 }
 
 }  // namespace photile::measuring

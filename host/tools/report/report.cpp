@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "common/xml_text.hpp"
 #include "tools/report/number_text.hpp"
@@ -13,19 +15,38 @@ namespace {
 
 constexpr std::size_t most_light_plans = 6;  ///< more do not fit on a page
 
+/// RFC 4648.
+std::string base64(const std::string& bytes) {
+  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t byte = 0; byte < 3; ++byte) {
+      bits = bits << 8 | (byte < count ? static_cast<unsigned char>(bytes[i + byte]) : 0u);
+    }
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+      text += digit <= count ? digits[bits >> (18 - 6 * digit) & 63u] : '=';
+    }
+  }
+  return text;
+}
+
 constexpr const char* style = R"(<style>
 body { font-family: sans-serif; font-size: 10pt; margin: 2em auto; max-width: 60em; color: #222; }
 h1 { font-size: 16pt; } h2 { font-size: 12pt; margin-bottom: 0.3em; }
 table { border-collapse: collapse; } th, td { padding: 0.15em 0.7em; text-align: right; }
 th { border-bottom: 1px solid #222; } th:first-child, td:first-child { text-align: left; }
 .error { color: #777; font-size: 85%; } .plan svg { max-width: 100%; height: auto; }
-.lights { display: grid; grid-template-columns: repeat(3, 1fr); gap: 0.5em; }
-dl { display: grid; grid-template-columns: repeat(2, auto 1fr); gap: 0.2em 1em; margin: 0; }
-dt { color: #777; } dd { margin: 0; }
+figure { display: inline-block; width: 48%; margin: 0 1% 0.8em 0; vertical-align: top; }
+img { max-width: 100%; } figcaption { color: #777; }
+.texts th, .texts td { text-align: left; }
+.lights .plan { display: inline-block; width: 32%; }
+dt { float: left; clear: left; width: 11em; color: #777; } dd { margin: 0 0 0.2em 11em; }
 @page { size: A4; margin: 15mm; }
 @media print {
   body { margin: 0; max-width: none; font-size: 8.5pt; }
-  h2 { break-after: avoid; } .plan, tr { break-inside: avoid; }
+  h2 { break-after: avoid; } .plan, tr, figure { break-inside: avoid; }
   .plan svg { width: auto; height: 75mm; } .lights svg { height: 36mm; }
 }
 </style>
@@ -79,7 +100,35 @@ std::string target_section(const Measurement& measurement, const Requirement& re
   return text + "</table>\n";
 }
 
-std::string section(const GridValues& values, const FalseColour& colours) {
+std::string picture_section(const std::vector<ReportPicture>& pictures) {
+  if (pictures.empty()) return {};
+  std::string text = "<h2>Pictures</h2>\n<div class=\"pictures\">\n";
+  for (const ReportPicture& picture : pictures) {
+    text += fmt::format(
+        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"/>"
+        "<figcaption>{0}</figcaption></figure>\n",
+        escaped_xml(picture.caption), base64(picture.png));
+  }
+  return text + "</div>\n";
+}
+
+std::string table_section(const ReportTable& table) {
+  if (table.rows.empty()) return {};
+  std::string text = fmt::format("<h2>{}</h2>\n<table class=\"texts\">\n<tr>", escaped_xml(table.heading));
+  for (const std::string& column : table.columns) {
+    text += fmt::format("<th>{}</th>", escaped_xml(column));
+  }
+  text += "</tr>\n";
+  for (const auto& row : table.rows) {
+    text += "<tr>";
+    for (const std::string& value : row) text += fmt::format("<td>{}</td>", escaped_xml(value));
+    text += "</tr>\n";
+  }
+  return text + "</table>\n";
+}
+
+std::string section(const GridValues& values, const FalseColour& colours,
+                    const PlanSurroundings& surroundings) {
   std::string text = fmt::format(
       "<h2>{}</h2>\n<table>\n<tr><th></th><th>E<sub>m</sub> lux</th><th>E<sub>min</sub></th>"
       "<th>E<sub>max</sub></th><th>U<sub>o</sub></th><th>U<sub>d</sub></th></tr>\n",
@@ -91,14 +140,15 @@ std::string section(const GridValues& values, const FalseColour& colours) {
       "expected between {} and {} lux, up to the errors above.</p>\n",
       number_text(s.minimum.value, 4), number_text(s.minimum_at_most, 4));
   if (!values.grid.layout) return text;
-  text += "<div class=\"plan\">\n" + plan_svg(values, values.total(), colours) + "</div>\n";
+  text += "<div class=\"plan\">\n" +
+          plan_svg(values, values.total(), colours, PlanSize::whole, surroundings) + "</div>\n";
   if (values.lights.size() == 1 || values.lights.size() > most_light_plans + 1) return text;
   text += "<div class=\"lights\">\n";
   FalseColour each = colours;
   each.scale = 0;  // its own: a weak lamp would show nothing on the scale of all
   for (std::size_t i = 1; i < values.lights.size(); ++i) {
-    text += "<div class=\"plan\">\n" + plan_svg(values, values.lights[i], each, PlanSize::small) +
-            "</div>\n";
+    text += "<div class=\"plan\">\n" +
+            plan_svg(values, values.lights[i], each, PlanSize::small, surroundings) + "</div>\n";
   }
   return text + "</div>\n";
 }
@@ -106,13 +156,18 @@ std::string section(const GridValues& values, const FalseColour& colours) {
 }  // namespace
 
 std::string report_html(const Measurement& measurement, const ReportText& text,
-                        const FalseColour& colours) {
+                        const FalseColour& colours,
+                        const std::vector<PlanSurroundings>& surroundings) {
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{0}</title>\n"
       "{1}</head>\n<body>\n<h1>Illuminance: {0}</h1>\n",
       escaped_xml(text.title), style);
   if (text.requirement) page += target_section(measurement, *text.requirement);
-  for (const GridValues& values : measurement) page += section(values, colours);
+  page += picture_section(text.pictures);
+  for (std::size_t grid = 0; grid < measurement.size(); ++grid) {
+    page += section(measurement[grid], colours, surroundings[grid]);
+  }
+  for (const ReportTable& table : text.tables) page += table_section(table);
   page += "<h2>How it was measured</h2>\n<dl>\n";
   for (const auto& [name, value] : text.facts) {
     page += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped_xml(name), escaped_xml(value));

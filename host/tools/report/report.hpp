@@ -9,20 +9,38 @@
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "tools/report/false_colour.hpp"
+#include "tools/report/plan_surroundings.hpp"
 
 namespace photile::measuring {
+
+/// A table of texts; the first column is aligned to the left.
+struct ReportTable {
+  std::string heading;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// A picture with what it shows.
+struct ReportPicture {
+  std::string caption;
+  std::string png;  ///< bytes of the file
+};
 
 /// What a report says beside the values.
 struct ReportText {
   std::string title;                                       ///< name of the scene
   std::vector<std::pair<std::string, std::string>> facts;  ///< name and value, in order
   std::optional<Requirement> requirement = std::nullopt;
+  std::vector<ReportTable> tables = {};
+  std::vector<ReportPicture> pictures = {};
 };
 
-/// An HTML page that needs no other file: what is required and whether it is met, the figures of
-/// each grid with their errors, false-colour plans of all lights together and of each, and the
-/// facts. Well-formed XML; prints on A4.
+/// An HTML page that needs no other file: what is required and whether it is met, the pictures, the
+/// figures of each grid with their errors, false-colour plans of all lights together and of each,
+/// the tables and the facts. Well-formed XML; prints on A4.
+///   surroundings   of each grid's plane, in the order of the grids
 std::string report_html(const Measurement& measurement, const ReportText& text,
-                        const FalseColour& colours);
+                        const FalseColour& colours,
+                        const std::vector<PlanSurroundings>& surroundings);
 
 }  // namespace photile::measuring

@@ -118,19 +118,18 @@ void draw_display(PanelState& state, const PanelReadings& readings, PanelEvents&
     display.false_colour.scale = static_cast<double>(top);
     events.display_changed = true;
   }
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("0: the largest value");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("0: 98%% of the values lie below");
   events.display_changed |= draw_false_colour(display.false_colour);
 }
 
 void draw_legend(const PanelState& state, const Frame* frame) {
   const DisplaySettings& display = state.display;
   if (!frame || display.mode != DisplayMode::illuminance) return;
-  double largest = 0;
+  double automatic = 0;
   if (!(display.false_colour.scale > 0)) {
-    const std::vector<float> values = mixed_illuminance(frame->layers, state.lights.mix());
-    for (const float value : values) largest = std::max(largest, static_cast<double>(value));
+    automatic = measuring::automatic_top(mixed_illuminance(frame->layers, state.lights.mix()));
   }
-  const measuring::ColourScale scale(display.false_colour, largest);
+  const measuring::ColourScale scale(display.false_colour, automatic);
   std::vector<double> levels = scale.levels();
   std::reverse(levels.begin(), levels.end());
   const ImVec2 size = ImGui::GetIO().DisplaySize;
