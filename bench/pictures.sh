@@ -63,5 +63,4 @@ build/release/bench/photile_bench_light_maps --only living-room --paths 1000000 
   --nodes "$pictures/light-map-nodes.png" > /dev/null
 
 bench/worked_example.py
-cp "$pictures/example-day.png" "$pictures/living-room.png"
 bench/gallery.py

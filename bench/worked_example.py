@@ -40,7 +40,8 @@ STEPS = (
      "photile relight room.exr --light daylight=off --light floor_lamp=off "
      "--light ceiling_panel=4000K -o work.exr --png work.png", {}, ()),
     ("And one for the evening: the floor lamp, warm, and the ceiling off.",
-     f"photile relight room.exr {EVENING} -o evening.exr --png evening.png", {}, ()),
+     f"photile relight room.exr {EVENING} -o evening.exr --png evening.png",
+     {"evening.png": "In the evening"}, ()),
     ("How do they differ? Red is where work is brighter, blue where the evening is.",
      "photile compare work.exr evening.exr -o moods.png",
      {"moods.png": "Work, evening, and the difference of their luminances"},
