@@ -149,7 +149,7 @@ MUTANTS = (
     Mutant("rows of an environment without their solid angle", "host/trace/environment_sampler.cpp",
            "sum * map.solid_angle(row)", "sum", (("trace", "[environment]"),)),
     Mutant("environment met by paths counted in full", "host/render/surface_path.cpp",
-           "weight_against(lights_.density(light, direction))", "1.0f",
+           "weight_against(lights_.density(light, from_, direction))", "1.0f",
            (("trace", "[environment]"),)),
     Mutant("lamps behind a pane counted twice", "host/render/surface_path.cpp",
            "if (!straight || !trace::material_of(scene_, point).thin) density_ = 0.0f;",

@@ -42,7 +42,7 @@ struct LuminaireArray {
   double lumens = 0;
   int columns = 1, rows = 1;
   double column_spacing = 0, row_spacing = 0;  ///< metres
-  Panel opening;
+  Panel opening = {};
 };
 
 /// A pair of numbers, or nothing where the member is missing.

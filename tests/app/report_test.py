@@ -90,7 +90,7 @@ def check_drawing(svg, title):
     for text in texts:
         size = float(text.get("font-size", svg.get("font-size")))
         x, y, across = float(text.get("x")), float(text.get("y")), 0.55 * size * len(text.text)
-        left = x - across / 2 if text.get("text-anchor") == "middle" else x
+        left = x - across * {"middle": 0.5, "end": 1}.get(text.get("text-anchor"), 0)
         if left < 0 or left + across > width or y - size < 0 or y > height:
             fail(f"{title}: '{text.text}' is cut off")
     for bar in svg.findall(f"{SVG}rect")[1:]:
@@ -117,7 +117,7 @@ def main():
         if not re.match(re.escape(f"{grid['name']}: {grid['points']} points"), heading):
             fail(f"{heading!r} is no heading of {grid['name']!r}")
     tables = body.findall("table")
-    if len(tables) != len(grids) or len(headings) != len(grids) + 1:
+    if len(tables) != len(grids) + 2 or headings[len(grids):-1] != ["Lamps", "Reflectances"]:
         fail(f"{len(tables)} tables under {len(headings)} headings for {len(grids)} grids")
     for table, grid in zip(tables, grids):
         check_figures(table, grid)
@@ -130,8 +130,15 @@ def main():
         check_drawing(drawing, title)
     facts = dict(zip([name.text for name in body.findall("dl/dt")],
                      [value.text for value in body.findall("dl/dd")]))
-    if facts["illuminance"] != "planar" or not facts["light left"]:
+    if facts["illuminance"] != "planar" or facts["seed"] != "1":
         fail(f"facts: {facts}")
+    lamps, reflectances = ([[cell.text for cell in row] for row in table.findall("tr")[1:]]
+                           for table in tables[len(grids):])
+    if [lamp[1] for lamp in lamps] != ["left", "right"] or lamps[0][4] != "-0.60, 0.99, 0.00":
+        fail(f"lamps: {lamps}")
+    # The wall's luminance: 0.2126 x 0.7 + 0.7152 x 0.6 + 0.0722 x 0.5.
+    if reflectances[0] != ["wall", "61%"]:
+        fail(f"reflectances: {reflectances}")
     print(f"{len(grids)} grids, {len(drawings)} drawings")
 
 

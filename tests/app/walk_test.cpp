@@ -214,8 +214,7 @@ TEST_CASE("walk refuses what it cannot do with one line and the right exit code"
     return only_error(run_photile(arguments), code);
   };
   const std::string box = write_box(folder);
-  CHECK_THAT(error({"walk", box, "-o", folder / "a.exr"}, 2), Contains("####"));
-  CHECK_THAT(error({"walk", box, "-o", folder / "a##.png"}, 2), Contains("--quick"));
+  CHECK_THAT(error({"walk", box, "-o", folder / "##-##.exr"}, 2), Contains("####"));
   CHECK_THAT(error({"walk", box, "-o", folder / "a##.jpg"}, 2), Contains(".exr"));
   CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quick", "--light-maps", "off"}, 2),
              Contains("--light-maps"));

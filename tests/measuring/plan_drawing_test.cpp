@@ -103,7 +103,8 @@ TEST_CASE("steps of illuminance are those of EN 12464-1") {
 TEST_CASE("a level has its number beside those of cells, or none") {
   const GridValues values = plane("hill", {200, 100, 100, 100, 100, 100});
   const auto numbers = [&](double level) {  // the middle of the only step
-    return all(plan(values, {.scale = 2 * level, .steps = 1}), "font-size=\"11\"[^>]*>([^<]*)<");
+    return all(plan(values, {.scale = 2 * level, .steps = 1, .contours = Contours::lines}),
+               "font-size=\"11\"[^>]*>([^<]*)<");
   };
   CHECK(numbers(150) == std::vector<std::string>{"150"});
   CHECK(numbers(198).empty());  // 4 pixels from the middle of the first cell
