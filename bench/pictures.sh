@@ -23,15 +23,13 @@ done
 # until its title is TITLE, clicks at the places, and keeps a screenshot after each of the last
 # SCREENSHOTS clicks. Buttons are held for longer than the window takes to be drawn.
 window() {
-  title=$1 screenshots=$2 places=()
+  export title=$1 screenshots=$2 places="" outputs photile
   shift 2
   while [ "$1" != -- ]; do
-    places+=("$1")
+    places+=" ${1/ /,}"
     shift
   done
   shift
-  export title screenshots outputs photile
-  export places="${places[*]/ /,}"
   rm -f "$outputs"/screenshot-*
   xvfb-run --auto-servernum --server-args "-screen 0 1280x960x24 -noreset" bash -c '
     "$photile" view "$@" --outputs "$outputs" --quiet &
