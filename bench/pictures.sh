@@ -42,12 +42,12 @@ window() {
       if ((left-- > screenshots)); then continue; fi
       xdotool keydown F12; sleep 0.4; xdotool keyup F12; sleep 2
     done
-    xdotool key ctrl+q
+    xdotool keydown ctrl keydown q; sleep 1; xdotool keyup q keyup ctrl
     wait' - "$@"
 }
 
 # A click reads the light on the table, another shows illuminance.
-window "16 of 16 samples, 0.5M" 2 "672 564" "108 464" -- \
+window "16 of 16 samples, 0.5M" 2 "672 564" "108 506" -- \
   scenes/living-room/living-room.gltf --size 960x720 --quality good
 mv "$outputs/screenshot-0001.png" "$pictures/view.png"
 mv "$outputs/screenshot-0002.png" "$pictures/view-illuminance.png"
@@ -57,7 +57,7 @@ window "1 of 1 samples, 0.03M" 1 "27 310" "720 495" -- \
   scenes/cornell-box/cornell-box-specular.gltf --size 960x720 --samples 1 --photons 30k
 mv "$outputs/screenshot-0001.png" "$pictures/photon-map.png"
 
-build/release/bench/photile_bench_light_maps --only living-room --paths 1000000 \
+build/release/bench/photile_bench_light_maps --only "living room" --paths 1000000 \
   --nodes "$pictures/light-map-nodes.png" > /dev/null
 
 bench/worked_example.py
