@@ -121,8 +121,8 @@ the median) are left out.
 What is left is the noise of k = 50, and light that falls through gaps onto what lies behind them; see
 [density](density.md).
 
-**Settings**: `--size {WIDTH}x{HEIGHT} {' '.join(SETTINGS)}`,
-the rest as it is by default.
+**Settings**: `--size {WIDTH}x{HEIGHT} {' '.join(SETTINGS)}`: an estimate at
+each hit, not the default, whose errors are in [quality](quality.md).
 
 **Machine**: {machine(first)}.{busy}
 

@@ -151,12 +151,19 @@ class MpiCommunicator final : public Communicator {
     return sums;
   }
 
-  Conclusion conclude(int code) override {
+  Conclusion conclude(int code, const std::function<void()>& tell_error) override {
     // Others wait within a call that this process has left: mpirun ends them when it exits.
-    if (broken_) return {rank_, code};
+    if (broken_) {
+      if (code != 0) tell_error();
+      return {rank_, code};
+    }
     if (code != 0 && !heard_ && !failed_) tell(code);
     // Who stopped because of another has not failed.
     const Conclusion end = agree(heard_ ? 0 : code);
+    if (end.code != 0 && end.rank == rank_) tell_error();
+    MPI_Request told;
+    MPI_Ibarrier(all_, &told);
+    wait(told);
     MPI_Cancel(&news_request_);
     MPI_Request_free(&news_request_);
     MPI_Comm_free(&all_);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,8 @@ class Communicator {
     int code = 0;            ///< its exit code
   };
   /// The last call of each: its own exit code, 0 where it did not fail.
-  virtual Conclusion conclude(int code) = 0;
+  ///   tell   called in the first that failed, before any ends: a launcher ends all with the first
+  virtual Conclusion conclude(int code, const std::function<void()>& tell) = 0;
 
   /// What this rank has sent to others so far, and waited for them.
   struct Traffic {

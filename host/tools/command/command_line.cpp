@@ -137,9 +137,10 @@ int conclude(ExitCode code, const std::string& problem) {
   // A launcher that ends all does not wait until they agree.
   const bool told = code == ExitCode::interrupted && leads() && stop_requested();
   if (told) print_error(problem);
-  const Communicator::Conclusion end = processes()->conclude(own);
-  if (end.code != 0 && end.rank == processes()->rank() && !told) print_error(problem);
-  return end.code;
+  const auto tell = [&] {
+    if (!told) print_error(problem);
+  };
+  return processes()->conclude(own, tell).code;
 }
 
 }  // namespace
