@@ -80,8 +80,8 @@ std::vector<double> mean_luminances(const std::vector<SkyHour>& hours,
 }
 
 AnnualProfile annual_profile(const DaylightMatrix& matrix, const std::vector<SkyHour>& hours,
-                             const std::vector<SkyPatch>& patches, double north,
-                             double maintenance, const StraightLight* straight) {
+                             const std::vector<SkyPatch>& patches, double north, double maintenance,
+                             const StraightLight* straight) {
   AnnualProfile profile;
   profile.hours = hours.size();
   profile.all.assign(matrix.sensors * hours.size(), 0.0f);

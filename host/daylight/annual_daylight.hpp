@@ -22,9 +22,9 @@ struct SkyHour {
   int month = 1, day = 1;
   double hour = 0.5;  ///< the middle, standard time
   SunPosition sun;
-  double sun_lux = 0;                  ///< facing it; 0 below the horizon
-  double diffuse_lux = 0;              ///< horizontal
-  std::vector<double> luminance;       ///< cd/m2 of the patches, then of the ground, without the sun
+  double sun_lux = 0;             ///< facing it; 0 below the horizon
+  double diffuse_lux = 0;         ///< horizontal
+  std::vector<double> luminance;  ///< cd/m2 of the patches, then of the ground, without the sun
   std::vector<PatchShare> sun_shares;  ///< empty where there is no sun
 };
 

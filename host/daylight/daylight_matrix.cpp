@@ -127,7 +127,8 @@ StraightLight::StraightLight(const Scene& scene, std::span<const Sensor> sensors
   beyond_ = 2.5 * bounds.radius;
   for (Sensor& sensor : sensors_) {
     sensor.position += sensor_clearance * sensor.normal;
-    beyond_ = std::max(beyond_, glm::distance(sensor.position, bounds.center) + 1.5 * bounds.radius);
+    beyond_ =
+        std::max(beyond_, glm::distance(sensor.position, bounds.center) + 1.5 * bounds.radius);
   }
 }
 

@@ -18,14 +18,15 @@ struct Level {
   const char* name;
   double target, minimum_target;
 };
-constexpr std::array<Level, 3> levels{{{"high", 750, 500}, {"medium", 500, 300},
-                                       {"minimum", 300, 100}}};
+constexpr std::array<Level, 3> levels{
+    {{"high", 750, 500}, {"medium", 500, 300}, {"minimum", 300, 100}}};
 
 /// What a share of the values reach or exceed.
 double reached_by(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end(), std::greater<>());
-  const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto count =
+      static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
   return values[std::clamp<std::size_t>(count, 1, values.size()) - 1];
 }
 
@@ -114,8 +115,8 @@ std::vector<LampEnergy> lamp_energy(std::span<const double> mean_daylight,
   }
   std::vector<LampEnergy> energies;
   for (std::size_t i = 0; i < lamps.size(); ++i) {
-    energies.push_back({lamps[i], watts[i], watts[i] * dimmed_hours / 1000,
-                        watts[i] * hours / 1000});
+    energies.push_back(
+        {lamps[i], watts[i], watts[i] * dimmed_hours / 1000, watts[i] * hours / 1000});
   }
   return energies;
 }

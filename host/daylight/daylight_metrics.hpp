@@ -22,37 +22,37 @@ std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours);
 
 /// Of one sensor. Shares are of the occupied hours.
 struct PointDaylight {
-  double mean_lux = 0;              ///< over the whole year
-  double autonomy = 0;              ///< DA: share with the wanted lux or more
-  double continuous_autonomy = 0;   ///< cDA: hours with less count as lux over wanted lux
-  std::array<double, 4> useful{};   ///< UDI: below 100, to 300, to 3000, above (lux)
-  double sun_hours = 0;             ///< occupied hours with more than 1,000 lux straight from the sun
-  double median_lux = 0;            ///< that half of the daylight hours reach
+  double mean_lux = 0;             ///< over the whole year
+  double autonomy = 0;             ///< DA: share with the wanted lux or more
+  double continuous_autonomy = 0;  ///< cDA: hours with less count as lux over wanted lux
+  std::array<double, 4> useful{};  ///< UDI: below 100, to 300, to 3000, above (lux)
+  double sun_hours = 0;   ///< occupied hours with more than 1,000 lux straight from the sun
+  double median_lux = 0;  ///< that half of the daylight hours reach
 };
 
 PointDaylight point_daylight(std::span<const float> lux, std::span<const float> sun,
-                             const std::vector<bool>& occupied,
-                             const std::vector<bool>& daylight, double wanted_lux);
+                             const std::vector<bool>& occupied, const std::vector<bool>& daylight,
+                             double wanted_lux);
 
 /// Of all sensors of a room.
 struct RoomDaylight {
   double mean_lux = 0;
-  double autonomy = 0;                ///< mean of the points'
-  double spatial_autonomy = 0;        ///< sDA: share of points with DA of half or more (IES LM-83)
-  double sunlight_exposure = 0;       ///< ASE: share with more than 250 h of sun above 1,000 lux
-  std::array<double, 4> useful{};     ///< means of the points'
-  double target_lux = 0;              ///< EN 17037: that half of the points reach, of their medians
-  double minimum_target_lux = 0;      ///< that 95% reach
-  std::string level;                  ///< "high", "medium", "minimum" or "none", of EN 17037
+  double autonomy = 0;             ///< mean of the points'
+  double spatial_autonomy = 0;     ///< sDA: share of points with DA of half or more (IES LM-83)
+  double sunlight_exposure = 0;    ///< ASE: share with more than 250 h of sun above 1,000 lux
+  std::array<double, 4> useful{};  ///< means of the points'
+  double target_lux = 0;           ///< EN 17037: that half of the points reach, of their medians
+  double minimum_target_lux = 0;   ///< that 95% reach
+  std::string level;               ///< "high", "medium", "minimum" or "none", of EN 17037
 };
 RoomDaylight room_daylight(std::span<const PointDaylight> points);
 
 /// Lamps that add what daylight lacks.
 struct LampEnergy {
   std::string lamp;
-  double watts = 0;            ///< at full power
-  double kilowatt_hours = 0;   ///< of the year's occupied hours, dimmed
-  double undimmed = 0;         ///< the same at full power
+  double watts = 0;           ///< at full power
+  double kilowatt_hours = 0;  ///< of the year's occupied hours, dimmed
+  double undimmed = 0;        ///< the same at full power
 };
 
 /// All lamps together are dimmed, each hour, so that the mean over the room's sensors is the wanted

@@ -29,10 +29,10 @@ std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, S
   const std::size_t first = scene.lights.size();
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const SkyPatch& patch = patches[i];
-    add_patch(patch_name(i),
-              {patch.azimuth_from + north, patch.azimuth_to + north, patch.sine_from,
-               patch.sine_to},
-              scene);
+    add_patch(
+        patch_name(i),
+        {patch.azimuth_from + north, patch.azimuth_to + north, patch.sine_from, patch.sine_to},
+        scene);
   }
   add_patch("ground", {0, 2 * pi, -1, 0}, scene);
   return first;

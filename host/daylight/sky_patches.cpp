@@ -58,8 +58,7 @@ std::vector<PatchShare> sun_patches(const std::vector<SkyPatch>& patches, const 
   const glm::dvec3 to_sun = direction_of(sun.azimuth, sun.elevation);
   std::vector<PatchShare> shares;
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    const double cosine =
-        glm::dot(to_sun, direction_of(patches[i].azimuth, patches[i].elevation));
+    const double cosine = glm::dot(to_sun, direction_of(patches[i].azimuth, patches[i].elevation));
     shares.push_back({i, 1 / (1.002 - cosine)});
   }
   std::partial_sort(shares.begin(), shares.begin() + nearest, shares.end(),

@@ -27,8 +27,8 @@ SunPosition sun_position(const Site& site, const LocalTime& time) {
                       (time.hour - site.time_zone) / 24;
   const double mean_longitude = (280.460 + 0.9856474 * days) * radians;
   const double anomaly = (357.528 + 0.9856003 * days) * radians;
-  const double longitude = mean_longitude + (1.915 * std::sin(anomaly) +
-                                             0.020 * std::sin(2 * anomaly)) * radians;
+  const double longitude =
+      mean_longitude + (1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * radians;
   const double obliquity = (23.439 - 4e-7 * days) * radians;
   const double right_ascension =
       std::atan2(std::cos(obliquity) * std::sin(longitude), std::cos(longitude));
@@ -39,10 +39,10 @@ SunPosition sun_position(const Site& site, const LocalTime& time) {
   const double latitude = site.latitude_degrees * radians;
   const double sine = std::sin(declination) * std::sin(latitude) +
                       std::cos(declination) * std::cos(latitude) * std::cos(hour_angle);
-  const double azimuth = std::atan2(-std::cos(declination) * std::sin(hour_angle),
-                                    std::sin(declination) * std::cos(latitude) -
-                                        std::cos(declination) * std::sin(latitude) *
-                                            std::cos(hour_angle));
+  const double azimuth =
+      std::atan2(-std::cos(declination) * std::sin(hour_angle),
+                 std::sin(declination) * std::cos(latitude) -
+                     std::cos(declination) * std::sin(latitude) * std::cos(hour_angle));
   return {azimuth < 0 ? azimuth + 2 * pi : azimuth, std::asin(std::clamp(sine, -1.0, 1.0))};
 }
 

@@ -133,8 +133,7 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
   choice.needs = needs;
   choice.sums = LightSums(needs, static_cast<std::uint32_t>(neighbours));
   choice.work_group_size = static_cast<std::size_t>(tuning.work_group_size);
-  choice.private_distances =
-      choice.strategy == EstimateStrategy::lanes && tuning.private_distances;
+  choice.private_distances = choice.strategy == EstimateStrategy::lanes && tuning.private_distances;
   if (choice.local_bytes() > max_local_bytes) {
     choice.strategy = EstimateStrategy::select;
     choice.vector_width = 1;

@@ -41,10 +41,10 @@ struct Specialisation {
   int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16; work-items of `lanes`: 16, 32 or 64
   /// Distances kept, in private memory by `select` and where a tile fails, in local by `lanes`.
   int capacity = 256;
-  int neighbours = 1;       ///< k
-  int tile_capacity = 512;  ///< candidates of a tile, `tile` only
+  int neighbours = 1;              ///< k
+  int tile_capacity = 512;         ///< candidates of a tile, `tile` only
   bool private_distances = false;  ///< `lanes` keep them in private memory
-  int hits_per_item = 1;    ///< neighbouring hits that a work-item estimates in turn
+  int hits_per_item = 1;           ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
   SceneNeeds needs;
   LightSums sums;

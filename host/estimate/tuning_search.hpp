@@ -20,9 +20,9 @@ enum class TuningParameter {
 };
 
 inline constexpr std::array all_tuning_parameters = {
-    TuningParameter::strategy, TuningParameter::photons_per_cell, TuningParameter::vector_width,
-    TuningParameter::hits_per_item, TuningParameter::work_group_size,
-    TuningParameter::private_distances};
+    TuningParameter::strategy,        TuningParameter::photons_per_cell,
+    TuningParameter::vector_width,    TuningParameter::hits_per_item,
+    TuningParameter::work_group_size, TuningParameter::private_distances};
 
 /// Tunings that differ from `from` in one parameter. Where another strategy or width needs more
 /// private memory, its work-groups are the largest that may be. Left out is what would run the same

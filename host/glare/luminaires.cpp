@@ -189,8 +189,8 @@ double Luminaires::large_area(const glm::dvec3& up) const {
     double area = 0, downwards = 0;
     for (const Patch& patch : luminaire.patches) {
       area += static_cast<double>(patch.area);
-      downwards +=
-          static_cast<double>(patch.area) * std::max(0.0, -glm::dot(glm::dvec3(patch.point.normal), up));
+      downwards += static_cast<double>(patch.area) *
+                   std::max(0.0, -glm::dot(glm::dvec3(patch.point.normal), up));
     }
     if (area > defaults::large_source_area) sum += downwards;
   }

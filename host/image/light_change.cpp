@@ -85,7 +85,8 @@ Request understand(const LightChange& change) {
     return ScalePower{*factor};
   }
   if (change.value.ends_with('%')) {
-    const std::string_view number = std::string_view(change.value).substr(0, change.value.size() - 1);
+    const std::string_view number =
+        std::string_view(change.value).substr(0, change.value.size() - 1);
     const std::optional<double> percent = parse_amount(number);
     if (!percent) refuse(change, "is no percentage; use a number of 0 or more such as 50%");
     return ScalePower{*percent / 100};

@@ -67,7 +67,8 @@ Site Site::parse(const std::string& text) {
   if (!numbers || numbers->size() != 3 || std::abs((*numbers)[0]) > 90.0 ||
       std::abs((*numbers)[1]) > 180.0 || (*numbers)[2] < -12.0 || (*numbers)[2] > 14.0) {
     throw UsageError(fmt::format(
-        "site '{}': use LATITUDE,LONGITUDE,TIME_ZONE, such as 52.5,13.4,1: degrees north within -90 "
+        "site '{}': use LATITUDE,LONGITUDE,TIME_ZONE, such as 52.5,13.4,1: degrees north within "
+        "-90 "
         "and 90, degrees east within -180 and 180, hours before Greenwich within -12 and 14",
         text));
   }
@@ -103,7 +104,8 @@ Sun Sun::parse(const std::string& text) {
   if (!numbers || numbers->size() < 3 || numbers->size() > 4) {
     throw UsageError(fmt::format(
         "sun '{}': use AZIMUTH,ELEVATION,LUX[,DIAMETER], such as 135,40,80000: degrees from north "
-        "by east, degrees above the horizon, lux on a surface that faces it, degrees of its disc; or "
+        "by east, degrees above the horizon, lux on a surface that faces it, degrees of its disc; "
+        "or "
         "its lux alone where a site and a time are given",
         text));
   }

@@ -84,8 +84,7 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   const glm::dvec3 below = plan.x * axes.right + plan.y * axes.ahead + height * axes.up;
   const auto ceiling = trace::intersect(rays, glm::vec3(below), glm::vec3(axes.up));
   if (!ceiling) return std::nullopt;
-  const trace::SurfacePoint point =
-      trace::surface_hit(scene, *ceiling, glm::vec3(axes.up));
+  const trace::SurfacePoint point = trace::surface_hit(scene, *ceiling, glm::vec3(axes.up));
   return glm::dvec3(point.position) - below_ceiling * axes.up;
 }
 
@@ -191,7 +190,8 @@ void add_array(LuminaireArray lamps, double lumen_per_watt, std::uint32_t materi
       light.triangles.clear();
       for (const auto& corners : panel_triangles(lamps.opening, world)) {
         const auto index = static_cast<std::uint32_t>(scene.triangles.size());
-        if (mesh.add({Corner{corners[0]}, Corner{corners[1]}, Corner{corners[2]}}, material, number))
+        if (mesh.add({Corner{corners[0]}, Corner{corners[1]}, Corner{corners[2]}}, material,
+                     number))
           light.triangles.push_back(index);
       }
       if (!light.triangles.empty()) scene.lights.push_back(light);
@@ -208,9 +208,9 @@ void add_luminaires(const std::filesystem::path& file, double lumen_per_watt, Sc
   std::vector<LuminaireArray> arrays;
   std::size_t lamps = scene.lights.size();
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const JsonObject object(list[i], fmt::format("{}: luminaire {}", file.string(), i + 1),
-                            {"name", "file", "position", "aim", "rotation", "lumens", "count",
-                             "spacing", "size"});
+    const JsonObject object(
+        list[i], fmt::format("{}: luminaire {}", file.string(), i + 1),
+        {"name", "file", "position", "aim", "rotation", "lumens", "count", "spacing", "size"});
     arrays.push_back(array_of(list[i], object, file.parent_path(), scene, warnings));
     lamps += static_cast<std::size_t>(arrays.back().columns) *
              static_cast<std::size_t>(arrays.back().rows);

@@ -11,7 +11,8 @@ namespace photile::scene_io {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-constexpr int even_day = 80;  ///< of a sky without a date: the Earth at its mean distance, or nearly
+constexpr int even_day =
+    80;  ///< of a sky without a date: the Earth at its mean distance, or nearly
 
 /// The options with the weather of their hour: its place, and its sky where none is given.
 SceneLoadOptions with_weather(SceneLoadOptions options) {
@@ -52,7 +53,8 @@ void add_perez(const Sky& asked, const SkySituation& situation, const std::optio
                     daylight::SkyIrradiance{asked.direct_normal, asked.diffuse_horizontal}, day);
   sky.illuminance = sky.perez->diffuse_illuminance();
   Sun shown = *place;
-  shown.elevation_degrees = 90 - daylight::zenith_of_sun(place->elevation_degrees / degrees) * degrees;
+  shown.elevation_degrees =
+      90 - daylight::zenith_of_sun(place->elevation_degrees / degrees) * degrees;
   sky.to_sun = direction_to(shown);
   if (sky.illuminance > 0) lights.sky = sky;
   const double direct = sky.perez->direct_illuminance();
@@ -73,8 +75,9 @@ SkySituationLights sun_and_sky(const SceneLoadOptions& given) {
     if (options.sun->placed_by_time && !place)
       throw UsageError("--sun with its lux alone needs --site and --time");
     if (!options.sun->placed_by_time && place)
-      throw UsageError("--sun AZIMUTH,ELEVATION,LUX and --time both place the sun; give its lux "
-                       "alone, or leave out --time");
+      throw UsageError(
+          "--sun AZIMUTH,ELEVATION,LUX and --time both place the sun; give its lux "
+          "alone, or leave out --time");
     lights.sun = options.sun;
     if (place) {
       lights.sun->azimuth_degrees = place->azimuth_degrees;

@@ -11,8 +11,8 @@ namespace photile::scene_io {
 
 struct SkyLight {
   SkyKind kind = SkyKind::overcast;
-  double illuminance = 0;                   ///< lux on open ground
-  glm::dvec3 to_sun{0.0, 1.0, 0.0};         ///< unit, in the scene
+  double illuminance = 0;                        ///< lux on open ground
+  glm::dvec3 to_sun{0.0, 1.0, 0.0};              ///< unit, in the scene
   std::optional<daylight::PerezSky> perez = {};  ///< of a Perez sky
   int patches = 0;
   double north = 0;  ///< radians clockwise from -z

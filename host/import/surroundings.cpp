@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "daylight/sky_lights.hpp"
 #include "import/finishing.hpp"
 #include "import/radiance_picture.hpp"
-#include "daylight/sky_lights.hpp"
 #include "import/sky_map.hpp"
 #include "import/sky_situation.hpp"
 #include "photile/errors.hpp"

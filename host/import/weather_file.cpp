@@ -76,8 +76,8 @@ Site site_of(const Line& line) {
 WeatherHour hour_of(const Line& line) {
   WeatherHour hour;
   hour.month = static_cast<int>(line.number(1, "month", 1, 12));
-  hour.day = static_cast<int>(
-      line.number(2, "day of this month", 1, days_of_month[static_cast<std::size_t>(hour.month - 1)]));
+  hour.day = static_cast<int>(line.number(2, "day of this month", 1,
+                                          days_of_month[static_cast<std::size_t>(hour.month - 1)]));
   hour.hour = line.number(3, "hour", 1, 24) - 0.5;
   hour.irradiance.direct_normal = line.irradiance(14, "direct normal irradiance");
   hour.irradiance.diffuse_horizontal = line.irradiance(15, "diffuse horizontal irradiance");
@@ -92,9 +92,10 @@ WeatherYear read_weather(const std::filesystem::path& file) {
   const std::string text = read_input_text(file);
   const std::vector<std::string_view> lines = lines_of(text);
   if (lines.size() <= header_lines) {
-    throw InputError(fmt::format("{}: {} lines, where an EPW file has {} before its hours; give an "
-                                 "EPW file",
-                                 file.string(), lines.size(), header_lines));
+    throw InputError(
+        fmt::format("{}: {} lines, where an EPW file has {} before its hours; give an "
+                    "EPW file",
+                    file.string(), lines.size(), header_lines));
   }
   WeatherYear year;
   year.site = site_of(Line(file, 1, lines.front()));
@@ -102,16 +103,17 @@ WeatherYear read_weather(const std::filesystem::path& file) {
     if (trimmed(lines[i]).empty()) continue;
     year.hours.push_back(hour_of(Line(file, i + 1, lines[i])));
     if (year.hours.size() > hours_of_leap_year) {
-      throw InputError(fmt::format("{}: line {}: more than {} hours; give a file of one year with a "
-                                   "line for each hour",
-                                   file.string(), i + 1, hours_of_leap_year));
+      throw InputError(
+          fmt::format("{}: line {}: more than {} hours; give a file of one year with a "
+                      "line for each hour",
+                      file.string(), i + 1, hours_of_leap_year));
     }
   }
   if (year.hours.size() != hours_of_year && year.hours.size() != hours_of_leap_year) {
-    throw InputError(fmt::format("{}: {} hours; give a file of a whole year, {} or {} lines after "
-                                 "the first {}",
-                                 file.string(), year.hours.size(), hours_of_year,
-                                 hours_of_leap_year, header_lines));
+    throw InputError(fmt::format(
+        "{}: {} hours; give a file of a whole year, {} or {} lines after "
+        "the first {}",
+        file.string(), year.hours.size(), hours_of_year, hours_of_leap_year, header_lines));
   }
   return year;
 }

@@ -60,8 +60,8 @@ class SurfacePath {
       add_what_lies_beyond(direction);
     } else if (trace::emits(scene_, *point)) {
       const std::uint32_t light = scene_.triangle_light[point->where.triangle];
-      add(lights_.layer(light),
-          weights_ * (weight_against(lights_.density(from_, *point)) * lights_.radiance(*point, -direction)));
+      add(lights_.layer(light), weights_ * (weight_against(lights_.density(from_, *point)) *
+                                            lights_.radiance(*point, -direction)));
     }
     return point;
   }

@@ -73,7 +73,8 @@ class DirectLight {
       const DistantLight& light = lamps_.distant()[index];
       const glm::vec3 radiance = light.radiance(direction);
       if (radiance == glm::vec3(0.0f)) continue;
-      const float weight = power_heuristic(density, lamps_.density(light, point_.position, direction));
+      const float weight =
+          power_heuristic(density, lamps_.density(light, point_.position, direction));
       add(lamps_.layer(light.light()), weights * (weight * radiance));
     }
   }

@@ -118,9 +118,10 @@ DistantLights::DistantLights(const Scene& scene) {
 std::size_t DistantLights::cell_towards(const glm::vec3& direction) {
   const double polar = std::acos(std::clamp(static_cast<double>(direction.y), -1.0, 1.0));
   const double azimuth = azimuth_of(glm::dvec3(direction));
-  const int row = std::min(sphere_rows - 1, static_cast<int>(polar / glm::pi<double>() * sphere_rows));
-  const int column =
-      std::min(sphere_columns - 1, static_cast<int>(azimuth / glm::two_pi<double>() * sphere_columns));
+  const int row =
+      std::min(sphere_rows - 1, static_cast<int>(polar / glm::pi<double>() * sphere_rows));
+  const int column = std::min(sphere_columns - 1,
+                              static_cast<int>(azimuth / glm::two_pi<double>() * sphere_columns));
   return static_cast<std::size_t>(row * sphere_columns + column);
 }
 
@@ -155,7 +156,7 @@ glm::dvec3 DistantSampler::middle() const {
     return {0.0, patch.z + patch.w < 0 ? -1.0 : 1.0, 0.0};  // a cap
   }
   return sky_direction(0.5 * (patch.x + patch.y),
-                      std::sin(0.5 * (std::asin(patch.z) + std::asin(std::min(1.0, patch.w)))));
+                       std::sin(0.5 * (std::asin(patch.z) + std::asin(std::min(1.0, patch.w)))));
 }
 
 float DistantSampler::density(const glm::vec3& direction) const {

@@ -33,8 +33,8 @@ class DistantLight {
   glm::vec3 factor_;  ///< radiance of the disc, or what the map's radiance is multiplied by
 };
 
-/// All of a scene. Where they are many, most are patches of a sky and discs of suns: which of them a
-/// direction can meet is found by cells of the sphere.
+/// All of a scene. Where they are many, most are patches of a sky and discs of suns: which of them
+/// a direction can meet is found by cells of the sphere.
 class DistantLights {
  public:
   explicit DistantLights(const Scene& scene);

@@ -44,8 +44,9 @@ EnvironmentSampler::Sample EnvironmentSampler::sample(const RandomBlock& random)
 }
 
 double EnvironmentSampler::weight(int column, int row) const {
-  const std::size_t texel = static_cast<std::size_t>(row) * static_cast<std::size_t>(map_->width()) +
-                            static_cast<std::size_t>(column);
+  const std::size_t texel =
+      static_cast<std::size_t>(row) * static_cast<std::size_t>(map_->width()) +
+      static_cast<std::size_t>(column);
   return texel_up_to_[texel] - (column == 0 ? 0.0 : texel_up_to_[texel - 1]);
 }
 

@@ -101,8 +101,9 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
         const glm::vec3 radiance = light.radiance(ray.direction);
         if (radiance == glm::vec3(0.0f)) continue;
         const float weight =
-            other ? weight_against(other->lamps.density(light, start, ray.direction, other->chances))
-                  : 1.0f;
+            other
+                ? weight_against(other->lamps.density(light, start, ray.direction, other->chances))
+                : 1.0f;
         record.emission.push_back(
             {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});
       }

@@ -14,7 +14,12 @@ namespace photile::trace {
 
 namespace {
 
-enum Block : std::uint32_t { place_block = 0, direction_block = 1, portal_block = 2, luminaire_block = 1u << 20 };
+enum Block : std::uint32_t {
+  place_block = 0,
+  direction_block = 1,
+  portal_block = 2,
+  luminaire_block = 1u << 20
+};
 
 constexpr int least_map_columns = 32;
 
@@ -30,10 +35,7 @@ glm::vec3 entrance(const BoundingSphere& bounds, const glm::vec3& direction, flo
 
 LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds,
                            std::shared_ptr<const Portals> portals)
-    : scene_(&scene),
-      light_(&scene.lights[light]),
-      bounds_(bounds),
-      portals_(std::move(portals)) {
+    : scene_(&scene), light_(&scene.lights[light]), bounds_(bounds), portals_(std::move(portals)) {
   if (light_->kind == LightKind::area) area_.emplace(scene, *light_);
   if (light_->distribution != none) intensity_.emplace(scene, *light_);
   if (light_->has_size() && light_->kind != LightKind::area) distant_.emplace(scene, *light_);
@@ -100,14 +102,15 @@ EmittedRay LightEmitter::emit_through_portals(const RandomStream& random) const 
   if (through) {
     // Of a disc or a patch a part may lie behind all portals.
     if (!(portals_->area_facing(travel) > 0)) return {origin, -glm::vec3(travel), glm::vec3(0.0f)};
-    const glm::dvec3 point = portals_->entrance(travel, double{place.uniform(2)},
-                                                double{numbers.uniform(0)}, double{numbers.uniform(1)});
+    const glm::dvec3 point = portals_->entrance(
+        travel, double{place.uniform(2)}, double{numbers.uniform(0)}, double{numbers.uniform(1)});
     const double back = glm::dot(point - bounds_.center, travel) + bounds_.radius;
     origin = glm::vec3(point - back * travel);
   }
   // A line through a portal's border may miss it by rounding.
   const int entered = std::max(portals_->entered_by(glm::dvec3(origin), travel), through ? 1 : 0);
-  return {origin, glm::vec3(travel), from.color * static_cast<float>(flux_of_line(travel, entered))};
+  return {origin, glm::vec3(travel),
+          from.color * static_cast<float>(flux_of_line(travel, entered))};
 }
 
 /// Its density on the disc of the bounding sphere over that among both techniques.

@@ -41,8 +41,7 @@ LightSampler::LightSampler(const Scene& scene)
 /// Of a light that is chosen as a whole.
 float LightSampler::chance(std::uint32_t light, const LampChances& chances) const {
   const double others = 1 - portal_share_;
-  if (!chances.up_to.empty())
-    return static_cast<float>(others * chances.of(pieces_.whole(light)));
+  if (!chances.up_to.empty()) return static_cast<float>(others * chances.of(pieces_.whole(light)));
   const double before = light == 0 ? 0.0 : share_up_to_[light - 1];
   return static_cast<float>(others * (share_up_to_[light] - before) / share_up_to_.back());
 }
@@ -139,14 +138,16 @@ LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& 
   const DistantSampler::Sample chosen = distant_samplers_[index].sample(place);
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
   const float alone = chance(light, chances) * chosen.density;
-  const float all = portal_share_ > 0
-                        ? density(distant_[index], position, chosen.direction, chances)
-                        : alone;
+  const float all =
+      portal_share_ > 0 ? density(distant_[index], position, chosen.direction, chances) : alone;
   // Density is in proportion to luminance, and both integrate to 1 over the sphere.
-  return {groups_.group_of[light], chosen.direction, beyond(position, chosen.direction),
+  return {groups_.group_of[light],
+          chosen.direction,
+          beyond(position, chosen.direction),
           glm::vec3(glm::dvec3(chosen.color) * groups_.share[light] * double{chosen.density} /
                     (disc * double{std::max(alone, all)})),
-          std::max(alone, all), true};
+          std::max(alone, all),
+          true};
 }
 
 std::optional<LightSample> LightSampler::through_portal(double number, const glm::vec3& position,
@@ -172,7 +173,7 @@ std::optional<LightSample> LightSampler::through_portal(double number, const glm
     const float all = density(light, position, direction, chances);
     if (!(all > 0.0f)) return std::nullopt;
     return LightSample{groups_.group_of[light.light()], direction, beyond(position, direction),
-                       light.radiance(direction) / all, all, true};
+                       light.radiance(direction) / all, all,       true};
   }
   return std::nullopt;
 }

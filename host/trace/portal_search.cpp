@@ -18,8 +18,8 @@
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/flush_denormals.hpp"
-#include "trace/ray_query.hpp"
 #include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
 #include "trace/surface.hpp"
 
@@ -66,7 +66,8 @@ std::vector<Escape> escapes_from(const RayScene& rays, const glm::vec3& start) {
   std::vector<Escape> escapes;
   std::uint64_t at_once = 0;
   for (std::uint64_t path = 0; path < most_paths; ++path) {
-    if (path == first_paths && static_cast<double>(at_once) > outside_share * first_paths) return {};
+    if (path == first_paths && static_cast<double>(at_once) > outside_share * first_paths)
+      return {};
     if (path >= first_paths && escapes.size() >= enough_escapes) break;
     const RandomStream random(0, path, 0);
     const RandomBlock first = random.block(Purpose::eye_scattering, 0);
@@ -239,9 +240,8 @@ std::vector<Portal> narrowest(const std::vector<Opening>& openings, std::size_t 
     const Opening* best = nullptr;
     double best_score = 0;
     for (const Opening& opening : openings) {
-      const auto fresh = static_cast<std::size_t>(
-          std::count_if(opening.rays.begin(), opening.rays.end(),
-                        [&](std::size_t ray) { return !taken[ray]; }));
+      const auto fresh = static_cast<std::size_t>(std::count_if(
+          opening.rays.begin(), opening.rays.end(), [&](std::size_t ray) { return !taken[ray]; }));
       const double score = static_cast<double>(fresh) / opening.area;
       if (fresh < least || score <= best_score) continue;
       best = &opening;
@@ -349,9 +349,8 @@ std::vector<Portal> find_portals(const Scene& scene, std::span<const glm::dvec3>
     for (const Escape& escape : escapes_from(rays, glm::vec3(start))) escapes.push_back(escape);
   }
   if (escapes.empty()) return {};
-  const std::size_t least =
-      std::max<std::size_t>(8, static_cast<std::size_t>(least_share *
-                                                        static_cast<double>(escapes.size())));
+  const std::size_t least = std::max<std::size_t>(
+      8, static_cast<std::size_t>(least_share * static_cast<double>(escapes.size())));
   const double radius = bounding_sphere(scene).radius;
   return narrowest(openings_of(scene, escapes, least), escapes.size(), least,
                    most_portal_area * glm::pi<double>() * radius * radius);
@@ -366,9 +365,10 @@ std::vector<Portal> portals_of_materials(const Scene& scene, std::span<const std
       chosen[material] = matched = true;
     }
     if (!matched) {
-      throw UsageError(fmt::format("--portals {}: no material of {} matches; photile info lists "
-                                   "them, or use auto or off",
-                                   glob, scene.source.string()));
+      throw UsageError(
+          fmt::format("--portals {}: no material of {} matches; photile info lists "
+                      "them, or use auto or off",
+                      glob, scene.source.string()));
     }
   }
   const auto panes = panes_of(scene, chosen);

@@ -122,8 +122,8 @@ glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
   constexpr double grazing = 1e-3;  // nearer to the surface an intensity has no radiance
   const Light& light = scene.lights[number];
   const IntensityDistribution& distribution = scene.distributions[light.distribution];
-  const double cosine = std::max(
-      grazing, std::abs(glm::dot(glm::dvec3(point.normal), glm::dvec3(direction))));
+  const double cosine =
+      std::max(grazing, std::abs(glm::dot(glm::dvec3(point.normal), glm::dvec3(direction))));
   const double sides = light.two_sided ? 2 : 1;
   const double intensity =
       distribution.intensity(LampAxes(light).to_lamp(glm::dvec3(direction))) / distribution.flux();

@@ -133,10 +133,10 @@ inline constexpr double portal_photons = 0.85;
 inline constexpr double portal_looks = 0.6;
 
 // Daylight
-inline constexpr int sky_patches = 577;             ///< Reinhart's, of a year of daylight
-inline constexpr double ground_reflectance = 0.2;   ///< of the ground that surrounds a scene
-inline constexpr double daylight_lux = 300;         ///< of daylight autonomy: LM-83 and EN 17037
-inline constexpr double lamp_efficacy = 100;        ///< lm/W, of lamps that dim with daylight
+inline constexpr int sky_patches = 577;            ///< Reinhart's, of a year of daylight
+inline constexpr double ground_reflectance = 0.2;  ///< of the ground that surrounds a scene
+inline constexpr double daylight_lux = 300;        ///< of daylight autonomy: LM-83 and EN 17037
+inline constexpr double lamp_efficacy = 100;       ///< lm/W, of lamps that dim with daylight
 inline constexpr int daylight_repeats = 4;
 
 // Measuring: a mean of repeats with photons of their own, whose scatter tells the standard error

@@ -80,8 +80,8 @@ enum class SkyKind {
 /// The upper half of the surroundings, black below the horizon.
 struct Sky {
   SkyKind kind = SkyKind::overcast;
-  double illuminance = 0;  ///< lux on a horizontal surface that sees all of it, without the sun
-  double direct_normal = 0;       ///< W/m2 on a surface that faces the sun, of a Perez sky
+  double illuminance = 0;    ///< lux on a horizontal surface that sees all of it, without the sun
+  double direct_normal = 0;  ///< W/m2 on a surface that faces the sun, of a Perez sky
   double diffuse_horizontal = 0;  ///< W/m2 on a horizontal surface, of a Perez sky
   int patches = 0;                ///< 145, 577 or 2305
   /// Errors: UsageError.

@@ -69,12 +69,12 @@ struct PhotonMapParameters {
 
 struct PhotonMapStatistics {
   std::uint64_t photons = 0;
-  std::uint64_t references = 0;     ///< entries over all maps; references / photons = copies
-  std::uint64_t maps = 0;           ///< that hold a photon
-  std::uint64_t mixed_maps = 0;     ///< of them, those whose queries filter by normal
-  std::uint64_t cells = 0;          ///< of grids
-  std::uint64_t nodes = 0;          ///< of trees
-  std::uint64_t largest_map = 0;    ///< entries
+  std::uint64_t references = 0;   ///< entries over all maps; references / photons = copies
+  std::uint64_t maps = 0;         ///< that hold a photon
+  std::uint64_t mixed_maps = 0;   ///< of them, those whose queries filter by normal
+  std::uint64_t cells = 0;        ///< of grids
+  std::uint64_t nodes = 0;        ///< of trees
+  std::uint64_t largest_map = 0;  ///< entries
   std::vector<std::uint32_t> map_sizes = {};  ///< photons of each map that holds one, ascending
   std::uint64_t pages = 0;          ///< runs of maps that are moved to and from the device
   std::uint64_t device_bytes = 0;   ///< of all pages, wherever they lie

@@ -31,8 +31,8 @@ std::string write_open_box(const FileFolder& folder) {
 
 std::vector<std::string> quick(const std::string& command, const std::string& scene,
                                std::vector<std::string> more) {
-  std::vector<std::string> arguments{command,  scene, "--photons", "20k",    "--rays",
-                                     "64",     "--repeats", "2",   "--quiet", "--plane",
+  std::vector<std::string> arguments{command,      scene,         "--photons", "20k",     "--rays",
+                                     "64",         "--repeats",   "2",         "--quiet", "--plane",
                                      "floor+0.75", "--wall-band", "0.2"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
@@ -57,7 +57,8 @@ TEST_CASE("a year of daylight fills its files") {
   REQUIRE(grid["sensors"].size() == points);
   CHECK(grid["mean_lux"].get<double>() > 10);
   CHECK(grid["lamps"].size() == 2);
-  std::istringstream ill(folder.read("bee/working_plane.ill")), up(folder.read("bee/sun-up-hours.txt"));
+  std::istringstream ill(folder.read("bee/working_plane.ill")),
+      up(folder.read("bee/sun-up-hours.txt"));
   std::size_t hours = 0, lines = 0;
   for (std::string line; std::getline(up, line);) ++hours;
   CHECK(hours > 4300);
@@ -108,14 +109,13 @@ TEST_CASE("daylight factors are per cent of the sky's lux") {
 TEST_CASE("a picture of patches takes the sky of another hour") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder), weather = write_weather(folder);
-  const Outcome rendered = run_photile({"render", scene, "--sky", "patches=145", "--quality",
-                                        "draft", "--photons", "20k", "--size", "8x6", "--quiet",
-                                        "-o", folder / "sky.exr"});
+  const Outcome rendered =
+      run_photile({"render", scene, "--sky", "patches=145", "--quality", "draft", "--photons",
+                   "20k", "--size", "8x6", "--quiet", "-o", folder / "sky.exr"});
   INFO(rendered.errors);
   REQUIRE(rendered.exit_code == 0);
-  const Outcome noon =
-      run_photile({"relight", folder / "sky.exr", "--weather", weather, "--time",
-                   "2026-06-21T12:00", "-o", folder / "noon.png"});
+  const Outcome noon = run_photile({"relight", folder / "sky.exr", "--weather", weather, "--time",
+                                    "2026-06-21T12:00", "-o", folder / "noon.png"});
   INFO(noon.errors);
   CHECK(noon.exit_code == 0);
   const Outcome lacking = run_photile(

@@ -84,10 +84,10 @@ TEST_CASE("a report shows the moods of a picture, and is printed as PDF") {
   REQUIRE(run_photile({"render", scene, "-o", folder / "box.exr", "--size", "16x12", "--quality",
                        "draft", "--photons", "2k", "-k", "20", "--quiet"})
               .exit_code == 0);
-  const Outcome outcome = run_photile(
-      measure(scene, {"--plane", "floor+0.75", "--wall-band", "0.2", "-o", folder / "a.html", "-o",
-                      folder / "a.pdf", "--picture", folder / "box.exr", "--moods",
-                      folder / "moods.json"}));
+  const Outcome outcome =
+      run_photile(measure(scene, {"--plane", "floor+0.75", "--wall-band", "0.2", "-o",
+                                  folder / "a.html", "-o", folder / "a.pdf", "--picture",
+                                  folder / "box.exr", "--moods", folder / "moods.json"}));
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(folder.read("a.html"), Contains("data:image/png;base64,iVBORw0KGgo") &&

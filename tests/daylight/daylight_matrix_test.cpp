@@ -1,8 +1,8 @@
 // Patches of the sky at sensors, and years made of them, against closed forms.
 #include "daylight/daylight_matrix.hpp"
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -71,17 +71,16 @@ TEST_CASE("all patches together are an even sky through a window") {
   scene.portals = {Room::window()};
   const Sensor sensor{{1.5, 0.8, 3.0}, {0, 0, -1}};
   MatrixParameters parameters = quick(patches.size());
-  const DaylightMatrix matrix =
-      daylight_matrix(scene, std::span(&sensor, 1), LightMix{}, patches,
-                      std::span(&device(), 1), parameters);
+  const DaylightMatrix matrix = daylight_matrix(scene, std::span(&sensor, 1), LightMix{}, patches,
+                                                std::span(&device(), 1), parameters);
   double all = 0, straight = 0;
   for (std::size_t patch = 0; patch < matrix.patches; ++patch) {
     all += matrix.coefficient(0, patch);
     straight += double{matrix.straight[patch]};
   }
-  const double truth = pi * validation::rectangle_factor(
-                                sensor.position, sensor.normal, {Room::left, Room::sill, 0},
-                                {1.2, 0, 0}, {0, 1, 0});
+  const double truth =
+      pi * validation::rectangle_factor(sensor.position, sensor.normal, {Room::left, Room::sill, 0},
+                                        {1.2, 0, 0}, {0, 1, 0});
   CHECK(all == Approx(truth).epsilon(0.03));
   CHECK(straight == Approx(truth).epsilon(0.03));
 }
@@ -94,9 +93,8 @@ TEST_CASE("reflected light adds to what comes straight, as in a furnace of paths
   add_sky_lights(patches, 0, scene);
   scene.portals = even.portals = {Room::window()};
   const Sensor sensor{{2.0, 0.8, 4.0}, {0, 1, 0}};
-  const DaylightMatrix matrix =
-      daylight_matrix(scene, std::span(&sensor, 1), LightMix{}, patches,
-                      std::span(&device(), 1), quick(patches.size()));
+  const DaylightMatrix matrix = daylight_matrix(scene, std::span(&sensor, 1), LightMix{}, patches,
+                                                std::span(&device(), 1), quick(patches.size()));
   double all = 0;
   for (std::size_t patch = 0; patch < matrix.patches; ++patch) all += matrix.coefficient(0, patch);
   double paths = 0;
@@ -112,8 +110,11 @@ TEST_CASE("in the open an hour has its diffuse lux, and the sun's by its elevati
   const auto patches = sky_patches(577);
   scene_io::WeatherYear weather{{48, 0, 0}, {}};
   for (int hour = 0; hour < 24; ++hour)
-    weather.hours.push_back({6, 21, hour + 0.5, {hour > 4 && hour < 19 ? 500.0 : 0.0,
-                                                 hour > 4 && hour < 19 ? 100.0 : 0.0}});
+    weather.hours.push_back(
+        {6,
+         21,
+         hour + 0.5,
+         {hour > 4 && hour < 19 ? 500.0 : 0.0, hour > 4 && hour < 19 ? 100.0 : 0.0}});
   const auto hours = sky_hours(weather, patches, 0.2);
   // A sensor that sees all of the sky, by hand.
   DaylightMatrix matrix;

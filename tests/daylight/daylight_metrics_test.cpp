@@ -85,7 +85,8 @@ TEST_CASE("a room has autonomy where its points have it in half of the hours") {
 TEST_CASE("levels of EN 17037 ask both targets") {
   const auto level = [](double target, double minimum) {
     std::vector<PointDaylight> points(20);
-    for (std::size_t i = 0; i < points.size(); ++i) points[i].median_lux = i < 10 ? target : minimum;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i].median_lux = i < 10 ? target : minimum;
     return room_daylight(points).level;
   };
   CHECK(level(299, 299) == "none");

@@ -43,8 +43,8 @@ TEST_CASE("a Perez sky brings its sun, which north turns") {
   options.situation.north_degrees = 30;
   const SkySituationLights turned = sun_and_sky(options);
   CHECK(turned.sun->azimuth_degrees == Approx(plain.sun->azimuth_degrees + 30));
-  CHECK(turned.sky->to_sun.x == Approx(std::sin(position.azimuth + 30 / degrees) *
-                                       std::cos(position.elevation)));
+  CHECK(turned.sky->to_sun.x ==
+        Approx(std::sin(position.azimuth + 30 / degrees) * std::cos(position.elevation)));
 }
 
 TEST_CASE("at night a Perez sky has no sun") {
@@ -81,8 +81,8 @@ TEST_CASE("options of a situation that lack another are refused") {
     o.situation = {};
     o.sky = Sky::parse("perez=1,1");
   });
-  for (const char* text : {"perez=1", "perez=-1,2", "perez=1,2,3", "perez=a,b", "patches=144",
-                           "patches=2305.5"})
+  for (const char* text :
+       {"perez=1", "perez=-1,2", "perez=1,2,3", "perez=a,b", "patches=144", "patches=2305.5"})
     CHECK_THROWS_AS(Sky::parse(text), UsageError);
 }
 
@@ -99,8 +99,7 @@ TEST_CASE("patches of a picture take the luminances of another hour") {
   lamp.name = "lamp";
   mix.lights.push_back(lamp);
   const SceneLoadOptions options = in_berlin();
-  const auto changes =
-      sky_changes(mix, options.situation, Sky{SkyKind::perez, 0, 600, 120});
+  const auto changes = sky_changes(mix, options.situation, Sky{SkyKind::perez, 0, 600, 120});
   REQUIRE(changes.size() == patches.size());
   double horizontal = 0;
   for (std::size_t i = 0; i < changes.size(); ++i) {

@@ -78,9 +78,9 @@ TEST_CASE("sites and times are read, others refused") {
   CHECK(time.hour == 14.5);
   for (const char* text : {"", "1,2", "91,0,0", "0,181,0", "0,0,15", "a,b,c", "1,2,3,4"})
     CHECK_THROWS_AS(Site::parse(text), UsageError);
-  for (const char* text : {"", "2026-06-21", "2026-02-29T12:00", "2026-06-21T24:00",
-                           "2026-06-21T12:60", "2026-6-21T12:00", "2026-06-21 12:00",
-                           "2026-13-01T12:00", "2026-06-21T-1:00"})
+  for (const char* text :
+       {"", "2026-06-21", "2026-02-29T12:00", "2026-06-21T24:00", "2026-06-21T12:60",
+        "2026-6-21T12:00", "2026-06-21 12:00", "2026-13-01T12:00", "2026-06-21T-1:00"})
     CHECK_THROWS_AS(LocalTime::parse(text), UsageError);
 }
 

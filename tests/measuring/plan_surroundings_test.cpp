@@ -13,8 +13,8 @@ using namespace photile::measuring;
 
 namespace {
 
-/// A room of 4 x 6 m with a table, x from 1 to 2, z from 2 to 3, whose top lies at 0.7 m, and a lamp
-/// over it.
+/// A room of 4 x 6 m with a table, x from 1 to 2, z from 2 to 3, whose top lies at 0.7 m, and a
+/// lamp over it.
 Scene room() {
   test::SceneBuilder builder("room");
   const auto white = builder.add(test::diffuse(glm::vec3(0.5f)));
@@ -55,8 +55,8 @@ TEST_CASE("a plan's walls are where its plane cuts the room") {
   for (const Segment& segment : around.walls) {
     for (const glm::dvec2& end : segment) {
       const glm::dvec2 at = world(end);
-      const double from_wall = std::min({std::abs(at.x), std::abs(at.x - 4), std::abs(at.y),
-                                         std::abs(at.y - 6)});
+      const double from_wall =
+          std::min({std::abs(at.x), std::abs(at.x - 4), std::abs(at.y), std::abs(at.y - 6)});
       CHECK(from_wall < 1e-5);
     }
   }

@@ -117,8 +117,7 @@ TEST_CASE("a small opening is the point of its intensities", "[luminaires]") {
   CHECK_VERDICT(mean_is(lux_at(scene, {at - scene.origin, {0, 0, 1}}), truth, 0.02 * truth));
 }
 
-TEST_CASE("photons of an opening follow its intensities, uplight leaves its back",
-          "[luminaires]") {
+TEST_CASE("photons of an opening follow its intensities, uplight leaves its back", "[luminaires]") {
   const SceneFolderOnDisk folder;
   const auto both = [](double, double gamma) {
     const double cosine = std::cos(gamma * pi / 180);
@@ -132,7 +131,8 @@ TEST_CASE("photons of an opening follow its intensities, uplight leaves its back
   double down = 0;
   for (std::size_t i = 0; i < result.photons.size(); ++i) {
     const std::uint32_t triangle = triangle_of(result.photons.sided_triangle[i]);
-    if (scene.triangle_light[triangle] == none) down += luminance(glm::dvec3(result.photons.flux[i]));
+    if (scene.triangle_light[triangle] == none)
+      down += luminance(glm::dvec3(result.photons.flux[i]));
   }
   // The square is large and near: all that goes down falls on it.
   CHECK(down == Approx(0.75).margin(0.01));
@@ -159,10 +159,12 @@ TEST_CASE("what is wrong with a placed lamp is told in a line", "[luminaires]") 
   CHECK_THAT(error_of(R"({"file": "lamp.ies", "size": [1,1]})"), Contains("position"));
   CHECK_THAT(error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1]})"),
              Contains("size"));
-  CHECK_THAT(error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "aim": [0,0,0]})"),
-             Contains("aim"));
-  CHECK_THAT(error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "count": [2,2]})"),
-             Contains("spacing"));
+  CHECK_THAT(
+      error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "aim": [0,0,0]})"),
+      Contains("aim"));
+  CHECK_THAT(
+      error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "count": [2,2]})"),
+      Contains("spacing"));
   CHECK_THAT(error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "colour": 1})"),
              Contains("colour"));
 }

@@ -122,8 +122,7 @@ TEST_CASE("looks through a portal find pi L times the window's form factor", "[p
   const glm::dvec3 corner(Room::left, Room::sill, 0), u(1.2, 0, 0), v(0, 1, 0);
   for (const glm::dvec3& normal : {glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(0.2, 1, -1))}) {
     const Sensor sensor{{1.5, 0.8, 3.5}, normal};
-    const double truth =
-        pi * validation::rectangle_factor(sensor.position, normal, corner, u, v);
+    const double truth = pi * validation::rectangle_factor(sensor.position, normal, corner, u, v);
     scene.portals = {Room::window()};
     CHECK_VERDICT(mean_is(irradiances(scene, sensor, 1024), truth, 0.02 * truth));
     scene.portals = {Room::window(0.3f)};

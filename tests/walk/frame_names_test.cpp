@@ -31,8 +31,8 @@ TEST_CASE("a place of any width takes no more stack than another") {
 }
 
 TEST_CASE("a name with two places for the number, or a wrong one, is refused") {
-  const std::string pattern = GENERATE("##-##.exr", "a%d#.exr", "####/frame.exr",
-                                       "%s.exr", "%0", "%00d", "%12d");
+  const std::string pattern =
+      GENERATE("##-##.exr", "a%d#.exr", "####/frame.exr", "%s.exr", "%0", "%00d", "%12d");
   INFO(pattern);
   CHECK_THROWS_AS(FrameNames(pattern), UsageError);
 }

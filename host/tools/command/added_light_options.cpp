@@ -93,7 +93,8 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
   command
       .add_option_function<std::string>(
           "--sky", [&options](const std::string& text) { options.sky = Sky::parse(text); },
-          "uniform, overcast or clear (with --sun), and its lux on a horizontal surface; perez: W/m2 "
+          "uniform, overcast or clear (with --sun), and its lux on a horizontal surface; perez: "
+          "W/m2 "
           "facing the sun and on a horizontal surface; patches: 145, 577 or 2305 lights, for "
           "relight --time")
       ->type_name("KIND=LUX|perez=DIRECT,DIFFUSE|patches=N")

@@ -116,8 +116,9 @@ std::vector<GridDaylight> results_of(const DaylightOptions& options,
     const std::size_t count = grid.sensors.size();
     const auto part = [&](const std::vector<float>& all, std::size_t each) {
       const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first * each);
-      return all.empty() ? std::vector<float>{}
-                         : std::vector<float>(begin, begin + static_cast<std::ptrdiff_t>(count * each));
+      return all.empty()
+                 ? std::vector<float>{}
+                 : std::vector<float>(begin, begin + static_cast<std::ptrdiff_t>(count * each));
     };
     result.grid = std::move(grid);
     result.lux = part(profile.all, profile.hours);
@@ -155,8 +156,9 @@ void write(const DaylightOptions& options, const std::vector<GridDaylight>& resu
 void check_lights(const DaylightOptions& options) {
   const SceneLoadOptions& load = options.render.load;
   if (load.sky || load.sun || !load.environment.file.empty() || load.situation.time) {
-    throw UsageError("daylight makes the skies of a whole year; leave out --sky, --sun, "
-                     "--environment and --time");
+    throw UsageError(
+        "daylight makes the skies of a whole year; leave out --sky, --sun, "
+        "--environment and --time");
   }
   if (load.situation.weather.empty()) throw UsageError("daylight needs --weather FILE.epw");
 }
@@ -190,8 +192,9 @@ void run_daylight(DaylightOptions& options) {
   std::vector<Device> devices = devices_for(render, progress);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
   if (scene.portals.empty()) {
-    progress.note("no windows were found: photons of the sky start all around the scene; name the "
-                  "panes' material by --portals if there are some");
+    progress.note(
+        "no windows were found: photons of the sky start all around the scene; name the "
+        "panes' material by --portals if there are some");
   }
 
   const std::vector<SkyPatch> patches = sky_patches(options.patches);

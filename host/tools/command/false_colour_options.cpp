@@ -33,7 +33,9 @@ measuring::FalseColour FalseColourOptions::of(const std::string& unit) const {
 void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
   measuring::FalseColour& colours = options.colours;
   const char* group = "False colour";
-  command.add_option("-s,--scale", options.scale, "top of the scale, or auto: 98% of the values lie below")
+  command
+      .add_option("-s,--scale", options.scale,
+                  "top of the scale, or auto: 98% of the values lie below")
       ->type_name("X|auto")
       ->check(top_of_scale())
       ->capture_default_str()

@@ -55,8 +55,9 @@ struct MeasureOptions {
 /// Errors: UsageError where another sky is asked for.
 void take_overcast_sky(SceneLoadOptions& load) {
   if (load.sky || load.sun || load.situation.time || !load.environment.file.empty()) {
-    throw UsageError("--daylight-factor takes the CIE overcast sky; leave out --sky, --sun, "
-                     "--time and --environment");
+    throw UsageError(
+        "--daylight-factor takes the CIE overcast sky; leave out --sky, --sun, "
+        "--time and --environment");
   }
   load.sky = Sky{SkyKind::overcast, 100};
 }

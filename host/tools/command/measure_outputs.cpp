@@ -168,13 +168,14 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
   for (const std::filesystem::path file : options.outputs) {
     const auto list = lists.find(file.extension().string());
     if (list == lists.end()) {
-      throw UsageError(fmt::format("{}: an output ends in .csv, .json, .svg, .html or .pdf; rename it",
-                                   file.string()));
+      throw UsageError(fmt::format(
+          "{}: an output ends in .csv, .json, .svg, .html or .pdf; rename it", file.string()));
     }
     if (options.daylight_factor && (list->first == ".html" || list->first == ".pdf")) {
-      throw UsageError(fmt::format("{}: reports are in lux; write daylight factors to .csv, .json "
-                                   "or .svg",
-                                   file.string()));
+      throw UsageError(
+          fmt::format("{}: reports are in lux; write daylight factors to .csv, .json "
+                      "or .svg",
+                      file.string()));
     }
     list->second->push_back(file);
     all.push_back(file);
@@ -218,7 +219,8 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
   for (const auto& file : json_) {
     write_file(
         file,
-        run_json(measurement, run, unit_).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+        run_json(measurement, run, unit_).dump(1, ' ', false, Json::error_handler_t::replace) +
+            "\n");
   }
   std::vector<const measuring::GridValues*> planes;
   for (const auto& values : measurement) {
@@ -230,14 +232,16 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
     const auto names = plan_names(file, planes.size());
     for (std::size_t i = 0; i < planes.size(); ++i) {
       const auto grid = static_cast<std::size_t>(planes[i] - measurement.data());
-      write_file(names[i],
-                 measuring::plan_svg(*planes[i], planes[i]->total(), colours_,
-                                     measuring::PlanSize::whole, surroundings[grid]));
+      write_file(names[i], measuring::plan_svg(*planes[i], planes[i]->total(), colours_,
+                                               measuring::PlanSize::whole, surroundings[grid]));
     }
   }
   if (html_.empty() && pdf_.empty()) return;
-  measuring::ReportText text{run.scene.source.filename().string(), facts_of(run), run.requirement,
-                             {lamp_schedule(run.scene, run.mix), reflectances(run.scene)}, {}};
+  measuring::ReportText text{run.scene.source.filename().string(),
+                             facts_of(run),
+                             run.requirement,
+                             {lamp_schedule(run.scene, run.mix), reflectances(run.scene)},
+                             {}};
   if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
   const std::string page = measuring::report_html(measurement, text, colours_, surroundings);
   for (const auto& file : html_) write_file(file, page);

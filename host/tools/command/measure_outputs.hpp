@@ -23,8 +23,8 @@ namespace photile::app {
 struct MeasureOutputOptions {
   std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg, .html or .pdf
   FalseColourOptions false_colour;
-  std::string honeybee;  ///< folder, "" = none
-  std::string picture;   ///< EXR for the report, "" = none
+  std::string honeybee;          ///< folder, "" = none
+  std::string picture;           ///< EXR for the report, "" = none
   bool daylight_factor = false;  ///< values are per cent of the sky's lux
 };
 

@@ -12,8 +12,8 @@
 
 namespace photile::app {
 
-/// Lamps with their numbers on the plans, kinds, photometric files, places in the scene file's world
-/// and powers. Lights of the sky have no place.
+/// Lamps with their numbers on the plans, kinds, photometric files, places in the scene file's
+/// world and powers. Lights of the sky have no place.
 measuring::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix);
 
 /// Of each opaque material that a triangle has: the luminous reflectance in percent.

@@ -378,8 +378,11 @@ void add_walk_command(CLI::App& photile) {
   auto options = std::make_shared<WalkOptions>();
   CLI::App* command = photile.add_subcommand(
       "walk", "Render the frames of a moving camera from one set of photon maps");
-  command->add_option("-o,--output", options->output, "frames to write, such as frame.####.exr, or PNG alone; a name without #### gets its number "
-                      "before the ending")
+  command
+      ->add_option("-o,--output", options->output,
+                   "frames to write, such as frame.####.exr, or PNG alone; a name without #### "
+                   "gets its number "
+                   "before the ending")
       ->required()
       ->type_name("PATTERN")
       ->check(file_ending_in({".exr", ".png"}))

@@ -43,20 +43,22 @@ std::vector<std::string> daylight_lines(const std::vector<GridDaylight>& grids,
     lines.push_back(fmt::format("  sDA {:.4g},50%{:<5} {:.1f}% of the points", asked.wanted_lux, "",
                                 100 * room.spatial_autonomy));
     if (!grid.sun.empty()) {
-      lines.push_back(fmt::format("  ASE 1000,250h    {:.1f}% of the points",
-                                  100 * room.sunlight_exposure));
+      lines.push_back(
+          fmt::format("  ASE 1000,250h    {:.1f}% of the points", 100 * room.sunlight_exposure));
     }
-    lines.push_back(fmt::format("  UDI              {:.1f}% below 100 lux, {:.1f}% to 300, {:.1f}% "
-                                "to 3000, {:.1f}% above",
-                                100 * room.useful[0], 100 * room.useful[1], 100 * room.useful[2],
-                                100 * room.useful[3]));
-    lines.push_back(fmt::format("  EN 17037         {}: half of the points have {:.4g} lux in half "
-                                "of the daylight hours, 95% have {:.4g}",
-                                room.level, room.target_lux, room.minimum_target_lux));
+    lines.push_back(fmt::format(
+        "  UDI              {:.1f}% below 100 lux, {:.1f}% to 300, {:.1f}% "
+        "to 3000, {:.1f}% above",
+        100 * room.useful[0], 100 * room.useful[1], 100 * room.useful[2], 100 * room.useful[3]));
+    lines.push_back(
+        fmt::format("  EN 17037         {}: half of the points have {:.4g} lux in half "
+                    "of the daylight hours, 95% have {:.4g}",
+                    room.level, room.target_lux, room.minimum_target_lux));
     for (const daylight::LampEnergy& lamp : grid.lamps) {
-      lines.push_back(fmt::format("  {:<16} {:.4g} kWh a year dimmed, {:.4g} at full power ({:.4g} "
-                                  "W)",
-                                  lamp.lamp, lamp.kilowatt_hours, lamp.undimmed, lamp.watts));
+      lines.push_back(
+          fmt::format("  {:<16} {:.4g} kWh a year dimmed, {:.4g} at full power ({:.4g} "
+                      "W)",
+                      lamp.lamp, lamp.kilowatt_hours, lamp.undimmed, lamp.watts));
     }
   }
   return lines;
@@ -68,7 +70,8 @@ std::string daylight_csv(const std::vector<GridDaylight>& grids) {
       "udi_300_3000,udi_above_3000,sun_hours,median_lux\n";
   for (const GridDaylight& grid : grids) {
     std::string name = grid.grid.name;
-    std::replace_if(name.begin(), name.end(), [](char c) { return c == ',' || c == '"'; }, '_');
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ',' || c == '"'; }, '_');
     for (std::size_t i = 0; i < grid.points.size(); ++i) {
       const Sensor& sensor = grid.grid.sensors[i];
       const glm::dvec3 &p = sensor.position, &n = sensor.normal;

@@ -16,9 +16,9 @@ struct GridDaylight {
   SensorGrid grid;
   std::vector<daylight::PointDaylight> points;
   daylight::RoomDaylight room;
-  std::vector<float> relative_error;          ///< of each sensor's mean
-  std::vector<float> lux, sun;                ///< by sensor, then hour; `sun` may be empty
-  std::vector<daylight::LampEnergy> lamps;    ///< empty where there are none
+  std::vector<float> relative_error;        ///< of each sensor's mean
+  std::vector<float> lux, sun;              ///< by sensor, then hour; `sun` may be empty
+  std::vector<daylight::LampEnergy> lamps;  ///< empty where there are none
 };
 
 /// What the numbers were asked for.

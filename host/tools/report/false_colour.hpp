@@ -21,8 +21,8 @@ enum class Contours {
 };
 
 struct FalseColour {
-  double scale = 1000;        ///< top of the scale (-s); 0 = automatic_top (-s auto)
-  std::string label = "lux";  ///< -l
+  double scale = 1000;                 ///< top of the scale (-s); 0 = automatic_top (-s auto)
+  std::string label = "lux";           ///< -l
   int steps = defaults::legend_steps;  ///< of the legend, and isolines (-n)
   double decades = 0;                  ///< > 0: a logarithmic scale over these (-log)
   std::string palette = "turbo";       ///< -pal

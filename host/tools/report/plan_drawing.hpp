@@ -15,8 +15,8 @@ enum class PlanSize {
 };
 
 /// SVG of a plane seen against the direction that it faces, `u` to the right: cells in the colours
-/// of their values, isolines at the steps of EN 12464-1, a legend, a scale in metres, coordinates of
-/// two corners, and what surrounds the plane. `light` is one of values.lights. Needs
+/// of their values, isolines at the steps of EN 12464-1, a legend, a scale in metres, coordinates
+/// of two corners, and what surrounds the plane. `light` is one of values.lights. Needs
 /// values.grid.layout.
 std::string plan_svg(const GridValues& values, const LightValues& light, const FalseColour& options,
                      PlanSize size = PlanSize::whole, const PlanSurroundings& surroundings = {});

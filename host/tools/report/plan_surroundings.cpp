@@ -174,8 +174,8 @@ PlanSurroundings surroundings_of(const RayScene& rays, const PlaneLayout& layout
   if (layout.normal().y < least_cosine) return {};
   const Scene& scene = rays.scene();
   const Frame frame(layout, scene.origin);
-  PlanSurroundings around{shown_around, walls_of(scene, frame),
-                          furniture_of(rays, layout, frame), {}};
+  PlanSurroundings around{
+      shown_around, walls_of(scene, frame), furniture_of(rays, layout, frame), {}};
   for (std::size_t light = 0; light < scene.lights.size(); ++light) {
     const auto place = place_of(scene, scene.lights[light]);
     if (!place || !frame.shows(frame.cells_of(*place))) continue;

@@ -114,7 +114,8 @@ std::string picture_section(const std::vector<ReportPicture>& pictures) {
 
 std::string table_section(const ReportTable& table) {
   if (table.rows.empty()) return {};
-  std::string text = fmt::format("<h2>{}</h2>\n<table class=\"texts\">\n<tr>", escaped_xml(table.heading));
+  std::string text =
+      fmt::format("<h2>{}</h2>\n<table class=\"texts\">\n<tr>", escaped_xml(table.heading));
   for (const std::string& column : table.columns) {
     text += fmt::format("<th>{}</th>", escaped_xml(column));
   }

@@ -11,7 +11,8 @@ namespace photile::measuring {
 ScratchFolder::ScratchFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "photile-XXXXXX").string();
   if (!mkdtemp(name.data())) {
-    throw OutputError(name + ": cannot make a temporary folder; set TMPDIR to one that can be written");
+    throw OutputError(name +
+                      ": cannot make a temporary folder; set TMPDIR to one that can be written");
   }
   path_ = name;
 }

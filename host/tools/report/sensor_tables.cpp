@@ -66,8 +66,7 @@ std::string ratio_with_error(const Measured& measured) {
 }  // namespace
 
 std::string measurement_csv(const Measurement& measurement, const std::string& unit) {
-  std::string text =
-      fmt::format("grid,point,x,y,z,dx,dy,dz,{},standard_error", csv_field(unit));
+  std::string text = fmt::format("grid,point,x,y,z,dx,dy,dz,{},standard_error", csv_field(unit));
   const auto& lights = measurement.front().lights;
   const bool any_blank =
       std::any_of(measurement.begin(), measurement.end(),
