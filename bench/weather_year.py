@@ -38,7 +38,7 @@ def irradiances(sine, cloud):
 
 def weather_text(latitude, longitude, time_zone, seed):
     clouds = random.Random(seed)
-    lines = [f"LOCATION,Made up,-,XXX,photile bench,000000,{latitude:.2f},{longitude:.2f},{time_zone:.1f},34.0",
+    lines = [f"LOCATION,Made up,-,ZZZ,photile bench,000000,{latitude:.2f},{longitude:.2f},{time_zone:.1f},34.0",
              "DESIGN CONDITIONS,0", "TYPICAL/EXTREME PERIODS,0", "GROUND TEMPERATURES,0",
              "HOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0", "COMMENTS 1,No measured weather", "COMMENTS 2,",
              "DATA PERIODS,1,1,Data,Sunday, 1/ 1,12/31"]

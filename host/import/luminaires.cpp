@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -99,6 +100,15 @@ glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene&
   return *middle;
 }
 
+/// Along x and across, of the flat opening that is seen from below; of a round one a square of the
+/// same area. Nothing where the file states none.
+std::optional<std::array<double, 2>> size_of(const LuminousOpening& opening) {
+  if (!(opening.along_zero > 0)) return std::nullopt;
+  const double squared = opening.round ? std::sqrt(std::numbers::pi) / 2 : 1;
+  return std::array{squared * opening.along_zero,
+                    opening.round ? squared * opening.along_zero : opening.along_quarter};
+}
+
 LuminaireArray array_of(const json& entry, const JsonObject& object,
                         const std::filesystem::path& folder, const Scene& scene,
                         Warnings& warnings) {
@@ -122,8 +132,12 @@ LuminaireArray array_of(const json& entry, const JsonObject& object,
   } else if (lamps.columns * lamps.rows > 1) {
     object.refuse("'count' of several lamps needs 'spacing', two numbers of metres");
   }
-  const auto size = pair_of(entry, object, "size", 1e-4, limits::max_coordinate);
-  if (!size) object.refuse("'size' of the luminous opening is missing; give two numbers of metres");
+  auto size = pair_of(entry, object, "size", 1e-4, limits::max_coordinate);
+  if (!size) size = size_of(lamps.distribution.opening());
+  if (!size) {
+    object.refuse(
+        "'size' is missing, and the file states no luminous opening; give two numbers of metres");
+  }
   lamps.opening.width = (*size)[0];
   lamps.opening.height = (*size)[1];
   return lamps;

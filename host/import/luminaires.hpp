@@ -13,7 +13,7 @@ namespace photile::scene_io {
 /// Members: `file` (.ies or .ldt, beside the JSON file), `position` (metres in the scene file's
 /// world, the middle of the array; "ceiling" = the middle of the ceiling of the first camera's
 /// room), `aim` (down), `rotation` (degrees about the aim), `lumens` (those of the file), `count`
-/// and `spacing` (along the lamp's x axis and across), `size` of the opening in metres (x, across),
+/// and `spacing` (along the lamp's x axis and across), `size` of the opening in metres (x, across; the file's),
 /// `name`, which is that of the layer that all of an entry share. Lamps without a camera count on
 /// default_camera. Errors: InputError naming the file, the entry and the member.
 void add_luminaires(const std::filesystem::path& file, double lumen_per_watt, Scene& scene,

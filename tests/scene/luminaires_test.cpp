@@ -102,6 +102,19 @@ TEST_CASE("an opening of cosine intensities is a Lambertian rectangle", "[lumina
   CHECK_VERDICT(mean_is(lux_at(scene, {at - scene.origin, normal}), truth, 0.03 * truth));
 }
 
+TEST_CASE("without a size the opening is the file's", "[luminaires]") {
+  const SceneFolderOnDisk folder;
+  const Scene scene =
+      scene_with(folder, R"({"file": "lamp.ies", "position": [0.5, 0.5, 2], "aim": [0, 0, -1]})");
+  double area = 0;
+  for (const std::uint32_t triangle : scene.lights[0].triangles) {
+    const auto corners = scene.corners(triangle);
+    area +=
+        0.5 * glm::length(glm::dvec3(glm::cross(corners[1] - corners[0], corners[2] - corners[0])));
+  }
+  CHECK(area == Approx(0.1 * 0.1));  // IesText's
+}
+
 TEST_CASE("a small opening is the point of its intensities", "[luminaires]") {
   const SceneFolderOnDisk folder;
   const auto narrow = [](double, double gamma) {

@@ -13,7 +13,7 @@ using IrradianceOf = std::function<int(int month, int day, int hour)>;
 inline std::string weather_text(const IrradianceOf& direct, const IrradianceOf& diffuse) {
   constexpr int days[]{31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
   std::string text =
-      "LOCATION,Somewhere,-,XXX,test,000000,52.50,13.40,1.0,34.0\nDESIGN CONDITIONS,0\n"
+      "LOCATION,Somewhere,-,ZZZ,test,000000,52.50,13.40,1.0,34.0\nDESIGN CONDITIONS,0\n"
       "TYPICAL/EXTREME PERIODS,0\nGROUND TEMPERATURES,0\nHOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0\n"
       "COMMENTS 1,\nCOMMENTS 2,\nDATA PERIODS,1,1,Data,Sunday, 1/ 1,12/31\n";
   for (int month = 1; month <= 12; ++month) {

@@ -16,7 +16,6 @@
 #include "daylight/daylight_metrics.hpp"
 #include "import/weather_file.hpp"
 #include "measuring/measure_grids.hpp"
-#include "measuring/sensor_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "tools/command/commands.hpp"
@@ -24,6 +23,7 @@
 #include "tools/command/place_options.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
+#include "tools/command/sensor_options.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
@@ -39,10 +39,9 @@ using measuring::GridDaylight;
 struct DaylightOptions {
   RenderOptions render;
   MeasuringParameters parameters;
-  PlaneOptions plane;
-  std::vector<std::string> planes, points;  ///< files
-  std::vector<std::string> outputs;         ///< .csv, .json
-  std::string honeybee;                     ///< folder, "" = none
+  PlaceOptions places;
+  std::vector<std::string> outputs;  ///< .csv, .json
+  std::string honeybee;              ///< folder, "" = none
   int patches = defaults::sky_patches;
   double ground = defaults::ground_reflectance;
   std::string suns = "rays";
@@ -64,15 +63,10 @@ Occupancy parse_occupancy(const std::string& text) {
 
 std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, const Scene& scene,
                                             std::size_t hours, Progress& progress) {
-  std::vector<measuring::SensorGrid> grids;
-  for (const auto& file : options.planes) {
-    for (auto& grid : measuring::read_planes(file)) grids.push_back(std::move(grid));
-  }
-  for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
-  if (!options.plane.height.empty()) grids.push_back(plane_of(options.plane, scene));
+  std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
   std::size_t sensors = 0;
   for (auto& grid : grids) {
-    clear_of_furniture(options.plane, scene, grid, progress);
+    clear_of_furniture(options.places.plane, scene, grid, progress);
     sensors += grid.sensors.size();
   }
   if (sensors * hours > limits::max_profile_values) {
@@ -169,12 +163,11 @@ void run_daylight(DaylightOptions& options) {
   check_settings(render);
   check_lights(options);
   options.asked.occupancy = parse_occupancy(options.occupied);
-  if (options.planes.empty() && options.points.empty() && options.plane.height.empty()) {
+  if (options.places.empty()) {
     throw UsageError("no points; give --plane floor+0.75, --grid FILE or --points FILE");
   }
   note_inputs_of(render);
-  for (const auto& file : options.planes) note_input(file);
-  for (const auto& file : options.points) note_input(file);
+  note_places(options.places);
   if (!options.honeybee.empty()) make_folder(options.honeybee);
   check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
 
@@ -216,23 +209,6 @@ void run_daylight(DaylightOptions& options) {
   write(options, results, hours);
   for (const auto& line : measuring::daylight_lines(results, options.asked))
     std::cout << line << '\n';
-}
-
-void add_places(CLI::App& command, DaylightOptions& options) {
-  const auto files = [&](const char* name, std::vector<std::string>& names, const char* what) {
-    command.add_option(name, names, what)
-        ->type_name("FILE")
-        ->allow_extra_args(false)
-        ->group("Places");
-  };
-  files("--grid", options.planes, "planes of points as JSON; repeatable");
-  files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
-  command
-      .add_option("--plane", options.plane.height,
-                  "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
-      ->type_name("HEIGHT")
-      ->group("Places");
-  add_plane_options(command, options.plane);
 }
 
 void add_year(CLI::App& command, DaylightOptions& options) {
@@ -278,29 +254,6 @@ void add_year(CLI::App& command, DaylightOptions& options) {
       ->group("Year");
 }
 
-void add_measuring(CLI::App& command, MeasuringParameters& parameters) {
-  parameters.repeats = defaults::daylight_repeats;
-  command
-      .add_option("--maintenance", parameters.maintenance,
-                  "factor of all values for dirty panes and rooms, above 0 up to 1")
-      ->type_name("X")
-      ->transform(share_up_to(1))
-      ->capture_default_str()
-      ->group("Measuring");
-  command.add_option("--rays", parameters.gathering.rays, "of each point and repeat")
-      ->type_name("N")
-      ->transform(count_between(1, limits::max_samples_per_pixel))
-      ->capture_default_str()
-      ->group("Measuring");
-  command
-      .add_option("--repeats", parameters.repeats,
-                  "with photons of their own, whose scatter is the standard error")
-      ->type_name("N")
-      ->transform(count_between(2, limits::max_repeats))
-      ->capture_default_str()
-      ->group("Measuring");
-}
-
 }  // namespace
 
 void add_daylight_command(CLI::App& photile) {
@@ -320,9 +273,11 @@ void add_daylight_command(CLI::App& photile) {
                    "hour")
       ->type_name("FOLDER")
       ->group("Output");
-  add_places(*command, *options);
+  add_place_options(*command, options->places);
   add_year(*command, *options);
-  add_measuring(*command, options->parameters);
+  options->parameters.repeats = defaults::daylight_repeats;
+  add_maintenance_option(*command, options->parameters, "Measuring");
+  add_sensor_options(*command, options->parameters, "Measuring");
   add_setting_options(*command, options->render,
                       {"samples_per_pixel", "direct_rays", "final_gather_rays", "gloss", "quota"});
   command->callback([options] { run_daylight(*options); });

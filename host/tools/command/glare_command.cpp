@@ -22,6 +22,7 @@
 #include "tools/command/place_options.hpp"
 #include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
+#include "tools/command/sensor_options.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
@@ -267,18 +268,7 @@ void add_rating(CLI::App& command, GlareOptions& options) {
       ->transform(count_between(16, limits::max_image_side))
       ->capture_default_str()
       ->group("Glare");
-  command.add_option("--rays", parameters.measuring.gathering.rays, "of each eye and repeat")
-      ->type_name("N")
-      ->transform(count_between(1, limits::max_samples_per_pixel))
-      ->capture_default_str()
-      ->group("Glare");
-  command
-      .add_option("--repeats", parameters.measuring.repeats,
-                  "measurements with photons of their own, whose scatter is the standard error")
-      ->type_name("N")
-      ->transform(count_between(2, limits::max_repeats))
-      ->capture_default_str()
-      ->group("Glare");
+  add_sensor_options(command, parameters.measuring, "Glare");
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "tools/command/render_options.hpp"
 #include "tools/command/report_contents.hpp"
 #include "tools/command/run_notes.hpp"
+#include "tools/command/sensor_options.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
@@ -35,19 +36,16 @@ struct MeasureOptions {
   RenderOptions render;
   MeasureOutputOptions outputs;
   MeasuringParameters parameters;
-  std::vector<std::string> planes;  ///< files
-  std::vector<std::string> points;  ///< files
-  PlaneOptions plane;
+  PlaceOptions places;
   bool walls = false, ceiling = false;
   std::string cylindrical_at, semi_cylindrical_at;  ///< heights, "" = none
   std::string target;                               ///< "" = none
   bool cylindrical = false;
   bool daylight_factor = false;
 
-  /// Whether something is asked for that follows from the room.
+  /// Whether surfaces or heights of the room are asked for.
   bool of_room() const {
-    return !plane.height.empty() || walls || ceiling || !cylindrical_at.empty() ||
-           !semi_cylindrical_at.empty();
+    return walls || ceiling || !cylindrical_at.empty() || !semi_cylindrical_at.empty();
   }
 };
 
@@ -76,28 +74,22 @@ void keep_sky(measuring::Measurement& measurement) {
 /// Everything that the command line asks to be measured.
 std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const Scene& scene,
                                             Progress& progress) {
-  std::vector<measuring::SensorGrid> grids;
-  for (const auto& file : options.planes) {
-    for (auto& grid : measuring::read_planes(file)) grids.push_back(std::move(grid));
-  }
-  for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
-  if (!options.plane.height.empty()) grids.push_back(plane_of(options.plane, scene));
+  std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
+  const PlaneOptions& plane = options.places.plane;
   const auto add = [&](std::vector<measuring::SensorGrid> more) {
     for (auto& grid : more) grids.push_back(std::move(grid));
   };
-  if (options.walls) add(measuring::wall_grids(scene, plane_at(options.plane, "floor")));
+  if (options.walls) add(measuring::wall_grids(scene, plane_at(plane, "floor")));
   if (options.ceiling) {
-    grids.push_back(measuring::ceiling_grid(scene, plane_at(options.plane, "floor")));
+    grids.push_back(measuring::ceiling_grid(scene, plane_at(plane, "floor")));
   }
   if (!options.cylindrical_at.empty()) {
-    grids.push_back(
-        measuring::cylindrical_grid(scene, plane_at(options.plane, options.cylindrical_at)));
+    grids.push_back(measuring::cylindrical_grid(scene, plane_at(plane, options.cylindrical_at)));
   }
   if (!options.semi_cylindrical_at.empty()) {
-    add(measuring::semi_cylindrical_grids(scene,
-                                          plane_at(options.plane, options.semi_cylindrical_at)));
+    add(measuring::semi_cylindrical_grids(scene, plane_at(plane, options.semi_cylindrical_at)));
   }
-  for (auto& grid : grids) clear_of_furniture(options.plane, scene, grid, progress);
+  for (auto& grid : grids) clear_of_furniture(plane, scene, grid, progress);
   std::size_t sensors = 0;
   for (const auto& grid : grids) sensors += grid.sensors.size();
   if (sensors > limits::max_sensors) {
@@ -128,15 +120,14 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   check_settings(render);
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   share_rendering(render);
-  if (options.planes.empty() && options.points.empty() && !options.of_room()) {
+  if (options.places.empty() && !options.of_room()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
   std::optional<measuring::Requirement> requirement;
   if (!options.target.empty()) requirement = measuring::parse_requirement(options.target);
   if (options.daylight_factor) take_overcast_sky(render.load);
   note_inputs_of(render);
-  for (const auto& file : options.planes) note_input(file);
-  for (const auto& file : options.points) note_input(file);
+  note_places(options.places);
   options.outputs.daylight_factor = options.daylight_factor;
   const MeasureOutputs outputs(options.outputs);
 
@@ -173,19 +164,10 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
 }
 
 void add_places(CLI::App& command, MeasureOptions& options) {
-  const auto files = [&](const char* name, std::vector<std::string>& names, const char* what) {
-    command.add_option(name, names, what)
-        ->type_name("FILE")
-        ->allow_extra_args(false)
-        ->group("Places");
-  };
-  files("--grid", options.planes, "planes of points as JSON; repeatable");
-  files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
+  add_place_options(command, options.places);
   const auto height = [&](const char* name, std::string& text, const char* what) {
     command.add_option(name, text, what)->type_name("HEIGHT")->group("Places");
   };
-  height("--plane", options.plane.height,
-         "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres");
   command.add_flag("--walls", options.walls, "a grid on each wall of the room")->group("Places");
   command.add_flag("--ceiling", options.ceiling, "a grid on the ceiling of the room")
       ->group("Places");
@@ -193,11 +175,9 @@ void add_places(CLI::App& command, MeasureOptions& options) {
          "cylindrical illuminance over the floor: floor+1.2 of people who sit");
   height("--semi-cylindrical-at", options.semi_cylindrical_at,
          "semi-cylindrical illuminance over the floor, towards four sides");
-  add_plane_options(command, options.plane);
 }
 
 void add_measuring(CLI::App& command, MeasureOptions& options) {
-  MeasuringParameters& parameters = options.parameters;
   command
       .add_flag("--cylindrical", options.cylindrical,
                 "cylindrical illuminance round each point's direction, which points up")
@@ -211,25 +191,8 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
                   "what is required, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)")
       ->type_name("NAME|VALUES")
       ->group("Measuring");
-  command
-      .add_option("--maintenance", parameters.maintenance,
-                  "factor of all values for ageing and dirt, above 0 up to 1")
-      ->type_name("X")
-      ->transform(share_up_to(1))
-      ->capture_default_str()
-      ->group("Measuring");
-  command.add_option("--rays", parameters.gathering.rays, "rays of each point and repeat")
-      ->type_name("N")
-      ->transform(count_between(1, limits::max_samples_per_pixel))
-      ->capture_default_str()
-      ->group("Measuring");
-  command
-      .add_option("--repeats", parameters.repeats,
-                  "measurements with photons of their own, whose scatter is the standard error")
-      ->type_name("N")
-      ->transform(count_between(2, limits::max_repeats))
-      ->capture_default_str()
-      ->group("Measuring");
+  add_maintenance_option(command, options.parameters, "Measuring");
+  add_sensor_options(command, options.parameters, "Measuring");
 }
 
 }  // namespace

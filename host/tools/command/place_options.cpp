@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <utility>
 
+#include "common/run_files.hpp"
 #include "measuring/furniture.hpp"
+#include "measuring/sensor_files.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -41,6 +44,38 @@ void add_plane_options(CLI::App& command, PlaneOptions& options) {
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str()
       ->group("Places");
+}
+
+void add_place_options(CLI::App& command, PlaceOptions& options) {
+  const auto files = [&](const char* name, std::vector<std::string>& names, const char* what) {
+    command.add_option(name, names, what)
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->group("Places");
+  };
+  files("--grid", options.planes, "planes of points as JSON; repeatable");
+  files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
+  command
+      .add_option("--plane", options.plane.height,
+                  "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
+      ->type_name("HEIGHT")
+      ->group("Places");
+  add_plane_options(command, options.plane);
+}
+
+void note_places(const PlaceOptions& options) {
+  for (const auto& file : options.planes) note_input(file);
+  for (const auto& file : options.points) note_input(file);
+}
+
+std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene) {
+  std::vector<measuring::SensorGrid> grids;
+  for (const auto& file : options.planes) {
+    for (auto& grid : measuring::read_planes(file)) grids.push_back(std::move(grid));
+  }
+  for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
+  if (!options.plane.height.empty()) grids.push_back(plane_of(options.plane, scene));
+  return grids;
 }
 
 measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height) {

@@ -27,9 +27,25 @@ struct PlaneOptions {
   int up_axis() const { return up[0] - 'x'; }
 };
 
-/// Adds --inside, --wall-band, --spacing, --clearance and --up, in the group
-/// Places.
+/// Places of sensors.
+struct PlaceOptions {
+  std::vector<std::string> planes, points;  ///< files
+  PlaneOptions plane;
+
+  bool empty() const { return planes.empty() && points.empty() && plane.height.empty(); }
+};
+
+/// Adds --inside, --wall-band, --spacing, --clearance and --up, in the group Places.
 void add_plane_options(CLI::App& command, PlaneOptions& options);
+
+/// Adds --grid, --points, --plane and those of add_plane_options.
+void add_place_options(CLI::App& command, PlaceOptions& options);
+
+/// Notes the files that will be read. Errors: those of note_input.
+void note_places(const PlaceOptions& options);
+
+/// The grids of the files, and the working plane's. Errors: those of the readers and of plane_of.
+std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene);
 
 /// What these options say of a level at `height`. Errors: those of parse_working_plane.
 measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height);
