@@ -6,7 +6,8 @@
     bench/bench.py compare BEFORE.json AFTER.json
 
 `run` builds the bench first and writes build/bench-results/NAME.json unless told where. An option that the
-bench does not know, such as --repeats where nothing is repeated, is an error. `run NAME --help` lists its
+bench does not know, such as --repeats where nothing is repeated, is an error; where a row is a failure, as of
+a kernel that does not compile, all are written and the exit code is 1. `run NAME --help` lists its
 options. docs/bench-points.md says what the files hold, docs/experiments.md what to do with them.
 """
 
@@ -22,6 +23,7 @@ import compare
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/release"
+GROWS_UNTIL_IT_FAILS = "scale"  # its last rows say where memory or time ended
 
 
 def fail(message, code=2):
@@ -83,9 +85,13 @@ def run(arguments):
     code = subprocess.run([program, "--output", output, *arguments.options]).returncode
     if code != 0:
         sys.exit(code)
+    results = json.loads(output.read_text())
     if arguments.csv:
-        write_csv(json.loads(output.read_text()), arguments.csv)
+        write_csv(results, arguments.csv)
     print(f"wrote {output}", file=sys.stderr)
+    failed = [row["failure"] for row in results["results"] if "failure" in row]
+    if failed and arguments.name != GROWS_UNTIL_IT_FAILS:
+        fail(f"{len(failed)} of {len(results['results'])} rows are failures, the first: {failed[0]}", 1)
 
 
 def main():

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Makes the bundled scenes beside this file: cornell-box/, living-room/ and gallery/.
+"""Makes the bundled scenes beside this file: cornell-box/, living-room/, gallery/ and
+office/.
 
 Usage: scenes/make_scenes.py [folder]      (default: the folder of this file)
 
@@ -11,7 +12,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from scene_tools import cornell_box, gallery, living_room  # noqa: E402 (the path comes first)
+from scene_tools import cornell_box, gallery, living_room, office  # noqa: E402 (the path comes first)
 
 
 def main():
@@ -19,6 +20,7 @@ def main():
     cornell_box.write(folder / "cornell-box")
     living_room.write(folder / "living-room")
     gallery.write(folder / "gallery")
+    office.write(folder / "office")
 
 
 if __name__ == "__main__":

@@ -64,9 +64,9 @@ void set_worth(const std::vector<SkyLight>& sky, const std::vector<double>& mean
   }
 }
 
-std::vector<Sensor> in_scene(const Scene& scene, std::span<const Sensor> sensors) {
-  std::vector<Sensor> own(sensors.begin(), sensors.end());
-  for (Sensor& sensor : own) sensor.position -= scene.origin;
+std::vector<Sensor> all_in_scene(const Scene& scene, std::span<const Sensor> sensors) {
+  std::vector<Sensor> own;
+  for (const Sensor& sensor : sensors) own.push_back(in_scene(scene, sensor));
   return own;
 }
 
@@ -122,7 +122,7 @@ std::vector<float> straight_light(const Scene& scene, std::span<const Sensor> se
 }  // namespace
 
 StraightLight::StraightLight(const Scene& scene, std::span<const Sensor> sensors)
-    : rays_(scene), sensors_(in_scene(scene, sensors)) {
+    : rays_(scene), sensors_(all_in_scene(scene, sensors)) {
   const BoundingSphere bounds = bounding_sphere(scene);
   beyond_ = 2.5 * bounds.radius;
   for (Sensor& sensor : sensors_) {
@@ -170,7 +170,7 @@ DaylightMatrix daylight_matrix(Scene scene, std::span<const Sensor> sensors, con
   }
   matrix.from_lamps.assign(matrix.lamps.size() * matrix.sensors, 0.0f);
 
-  const std::vector<Sensor> own = in_scene(scene, sensors);
+  const std::vector<Sensor> own = all_in_scene(scene, sensors);
   const int repeats = parameters.measuring.repeats;
   RenderParameters photons = parameters.measuring.photons;
   photons.photons.quota = PhotonQuota::power;

@@ -168,17 +168,19 @@ SeenLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& 
   return seen;
 }
 
-std::vector<SeenLuminaire> Luminaires::seen_by(const Observer& observer,
-                                               const LightMix& mix) const {
+std::vector<SeenLuminaire> Luminaires::seen_by(const Observer& in_file, const LightMix& mix) const {
   const trace::FlushDenormals flush_denormals;
-  const glm::dvec3 eye = observer.position - rays_.scene().origin;
+  const Observer observer = in_scene(rays_.scene(), in_file);
+  const glm::dvec3& eye = observer.position;
   std::vector<SeenLuminaire> all;
   for (const Luminaire& luminaire : luminaires_) {
     const glm::dvec3 power = power_of(mix, groups_.group_of[luminaire.light]);
     if (!(luminance(power) > 0)) continue;
     SeenLuminaire seen = luminaire.patches.empty() ? lamp_seen(luminaire, observer, eye, power)
                                                    : surface_seen(luminaire, observer, eye, power);
-    if (seen.luminance > 0) all.push_back(std::move(seen));
+    if (!(seen.luminance > 0)) continue;
+    seen.direction = direction_in_world(rays_.scene(), seen.direction);
+    all.push_back(std::move(seen));
   }
   return all;
 }

@@ -102,10 +102,11 @@ void take_pictures(const Scene& scene, const LightMix& mix, std::span<Device> de
 
 }  // namespace
 
-Camera eye_of(const Scene& scene, const Observer& observer) {
+Camera eye_of(const Scene& scene, const Observer& in_file) {
+  const Observer observer = in_scene(scene, in_file);
   Camera camera;
   camera.name = observer.name;
-  camera.position = observer.position - scene.origin;
+  camera.position = observer.position;
   camera.forward = observer.forward;
   camera.up = observer.up;
   camera.right = glm::cross(observer.forward, observer.up);

@@ -24,6 +24,13 @@ Observer Observer::looking(std::string name, const glm::dvec3& position, const g
   return observer;
 }
 
+Observer in_scene(const Scene& scene, Observer observer) {
+  observer.position = place_in_scene(scene, observer.position);
+  observer.forward = direction_in_scene(scene, observer.forward);
+  observer.up = direction_in_scene(scene, observer.up);
+  return observer;
+}
+
 double position_index(const Observer& observer, const glm::dvec3& direction) {
   const double cosine = glm::dot(direction, observer.forward);
   if (!(cosine > 0)) return std::numeric_limits<double>::infinity();

@@ -4,6 +4,8 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "photile/scene.hpp"
+
 namespace photile::glare {
 
 /// Somebody who looks somewhere.
@@ -17,6 +19,9 @@ struct Observer {
   static Observer looking(std::string name, const glm::dvec3& position, const glm::dvec3& forward,
                           const glm::dvec3& upwards);
 };
+
+/// The observer in the scene's own coordinates.
+Observer in_scene(const Scene& scene, Observer observer);
 
 /// Guth's position index of a direction (unit), by Levin's formula: with sigma the angle to the
 /// line of sight and tau the angle between the vertical and the plane of both, in degrees,

@@ -141,7 +141,7 @@ std::size_t index_of(const LightMix& mix, const std::string& name) {
   std::vector<std::string> names;
   for (const MixedLight& light : mix.lights) names.push_back(light.name);
   throw UsageError(
-      fmt::format("there is no light '{}'; there {}", name, scene_io::listed_names(names)));
+      fmt::format("there is no light '{}'; there {}", name, scene_io::names_like(name, names)));
 }
 
 }  // namespace image

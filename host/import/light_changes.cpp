@@ -26,7 +26,7 @@ Light& light_named(const std::string& name, const char* change, Scene& scene) {
   std::vector<std::string> names;
   for (const Light& light : scene.lights) names.push_back(light.name);
   throw UsageError(fmt::format("{} {}: there is no light '{}'; there {}", change, name, name,
-                               listed_names(names)));
+                               names_like(name, std::move(names))));
 }
 
 }  // namespace

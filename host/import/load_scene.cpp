@@ -15,6 +15,7 @@
 #include "import/light_source.hpp"
 #include "import/luminaires.hpp"
 #include "import/material_changes.hpp"
+#include "import/up_axis.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
@@ -116,6 +117,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
                                 const SceneLoadOptions& options) {
   Scene scene;
   scene.source = file;
+  scene.turn = turn_upright(options.up);
   SceneFolder folder(file, options.allow_outside);
   Warnings warnings;
   AreaLights area_lights(scene);
@@ -126,6 +128,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
     if (scene.triangles.empty()) {
       throw lacks("no triangles with an area; export the scene with its geometry", context);
     }
+    if (options.up.empty()) warn_of_other_up(scene, warnings);
     for (const AreaLights::Origin& origin : area_lights.finish(warnings)) {
       context.light_sources.push_back(source_of(origin, context));
     }
@@ -135,10 +138,10 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
     }
     add_surroundings(scene, options);
     context.light_sources.resize(scene.lights.size());
-    if (scene.lights.empty()) {
+    if (scene.lights.empty() && !options.may_be_dark) {
       throw lacks(
           "no lights; give a material an emission (Ke in MTL, emissiveFactor in glTF), add "
-          "KHR_lights_punctual lights, or give an environment picture, a sun or a sky",
+          "KHR_lights_punctual lights, or give luminaires, an environment picture, a sun or a sky",
           context);
     }
   } catch (const Error&) {

@@ -74,7 +74,7 @@ IntensityDistribution distribution_of(const std::filesystem::path& file, const J
 std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
-  const auto axes = measuring::PlanAxes::of(1);
+  const auto axes = measuring::PlanAxes();
   const Camera camera = scene.cameras.empty() ? place_camera(scene) : scene.cameras.front();
   const auto room = measuring::Room::of_camera(rays, axes, camera);
   if (!room) return std::nullopt;
@@ -91,7 +91,7 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
 
 glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene& scene) {
   if (!entry.contains("position") || entry["position"] != "ceiling") {
-    return object.vector("position") - scene.origin;
+    return place_in_scene(scene, object.vector("position"));
   }
   const auto middle = middle_of_ceiling(scene);
   if (!middle) {
@@ -100,13 +100,12 @@ glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene&
   return *middle;
 }
 
-/// Along x and across, of the flat opening that is seen from below; of a round one a square of the
-/// same area. Nothing where the file states none.
+/// Along x and across, of the flat opening that is seen from below; of a round one a rectangle of
+/// the same area. Nothing where the file states none.
 std::optional<std::array<double, 2>> size_of(const LuminousOpening& opening) {
-  if (!(opening.along_zero > 0)) return std::nullopt;
+  if (!(opening.along_zero > 0 && opening.along_quarter > 0)) return std::nullopt;
   const double squared = opening.round ? std::sqrt(std::numbers::pi) / 2 : 1;
-  return std::array{squared * opening.along_zero,
-                    opening.round ? squared * opening.along_zero : opening.along_quarter};
+  return std::array{squared * opening.along_zero, squared * opening.along_quarter};
 }
 
 LuminaireArray array_of(const json& entry, const JsonObject& object,
@@ -116,7 +115,7 @@ LuminaireArray array_of(const json& entry, const JsonObject& object,
   LuminaireArray lamps{object.text("name", file.stem().string()),
                        distribution_of(file, object, warnings)};
   lamps.position = position_of(entry, object, scene);
-  if (object.has("aim")) lamps.aim = object.vector("aim");
+  if (object.has("aim")) lamps.aim = direction_in_scene(scene, object.vector("aim"));
   if (!(glm::length(lamps.aim) > 0)) object.refuse("'aim' is 0 0 0; it has to point somewhere");
   lamps.aim = glm::normalize(lamps.aim);
   if (object.has("rotation")) lamps.rotation = glm::radians(object.number("rotation", -360, 360));

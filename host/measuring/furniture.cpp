@@ -82,11 +82,11 @@ std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid
   std::vector<Parities> parities;
   std::vector<bool> near;
   for (const Sensor& sensor : grid.sensors) {
-    const Sensor in_scene{sensor.position - scene.origin, sensor.normal};
+    const Sensor there = in_scene(scene, sensor);
     // Rays along a surface that the sensor lies on would meet its edges by chance.
     parities.push_back(
-        parities_at(rays, {in_scene.position + off_surface * sensor.normal, sensor.normal}));
-    near.push_back(has_surface_near(rays, in_scene, clearance));
+        parities_at(rays, {there.position + off_surface * there.normal, there.normal}));
+    near.push_back(has_surface_near(rays, there, clearance));
   }
   const Parities usual = usual_parities(parities);
   std::vector<Sensor> sensors;

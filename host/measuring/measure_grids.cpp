@@ -19,8 +19,7 @@ std::vector<Sensor> sensors_of(const Scene& scene, std::span<const SensorGrid> g
   std::vector<Sensor> sensors;
   for (const SensorGrid& grid : grids) {
     for (const Sensor& sensor : grid.sensors) {
-      sensors.push_back(sensor);
-      sensors.back().position -= scene.origin;
+      sensors.push_back(in_scene(scene, sensor));
     }
   }
   return sensors;

@@ -14,7 +14,7 @@ namespace photile::measuring {
 /// A row of EN 12464-1:2021, or one of the user's own. 0 = nothing is required.
 struct Requirement {
   std::string name;        ///< "office-desk"
-  std::string reference;   ///< "EN 12464-1:2021, table 34"
+  std::string reference;   ///< "EN 12464-1:2021, table 34, required values"
   std::string what;        ///< "writing, typing, reading, data processing"
   double mean = 0;         ///< E_m, lux, maintained, on the task area
   double uniformity = 0;   ///< U_o there
@@ -23,6 +23,7 @@ struct Requirement {
   double cylindrical = 0;  ///< E_m,z, lux
   double wall = 0;         ///< E_m,wall, lux
   double ceiling = 0;      ///< E_m,ceiling, lux
+  bool confirmed = true;   ///< by a source that prints the row of the standard
 };
 
 /// The rows that are known by name.
@@ -49,9 +50,11 @@ struct Judgement {
 /// of table 2 of the standard. Grids of another role are not judged.
 std::vector<Judgement> judge(const GridValues& values, const Requirement& requirement);
 
-/// All grids' judgements under a heading, and what a program cannot judge.
+/// All grids' judgements under a heading, that of `glare` where it is known, and what a program
+/// cannot judge.
 std::vector<std::string> requirement_lines(const Measurement& measurement,
-                                           const Requirement& requirement);
+                                           const Requirement& requirement,
+                                           const std::optional<Judgement>& glare = std::nullopt);
 
 /// E_m of the immediate surroundings of a task: EN 12464-1:2021, table 2.
 double mean_of_surroundings(double task_mean);

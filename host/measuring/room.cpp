@@ -50,15 +50,10 @@ std::optional<Headroom> headroom_at(const RayScene& rays, const PlanAxes& axes,
 
 }  // namespace
 
-PlanAxes PlanAxes::of(int axis) {
-  switch (axis) {
-    case 0:
-      return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-    case 1:
-      return {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
-    default:
-      return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  }
+PlanAxes PlanAxes::in_world(const Scene& scene) {
+  const PlanAxes own;
+  return {direction_in_world(scene, own.right), direction_in_world(scene, own.ahead),
+          direction_in_world(scene, own.up)};
 }
 
 Room::Room(const RayScene& rays, const PlanAxes& axes, const glm::dvec3& seed, double cell)
@@ -112,7 +107,7 @@ std::optional<Room> Room::meant(const RayScene& rays, const PlanAxes& axes,
     if (scene.cameras.empty()) return std::nullopt;
     return of_camera(rays, axes, scene.cameras.front());
   }
-  std::optional<Room> room = around(rays, axes, *inside - scene.origin);
+  std::optional<Room> room = around(rays, axes, place_in_scene(scene, *inside));
   if (!room) {
     throw UsageError(
         fmt::format("point {},{},{}: is in no room with a floor below and a ceiling above, each "

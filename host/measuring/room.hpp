@@ -12,12 +12,12 @@
 
 namespace photile::measuring {
 
-/// `right` x `ahead` = `up`, unit.
+/// `right` x `ahead` = `up`, unit. In a scene y points up, and -z is at the top of its map.
 struct PlanAxes {
-  glm::dvec3 right, ahead, up;
+  glm::dvec3 right{1.0, 0.0, 0.0}, ahead{0.0, 0.0, -1.0}, up{0.0, 1.0, 0.0};
 
-  /// As a map is drawn where `axis` (0, 1, 2) points up; for 1, as in glTF, -z is at its top.
-  static PlanAxes of(int axis);
+  /// The same in the world of the scene's file.
+  static PlanAxes in_world(const Scene& scene);
   glm::dvec2 plan(const glm::dvec3& point) const {
     return {glm::dot(point, right), glm::dot(point, ahead)};
   }

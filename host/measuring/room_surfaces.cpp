@@ -77,7 +77,7 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
   const SensorGrid all = grid_on_plane(name, layout);
   SensorGrid grid{name, {}, layout};
   grid.layout->cells.clear();
-  const glm::dvec3& origin = rays.scene().origin;
+  const Scene& scene = rays.scene();
   for (std::size_t i = 0; i < all.sensors.size(); ++i) {
     const Sensor& sensor = all.sensors[i];
     const auto met = met_by(rays, sensor.position + look_from * sensor.normal, -sensor.normal);
@@ -85,15 +85,17 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
     if (there && !met->glass) {
       const glm::dvec3 place =
           sensor.position + (look_from - met->distance + before_surface) * sensor.normal;
-      grid.sensors.push_back({place + origin, sensor.normal});
+      grid.sensors.push_back(
+          {place_in_world(scene, place), direction_in_world(scene, sensor.normal)});
       grid.layout->cells.push_back(layout.cells[i]);
     } else {
-      grid.blanks.push_back({{sensor.position + origin, sensor.normal},
-                             there ? "glass" : missing,
-                             grid.sensors.size()});
+      grid.blanks.push_back(
+          {{place_in_world(scene, sensor.position), direction_in_world(scene, sensor.normal)},
+           there ? "glass" : missing,
+           grid.sensors.size()});
     }
   }
-  grid.layout->origin += origin;
+  grid.layout = in_world(scene, std::move(*grid.layout));
   return grid;
 }
 
@@ -113,7 +115,7 @@ double ceiling_height(const RayScene& rays, const PlanAxes& axes, const Room& ro
 }  // namespace
 
 std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane) {
-  const PlanAxes axes = PlanAxes::of(plane.up);
+  const PlanAxes axes;
   const RayScene rays(scene);
   const Room room = room_of(rays, axes, plane);
   const double floor = find_floor(rays, axes, &room).height;
@@ -139,7 +141,7 @@ std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane
 }
 
 SensorGrid ceiling_grid(const Scene& scene, const WorkingPlane& plane) {
-  const PlanAxes axes = PlanAxes::of(plane.up);
+  const PlanAxes axes;
   const RayScene rays(scene);
   const Room room = room_of(rays, axes, plane);
   const glm::dvec2 size = room.high() - room.low();
@@ -162,7 +164,7 @@ SensorGrid cylindrical_grid(const Scene& scene, const WorkingPlane& plane) {
 }
 
 std::vector<SensorGrid> semi_cylindrical_grids(const Scene& scene, const WorkingPlane& plane) {
-  const PlanAxes axes = PlanAxes::of(plane.up);
+  const PlanAxes axes = PlanAxes::in_world(scene);
   const SensorGrid over_floor = working_plane_grid(scene, plane);
   std::vector<SensorGrid> grids;
   for (int side = 0; side < sides; ++side) {

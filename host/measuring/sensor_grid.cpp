@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "photile/scene.hpp"
+
 namespace photile::measuring {
 namespace {
 
@@ -15,6 +17,20 @@ glm::dvec3 PlaneLayout::middle_of(std::uint32_t cell) const {
   const auto column = static_cast<double>(cell % static_cast<std::uint32_t>(columns));
   const auto row = static_cast<double>(cell / static_cast<std::uint32_t>(columns));
   return origin + (column + 0.5) / columns * u + (row + 0.5) / rows * v;
+}
+
+PlaneLayout in_world(const Scene& scene, PlaneLayout layout) {
+  layout.origin = place_in_world(scene, layout.origin);
+  layout.u = direction_in_world(scene, layout.u);
+  layout.v = direction_in_world(scene, layout.v);
+  return layout;
+}
+
+PlaneLayout in_scene(const Scene& scene, PlaneLayout layout) {
+  layout.origin = place_in_scene(scene, layout.origin);
+  layout.u = direction_in_scene(scene, layout.u);
+  layout.v = direction_in_scene(scene, layout.v);
+  return layout;
 }
 
 SensorGrid grid_on_plane(const std::string& name, PlaneLayout layout) {

@@ -26,6 +26,10 @@ struct PlaneLayout {
   double spacing() const { return glm::length(u) / columns; }  ///< metres, along u
 };
 
+/// A plane of the scene's own coordinates in the file's world, and back.
+PlaneLayout in_world(const Scene& scene, PlaneLayout layout);
+PlaneLayout in_scene(const Scene& scene, PlaneLayout layout);
+
 /// A point of a grid that is not measured.
 struct BlankPoint {
   Sensor sensor;

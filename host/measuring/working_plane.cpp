@@ -38,7 +38,7 @@ WorkingPlane parse_working_plane(const std::string& text) {
 }
 
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
-  const PlanAxes axes = PlanAxes::of(plane.up);
+  const PlanAxes axes;
   const RayScene rays(scene);
   const std::optional<Room> room = Room::meant(rays, axes, plane.inside);
   const Floor floor = find_floor(rays, axes, room ? &*room : nullptr);
@@ -82,8 +82,7 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
         fmt::format("{}: no point of the floor is {} m from its border; make the wall band smaller",
                     scene.source.string(), plane.wall_band));
   }
-  layout.origin += scene.origin;
-  SensorGrid grid = grid_on_plane("working plane", std::move(layout));
+  SensorGrid grid = grid_on_plane("working plane", in_world(scene, std::move(layout)));
   if (!room) {
     grid.remark =
         "the camera comes to no room with a ceiling: this is the widest floor of the scene; name a "

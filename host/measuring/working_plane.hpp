@@ -15,7 +15,6 @@ struct WorkingPlane {
   double height = 0;        ///< metres
   double wall_band = 0;     ///< metres that are left out along the floor's border
   double spacing = 0;       ///< metres; 0 = that of EN 12464-1
-  int up = 1;               ///< axis that points up: 0, 1 or 2
   /// A point in the room, metres in the file's world; none = the first camera tells the room.
   std::optional<glm::dvec3> inside;
 };

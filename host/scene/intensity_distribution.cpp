@@ -35,8 +35,8 @@ double LuminousOpening::projected_area(const PhotometricAxes& axes,
                                        const glm::dvec3& direction) const {
   const double down = std::abs(glm::dot(direction, axes.pole));
   if (round) {
-    return 0.25 * pi * along_zero * along_zero * down +
-           along_zero * height * std::sqrt(std::max(0.0, 1.0 - down * down));
+    return 0.25 * pi * along_zero * along_quarter * down +
+           std::sqrt(along_zero * along_quarter * std::max(0.0, 1.0 - down * down)) * height;
   }
   return along_zero * along_quarter * down +
          height * (along_quarter * std::abs(glm::dot(direction, axes.zero)) +

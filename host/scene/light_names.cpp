@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
 #include <unordered_set>
+#include <utility>
 
+#include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::scene_io {
@@ -32,6 +35,21 @@ std::size_t utf8_sequence_length(std::string_view text) {
     if ((byte(i) & 0xC0) != 0x80) return 0;
   }
   return length;
+}
+
+/// Letters to insert, remove or replace.
+std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
 }
 
 }  // namespace
@@ -69,6 +87,14 @@ void make_light_names_unique(std::vector<Light>& lights) {
           clean_light_name(original, limits::max_light_name_bytes - suffix.size()) + suffix;
     }
   }
+}
+
+std::string names_like(std::string_view name, std::vector<std::string> names) {
+  const std::string wanted = lower(name);
+  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return edits_between(wanted, lower(a)) < edits_between(wanted, lower(b));
+  });
+  return listed_names(names);
 }
 
 std::string listed_names(std::span<const std::string> names) {

@@ -91,12 +91,13 @@ void add_environment(const EnvironmentMap& map, ContentHash& hash) {
 }  // namespace
 
 void add_scene(const Scene& scene, ContentHash& hash) {
-  const auto& [source, unit, origin, vertices, triangles, front_side, triangle_material,
+  const auto& [source, unit, origin, turn, vertices, triangles, front_side, triangle_material,
                triangle_light, corner_uv, corner_emission_uv, corner_normal, corner_tangent,
                shared_meshes, instances, materials, metallic_roughness, textures, lights,
                distributions, environments, portals, cameras, report] = scene;
   hash.add(unit);
   hash.add(origin);
+  for (int axis = 0; axis < 3; ++axis) hash.add(turn[axis]);
   hash.add(vertices);
   hash.add(triangles);
   hash.add(front_side);

@@ -1,5 +1,6 @@
 // Questions about a scene that several rooms ask.
 #include "photile/scene.hpp"
+#include "photile/sensors.hpp"
 
 namespace photile {
 namespace {
@@ -12,9 +13,43 @@ glm::dvec3 doubled_area_vector(const Scene& scene, std::uint32_t triangle) {
 
 }  // namespace
 
+glm::dvec3 direction_in_scene(const Scene& scene, const glm::dvec3& world) {
+  return scene.turn * world;
+}
+
+glm::dvec3 direction_in_world(const Scene& scene, const glm::dvec3& direction) {
+  return glm::transpose(scene.turn) * direction;
+}
+
+glm::dvec3 place_in_scene(const Scene& scene, const glm::dvec3& world) {
+  return direction_in_scene(scene, world) - scene.origin;
+}
+
+glm::dvec3 place_in_world(const Scene& scene, const glm::dvec3& place) {
+  return direction_in_world(scene, place + scene.origin);
+}
+
 Camera in_world(const Scene& scene, Camera camera) {
-  camera.position += scene.origin;
+  camera.position = place_in_world(scene, camera.position);
+  for (glm::dvec3* axis : {&camera.forward, &camera.up, &camera.right}) {
+    *axis = direction_in_world(scene, *axis);
+  }
   return camera;
+}
+
+Camera in_scene(const Scene& scene, Camera camera) {
+  camera.position = place_in_scene(scene, camera.position);
+  for (glm::dvec3* axis : {&camera.forward, &camera.up, &camera.right}) {
+    *axis = direction_in_scene(scene, *axis);
+  }
+  return camera;
+}
+
+Sensor in_scene(const Scene& scene, Sensor sensor) {
+  sensor.position = place_in_scene(scene, sensor.position);
+  sensor.normal = direction_in_scene(scene, sensor.normal);
+  sensor.facing = direction_in_scene(scene, sensor.facing);
+  return sensor;
 }
 
 glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle) {

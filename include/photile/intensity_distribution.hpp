@@ -16,10 +16,10 @@ struct PhotometricAxes {
   glm::dvec3 quarter{0.0, 1.0, 0.0};  ///< unit; polar angle 90 degrees, azimuth 90 degrees
 };
 
-/// The part of a lamp that shines, as its photometric file gives it: a box, or an upright cylinder,
-/// around the lamp's axis. All zero where the file says nothing.
+/// The part of a lamp that shines, as its photometric file gives it: a box, or an upright cylinder
+/// on a circle or an ellipse, around the lamp's axis. All zero where the file says nothing.
 struct LuminousOpening {
-  double along_zero = 0;     ///< metres along PhotometricAxes::zero; of a round one its diameter
+  double along_zero = 0;     ///< metres along PhotometricAxes::zero; of a round one a diameter
   double along_quarter = 0;  ///< metres along PhotometricAxes::quarter
   double height = 0;         ///< metres along the pole, of sides that shine too
   bool round = false;

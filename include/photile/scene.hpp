@@ -211,6 +211,9 @@ struct Scene {
   /// file's origin loses nothing. Every position below, and in all that is computed from them,
   /// counts from here; reports and pictures name world positions.
   glm::dvec3 origin{0.0};
+  /// The rotation by which the file's world was turned so that y points up (SceneLoadOptions::up);
+  /// `origin` is in the turned world.
+  glm::dmat3 turn{1.0};
 
   std::vector<glm::vec3> vertices;                  ///< metres
   std::vector<glm::uvec3> triangles;                ///< vertex indices, canonical order
@@ -260,8 +263,15 @@ inline constexpr std::uint32_t triangle_of(std::uint32_t sided_triangle) {
 }
 inline constexpr std::uint32_t side_of(std::uint32_t sided_triangle) { return sided_triangle & 1; }
 
-/// The camera in the file's world.
+/// A place, and a direction, of the file's world in the scene's own coordinates, and back.
+glm::dvec3 place_in_scene(const Scene& scene, const glm::dvec3& world);
+glm::dvec3 place_in_world(const Scene& scene, const glm::dvec3& place);
+glm::dvec3 direction_in_scene(const Scene& scene, const glm::dvec3& world);
+glm::dvec3 direction_in_world(const Scene& scene, const glm::dvec3& direction);
+
+/// The camera in the file's world, and one of that world in the scene.
 Camera in_world(const Scene& scene, Camera camera);
+Camera in_scene(const Scene& scene, Camera camera);
 
 /// Unit geometric normal of a sided triangle, computed in double precision.
 glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle);
@@ -282,6 +292,9 @@ struct SceneLoadOptions {
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
   /// Of the scenes in a glTF file: name or index; "" = the file's default, else its first.
   std::string scene = {};
+  /// Which axis of the file points up: "x", "y", "z", "-x", "-y" or "-z"; the scene is turned so
+  /// that it becomes y. "" = y, and a warning where the geometry looks as if it were z.
+  std::string up = {};
   std::vector<LightGrouping> light_groups = {};  ///< after the file's own; the last match counts
   std::vector<LightProfile> profiles = {};
   std::vector<LightTemperature> temperatures = {};
@@ -290,7 +303,8 @@ struct SceneLoadOptions {
   std::optional<Sun> sun = std::nullopt;
   std::optional<Sky> sky = std::nullopt;
   std::vector<ReflectanceChange> reflectances = {};
-  bool lambertian = false;  ///< dielectrics have no specular lobe
+  bool lambertian = false;   ///< dielectrics have no specular lobe
+  bool may_be_dark = false;  ///< no error where there is no light
   SkySituation situation = {};
   std::filesystem::path luminaires = {};  ///< lamps to place, JSON (docs/luminaires.md); "" = none
   /// Windows for the light of suns and skies: "auto" finds them, "off" takes none, else globs of
@@ -302,8 +316,9 @@ struct SceneLoadOptions {
 
 /// Reads a scene from OBJ+MTL (.obj) or glTF 2.0 (.gltf, .glb).
 /// Errors: InputError naming the file and the remedy when it is missing, unreadable, malformed,
-/// beyond a limit of limits.hpp, without triangles or without lights; UsageError when the file has
-/// no such scene, a grouping matches no light, or its group bears the name of a light outside it.
+/// beyond a limit of limits.hpp, without triangles or without lights; UsageError when `up` is no
+/// axis, the file has no such scene, a grouping matches no light, or its group bears the name of a
+/// light outside it.
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace photile

@@ -31,6 +31,9 @@ struct Sensor {
   glm::dvec3 facing{1.0, 0.0, 0.0};  ///< of half a cylinder: unit, at a right angle to `normal`
 };
 
+/// A sensor of the file's world in the scene's own coordinates.
+Sensor in_scene(const Scene& scene, Sensor sensor);
+
 /// The light at sensors on opaque surfaces that face their normals, within a millimetre, by
 /// `render`: the result's layers are one row high, sensor i is pixel i.
 /// `parameters.film` does not count. Errors: those of `render`; InputError that names a sensor

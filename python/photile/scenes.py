@@ -394,6 +394,7 @@ def load(
     file: Union[str, os.PathLike[str]],
     *,
     scene: str = "",
+    up: str = "",
     emissive_scale: float = 1.0,
     allow_outside: bool = False,
     light_groups: Optional[Mapping[str, str]] = None,
@@ -416,6 +417,8 @@ def load(
         The scene.
     scene : str
         Name or number of one of the scenes in a glTF file; the file's default where it is "".
+    up : str
+        The axis of the file that points up, "x" to "-z"; y where it is "".
     emissive_scale : float
         Factor of emissive radiance; 683 mends files of Blender.
     allow_outside : bool
@@ -454,6 +457,7 @@ def load(
     """
     options = {
         "scene": scene,
+        "up": up,
         "emissive_scale": emissive_scale,
         "allow_outside": allow_outside,
         "light_groups": [f"{glob}={group}" for glob, group in (light_groups or {}).items()],

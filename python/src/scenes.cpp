@@ -127,6 +127,7 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
   load.emissive_scale = options["emissive_scale"].cast<float>();
   load.allow_outside = options["allow_outside"].cast<bool>();
   load.scene = options["scene"].cast<std::string>();
+  load.up = options["up"].cast<std::string>();
   load.lumen_per_watt = options["lumen_per_watt"].cast<double>();
   const auto texts = [&](const char* name) {
     return options[name].cast<std::vector<std::string>>();
@@ -186,8 +187,8 @@ py::list lights_of_scene(const Scene& scene) {
     row["kind"] = light_kinds[static_cast<std::size_t>(light.kind)];
     row["power"] = light.power;
     row["color"] = triple(light.color);
-    row["position"] = triple(glm::dvec3(light.position) + scene.origin);
-    row["direction"] = triple(light.direction);
+    row["position"] = triple(place_in_world(scene, glm::dvec3(light.position)));
+    row["direction"] = triple(direction_in_world(scene, glm::dvec3(light.direction)));
     row["two_sided"] = light.two_sided;
     row["inner_angle"] = glm::degrees(light.inner_cone_angle);
     row["outer_angle"] = glm::degrees(light.outer_cone_angle);
@@ -250,8 +251,9 @@ py::array triangle_areas(const Scene& scene) {
 Camera camera_of(const Scene& scene, const py::tuple& parts) {
   const glm::dvec3 position = vec(parts[1].cast<Vector3>());
   const glm::dvec3 forward = vec(parts[2].cast<Vector3>());
-  Camera camera = Camera::look_at(position - scene.origin, position - scene.origin + forward,
-                                  vec(parts[3].cast<Vector3>()), parts[4].cast<double>());
+  Camera camera =
+      in_scene(scene, Camera::look_at(position, position + forward, vec(parts[3].cast<Vector3>()),
+                                      parts[4].cast<double>()));
   camera.name = parts[0].cast<std::string>();
   camera.aspect_ratio = parts[5].cast<double>();
   return camera;

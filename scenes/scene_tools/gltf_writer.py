@@ -63,6 +63,12 @@ class GltfDocument:
                                "KHR_materials_ior": {"ior": index},
                                "KHR_materials_volume": {"thicknessFactor": 0.1}})
 
+    def pane(self, name, transmittance):
+        """Thin glass that lets `transmittance` of what enters through, besides its reflections."""
+        return self._material(name, {"baseColorFactor": [transmittance] * 3 + [1],
+                                     "metallicFactor": 0, "roughnessFactor": 0},
+                              {"KHR_materials_transmission": {"transmissionFactor": 1}})
+
     def lamp(self, name, lumen, area, rgb):
         """A black surface whose front emits `lumen` in all over `area` square metres."""
         radiance = lumen / (math.pi * area)  # cd/m2 of luminance, for a Lambertian emitter

@@ -1,4 +1,6 @@
 // `photile measure`: tables, files and refusals.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -176,6 +178,85 @@ TEST_CASE("a target is judged in the table, the JSON and the report") {
   CHECK_THAT(
       only_error(run_photile(measure(write_box(folder), {"--plane", "1", "--target", "desk"})), 2),
       Contains("office-desk"));
+}
+
+TEST_CASE("a report has the project, glare and a year beside its figures, and lines to sign on") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  folder.write("glare.json",
+               R"({"observers": [{"name": "desk 1", "position": [0, 1.2, 0],
+                    "ugr": {"value": 17.2, "standard_error": 0.1},
+                    "illuminance": {"value": 300, "standard_error": 2}},
+                   {"name": "desk <2>", "position": [1, 1.2, 0],
+                    "ugr": {"value": 21.4, "standard_error": 0.1},
+                    "illuminance": {"value": 320, "standard_error": 2}}]})");
+  folder.write("year.json",
+               R"([{"name": "desks", "mean_lux": 812.3, "DA": 0.61, "sDA": 0.8, "ASE": 0.07,
+                    "EN 17037": {"target_lux": 310, "minimum_target_lux": 120}}])");
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--plane", "floor+0.75", "--wall-band", "0.2"});
+    return run_photile(measure(scene, more));
+  };
+  const Outcome outcome =
+      with({"--target", "office-desk", "--project", "Office <1>", "--client", "C & Co", "--include",
+            folder / "glare.json", "--include", folder / "year.json", "-o", folder / "a.html"});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("desk <2>: UGR 21.4, at most 19: NOT MET"));
+  const std::string page = folder.read("a.html");
+  CHECK_THAT(page, Contains("<dd>Office &lt;1></dd>") && Contains("C &amp; Co") &&
+                       Contains("signature") && Contains("<h2>Glare</h2>") &&
+                       Contains("desk &lt;2>") && Contains("<h2>A year of daylight</h2>") &&
+                       Contains("80.0%") && Contains("310 lux"));
+  const auto refusal = [&](std::vector<std::string> more, int code) {
+    return only_error(with(std::move(more)), code);
+  };
+  CHECK_THAT(refusal({"--project", "x"}, 2), Contains("--project") && Contains("-o FILE.html"));
+  CHECK_THAT(refusal({"--include", folder.write("b.json", "{}"), "-o", folder / "b.html"}, 3),
+             Contains("b.json") && Contains("photile glare"));
+}
+
+TEST_CASE("a mood that names an unknown light is refused before anything is measured") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  folder.write("box.moods.json",
+               R"({"photile_moods": 1, "moods": {"dusk": {"lefd": {"power": 1, "unit": "W"}}}})");
+  CHECK_THAT(
+      only_error(run_photile(measure(scene, {"--plane", "floor+0.75", "--mood", "dusk"})), 2),
+      Contains("mood 'dusk'") && Contains("'lefd'") && Contains("are 'left', 'right'"));
+}
+
+TEST_CASE("a scene that lies on its side is measured at the places of its file") {
+  const FileFolder folder;
+  const std::string upright = write_box(folder);
+  std::istringstream lines(box_obj());
+  std::string turned, line;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::string word;
+    double x = 0, y = 0, z = 0;
+    if (words >> word && word == "v") {
+      words >> x >> y >> z;
+      line = fmt::format("v {} {} {}", x, 0 - z, y);
+    }
+    turned += line + "\n";
+  }
+  const std::string lying = folder.write("lying.obj", turned);
+  const std::string points = folder.write("a.pts", "0.3 -0.5 0.2 0 1 0\n0.1 0.2 0.4 1 0 0\n");
+  const std::string same = folder.write("b.pts", "0.3 -0.2 -0.5 0 0 1\n0.1 -0.4 0.2 1 0 0\n");
+  const auto record = [&](const std::string& scene, const std::string& where,
+                          std::vector<std::string> more) {
+    more.insert(more.end(), {"--points", where, "-o", folder / "a.json"});
+    const Outcome outcome = run_photile(measure(scene, more));
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    return nlohmann::json::parse(folder.read("a.json"))["grids"][0]["sensors"];
+  };
+  const auto expected = record(upright, points, {}), seen = record(lying, same, {"--up", "z"});
+  REQUIRE(seen.size() == 2);
+  CHECK(seen[0]["position"] == nlohmann::json({0.3, -0.2, -0.5}));
+  for (std::size_t i = 0; i < 2; ++i) CHECK(seen[i]["lux"] == expected[i]["lux"]);  // to the bit
+  CHECK(run_photile(measure(lying, {"--up", "u", "--points", same})).exit_code == 2);
 }
 
 TEST_CASE("a point beyond the walls is blank in every file, and the others keep their places") {

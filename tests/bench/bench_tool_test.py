@@ -43,7 +43,8 @@ class BenchToolTest(unittest.TestCase):
 
     def test_options_reach_the_program_and_rows_a_table(self):
         result = self.run_knn("--csv", self.folder / "out.csv", "--structure", "uniform-grid", "-k", 50)
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.returncode, 1)  # for the second row is a failure
+        self.assertIn("1 of 2 rows are failures, the first: out of memory", result.stderr)
         given = (self.folder / "arguments").read_text().split()
         self.assertEqual(given[2:], ["--structure", "uniform-grid", "-k", "50"])
         with open(self.folder / "out.csv", newline="", encoding="utf-8") as file:
@@ -51,6 +52,12 @@ class BenchToolTest(unittest.TestCase):
         self.assertEqual(rows[0]["seconds median"], "2")
         self.assertEqual((rows[0]["schema version"], rows[0]["commit"]), ("1", "abc"))
         self.assertEqual((rows[1]["failure"], rows[1]["seconds median"]), ("out of memory", ""))
+
+    def test_rows_without_failures_are_a_success(self):
+        program = self.folder / "photile_bench_knn"
+        program.write_text(program.read_text().replace('"failure"', '"remark"'))
+        result = self.run_knn()
+        self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_a_refusal_of_the_program_is_one_of_the_tool(self):
         result = self.run_knn("--colour")

@@ -158,4 +158,91 @@ TEST_CASE("a small lamp before an even background has UGR and DGP in closed form
   CHECK(glare.picture->illuminance == Approx(at_eye).epsilon(0.02));
 }
 
+namespace {
+
+constexpr double sky = 120;  ///< cd/m2
+
+GlareParameters without_pictures() {
+  GlareParameters parameters;
+  parameters.by_pictures = false;
+  return parameters;
+}
+
+/// Under an even sky, by paths.
+ObserverGlare rated(SceneBuilder& builder, GlareParameters parameters) {
+  Scene scene = builder.build();
+  add_environment(scene, EnvironmentMap("sky", 2, 1, std::vector<glm::vec3>(2, glm::vec3(sky))));
+  parameters.measuring.by_paths = true;
+  parameters.measuring.gathering.rays = 4096;
+  parameters.measuring.repeats = 2;
+  parameters.measuring.photons.film.samples_per_pixel = 16;
+  return measure_glare(scene, std::span(&eye, 1), mix_of(scene), 1, {}, parameters).front();
+}
+
+}  // namespace
+
+TEST_CASE("UGR by luminaires and by pictures is the same where the sources are the same") {
+  SceneBuilder builder("two panels before a sky");
+  const double lumens = 3000, luminance = lumens / (glm::pi<double>() * 0.36);
+  const auto black = builder.add(diffuse(glm::vec3(0)));
+  for (const float x : {-1.1f, 0.5f}) {
+    const auto light = builder.add(area_light(x < 0 ? "left" : "right", lumens));
+    builder.grid({x, 3, 0.7f}, {0.6f, 0, 0}, {0, 0, 0.6f}, 1, black, light);
+  }
+  double sum = 0, at_eye = 0;  // of both, by their places' luminance, solid angle and p
+  constexpr int places = 40;
+  for (int i = 0; i < places * places; ++i) {
+    const glm::dvec3 way(0.5 + 0.6 * (i % places + 0.5) / places, 3,
+                         0.7 + 0.6 * (i / places + 0.5) / places);
+    const double d2 = glm::dot(way, way), cosine = 3 / std::sqrt(d2);
+    const double omega = 0.36 / (places * places) * cosine / d2;
+    const double p = position_index(eye, glm::normalize(way));
+    sum += 2 * luminance * luminance * omega / (p * p);
+    at_eye += 2 * luminance * omega * cosine;
+  }
+  const double behind = sky * (1 - at_eye / luminance / glm::pi<double>());  // panels hide some
+  const double truth = 8 * std::log10(0.25 / behind * sum);
+
+  GlareParameters parameters;
+  parameters.by_pictures = true;
+  parameters.picture_side = 512;
+  parameters.search.threshold = 1000;
+  const ObserverGlare seen = rated(builder, parameters);
+  REQUIRE(seen.ugr);
+  CHECK(seen.ugr->value == Approx(truth).margin(0.05));
+  // Pixels at a panel's border are darker than it, or no part of it: always a little too low.
+  const double by_picture = ugr(seen.picture->plain_sources(), seen.picture->background);
+  CHECK(by_picture == Approx(truth).margin(0.2));
+
+  // Panels below the threshold are no sources of the picture: their light is its background.
+  parameters.search.threshold = 4000;
+  const ObserverGlare blind = rated(builder, parameters);
+  CHECK(blind.ugr->value == Approx(truth).margin(0.05));
+  CHECK(blind.picture->sources.empty());
+  CHECK(blind.picture->background == Approx(behind + at_eye / glm::pi<double>()).epsilon(0.02));
+}
+
+TEST_CASE("small openings of one intensity have one UGR, 200 I^2 / r^2") {
+  const double lumens = 50, intensity = lumens / glm::pi<double>();
+  const double truth = 8 * std::log10(0.25 / sky * 200 * intensity * intensity / 9);
+  for (const double half : {0.03, 0.01}) {  // 0.0036 and 0.0004 m2
+    CAPTURE(half);
+    SceneBuilder builder("small lamp before a sky");
+    add_panel(builder, half, 3, 0, lumens);
+    CHECK(rated(builder, without_pictures()).ugr->value == Approx(truth).margin(0.1));
+  }
+}
+
+TEST_CASE("an opening of more than 1.5 m2 has a GGR by its light and the sky's at the eye") {
+  SceneBuilder builder("large panel before a sky");
+  add_panel(builder, 0.75, 2, 0, 5000);  // 2.25 m2
+  const ObserverGlare seen = rated(builder, without_pictures());
+  const double factor = validation::rectangle_factor(eye.position, eye.forward, {-0.75, 2, -0.75},
+                                                     {1.5, 0, 0}, {0, 0, 1.5});
+  const double direct = 5000 / 2.25 * factor, indirect = glm::pi<double>() * sky * (1 - factor);
+  REQUIRE(seen.ggr);
+  CHECK(*seen.ggr - seen.ugr->value ==
+        Approx(8 * std::log10(2.55 * (1 + direct / 220) / (1 + direct / indirect))).margin(0.05));
+}
+
 }  // namespace photile::test

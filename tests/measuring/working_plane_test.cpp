@@ -13,10 +13,9 @@ using Catch::Contains;
 
 namespace {
 
-WorkingPlane plane_of(const std::string& text, double wall_band, int up) {
+WorkingPlane plane_of(const std::string& text, double wall_band) {
   WorkingPlane plane = parse_working_plane(text);
   plane.wall_band = wall_band;
-  plane.up = up;
   return plane;
 }
 
@@ -31,13 +30,13 @@ Scene room_on_a_slab() {
   return builder.build();
 }
 
-/// An L: 4 x 4 m without the quarter x > 2, y > 2; z is up.
+/// An L: 4 x 4 m without the quarter x > 2, z > 2; y is up.
 Scene room_like_an_l() {
   test::SceneBuilder builder("L");
   const auto white = builder.add(test::diffuse(glm::vec3(0.5f)));
-  builder.grid({0, 0, 0}, {4, 0, 0}, {0, 2, 0}, 1, white);
-  builder.grid({0, 2, 0}, {2, 0, 0}, {0, 2, 0}, 1, white);
-  builder.add(test::point_light("lamp", {1, 1, 2}));
+  builder.grid({0, 0, 0}, {0, 0, 2}, {4, 0, 0}, 1, white);
+  builder.grid({0, 0, 2}, {0, 0, 2}, {2, 0, 0}, 1, white);
+  builder.add(test::point_light("lamp", {1, 2, 1}));
   return builder.build();
 }
 
@@ -79,7 +78,7 @@ std::pair<glm::dvec3, glm::dvec3> bounds_of(const SensorGrid& grid) {
 }  // namespace
 
 TEST_CASE("the floor is that of the camera's room, not the street's or the next room's") {
-  WorkingPlane plane = plane_of("floor+0.75", 0, 1);
+  WorkingPlane plane = plane_of("floor+0.75", 0);
   plane.spacing = 0.25;
   const SensorGrid grid = working_plane_grid(room_in_a_street(GENERATE(false, true)), plane);
   REQUIRE(grid.layout);
@@ -95,7 +94,7 @@ TEST_CASE("the floor is that of the camera's room, not the street's or the next 
 }
 
 TEST_CASE("a point inside tells another room, and a camera outside the one that it looks into") {
-  WorkingPlane plane = plane_of("floor+0.75", 0, 1);
+  WorkingPlane plane = plane_of("floor+0.75", 0);
   plane.spacing = 0.25;
   Scene scene = room_in_a_street();
   scene.cameras[0] = Camera::look_at({5.5, 100, 1.5}, {5.5, 0, 1.5}, {0, 0, 1}, 1);
@@ -115,7 +114,7 @@ TEST_CASE("a point inside tells another room, and a camera outside the one that 
 }
 
 TEST_CASE("a point in no room is refused with a remedy") {
-  WorkingPlane plane = plane_of("floor+0.75", 0, 1);
+  WorkingPlane plane = plane_of("floor+0.75", 0);
   plane.inside = glm::dvec3(0, 100, 0);
   CHECK_THROWS_WITH(working_plane_grid(room_in_a_street(), plane),
                     Contains("no room") && Contains("another point"));
@@ -149,7 +148,7 @@ TEST_CASE("a height is floor+METRES or metres in the world") {
 }
 
 TEST_CASE("the floor is the room's, not the slab's underside, the table or the ceiling") {
-  const SensorGrid grid = working_plane_grid(room_on_a_slab(), plane_of("floor+0.8", 0.5, 1));
+  const SensorGrid grid = working_plane_grid(room_on_a_slab(), plane_of("floor+0.8", 0.5));
   REQUIRE(grid.layout);
   // 3 x 5 m within the band: d = 5 m, 8 points there, 0.625 m, so 5 points along 3 m.
   CHECK(grid.layout->columns == 5);
@@ -171,15 +170,15 @@ TEST_CASE("the floor is the room's, not the slab's underside, the table or the c
 TEST_CASE("a plane at a height of the world counts from the file's origin") {
   Scene scene = room_on_a_slab();
   scene.origin = {100, 10, 0};
-  const SensorGrid grid = working_plane_grid(scene, plane_of("11", 0.5, 1));
+  const SensorGrid grid = working_plane_grid(scene, plane_of("11", 0.5));
   CHECK(grid.sensors.front().position.y == Approx(11));
   CHECK(grid.sensors.front().position.x > 100);
-  CHECK(working_plane_grid(scene, plane_of("floor+1", 0.5, 1)).sensors.front().position.y ==
+  CHECK(working_plane_grid(scene, plane_of("floor+1", 0.5)).sensors.front().position.y ==
         Approx(11));
 }
 
 TEST_CASE("points beyond the floor's border, or in the band along it, are left out") {
-  WorkingPlane plane = plane_of("floor+0.75", 0.25, 2);
+  WorkingPlane plane = plane_of("floor+0.75", 0.25);
   plane.spacing = 0.25;
   const SensorGrid grid = working_plane_grid(room_like_an_l(), plane);
   REQUIRE(grid.layout);
@@ -187,7 +186,7 @@ TEST_CASE("points beyond the floor's border, or in the band along it, are left o
   CHECK(grid.layout->rows == 14);
   // Of 14 x 14 cells of 0.25 m from 0.25 to 3.75 m, those at 1.875 or more in both are gone.
   for (const Sensor& sensor : grid.sensors) {
-    CHECK_FALSE((sensor.position.x > 1.75 && sensor.position.y > 1.75));
+    CHECK_FALSE((sensor.position.x > 1.75 && sensor.position.z > 1.75));
   }
   CHECK(grid.sensors.size() == 14 * 14 - 8 * 8);
 }
@@ -196,9 +195,9 @@ TEST_CASE("no floor, and a band that leaves nothing, are refused with a remedy")
   test::SceneBuilder builder("wall");
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));
   builder.add(test::point_light("lamp", {0.5f, 0.5f, 1}));
-  CHECK_THROWS_WITH(working_plane_grid(builder.build(), plane_of("floor+0.75", 0.5, 1)),
+  CHECK_THROWS_WITH(working_plane_grid(builder.build(), plane_of("floor+0.75", 0.5)),
                     Contains("no floor") && Contains("grid of points"));
-  CHECK_THROWS_WITH(working_plane_grid(room_on_a_slab(), plane_of("floor+0.75", 2, 1)),
+  CHECK_THROWS_WITH(working_plane_grid(room_on_a_slab(), plane_of("floor+0.75", 2)),
                     Contains("band"));
 }
 

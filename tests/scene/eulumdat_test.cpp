@@ -106,6 +106,20 @@ TEST_CASE("what is wrong with a EULUMDAT file is told with its line", "[eulumdat
   CHECK_THAT(eulumdat_refusal(text), Catch::Contains("4000000000"));
 }
 
+TEST_CASE("openings are millimetres: length along C90, width 0 of round ones", "[eulumdat]") {
+  EulumdatText file;
+  file.sizes = {1300, 400, 80, 1200, 300, 40, 40, 40, 40};
+  const LuminousOpening linear = read_eulumdat(file.str()).opening();
+  CHECK(linear.along_quarter == Approx(1.2));
+  CHECK(linear.along_zero == Approx(0.3));
+  CHECK(linear.height == Approx(0.04));
+  CHECK_FALSE(linear.round);
+  file.sizes = {250, 0, 80, 200, 0, 0, 0, 0, 0};
+  const IntensityDistribution round = read_eulumdat(file.str());
+  CHECK(round.opening().round);
+  CHECK(round.opening().projected_area(round.axes(), {0, 0, -1}) == Approx(pi * 0.01));
+}
+
 TEST_CASE("a EULUMDAT file cut anywhere, or with bytes replaced at random, is read or refused",
           "[eulumdat]") {
   const std::string sound = EulumdatText().str();

@@ -228,6 +228,34 @@ TEST_CASE("what is wrong with a file is told with its line", "[ies]") {
   CHECK_THAT(ies_refusal(odd.str()), holds("from 0 to 270"));
 }
 
+TEST_CASE("openings are rectangles, circles in the way of 1995 or of 2019, or ellipses", "[ies]") {
+  struct Opening {
+    const char* text;
+    double along_zero, along_quarter, below, aside;  ///< the last two m2, seen from there
+  };
+  const double c = pi / 4;
+  for (const Opening& o :
+       {Opening{"0.3 1.2 0", 1.2, 0.3, 0.36, 0}, Opening{"0.3 1.2 0.1", 1.2, 0.3, 0.36, 0.03},
+        Opening{"-0.2 -0.2 0", 0.2, 0.2, c * 0.04, 0}, Opening{"-0.2 0 0", 0.2, 0.2, c * 0.04, 0},
+        Opening{"0 -0.2 0", 0.2, 0.2, c * 0.04, 0},
+        Opening{"-0.2 -0.2 0.5", 0.2, 0.2, c * 0.04, 0.1},
+        Opening{"-0.2 -0.6 0", 0.6, 0.2, c * 0.12, 0}}) {
+    for (const auto& [units, metres] : {std::pair(1, 0.3048), std::pair(2, 1.0)}) {
+      CAPTURE(o.text, units);
+      IesText file;
+      file.opening = o.text;
+      file.units = units;
+      const IntensityDistribution lamp = read_ies(file.str());
+      CHECK(lamp.opening().along_zero == Approx(metres * o.along_zero));
+      CHECK(lamp.opening().along_quarter == Approx(metres * o.along_quarter));
+      CHECK(lamp.opening().projected_area(lamp.axes(), {0, 0, -1}) ==
+            Approx(metres * metres * o.below));
+      CHECK(lamp.opening().projected_area(lamp.axes(), lamp.axes().zero) ==
+            Approx(metres * metres * o.aside).margin(1e-12));
+    }
+  }
+}
+
 TEST_CASE("a file cut anywhere, or with bytes replaced at random, is read or refused", "[ies]") {
   IesText file;
   file.tilt = "TILT=INCLUDE\n1 2 0 90 1 0.9\n";

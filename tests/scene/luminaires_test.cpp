@@ -115,6 +115,22 @@ TEST_CASE("without a size the opening is the file's", "[luminaires]") {
   CHECK(area == Approx(0.1 * 0.1));  // IesText's
 }
 
+TEST_CASE("a round opening without a size is a square of its area", "[luminaires]") {
+  const SceneFolderOnDisk folder;
+  IesText text;
+  text.vertical = angles(0, 180, 180);
+  text.candela = lambertian;
+  text.opening = GENERATE("-0.4 -0.4 0", "-0.4 0 0");
+  folder.write("round.ies", text.str());
+  const Scene scene =
+      scene_with(folder, R"({"file": "round.ies", "position": [0.5, 0.5, 2], "aim": [0, 0, -1]})");
+  double area = 0;
+  for (const std::uint32_t triangle : scene.lights[0].triangles) {
+    area += triangle_area(scene, triangle);
+  }
+  CHECK(area == Approx(pi * 0.2 * 0.2));
+}
+
 TEST_CASE("a small opening is the point of its intensities", "[luminaires]") {
   const SceneFolderOnDisk folder;
   const auto narrow = [](double, double gamma) {

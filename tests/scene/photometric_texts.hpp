@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <functional>
 #include <random>
 #include <string>
@@ -39,11 +40,12 @@ struct IesText {
   std::vector<double> vertical = angles(0, 180, 2), horizontal = {0};
   std::function<double(double, double)> candela = [](double, double) { return 100.0; };
   std::string separator = " ";
+  std::string opening = "0.1 0.1 0";  ///< width, length, height
 
   std::string str() const {
     std::string text = first_line + "[TEST] none\n[MORE] 5 numbers\n" + tilt;
-    text += fmt::format("{} {} {} {} {} {} 0.1 0.1 0\n{}\n", lamps, multiplier, vertical.size(),
-                        horizontal.size(), type, units, ballast);
+    text += fmt::format("{} {} {} {} {} {} {}\n{}\n", lamps, multiplier, vertical.size(),
+                        horizontal.size(), type, units, opening, ballast);
     for (const double angle : vertical) text += fmt::format("{}{}", angle, separator);
     text += "\n";
     for (const double angle : horizontal) text += fmt::format("{}{}", angle, separator);
@@ -64,6 +66,9 @@ struct EulumdatText {
   int sets = 1;
   bool commas = false;
   std::function<double(double, double)> intensity = [](double, double) { return 50.0; };
+  /// mm: length, width and height of the luminaire, length and width of its opening, heights of its
+  /// sides.
+  std::array<double, 9> sizes{};
 
   std::string str() const {
     std::string text = "maker\n1\n";
@@ -78,7 +83,7 @@ struct EulumdatText {
       number(value);
     }
     text += "report\nlamp\nnumber\nfile\ndate\n";
-    for (int i = 0; i < 9; ++i) number(0);  // sizes
+    for (const double size : sizes) number(size);
     for (const double value : {50.0, 100.0, conversion, 0.0, double(sets)}) number(value);
     for (int set = 0; set < sets; ++set) {
       text += "1\nlamp\n";

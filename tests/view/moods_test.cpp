@@ -82,14 +82,34 @@ TEST_CASE("removing one mood keeps the others") {
   CHECK(Moods(file).names() == std::vector<std::string>{"night"});
 }
 
-TEST_CASE("lights that a scene does not have, or in another unit, are passed over") {
+TEST_CASE("a light that is not there is told with those there are, the likest first") {
   const TemporaryFolder folder;
   const auto file = folder.path / "room.moods.json";
-  std::ofstream(file) << R"({"photile_moods": 1, "moods": {"x": {
-      "gone": {"power": 1}, "ceiling": {"power": 5, "unit": "W"}}}})";
+  std::ofstream(file) << R"({"photile_moods": 1, "moods": {
+      "x": {"ceiling": {"power": 5}, "floor_lamps": {"power": 1}}, "y": {"ceiling": {"power": 7}}}})";
+  const Moods moods(file);
+  CHECK_THROWS_WITH(moods.changes("x", lamps()), Contains("mood 'x'") &&
+                                                     Contains("'floor_lamps'") &&
+                                                     Contains("are 'floor lamp', 'ceiling'"));
+  CHECK_THROWS_AS(moods.changes("x", lamps()), UsageError);
+  CHECK(moods.changes("y", lamps()).size() == 1);  // the other mood is none of its business
   LightBoard board(lamps());
+  CHECK_THROWS_WITH(moods.apply("x", board), Contains("'floor_lamps'"));
+  CHECK(board.controls()[0].power == 5);  // the window has set what it could
+}
+
+TEST_CASE("a mood in watts sets lamps in lumens") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "room.moods.json";
+  std::ofstream(file)
+      << R"({"photile_moods": 1, "moods": {"x": {"ceiling": {"power": 2, "unit": "W"}}}})";
+  LightMix mix = lamps();
+  mix.lumen_per_watt = 179;
+  LightBoard board(mix);
   Moods(file).apply("x", board);
-  CHECK(board.controls()[0].power == 100);
+  CHECK(board.controls()[0].power == Approx(358));
+  change_lights(mix, Moods(file).changes("x", mix));
+  CHECK(mix.lights[0].power == Approx(358));
 }
 
 TEST_CASE("a damaged file of moods is refused with its name and what is wrong") {

@@ -112,7 +112,7 @@ class Walk {
       : model_(model), context_(context), on_path_(model.nodes.size(), false) {}
 
   void from_root(int root, std::vector<NodeVisit>& visits) {
-    enter(root, glm::dmat4(1.0), visits);
+    enter(root, glm::dmat4(context_.scene.turn), visits);
     while (!path_.empty()) {
       Level& level = path_.back();
       const std::vector<int>& children =

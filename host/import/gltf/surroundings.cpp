@@ -93,7 +93,8 @@ void add_light(const tinygltf::Value& light, const tinygltf::Model& model,
   for (RadiancePicture& face : cube) {
     for (glm::vec3& texel : face.texels) texel *= static_cast<float>(intensity);
   }
-  EnvironmentMap map = environment_of(cube, rotation_of(light), extension_name);
+  EnvironmentMap map =
+      environment_of(cube, glm::quat_cast(context.scene.turn) * rotation_of(light), extension_name);
   if (!(luminance(map.integral()) > 0.0)) throw ResourceError("it is black");
   const std::string name = string_member(light, "name");
   add_environment_light(name.empty() ? "environment" : name, std::move(map), context.scene);

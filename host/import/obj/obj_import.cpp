@@ -118,6 +118,13 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
   }
 }
 
+void turn(ObjFile& file, const glm::dmat3& turn) {
+  if (turn == glm::dmat3(1.0)) return;
+  for (auto* vectors : {&file.positions, &file.normals}) {
+    for (glm::dvec3& vector : *vectors) vector = turn * vector;
+  }
+}
+
 /// Chooses Scene::origin (scene_origin.hpp) and counts all positions from there.
 void move_to_origin(ObjFile& file, Scene& scene) {
   SceneOrigin origin;
@@ -161,6 +168,7 @@ void import_obj(ImportContext& context) {
       file.positions[vertex] = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
     }
   }
+  turn(file, context.scene.turn);
   move_to_origin(file, context.scene);
   context.scene.unit = PowerUnit::watt;
   const std::vector<std::uint32_t> material_index =

@@ -147,13 +147,17 @@ IntensityDistribution type_a_or_b(const std::string& name, const Web& web, Photo
 }
 
 /// Width (across the plane of azimuth 0), length (along it) and height; of round openings the
-/// diameter has a minus (LM-63-2019, table 1).
+/// diameter has a minus, in both places (LM-63-2019, table 1) or, until 1995, in one beside a 0.
 LuminousOpening opening_of(const std::vector<double>& size, bool feet) {
   const double metres = feet ? 0.3048 : 1.0;
-  return {.along_zero = metres * std::abs(size[1]),
-          .along_quarter = metres * std::abs(size[0]),
+  const bool round = size[0] < 0 || size[1] < 0;
+  double width = metres * std::abs(size[0]), length = metres * std::abs(size[1]);
+  if (round && width == 0) width = length;
+  if (round && length == 0) length = width;
+  return {.along_zero = length,
+          .along_quarter = width,
           .height = metres * std::abs(size[2]),
-          .round = size[0] < 0 || size[1] < 0};
+          .round = round};
 }
 
 /// Whether the number after the ballast factor is a factor, too. From 1995 on it is reserved, and

@@ -50,7 +50,7 @@ struct GlareOptions {
 
 std::vector<glare::Observer> observers_of(const GlareOptions& options, const Scene& scene,
                                           Progress& progress) {
-  const measuring::PlanAxes axes = measuring::PlanAxes::of(options.plane.up_axis());
+  const auto axes = measuring::PlanAxes::in_world(scene);
   std::vector<glare::Observer> all;
   const auto add = [&](const std::vector<glare::Observer>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -80,11 +80,11 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
 /// no such room.
 double coverage_of(const GlareOptions& options, const Scene& scene,
                    const glare::Observer& observer) {
-  const measuring::PlanAxes axes = measuring::PlanAxes::of(options.plane.up_axis());
+  const measuring::PlanAxes axes;
   const RayScene rays(scene);
   const double area = glare::Luminaires(rays, options.parameters.looks).large_area(axes.up);
   if (!(area > 0)) return 1;
-  const auto room = measuring::Room::around(rays, axes, observer.position - scene.origin);
+  const auto room = measuring::Room::around(rays, axes, place_in_scene(scene, observer.position));
   if (!room) return 1;
   return area / (static_cast<double>(room->places().size()) * room->cell_area());
 }
@@ -180,9 +180,9 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   TerminalProgress progress(render.quiet);
   const Scene scene = load_scene(render.scene, render.load);
   const LightMix mix = mix_of(scene, render);
+  tell_scene(scene, mix, progress);
   const std::vector<glare::Observer> observers = observers_of(options, scene, progress);
   std::vector<Device> devices = devices_for(render, progress);
-  tell_scene(scene, mix, progress);
 
   glare::GlareParameters& parameters = options.parameters;
   parameters.measuring.photons = render.parameters;

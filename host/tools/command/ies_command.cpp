@@ -33,8 +33,12 @@ void print_lamp(const IntensityDistribution& lamp) {
   const LuminousOpening& opening = lamp.opening();
   std::cout << fmt::format("lamp: {}: {:.5g} lm\n", lamp.name(), lamp.flux());
   if (opening.round) {
-    std::cout << fmt::format("luminous opening: round, {:.4g} m across, {:.4g} m high\n",
-                             opening.along_zero, opening.height);
+    const std::string across =
+        opening.along_zero == opening.along_quarter
+            ? fmt::format("{:.4g}", opening.along_zero)
+            : fmt::format("{:.4g} x {:.4g}", opening.along_zero, opening.along_quarter);
+    std::cout << fmt::format("luminous opening: round, {} m across, {:.4g} m high\n", across,
+                             opening.height);
   } else {
     std::cout << fmt::format(
         "luminous opening: {:.4g} m along azimuth 0 x {:.4g} m along 90, {:.4g} m high\n",

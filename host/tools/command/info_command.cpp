@@ -33,7 +33,11 @@ void print_text(const Scene& scene, const LightMix& mix) {
 }
 
 void run_info(const InfoOptions& options) {
-  const Scene scene = load_scene(options.scene, options.load);
+  Scene scene = load_scene(options.scene, options.load);
+  if (scene.lights.empty()) {
+    scene.report.warnings.push_back(
+        "no lights: to render or measure, place lamps by --luminaires, or give --sky");
+  }
   const LightMix mix = LightMix::of(scene, options.load.lumen_per_watt);
   if (options.json) {
     // Names come from files: bytes that are no UTF-8 are replaced, not fatal.
@@ -49,6 +53,7 @@ void run_info(const InfoOptions& options) {
 
 void add_info_command(CLI::App& photile) {
   auto options = std::make_shared<InfoOptions>();
+  options->load.may_be_dark = true;
   CLI::App* command = photile.add_subcommand("info", "Say what a scene file holds");
   command->add_option("SCENE", options->scene, "scene file: .obj, .gltf or .glb")
       ->required()

@@ -131,15 +131,19 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   options.outputs.daylight_factor = options.daylight_factor;
   const MeasureOutputs outputs(options.outputs);
 
+  const std::filesystem::path moods = moods_of_report(render.mood.file, render.scene);
+  outputs.check_moods(moods);
+  const measuring::IncludedResults included = outputs.included(requirement);
+
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet || !leads());
   Scene scene = load_scene(render.scene, render.load);
   const LightMix mix = mix_of(scene, render);
+  tell_scene(scene, mix, progress);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
   outputs.check_names(grids);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
   std::vector<Device> devices = devices_for(render, progress);
-  tell_scene(scene, mix, progress);
   warn(scene, grids, progress);
 
   MeasuringParameters& parameters = options.parameters;
@@ -151,13 +155,14 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) keep_sky(measurement);
-  outputs.write(measurement, {scene, mix, parameters, render.mood.mood, requirement,
-                              moods_of_report(render.mood.file, render.scene)});
+  outputs.write(measurement,
+                {scene, mix, parameters, render.mood.mood, requirement, moods, included});
   for (const auto& line : measuring::measurement_lines(measurement, outputs.unit())) {
     std::cout << line << '\n';
   }
   if (requirement) {
-    for (const auto& line : measuring::requirement_lines(measurement, *requirement)) {
+    for (const auto& line :
+         measuring::requirement_lines(measurement, *requirement, included.glare)) {
       std::cout << line << '\n';
     }
   }

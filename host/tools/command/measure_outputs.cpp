@@ -23,6 +23,7 @@
 #include "tools/report/print_page.hpp"
 #include "tools/report/report.hpp"
 #include "tools/report/sensor_tables.hpp"
+#include "tools/view/moods.hpp"
 
 namespace photile::app {
 namespace {
@@ -153,6 +154,19 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
       ->type_name("FILE.exr")
       ->check(file_ending_in({".exr"}))
       ->group("Output");
+  command
+      .add_option("--include", options.results,
+                  "JSON of photile glare or daylight, which the report shows; repeatable")
+      ->type_name("FILE.json")
+      ->allow_extra_args(false)
+      ->check(file_ending_in({".json"}))
+      ->group("Output");
+  const auto text = [&](const char* name, std::string& value, const char* what) {
+    command.add_option(name, value, what)->type_name("TEXT")->group("Output");
+  };
+  text("--project", options.project.name, "name of the project, for the report's head");
+  text("--client", options.project.client, "for whom the report is; it ends with lines to sign on");
+  text("--designer", options.project.designer, "who answers for it");
   add_false_colour_options(command, options.false_colour);
 }
 
@@ -160,7 +174,9 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
     : unit_(options.daylight_factor ? "DF %" : "lux"),
       colours_(options.false_colour.of(unit_)),
       honeybee_(options.honeybee),
-      picture_(options.picture) {
+      picture_(options.picture),
+      results_(options.results.begin(), options.results.end()),
+      project_(options.project) {
   if (options.daylight_factor) colours_.scale = 0;  // thousands of lux would show nothing
   const std::map<std::string, std::vector<std::filesystem::path>*> lists{
       {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}, {".pdf", &pdf_}};
@@ -184,12 +200,17 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
     make_folder(honeybee_);
     for (const char* name : measuring::honeybee_tables) all.push_back(honeybee_ / name);
   }
-  if (!picture_.empty()) {
-    if (html_.empty() && pdf_.empty()) {
-      throw UsageError("--picture is for reports; give -o FILE.html or -o FILE.pdf, too");
-    }
-    note_input(picture_);
-  }
+  const bool reports = !html_.empty() || !pdf_.empty();
+  const auto only_in_reports = [&](const char* option, bool given) {
+    if (!given || reports) return;
+    throw UsageError(
+        fmt::format("{} is for reports; give -o FILE.html or -o FILE.pdf, too", option));
+  };
+  only_in_reports("--picture", !picture_.empty());
+  only_in_reports("--include", !results_.empty());
+  only_in_reports("--project, --client and --designer", project_.said());
+  if (!picture_.empty()) note_input(picture_);
+  for (const auto& file : results_) note_input(file);
   check_outputs(all);
 }
 
@@ -207,6 +228,13 @@ void MeasureOutputs::check_names(const std::vector<measuring::SensorGrid>& grids
     if (planes == 1) continue;  // noted under its own name
     for (const auto& name : plan_names(file, planes)) note_output(name);
   }
+}
+
+void MeasureOutputs::check_moods(const std::filesystem::path& moods) const {
+  if (picture_.empty() || moods.empty()) return;
+  const view::Moods kept(moods);
+  const LightMix mix = read_light_mix(picture_);
+  for (const std::string& name : kept.names()) kept.changes(name, mix);
 }
 
 void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
@@ -241,7 +269,10 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
                              facts_of(run),
                              run.requirement,
                              {lamp_schedule(run.scene, run.mix), reflectances(run.scene)},
+                             run.included.glare,
+                             project_,
                              {}};
+  text.tables.insert(text.tables.begin(), run.included.tables.begin(), run.included.tables.end());
   if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
   const std::string page = measuring::report_html(measurement, text, colours_, surroundings);
   for (const auto& file : html_) write_file(file, page);

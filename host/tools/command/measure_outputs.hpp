@@ -13,6 +13,7 @@
 #include "photile/scene.hpp"
 #include "tools/command/false_colour_options.hpp"
 #include "tools/report/false_colour.hpp"
+#include "tools/report/included_results.hpp"
 
 namespace CLI {
 class App;
@@ -23,8 +24,10 @@ namespace photile::app {
 struct MeasureOutputOptions {
   std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg, .html or .pdf
   FalseColourOptions false_colour;
-  std::string honeybee;          ///< folder, "" = none
-  std::string picture;           ///< EXR for the report, "" = none
+  std::string honeybee;              ///< folder, "" = none
+  std::string picture;               ///< EXR for the report, "" = none
+  std::vector<std::string> results;  ///< JSON files for the report
+  measuring::ReportProject project;
   bool daylight_factor = false;  ///< values are per cent of the sky's lux
 };
 
@@ -38,7 +41,8 @@ struct MeasureRun {
   const MeasuringParameters& parameters;
   std::string mood = {};  ///< "" = none
   std::optional<measuring::Requirement> requirement = std::nullopt;
-  std::filesystem::path moods = {};  ///< file of those that a report shows; "" = none
+  std::filesystem::path moods = {};          ///< file of those that a report shows; "" = none
+  measuring::IncludedResults included = {};  ///< of `included`
 };
 
 class MeasureOutputs {
@@ -53,6 +57,16 @@ class MeasureOutputs {
   /// one file; those of note_output.
   void check_names(const std::vector<measuring::SensorGrid>& grids) const;
 
+  /// Checks that the moods of a file fit the picture, which `write` shows in them ("" = none).
+  /// Errors: those of report_pictures.
+  void check_moods(const std::filesystem::path& moods) const;
+
+  /// What the report shows of other commands. Errors: those of included_results.
+  measuring::IncludedResults included(
+      const std::optional<measuring::Requirement>& requirement) const {
+    return measuring::included_results(results_, requirement);
+  }
+
   /// "lux", or "DF %" of daylight factors.
   const std::string& unit() const { return unit_; }
 
@@ -64,6 +78,8 @@ class MeasureOutputs {
   std::string unit_;
   measuring::FalseColour colours_;
   std::filesystem::path honeybee_, picture_;
+  std::vector<std::filesystem::path> results_;
+  measuring::ReportProject project_;
 };
 
 }  // namespace photile::app

@@ -39,11 +39,6 @@ void add_plane_options(CLI::App& command, PlaneOptions& options) {
       ->type_name("M")
       ->transform(positive_number())
       ->group("Places");
-  command.add_option("--up", options.up, "axis that points up")
-      ->type_name("")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->capture_default_str()
-      ->group("Places");
 }
 
 void add_place_options(CLI::App& command, PlaceOptions& options) {
@@ -82,7 +77,6 @@ measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string&
   measuring::WorkingPlane plane = measuring::parse_working_plane(height);
   plane.wall_band = options.wall_band;
   plane.spacing = options.spacing;
-  plane.up = options.up_axis();
   if (!options.inside.empty()) {
     plane.inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
   }

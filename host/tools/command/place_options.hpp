@@ -19,12 +19,9 @@ namespace photile::app {
 struct PlaneOptions {
   std::string height;  ///< of the working plane; "" = none
   double wall_band = defaults::wall_band;
-  double spacing = 0;  ///< metres; 0 = that of EN 12464-1
-  std::string up = "y";
+  double spacing = 0;          ///< metres; 0 = that of EN 12464-1
   std::vector<double> inside;  ///< a point in the room; empty = by the camera
   double clearance = 0;        ///< metres; 0 = furniture is not looked for
-
-  int up_axis() const { return up[0] - 'x'; }
 };
 
 /// Places of sensors.
@@ -35,7 +32,7 @@ struct PlaceOptions {
   bool empty() const { return planes.empty() && points.empty() && plane.height.empty(); }
 };
 
-/// Adds --inside, --wall-band, --spacing, --clearance and --up, in the group Places.
+/// Adds --inside, --wall-band, --spacing and --clearance, in the group Places.
 void add_plane_options(CLI::App& command, PlaneOptions& options);
 
 /// Adds --grid, --points, --plane and those of add_plane_options.

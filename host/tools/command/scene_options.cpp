@@ -13,6 +13,13 @@ void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::
       ->type_name("NAME|INDEX")
       ->group(group);
   command
+      .add_option("--up", options.up,
+                  "axis of the file that points up: x, y, z, -x, -y or -z; default: y, and a "
+                  "warning where it seems to be z")
+      ->type_name("AXIS")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->group(group);
+  command
       .add_option("--lumen-per-watt,--efficacy", options.lumen_per_watt, "683 or, as Radiance, 179")
       ->type_name("X")
       ->transform(positive_number())

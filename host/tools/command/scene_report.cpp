@@ -162,8 +162,9 @@ Extents extents_of(const Scene& scene) {
   Extents extents{glm::dvec3(std::numeric_limits<double>::infinity()),
                   glm::dvec3(-std::numeric_limits<double>::infinity())};
   for (const glm::vec3& vertex : scene.vertices) {
-    extents.lowest = glm::min(extents.lowest, scene.origin + glm::dvec3(vertex));
-    extents.highest = glm::max(extents.highest, scene.origin + glm::dvec3(vertex));
+    const glm::dvec3 place = place_in_world(scene, glm::dvec3(vertex));
+    extents.lowest = glm::min(extents.lowest, place);
+    extents.highest = glm::max(extents.highest, place);
   }
   return extents;
 }

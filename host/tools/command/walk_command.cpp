@@ -164,9 +164,7 @@ class Walk {
 
   /// In the scene's coordinates.
   Camera camera_at(int frame) const {
-    Camera camera = motion_.at(motion_.begin + frame / options_.frames_per_second);
-    camera.position -= scene_.origin;
-    return camera;
+    return in_scene(scene_, motion_.at(motion_.begin + frame / options_.frames_per_second));
   }
 
   RunRecord record_of(const Camera& camera) const {

@@ -21,8 +21,8 @@ constexpr int looks_along = 300;  ///< that find furniture, along the longer sid
 /// The plane in the scene's coordinates, with places in cells.
 class Frame {
  public:
-  Frame(const PlaneLayout& layout, const glm::dvec3& scene_origin)
-      : corner_(layout.origin - scene_origin),
+  explicit Frame(const PlaneLayout& layout)
+      : corner_(layout.origin),
         u_(layout.u),
         v_(layout.v),
         cells_(layout.columns, layout.rows),
@@ -169,11 +169,12 @@ std::optional<glm::dvec3> place_of(const Scene& scene, const Light& light) {
   return sum / total;
 }
 
-PlanSurroundings surroundings_of(const RayScene& rays, const PlaneLayout& layout) {
+PlanSurroundings surroundings_of(const RayScene& rays, const PlaneLayout& in_file) {
   constexpr double least_cosine = 0.999;
-  if (layout.normal().y < least_cosine) return {};
   const Scene& scene = rays.scene();
-  const Frame frame(layout, scene.origin);
+  const PlaneLayout layout = in_scene(scene, in_file);
+  if (layout.normal().y < least_cosine) return {};
+  const Frame frame(layout);
   PlanSurroundings around{
       shown_around, walls_of(scene, frame), furniture_of(rays, layout, frame), {}};
   for (std::size_t light = 0; light < scene.lights.size(); ++light) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "common/xml_text.hpp"
 #include "tools/report/number_text.hpp"
@@ -41,6 +42,9 @@ th { border-bottom: 1px solid #222; } th:first-child, td:first-child { text-alig
 figure { display: inline-block; width: 48%; margin: 0 1% 0.8em 0; vertical-align: top; }
 img { max-width: 100%; } figcaption { color: #777; }
 .texts th, .texts td { text-align: left; }
+.sign { margin-top: 2.5em; width: 100%; break-inside: avoid; }
+.sign td { text-align: left; width: 33%; padding-right: 3em; padding-top: 2em; }
+.sign .line { border-top: 1px solid #222; color: #777; padding-top: 0.15em; }
 .lights .plan { display: inline-block; width: 32%; }
 dt { float: left; clear: left; width: 11em; color: #777; } dd { margin: 0 0 0.2em 11em; }
 @page { size: A4; margin: 15mm; }
@@ -79,8 +83,22 @@ std::string grid_heading(const SensorGrid& grid) {
                             glm::length(layout.v), layout.spacing());
 }
 
+std::string judgement_row(const Judgement& judgement) {
+  const bool lux = judgement.figure == "Em";
+  const std::string value =
+      lux ? lux_cell(judgement.measured)
+      : judgement.figure == "Uo"
+          ? ratio_cell(judgement.measured)
+          : cell(fmt::format("{:.1f}", judgement.measured.value), judgement.measured);
+  return fmt::format("<tr><td>{}</td><td>{}</td><td>{} {:g}</td>{}<td>{}</td></tr>\n",
+                     escaped_xml(judgement.grid), judgement.figure,
+                     judgement.at_most ? "at most" : "at least", judgement.required, value,
+                     judgement.met() ? "met" : "<b>not met</b>");
+}
+
 /// What is required, and whether it is met.
-std::string target_section(const Measurement& measurement, const Requirement& requirement) {
+std::string target_section(const Measurement& measurement, const Requirement& requirement,
+                           const std::optional<Judgement>& glare) {
   std::string text = fmt::format(
       "<h2>Target: {}</h2>\n<table>\n<tr><th>{}</th><th></th><th>required</th><th>measured</th>"
       "<th></th></tr>\n",
@@ -89,13 +107,46 @@ std::string target_section(const Measurement& measurement, const Requirement& re
                                                 : requirement.reference + ", " + requirement.what));
   for (const GridValues& values : measurement) {
     for (const Judgement& judgement : judge(values, requirement)) {
-      const std::string value =
-          judgement.figure == "Uo" ? ratio_cell(judgement.measured) : lux_cell(judgement.measured);
-      text += fmt::format("<tr><td>{}</td><td>{}</td><td>{} {:g}</td>{}<td>{}</td></tr>\n",
-                          escaped_xml(judgement.grid), judgement.figure,
-                          judgement.at_most ? "at most" : "at least", judgement.required, value,
-                          judgement.met() ? "met" : "<b>not met</b>");
+      text += judgement_row(judgement);
     }
+  }
+  const auto add_unjudged = [&](const char* figure, const char* limit, double required,
+                                const char* where) {
+    if (!(required > 0)) return;
+    text += fmt::format("<tr><td></td><td>{}</td><td>{} {:g}</td><td>{}</td><td></td></tr>\n",
+                        figure, limit, required, where);
+  };
+  if (glare) {
+    text += judgement_row(*glare);
+  } else {
+    add_unjudged("UGR", "at most", requirement.glare, "see photile glare");
+  }
+  add_unjudged("Ra", "at least", requirement.rendering, "see the lamps' data sheets");
+  return text + "</table>\n";
+}
+
+std::string project_section(const ReportProject& project) {
+  if (!project.said()) return {};
+  std::string text = "<dl class=\"project\">\n";
+  for (const auto& [name, value] :
+       {std::pair("project", project.name), std::pair("client", project.client),
+        std::pair("designer", project.designer)}) {
+    if (value.empty()) continue;
+    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escaped_xml(value));
+  }
+  return text + "</dl>\n";
+}
+
+/// A line for the designer, and one for the client.
+std::string sign_section(const ReportProject& project) {
+  std::string text = "<table class=\"sign\">\n";
+  for (const auto& [role, name] : {std::pair("designed by", project.designer),
+                                   std::pair("accepted for the client by", project.client)}) {
+    text += fmt::format(
+        "<tr><td>{}</td><td></td><td></td></tr>\n"
+        "<tr><td class=\"line\">{}</td><td class=\"line\">date</td>"
+        "<td class=\"line\">signature</td></tr>\n",
+        name.empty() ? "&#160;" : escaped_xml(name), role);
   }
   return text + "</table>\n";
 }
@@ -163,7 +214,8 @@ std::string report_html(const Measurement& measurement, const ReportText& text,
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{0}</title>\n"
       "{1}</head>\n<body>\n<h1>Illuminance: {0}</h1>\n",
       escaped_xml(text.title), style);
-  if (text.requirement) page += target_section(measurement, *text.requirement);
+  page += project_section(text.project);
+  if (text.requirement) page += target_section(measurement, *text.requirement, text.glare);
   page += picture_section(text.pictures);
   for (std::size_t grid = 0; grid < measurement.size(); ++grid) {
     page += section(measurement[grid], colours, surroundings[grid]);
@@ -173,7 +225,9 @@ std::string report_html(const Measurement& measurement, const ReportText& text,
   for (const auto& [name, value] : text.facts) {
     page += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped_xml(name), escaped_xml(value));
   }
-  return page + "</dl>\n</body>\n</html>\n";
+  page += "</dl>\n";
+  if (text.project.said()) page += sign_section(text.project);
+  return page + "</body>\n</html>\n";
 }
 
 }  // namespace photile::measuring

@@ -38,6 +38,8 @@ class LightBoard {
   /// `refused`.
   LightMix mix() const;
 
+  double lumen_per_watt() const { return scene_.lumen_per_watt; }
+
   /// Names of lights whose colour `mix` could not set, for the panel to tell.
   std::vector<std::string> refused() const;
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "common/output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "scene/light_names.hpp"
 
 namespace photile::view {
 namespace {
@@ -39,6 +41,11 @@ double kelvin_of(double value) {
 
 /// With four digits that count: a slider's other ones say nothing.
 double rounded(double power) { return *parse_number<double>(fmt::format("{:.4g}", power)); }
+
+double in_unit(double power, PowerUnit from, PowerUnit to, double lumen_per_watt) {
+  if (from == to) return power;
+  return to == PowerUnit::lumen ? power * lumen_per_watt : power / lumen_per_watt;
+}
 
 PowerUnit unit_of(const std::string& word) {
   if (word == "lm") return PowerUnit::lumen;
@@ -120,16 +127,19 @@ const Moods::Mood& Moods::named(const std::string& name) const {
 
 std::vector<LightChange> Moods::changes(const std::string& name, const LightMix& mix) const {
   const Mood& mood = named(name);
+  std::vector<std::string> there;
+  for (const MixedLight& light : mix.lights) there.push_back(light.name);
+  refuse_unknown_lights(name, there);
   std::vector<LightChange> changes;
   for (const MixedLight& light : mix.lights) {
     const auto found = mood.find(light.name);
-    if (found == mood.end() || found->second.unit != light.unit) continue;
+    if (found == mood.end()) continue;
     const Setting& setting = found->second;
     if (!setting.on || setting.power == 0) {
       changes.push_back({light.name, "off"});
       continue;
     }
-    const char* unit = light.unit == PowerUnit::lumen ? "lm" : "W";
+    const char* unit = setting.unit == PowerUnit::lumen ? "lm" : "W";
     changes.push_back({light.name, fmt::format("{}{}", setting.power, unit)});
     if (setting.kelvin > 0) {
       changes.push_back({light.name, fmt::format("{}K", setting.kelvin)});
@@ -142,14 +152,28 @@ std::vector<LightChange> Moods::changes(const std::string& name, const LightMix&
 
 void Moods::apply(const std::string& name, LightBoard& board) const {
   const Mood& mood = named(name);
+  std::vector<std::string> there;
   for (LightControl& control : board.controls()) {
+    there.push_back(control.name);
     const auto setting = mood.find(control.name);
-    if (setting == mood.end() || setting->second.unit != control.unit) continue;
-    control.power = setting->second.power;
+    if (setting == mood.end()) continue;
+    control.power =
+        in_unit(setting->second.power, setting->second.unit, control.unit, board.lumen_per_watt());
     control.on = setting->second.on;
     control.color = setting->second.color;
     control.kelvin = setting->second.kelvin;
     control.solo = false;
+  }
+  refuse_unknown_lights(name, there);
+}
+
+void Moods::refuse_unknown_lights(const std::string& name,
+                                  const std::vector<std::string>& there) const {
+  for (const auto& [light, setting] : named(name)) {
+    if (std::find(there.begin(), there.end(), light) != there.end()) continue;
+    throw UsageError(fmt::format(
+        "{}: mood '{}' names a light '{}' that is not there; there {}; mend it or keep it again",
+        file_.string(), name, light, scene_io::names_like(light, there)));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tools/view/light_board.hpp"
 
@@ -33,11 +34,11 @@ class Moods {
   void keep(const std::string& name, const LightBoard& board);
   void remove(const std::string& name);  ///< errors: as keep
 
-  /// Sets the board. Lights that the scene no longer has are passed over. Errors: UsageError when
-  /// there is no such mood; it lists those there are.
+  /// Sets the board. Errors: UsageError when there is no such mood, or when it names a light that
+  /// the board lacks, after it has set all others; it lists what there is.
   void apply(const std::string& name, LightBoard& board) const;
 
-  /// What a mood asks of the lights of a mix that it names, for change_lights. Errors: as apply.
+  /// What a mood asks of the lights of a mix, for change_lights. Errors: as apply.
   std::vector<LightChange> changes(const std::string& name, const LightMix& mix) const;
 
   const std::filesystem::path& file() const { return file_; }
@@ -53,6 +54,7 @@ class Moods {
   using Mood = std::map<std::string, Setting>;  ///< by light
 
   const Mood& named(const std::string& name) const;
+  void refuse_unknown_lights(const std::string& name, const std::vector<std::string>& there) const;
   void write(const std::map<std::string, Mood>& moods) const;
 
   std::filesystem::path file_;

@@ -39,7 +39,7 @@ struct PanelState {
   std::string& new_mood;                    ///< the name being typed
   const std::vector<ClickedPoint>& points;  ///< the newest last
   PointSettings& point_settings;
-  glm::dvec3 origin;  ///< of the scene, in the file's world
+  const Scene& scene;
 };
 
 /// What they show alone.

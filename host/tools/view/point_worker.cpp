@@ -76,7 +76,7 @@ void PointWorker::work(const std::stop_token& stop) {
       if (stop.stop_requested()) return;
       next = *lacking();
     }
-    const Sensor sensor{next.position - scene_.origin, next.normal};
+    const Sensor sensor = in_scene(scene_, {next.position, next.normal});
     const std::uint64_t seed =
         trace::seed_of_repeat(defaults::seed, static_cast<std::uint32_t>(1000 * next.number) +
                                                   static_cast<std::uint32_t>(next.repeats.size()));

@@ -176,7 +176,8 @@ class Viewer {
   void measure_clicked() {
     if (!clicked_ || display_.photon_map || !frame_ || !probe_) return;
     if (const auto place = inspector_.place_at(*frame_, probe_->x, probe_->y)) {
-      points_.add(place->position + scene_.origin, place->normal);
+      points_.add(place_in_world(scene_, place->position),
+                  direction_in_world(scene_, place->normal));
     }
   }
 
@@ -248,8 +249,17 @@ class Viewer {
 
   PanelEvents show_panels() {
     const std::vector<ClickedPoint> points = points_.points();
-    PanelState state{lights_,  moods_,    display_, parameters_.render, navigation_.speed(), probe_,
-                     message_, new_mood_, points,   point_settings_,    scene_.origin};
+    PanelState state{lights_,
+                     moods_,
+                     display_,
+                     parameters_.render,
+                     navigation_.speed(),
+                     probe_,
+                     message_,
+                     new_mood_,
+                     points,
+                     point_settings_,
+                     scene_};
     const LightBoard before = lights_;
     const PanelEvents events =
         draw_panels(state, {frame_.get(), photons_->progress(), milliseconds_,
