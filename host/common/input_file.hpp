@@ -1,10 +1,10 @@
 // Files that a run reads: whether they can be read, and the content of texts.
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <string>
 
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile {
@@ -26,9 +26,7 @@ template <class Work>
 auto about_file(const std::filesystem::path& file, const Work& work) {
   const auto named = [&](const std::string& what) {
     const std::string name = file.string() + ": ";
-    std::string line = file.empty() || what.starts_with(name) ? what : name + what;
-    std::replace(line.begin(), line.end(), '\n', ' ');  // of a text that the file holds
-    return line;
+    return one_line(file.empty() || what.starts_with(name) ? what : name + what);
   };
   try {
     return work();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/ascii_text.hpp"
 #include "common/input_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -33,7 +34,9 @@ JsonObject::JsonObject(const json& object, std::string where,
   if (!object.is_object()) refuse("is no object {...}");
   for (const auto& [key, value] : object.items()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
-      refuse(fmt::format("'{}' is not known; there are {}", key, fmt::join(known, ", ")));
+      constexpr std::size_t most_told = 60;
+      refuse(fmt::format("'{}' is not known; there are {}", key.substr(0, most_told),
+                         fmt::join(known, ", ")));
     }
   }
 }
@@ -82,7 +85,7 @@ std::string JsonObject::text(const char* key, const std::string& otherwise) cons
 }
 
 void JsonObject::refuse(const std::string& reason) const {
-  throw InputError(fmt::format("{}: {}", where_, reason));
+  throw InputError(one_line(fmt::format("{}: {}", where_, reason)));
 }
 
 }  // namespace photile

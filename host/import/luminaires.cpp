@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -34,9 +35,21 @@ constexpr double below_ceiling = 0.005;  // metres
 constexpr double least_uplight = 1e-3;
 constexpr int most_in_a_row = 1'000;
 
+/// A photometric file, which a scene holds once however many entries name it.
+struct LampKind {
+  std::uint32_t distribution = 0;  ///< of the scene
+  bool uplight = false;            ///< whether it shines to the other side of its opening, too
+};
+
+/// What entries have in common, found once: a file of kilobytes may have thousands of them.
+struct Shared {
+  std::map<std::filesystem::path, LampKind> kinds = {};
+  std::optional<std::optional<glm::dvec3>> ceiling = {};  ///< its middle, once it was looked for
+};
+
 struct LuminaireArray {
   std::string name;
-  IntensityDistribution distribution;
+  LampKind kind;
   glm::dvec3 position{0.0};  ///< of its middle, in the scene
   glm::dvec3 aim{0.0, -1.0, 0.0};
   double rotation = 0;  ///< radians
@@ -60,11 +73,35 @@ std::optional<std::array<double, 2>> pair_of(const json& entry, const JsonObject
   return std::array{value[0].get<double>(), value[1].get<double>()};
 }
 
-IntensityDistribution distribution_of(const std::filesystem::path& file, const JsonObject& object,
-                                      Warnings& warnings) {
+/// Share of the flux that shines away from the aim.
+double uplight_of(const IntensityDistribution& distribution) {
+  constexpr int rows = 64, columns = 64;
+  double up = 0, all = 0;
+  for (int row = 0; row < rows; ++row) {
+    const double z = -1 + 2 * (row + 0.5) / rows, sine = std::sqrt(1 - z * z);
+    for (int column = 0; column < columns; ++column) {
+      const double azimuth = glm::two_pi<double>() * (column + 0.5) / columns;
+      const double intensity =
+          distribution.intensity({sine * std::cos(azimuth), sine * std::sin(azimuth), z});
+      all += intensity;
+      up += z > 0 ? intensity : 0.0;
+    }
+  }
+  return all > 0 ? up / all : 0.0;
+}
+
+LampKind kind_of(const std::filesystem::path& file, const JsonObject& object, Shared& shared,
+                 Scene& scene, Warnings& warnings) {
+  if (const auto found = shared.kinds.find(file); found != shared.kinds.end()) {
+    return found->second;
+  }
   try {
     const auto bytes = read_regular_file(file, limits::max_photometry_bytes);
-    return read_photometry(file.string(), bytes, warnings);
+    auto lamp = read_photometry(file.string(), bytes, warnings);
+    const LampKind kind{static_cast<std::uint32_t>(scene.distributions.size()),
+                        uplight_of(lamp) > least_uplight};
+    scene.distributions.push_back(std::move(lamp));
+    return shared.kinds[file] = kind;
   } catch (const ResourceError& error) {
     object.refuse(fmt::format("'file': {}: {}", file.string(), error.what()));
   }
@@ -89,11 +126,13 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   return glm::dvec3(point.position) - below_ceiling * axes.up;
 }
 
-glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene& scene) {
+glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene& scene,
+                       Shared& shared) {
   if (!entry.contains("position") || entry["position"] != "ceiling") {
     return place_in_scene(scene, object.vector("position"));
   }
-  const auto middle = middle_of_ceiling(scene);
+  if (!shared.ceiling) shared.ceiling = middle_of_ceiling(scene);
+  const auto& middle = *shared.ceiling;
   if (!middle) {
     object.refuse("'position': the first camera sees no room with a ceiling; give three numbers");
   }
@@ -109,21 +148,25 @@ std::optional<std::array<double, 2>> size_of(const LuminousOpening& opening) {
 }
 
 LuminaireArray array_of(const json& entry, const JsonObject& object,
-                        const std::filesystem::path& folder, const Scene& scene,
+                        const std::filesystem::path& folder, Shared& shared, Scene& scene,
                         Warnings& warnings) {
   const std::filesystem::path file = folder / object.text("file", "");
   LuminaireArray lamps{object.text("name", file.stem().string()),
-                       distribution_of(file, object, warnings)};
-  lamps.position = position_of(entry, object, scene);
+                       kind_of(file, object, shared, scene, warnings)};
+  const IntensityDistribution& distribution = scene.distributions[lamps.kind.distribution];
+  lamps.position = position_of(entry, object, scene, shared);
   if (object.has("aim")) lamps.aim = direction_in_scene(scene, object.vector("aim"));
   if (!(glm::length(lamps.aim) > 0)) object.refuse("'aim' is 0 0 0; it has to point somewhere");
   lamps.aim = glm::normalize(lamps.aim);
   if (object.has("rotation")) lamps.rotation = glm::radians(object.number("rotation", -360, 360));
-  lamps.lumens = lamps.distribution.flux();
+  lamps.lumens = distribution.flux();
   if (object.has("lumens")) lamps.lumens = object.number("lumens", 0, limits::max_light_power);
   if (const auto count = pair_of(entry, object, "count", 1, most_in_a_row)) {
     lamps.columns = static_cast<int>((*count)[0]);
     lamps.rows = static_cast<int>((*count)[1]);
+    if (lamps.columns != (*count)[0] || lamps.rows != (*count)[1]) {
+      object.refuse("'count' is not two whole numbers");
+    }
   }
   if (const auto spacing = pair_of(entry, object, "spacing", 0, limits::max_coordinate)) {
     lamps.column_spacing = (*spacing)[0];
@@ -132,7 +175,7 @@ LuminaireArray array_of(const json& entry, const JsonObject& object,
     object.refuse("'count' of several lamps needs 'spacing', two numbers of metres");
   }
   auto size = pair_of(entry, object, "size", 1e-4, limits::max_coordinate);
-  if (!size) size = size_of(lamps.distribution.opening());
+  if (!size) size = size_of(distribution.opening());
   if (!size) {
     object.refuse(
         "'size' is missing, and the file states no luminous opening; give two numbers of metres");
@@ -154,23 +197,6 @@ glm::dmat3 axes_of(const LuminaireArray& lamps) {
   return {cosine * x + sine * y, cosine * y - sine * x, z};
 }
 
-/// Share of the flux that shines away from the aim.
-double uplight_of(const IntensityDistribution& distribution) {
-  constexpr int rows = 64, columns = 64;
-  double up = 0, all = 0;
-  for (int row = 0; row < rows; ++row) {
-    const double z = -1 + 2 * (row + 0.5) / rows, sine = std::sqrt(1 - z * z);
-    for (int column = 0; column < columns; ++column) {
-      const double azimuth = glm::two_pi<double>() * (column + 0.5) / columns;
-      const double intensity =
-          distribution.intensity({sine * std::cos(azimuth), sine * std::sin(azimuth), z});
-      all += intensity;
-      up += z > 0 ? intensity : 0.0;
-    }
-  }
-  return all > 0 ? up / all : 0.0;
-}
-
 std::uint32_t black_material(Scene& scene) {
   Material material;
   material.name = "luminaire";
@@ -178,7 +204,7 @@ std::uint32_t black_material(Scene& scene) {
   return static_cast<std::uint32_t>(scene.materials.size() - 1);
 }
 
-void add_array(LuminaireArray lamps, double lumen_per_watt, std::uint32_t material,
+void add_array(const LuminaireArray& lamps, double lumen_per_watt, std::uint32_t material,
                MeshBuilder& mesh, Scene& scene) {
   const glm::dmat3 axes = axes_of(lamps);
   Light light;
@@ -186,11 +212,10 @@ void add_array(LuminaireArray lamps, double lumen_per_watt, std::uint32_t materi
   light.power = scene.unit == PowerUnit::lumen ? lamps.lumens : lamps.lumens / lumen_per_watt;
   light.direction = glm::vec3(lamps.aim);
   light.x_axis = glm::vec3(axes[0]);
-  light.two_sided = uplight_of(lamps.distribution) > least_uplight;
-  light.distribution = static_cast<std::uint32_t>(scene.distributions.size());
+  light.two_sided = lamps.kind.uplight;
+  light.distribution = lamps.kind.distribution;
   const bool alone = lamps.columns * lamps.rows == 1;
   if (!alone) light.group = lamps.name;
-  scene.distributions.push_back(std::move(lamps.distribution));
   for (int row = 0; row < lamps.rows; ++row) {
     for (int column = 0; column < lamps.columns; ++column) {
       const glm::dvec3 place =
@@ -219,12 +244,13 @@ void add_luminaires(const std::filesystem::path& file, double lumen_per_watt, Sc
   const json content = read_input_json(file);
   const json list = content.is_array() ? content : json::array({content});
   std::vector<LuminaireArray> arrays;
+  Shared shared;
   std::size_t lamps = scene.lights.size();
   for (std::size_t i = 0; i < list.size(); ++i) {
     const JsonObject object(
         list[i], fmt::format("{}: luminaire {}", file.string(), i + 1),
         {"name", "file", "position", "aim", "rotation", "lumens", "count", "spacing", "size"});
-    arrays.push_back(array_of(list[i], object, file.parent_path(), scene, warnings));
+    arrays.push_back(array_of(list[i], object, file.parent_path(), shared, scene, warnings));
     lamps += static_cast<std::size_t>(arrays.back().columns) *
              static_cast<std::size_t>(arrays.back().rows);
     if (lamps > limits::max_lights) {
@@ -237,8 +263,8 @@ void add_luminaires(const std::filesystem::path& file, double lumen_per_watt, Sc
                            .emission_uv = !scene.corner_emission_uv.empty(),
                            .normals = !scene.corner_normal.empty(),
                            .tangents = !scene.corner_tangent.empty()});
-  for (LuminaireArray& array : arrays)
-    add_array(std::move(array), lumen_per_watt, material, mesh, scene);
+  for (const LuminaireArray& array : arrays)
+    add_array(array, lumen_per_watt, material, mesh, scene);
 }
 
 }  // namespace photile::scene_io

@@ -88,7 +88,7 @@ WeatherHour hour_of(const Line& line) {
 
 }  // namespace
 
-WeatherYear read_weather(const std::filesystem::path& file) {
+WeatherYear read_weather_hours(const std::filesystem::path& file) {
   const std::string text = read_input_text(file);
   const std::vector<std::string_view> lines = lines_of(text);
   if (lines.size() <= header_lines) {
@@ -109,6 +109,11 @@ WeatherYear read_weather(const std::filesystem::path& file) {
                       file.string(), i + 1, hours_of_leap_year));
     }
   }
+  return year;
+}
+
+WeatherYear read_weather(const std::filesystem::path& file) {
+  WeatherYear year = read_weather_hours(file);
   if (year.hours.size() != hours_of_year && year.hours.size() != hours_of_leap_year) {
     throw InputError(fmt::format(
         "{}: {} hours; give a file of a whole year, {} or {} lines after "

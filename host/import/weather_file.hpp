@@ -26,6 +26,9 @@ struct WeatherYear {
 /// Errors: InputError naming the file, the line, what was found and the remedy.
 WeatherYear read_weather(const std::filesystem::path& file);
 
+/// The same of a file with fewer hours, or none.
+WeatherYear read_weather_hours(const std::filesystem::path& file);
+
 /// The hour of the file in which a moment falls, whatever its year.
 const WeatherHour& hour_at(const WeatherYear& year, const LocalTime& time);
 

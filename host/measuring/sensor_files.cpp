@@ -64,7 +64,8 @@ SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
 }
 
 /// The band of so many metres around a task, as a grid of cells like the task's.
-SensorGrid surroundings_of(const SensorGrid& task, double band) {
+SensorGrid surroundings_of(const JsonObject& plane, const SensorGrid& task) {
+  const double band = plane.metres("surroundings");
   const PlaneLayout& inner = *task.layout;
   const double across = glm::length(inner.u), along = glm::length(inner.v);
   const glm::dvec3 u = inner.u / across, v = inner.v / along;
@@ -73,8 +74,13 @@ SensorGrid surroundings_of(const SensorGrid& task, double band) {
   outer.u = (across + 2 * band) * u;
   outer.v = (along + 2 * band) * v;
   const double spacing = std::min(inner.spacing(), band);
-  outer.columns = std::max(1, static_cast<int>(std::round((across + 2 * band) / spacing)));
-  outer.rows = std::max(1, static_cast<int>(std::round((along + 2 * band) / spacing)));
+  const double columns = std::max(1.0, std::round((across + 2 * band) / spacing));
+  const double rows = std::max(1.0, std::round((along + 2 * band) / spacing));
+  if (!(columns * rows <= 2.0 * limits::max_sensors)) {  // of which the task is a part
+    plane.refuse(fmt::format("'surroundings' makes more than {} points", limits::max_sensors));
+  }
+  outer.columns = static_cast<int>(columns);
+  outer.rows = static_cast<int>(rows);
   const auto cells =
       static_cast<std::uint32_t>(outer.columns) * static_cast<std::uint32_t>(outer.rows);
   for (std::uint32_t cell = 0; cell < cells; ++cell) {
@@ -102,7 +108,7 @@ std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
         {"name", "origin", "u", "v", "spacing", "columns", "rows", "surroundings"});
     grids.push_back(grid_of(plane, file.stem().string() + number));
     if (!plane.has("surroundings")) continue;
-    SensorGrid around = surroundings_of(grids.back(), plane.metres("surroundings"));
+    SensorGrid around = surroundings_of(plane, grids.back());
     if (around.sensors.size() > limits::max_sensors) {
       plane.refuse(fmt::format("'surroundings' makes more than {} points", limits::max_sensors));
     }

@@ -3,10 +3,15 @@
 #include <cmath>
 #include <string>
 
+#include "daylight/sun_position.hpp"
 #include "fuzz_files.hpp"
+#include "glare/observers.hpp"
 #include "import/finishing.hpp"
 #include "import/light_changes.hpp"
+#include "import/material_changes.hpp"
+#include "measuring/requirements.hpp"
 #include "measuring/sensor_files.hpp"
+#include "measuring/working_plane.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/light_options.hpp"
 #include "photile/scene_builder.hpp"
@@ -39,11 +44,24 @@ void check_lights(const SceneLoadOptions& options) {
   Scene scene = lit_floor();
   scene_io::add_surroundings(scene, options);
   scene_io::apply_temperatures(scene, options.temperatures);
+  scene_io::apply_reflectances(scene, options.reflectances);
+  for (const Material& material : scene.materials) {
+    require(std::isfinite(material.diffuse.x), "a colour that is no number");
+  }
   scene_io::group_lights(scene, options.light_groups);
   for (const Light& light : scene.lights) {
     require(std::isfinite(light.power) && light.power >= 0, "a light without a power");
     require(!light.name.empty(), "a light without a name");
   }
+}
+
+constexpr Site berlin{52.5, 13.4, 1};
+
+void check_sun(const Site& site, const LocalTime& time) {
+  const daylight::SunPosition sun = daylight::sun_position(site, time);
+  require(std::isfinite(sun.azimuth + sun.elevation), "a sun that is nowhere");
+  const int day = daylight::day_of_year(time);
+  require(day >= 1 && day <= 366, "a day that no year has");
 }
 
 /// Errors: UsageError where the validator refuses the text. What it leaves of it is a number.
@@ -57,7 +75,7 @@ void validate(const CLI::Validator& validator, std::string text) {
 void parse_option(unsigned char option, const std::string& text) {
   const auto finite = [](double value) { require(std::isfinite(value), "no number"); };
   SceneLoadOptions options;
-  switch (option % 13) {
+  switch (option % 22) {
     case 0:
       validate(app::count_between(1, 1'000'000), text);
       break;
@@ -101,12 +119,46 @@ void parse_option(unsigned char option, const std::string& text) {
       options.temperatures.push_back(LightTemperature::parse(text));
       check_lights(options);
       break;
+    case 11:
+      walk::FrameNames(text).of(7);
+      break;
     case 12:
       options.light_groups.push_back(LightGrouping::parse(text));
       check_lights(options);
       break;
+    case 13:
+      check_sun(Site::parse(text), LocalTime{});
+      break;
+    case 14:
+      check_sun(berlin, LocalTime::parse(text));
+      break;
+    case 15:
+      options.situation = {berlin, LocalTime{}};
+      options.sun = Sun::parse(text);
+      check_lights(options);
+      break;
+    case 16:
+      options.situation = {berlin, LocalTime{}};
+      options.sky = Sky::parse(text);
+      check_lights(options);
+      break;
+    case 17:
+      options.reflectances.push_back(ReflectanceChange::parse(text));
+      check_lights(options);
+      break;
+    case 18: {
+      const measuring::Requirement asked = measuring::parse_requirement(text);
+      for (const double value : {asked.mean, asked.uniformity, asked.glare}) finite(value);
+      break;
+    }
+    case 19:
+      validate(app::shard_of_some(), text);
+      break;
+    case 20:
+      validate(app::frame_range(), text);
+      break;
     default:
-      walk::FrameNames(text).of(7);
+      finite(measuring::parse_working_plane(text).height);
       break;
   }
 }
@@ -115,7 +167,14 @@ void parse_option(unsigned char option, const std::string& text) {
 
 bool fuzz_points(Bytes bytes) {
   const auto file = file_of("points.pts", bytes);
-  return accepts([&] { check_sensors(measuring::read_points(file)); });
+  return accepts([&] {
+    const measuring::SensorGrid points = measuring::read_points(file);
+    check_sensors(points);
+    for (const auto& observer : glare::observers_at(points, measuring::PlanAxes())) {
+      require(std::abs(glm::length(observer.up) - 1) < 1e-6, "an observer without an up");
+      require(std::abs(glm::dot(observer.up, observer.forward)) < 1e-6, "an up that leans");
+    }
+  });
 }
 
 bool fuzz_planes(Bytes bytes) {
@@ -132,6 +191,9 @@ bool fuzz_moods(Bytes bytes) {
     const view::Moods moods(file);
     for (const std::string& name : moods.names()) {
       moods.apply(name, board);
+      LightMix mix{{{.name = "ceiling", .members = {}, .power = 1}}};
+      change_lights(mix, moods.changes(name, mix));  // as relight --mood
+      require(std::isfinite(mix.lights[0].power), "a power is no number");
       require(std::isfinite(board.controls()[0].power), "a power is no number");
     }
     // What is kept of it is read again.
@@ -142,7 +204,9 @@ bool fuzz_moods(Bytes bytes) {
     require(view::Moods(file).names() == kept.names(), "a mood that is lost");
     view::LightBoard again(LightMix{{{.name = "ceiling", .members = {}, .power = 1}}});
     view::Moods(file).apply("kept", again);
-    require(again.controls()[0].power == board.controls()[0].power, "a power that has changed");
+    const double power = board.controls()[0].power;  // of which four digits are kept
+    require(std::abs(again.controls()[0].power - power) <= 1e-3 * power,
+            "a power that has changed");
   });
 }
 
@@ -160,6 +224,7 @@ const std::map<std::string_view, FuzzTarget>& fuzz_targets() {
                                                               {"gltf", fuzz_gltf},
                                                               {"ies", fuzz_ies},
                                                               {"ldt", fuzz_ldt},
+                                                              {"luminaires", fuzz_luminaires},
                                                               {"moods", fuzz_moods},
                                                               {"obj", fuzz_obj},
                                                               {"options", fuzz_options},
@@ -169,7 +234,8 @@ const std::map<std::string_view, FuzzTarget>& fuzz_targets() {
                                                               {"radiance", fuzz_radiance},
                                                               {"relight", fuzz_relight},
                                                               {"saved_maps", fuzz_saved_maps},
-                                                              {"texture", fuzz_texture}};
+                                                              {"texture", fuzz_texture},
+                                                              {"weather", fuzz_weather}};
   return targets;
 }
 

@@ -94,6 +94,8 @@ void use_light_maps(LightMapContents contents) {
 
 bool fuzz_saved_maps(Bytes bytes) {
   const auto file = file_of("room.maps", sealed(bytes));
+  // Alone it is all shards, or one of several, and refused.
+  accepts([&] { saved_maps::merge(std::span(&file, 1), file.parent_path() / "merged.maps"); });
   return accepts([&] {
     PreparedPhotons photons = saved_maps::load(file, floor_scene(), words);
     require(photons.photons.first_of.size() == 2 * floor_scene().triangle_count() + 1,

@@ -26,13 +26,15 @@ bool fuzz_ldt(Bytes bytes);
 bool fuzz_texture(Bytes bytes);   ///< a picture of a scene, of any format
 bool fuzz_radiance(Bytes bytes);  ///< surroundings
 bool fuzz_camera_path(Bytes bytes);
+bool fuzz_luminaires(Bytes bytes);  ///< and a photometric file behind the first zero byte
+bool fuzz_weather(Bytes bytes);
 
 // Pictures
 bool fuzz_relight(Bytes bytes);  ///< an EXR with layers
 bool fuzz_picture(Bytes bytes);  ///< of any format, as compare and walk read it
 
 // Measuring, moods
-bool fuzz_points(Bytes bytes);
+bool fuzz_points(Bytes bytes);  ///< sensors, or observers
 bool fuzz_planes(Bytes bytes);
 bool fuzz_moods(Bytes bytes);
 

@@ -161,6 +161,18 @@ TEST_CASE("a task has a band of surroundings around it") {
   }
 }
 
+TEST_CASE("a band of more cells than memory holds is refused") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "desk.json";
+  for (const char* band : {"1e-9", "1e-4", "1e9"}) {
+    std::ofstream(file) << R"({"origin": [1, 0.75, 1], "u": [0, 0, 1], "v": [1.6, 0, 0],
+                              "columns": 9, "rows": 9, "surroundings": )"
+                        << band << "}";
+    CAPTURE(band);
+    CHECK_THROWS_WITH(read_planes(file), Catch::Contains("surroundings"));
+  }
+}
+
 TEST_CASE("points in a solid are blank with a reason and their place in the grid") {
   SceneBuilder builder("room");
   const auto white = builder.add(diffuse(glm::vec3(0.5f)));

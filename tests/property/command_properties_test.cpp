@@ -60,18 +60,20 @@ std::string problem_of_picture(const fs::path& file) {
       return "a pixel is not finite";
     }
   }
+  const bool layered =
+      std::any_of(image.channel_names.begin(), image.channel_names.end(),
+                  [](const std::string& name) { return name.starts_with("Combined_"); });
+  const LightMix mix = layered ? read_light_mix(file) : LightMix();  // in the order of the sum
   for (const char* component : {"R", "G", "B"}) {
     const std::vector<float>* root = image.find(component);
     if (root == nullptr) return std::string("lacks ") + component;
     std::vector<float> sums(image.pixels());
-    bool layers = false;
-    for (std::size_t i = 0; i < image.channels.size(); ++i) {
-      const std::string& name = image.channel_names[i];
-      if (!name.starts_with("Combined_") || !name.ends_with(std::string(".") + component)) continue;
-      layers = true;
-      for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += image.channels[i][p];
+    for (const MixedLight& light : mix.lights) {
+      const std::vector<float>* layer = image.find("Combined_" + light.name + "." + component);
+      if (layer == nullptr) continue;
+      for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += (*layer)[p];
     }
-    if (!layers || file.filename() == "errors.exr") continue;
+    if (!layered || file.filename() == "errors.exr") continue;
     for (std::size_t p = 0; p < sums.size(); ++p) {
       const float sum = std::min(sums[p], std::numeric_limits<float>::max());
       if (std::bit_cast<std::uint32_t>((*root)[p]) != std::bit_cast<std::uint32_t>(sum)) {
@@ -88,11 +90,24 @@ bool has_null(const nlohmann::json& value) {
   return value.is_null();
 }
 
-/// What is wrong with a file that a command has written, or "".
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// What is wrong with a file, or those of a folder, that a command has written, or "".
 std::string problem_of(const fs::path& file) {
+  if (fs::is_directory(file)) {
+    for (const fs::path& inner : files_in(file)) {
+      if (const std::string problem = problem_of(inner); !problem.empty()) return problem;
+    }
+    return {};
+  }
   const std::string ending = file.extension().string();
   if (ending == ".exr") return problem_of_picture(file);
-  if (ending == ".png") {
+  if (ending == ".png" || ending == ".hdr") {
     check_pixels(file);
     return {};
   }
@@ -101,10 +116,12 @@ std::string problem_of(const fs::path& file) {
   if (ending == ".json") {
     const auto json = nlohmann::json::parse(bytes, nullptr, false);
     if (json.is_discarded()) return "is no JSON";
-    // A signal-to-noise ratio of equal pictures is none.
-    return has_null(json) && file.filename() != "errors.json" ? "holds a number that is none" : "";
+    // A signal-to-noise ratio of equal pictures is none, nor is glare where nothing glares.
+    const bool may = file.filename() == "errors.json" || file.filename() == "glare.json";
+    return has_null(json) && !may ? "holds a number that is none" : "";
   }
-  if (ending == ".csv" || ending == ".svg" || ending == ".html") {
+  if (ending == ".csv" || ending == ".svg" || ending == ".html" || ending == ".ill" ||
+      ending == ".res") {
     for (const char* none : {"nan", "inf"}) {
       const std::size_t place = bytes.find(none);
       if (place != std::string::npos &&
@@ -119,6 +136,11 @@ std::string problem_of(const fs::path& file) {
 
 /// What of a file has to be the same on a second run: EXRs and records tell times, too.
 std::string result_in(const fs::path& file) {
+  if (fs::is_directory(file)) {
+    std::string all;
+    for (const fs::path& inner : files_in(file)) all += result_in(inner);
+    return all;
+  }
   if (file.extension() == ".exr") {
     std::string bits;
     for (const std::vector<float>& plane : read_image(file).channels) {
@@ -137,9 +159,8 @@ class Trial {
 
   void check(const CommandRun& run) const {
     CAPTURE(run.errors);
-    CHECK((run.exit_code >= 0 && run.exit_code <= 4));
     CHECK(contents(command_.inputs) == before_);
-    check_lines(run);
+    check_end(run);
     for (const fs::path& output : command_.outputs) {
       CAPTURE(output);
       if (run.exit_code == 0) CHECK(fs::exists(output));
@@ -147,8 +168,8 @@ class Trial {
     }
   }
 
- private:
-  static void check_lines(const CommandRun& run) {
+  static void check_end(const CommandRun& run) {
+    CHECK((run.exit_code >= 0 && run.exit_code <= 4));
     const std::string prefix = "photile: error: ";
     const std::vector<std::string> lines = run.error_lines();
     const auto errors = std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
@@ -168,6 +189,7 @@ class Trial {
     }
   }
 
+ private:
   const RandomCommand& command_;
   const std::map<fs::path, std::string> before_;
 };
@@ -175,6 +197,15 @@ class Trial {
 std::uint64_t number_from(const char* variable, std::uint64_t otherwise) {
   const char* const value = std::getenv(variable);
   return value == nullptr ? otherwise : std::strtoull(value, nullptr, 10);
+}
+
+/// Runs the commands that write what a command reads.
+void run_before(const RandomCommand& command) {
+  for (const std::vector<std::string>& arguments : command.before) {
+    const CommandRun run = run_command(arguments);
+    CAPTURE(text_of(arguments), run.errors);
+    Trial::check_end(run);
+  }
 }
 
 /// Waiting for a disk takes longer than most commands do.
@@ -255,6 +286,7 @@ TEST_CASE("commands at random keep what every command promises") {
     Dice same = dice;
     const RandomCommand command = random_command(place, dice);
     CAPTURE(seed, text_of(command.arguments));
+    run_before(command);
     const Trial trial(command);
     const CommandRun run = run_command(command.arguments);
     trial.check(run);
@@ -273,6 +305,7 @@ TEST_CASE("commands at random keep what every command promises") {
     place.folder = again.path;
     RandomCommand second = random_command(place, same);
     load_maps_of(command, second);
+    run_before(second);
     const CommandRun once_more = run_command(second.arguments);
     CAPTURE(text_of(second.arguments), once_more.errors);
     CHECK(once_more.exit_code == 0);
@@ -286,7 +319,8 @@ TEST_CASE("commands at random keep what every command promises") {
   CHECK(4 * codes[0] > count);
   CHECK(codes[2] > 0);
   CHECK(codes[3] > 0);
-  for (const char* command : {"render", "relight", "measure", "walk", "compare"}) {
+  for (const char* command :
+       {"render", "relight", "measure", "walk", "compare", "ies", "merge", "glare"}) {
     CAPTURE(command);
     CHECK(successes[command] > 0);
   }

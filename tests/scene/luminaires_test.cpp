@@ -90,6 +90,15 @@ TEST_CASE("an array is spaced around its middle and shares a layer", "[luminaire
   CHECK(glm::distance(middle + scene.origin, glm::dvec3(1, 0, 3)) < 0.1);
 }
 
+TEST_CASE("however many entries name a file, its intensities are there once", "[luminaires]") {
+  const SceneFolderOnDisk folder;
+  std::string list = one;
+  for (int i = 0; i < 999; ++i) list += std::string(",") + one;
+  const Scene scene = scene_with(folder, "[" + list + "]");
+  CHECK(scene.lights.size() == 1000);
+  CHECK(scene.distributions.size() == 1);
+}
+
 TEST_CASE("an opening of cosine intensities is a Lambertian rectangle", "[luminaires]") {
   const SceneFolderOnDisk folder;
   const Scene scene = scene_with(folder, one);
@@ -194,6 +203,10 @@ TEST_CASE("what is wrong with a placed lamp is told in a line", "[luminaires]") 
   CHECK_THAT(
       error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "count": [2,2]})"),
       Contains("spacing"));
+  CHECK_THAT(
+      error_of(
+          R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "count": [2.5,2], "spacing": [1,1]})"),
+      Contains("count"));
   CHECK_THAT(error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "colour": 1})"),
              Contains("colour"));
 }
