@@ -262,14 +262,15 @@ class Generator : CommandBuilder {
 
   void ies() {
     const std::string candela =
-        dice_.one_of({"100 100 100", "0 0 0", "100 50 0", "1e9 1 1", "1 2"});
-    const std::string opening = dice_.one_of({"0.6 0.3 0", "0 0 0", "-0.2 -0.2 0.1", "0.6 0.3 2"});
+        dice_.one_of({"100 100 100", "100 50 0", "1e9 1 1", "80 90 60", "0 0 0", "1 2"});
+    const std::string opening =
+        dice_.one_of({"0.6 0.3 0", "-0.2 -0.2 0.1", "0.6 0.3 2", "0.1 0.1 0", "0 0 0"});
     add({"ies", input("lamp.ies", "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 " + opening +
                                       "\n1 1 40\n0 90 180\n0\n" + candela + "\n")
                     .string()});
     if (dice_.chance(0.2)) return;
     add({"--ugr-table"});
-    maybe(0.2, {"--spacing", dice_.one_of({"0.25", "2", "0", "nan"})});
+    maybe(0.1, {"--spacing", dice_.one_of({"0.25", "2", "0", "nan"})});
     maybe(0.2, {"--per-1000-lm"});
     if (dice_.chance(0.7)) output("-o", dice_.one_of({"ugr.csv", "ugr.json"}));
   }
