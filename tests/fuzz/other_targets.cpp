@@ -9,6 +9,7 @@
 #include "import/finishing.hpp"
 #include "import/light_changes.hpp"
 #include "import/material_changes.hpp"
+#include "import/up_axis.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_files.hpp"
 #include "measuring/working_plane.hpp"
@@ -75,7 +76,7 @@ void validate(const CLI::Validator& validator, std::string text) {
 void parse_option(unsigned char option, const std::string& text) {
   const auto finite = [](double value) { require(std::isfinite(value), "no number"); };
   SceneLoadOptions options;
-  switch (option % 22) {
+  switch (option % 23) {
     case 0:
       validate(app::count_between(1, 1'000'000), text);
       break;
@@ -157,8 +158,11 @@ void parse_option(unsigned char option, const std::string& text) {
     case 20:
       validate(app::frame_range(), text);
       break;
-    default:
+    case 21:
       finite(measuring::parse_working_plane(text).height);
+      break;
+    default:
+      finite(glm::determinant(scene_io::turn_upright(text)));
       break;
   }
 }
@@ -233,6 +237,7 @@ const std::map<std::string_view, FuzzTarget>& fuzz_targets() {
                                                               {"points", fuzz_points},
                                                               {"radiance", fuzz_radiance},
                                                               {"relight", fuzz_relight},
+                                                              {"results", fuzz_results},
                                                               {"saved_maps", fuzz_saved_maps},
                                                               {"texture", fuzz_texture},
                                                               {"weather", fuzz_weather}};

@@ -1,4 +1,4 @@
-// What is placed in and around a scene: luminaires, and the weather.
+// What is placed in and around a scene: luminaires, and the weather. What reports include.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -9,10 +9,12 @@
 #include "import/luminaires.hpp"
 #include "import/warnings.hpp"
 #include "import/weather_file.hpp"
+#include "measuring/requirements.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "scene/light_names.hpp"
 #include "test_scenes.hpp"
+#include "tools/report/included_results.hpp"
 
 namespace photile::test {
 namespace {
@@ -89,6 +91,19 @@ bool fuzz_weather(Bytes bytes) {
     for (std::size_t i = 0; i < std::min(most_checked, year.hours.size()); ++i) {
       check_hour(year.site, year.hours[i]);
     }
+  });
+}
+
+bool fuzz_results(Bytes bytes) {
+  const auto file = file_of("results.json", bytes);
+  return accepts([&] {
+    const auto results = measuring::included_results(std::span(&file, 1),
+                                                     measuring::parse_requirement("office-desk"));
+    require(results.tables.size() == 1, "another number of tables");
+    for (const auto& row : results.tables[0].rows) {
+      require(row.size() == results.tables[0].columns.size(), "a row of another length");
+    }
+    if (results.glare) require(std::isfinite(results.glare->measured.value), "no rating");
   });
 }
 

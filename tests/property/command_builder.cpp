@@ -226,6 +226,7 @@ void CommandBuilder::scene_changes() {
   maybe(0.05, {"--reflectance", dice_.one_of({"*=0.5", "wall=80%", "stuff*=0", "glow*=20%",
                                               "nobody=0.5", "*=2", "[=0.5"})});
   maybe(0.04, {"--lambertian"});
+  maybe(0.05, {"--up", dice_.one_of({"y", "z", "x", "-y", "w"})});
   if (dice_.chance(0.05)) luminaires();
 }
 

@@ -129,7 +129,6 @@ class Generator : CommandBuilder {
     maybe(0.2, {"--target", dice_.one_of({"office-desk", "Em=500,Uo=0.6", "Em=0", "UGR=19"})});
     if (dice_.chance(0.1)) output("--honeybee", "honeybee");
     maybe(0.1, {"--clearance", fmt::format("{:g}", 0.1 * s)});
-    maybe(0.05, {"--up", dice_.one_of({"y", "z", "x", "-y"})});
     false_colour();
     light_changes(0.25);
     lights();
