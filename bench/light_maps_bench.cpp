@@ -123,8 +123,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   const std::vector<double> powers = layer_powers(scene);
   std::vector<PhotonMaps> maps;
   maps.emplace_back(device, scene, photons, groups, PhotonMapParameters{.radius = radius});
-  MapEstimators estimators(std::span(&device, 1), scene, std::move(maps), std::span(&estimate, 1),
-                           powers);
+  MapEstimators estimators(std::span(&device, 1), scene, {std::move(maps), {estimate}}, powers);
   LightMapParameters light_maps =
       light_map_parameters(scene, photons, settings.neighbours, radius,
                            defaults::group_angle_degrees, settings.detail, powers);

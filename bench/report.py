@@ -48,26 +48,42 @@ def doubts(results):
     return reasons
 
 
-def caption(results):
-    """The machine and the date, for plots."""
-    knn = results["knn"]
-    machine, device = knn["machine"], knn["device"]
-    parts = [f"{machine['processor']}, {machine['hardware threads']} hardware threads",
-             f"OpenCL: {device['platform']} {device['driver']}", knn["date"]]
+def machine_of(result):
+    machine = result["machine"]
+    return f"{machine['processor']}, {machine['hardware threads']} hardware threads"
+
+
+def caption(results, bench):
+    """The machine and the date, for the plots of a bench."""
+    result = results[bench]
+    device = result["device"]
+    parts = [machine_of(result), f"OpenCL: {device['platform']} {device['driver']}", result["date"]]
     if doubts(results):
         parts.append("provisional")
     return "; ".join(parts)
 
 
+def other_machines(results):
+    """A line for each day and machine other than those of the search, with what was measured then."""
+    own = machine_of(results["knn"]), results["knn"]["date"]
+    benches = {}
+    for name, result in results.items():
+        if "machine" in result:
+            benches.setdefault((machine_of(result), result["date"]), []).append(name)
+    return [f"{', '.join(f'`{name}.json`' for name in names)}: {machine}; {date}."
+            for (machine, date), names in sorted(benches.items()) if (machine, date) != own]
+
+
 def machine_section(results):
     knn = results["knn"]
-    machine, device, versions = knn["machine"], knn["device"], knn["versions"]
+    device, versions = knn["device"], knn["versions"]
     lines = [
-        f"**Machine**: {machine['processor']}, {machine['hardware threads']} hardware threads; {knn['date']}.",
+        f"**Machine**: {machine_of(knn)}; {knn['date']}.",
         f"**OpenCL device**: {device['name']}, {device['platform']} {device['driver']}, "
         f"{device['compute units']} compute units.",
         "**Versions**: " + ", ".join(f"{name} {version}" for name, version in versions.items())
         + ".",
+        *other_machines(results),
     ]
     lines += [f"**Provisional**: {reason}." for reason in doubts(results)]
     if any(result["settings"]["quick"] for result in results.values()):
@@ -118,10 +134,10 @@ def main():
     for bench in BENCHES:
         with open(options.results / f"{bench}.json", encoding="utf-8") as file:
             results[bench] = json.load(file)
-    plots = report_plots.draw_knn(results["knn"], caption(results), options.results)
-    ratio_plots = report_plots.draw_ratios(results["knn"], caption(results), options.results)
-    report_lights.draw(results["lights"], caption(results), options.results)
-    report_scale.draw(results["scale"], caption(results), options.results)
+    plots = report_plots.draw_knn(results["knn"], caption(results, "knn"), options.results)
+    ratio_plots = report_plots.draw_ratios(results["knn"], caption(results, "knn"), options.results)
+    report_lights.draw(results["lights"], caption(results, "lights"), options.results)
+    report_scale.draw(results["scale"], caption(results, "scale"), options.results)
     notes = (ROOT / "bench/report_notes.md").read_text(encoding="utf-8")
     options.page.write_text(page(results, plots, ratio_plots, notes), encoding="utf-8")
     print(f"wrote {options.page}")

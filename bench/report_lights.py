@@ -1,7 +1,7 @@
 """Many lights: stages, layers and files against the number of lights."""
 
 import report_plots
-from report_tables import table, times
+from report_tables import figure, table, times
 
 STAGES = {"trace": "trace", "maps": "maps", "estimate": "estimate", "film": "film",
           "write": "write EXR", "relight": "relight"}
@@ -35,7 +35,7 @@ def text(result):
         "![Time against lights](benchmarks/lights.svg)",
         table(header, lines(rows)),
         f"From {rows[0]['lights']:,} to {rows[-1]['lights']:,} lights: "
-        + ", ".join(f"{name} x {growth(rows, stage):.2g}" for stage, name in STAGES.items()) + "."])
+        + ", ".join(f"{name} x {figure(growth(rows, stage))}" for stage, name in STAGES.items()) + "."])
 
 
 def draw(result, caption, folder):

@@ -37,11 +37,24 @@ def save(figure, file):
 
 
 def panels(count, caption):
-    """A figure of panels side by side that share their y axis, and its axes."""
-    figure, axes = pyplot.subplots(1, count, figsize=(3.4 * count + 2, 4), sharey=True,
+    """A figure of panels that share their y axis, side by side or, where they are more than four, in
+    rows of three; and its axes."""
+    columns = count if count <= 4 else 3
+    rows = -(-count // columns)
+    figure, axes = pyplot.subplots(rows, columns, figsize=(3.4 * columns + 2, 4 * rows), sharey=True,
                                    squeeze=False, layout="constrained")
     figure.supxlabel(caption, fontsize="x-small", color="#666666")
-    return figure, axes[0]
+    axes = axes.flatten()
+    for unused in axes[count:]:
+        unused.set_axis_off()
+    return figure, axes[:count]
+
+
+def label_rows(axes, text):
+    """Of the y axis, at the first panel of each row."""
+    for axis in axes:
+        if axis.get_subplotspec().is_first_col():
+            axis.set_ylabel(text)
 
 
 def log_log(axis, title, x_label):
@@ -86,7 +99,7 @@ def draw_workload(rows, workload, caption, file):
     for axis, k in zip(axes, ks):
         draw_times(axis, [row for row in rows if row["k"] == k])
         log_log(axis, f"k = {k}", "photons")
-    axes[0].set_ylabel("microseconds a query")
+    label_rows(axes, "microseconds a query")
     legend_beside(axes)
     figure.suptitle(workload)
     save(figure, file)
@@ -99,7 +112,7 @@ def draw_summary(rows, workloads, caption, file):
         draw_times(axis, [row for row in rows
                           if row["workload"] == workload and row["k"] == SUMMARY_K])
         log_log(axis, f"{workload}, k = {SUMMARY_K}", "photons")
-    axes[0].set_ylabel("microseconds a query")
+    label_rows(axes, "microseconds a query")
     legend_beside(axes)
     save(figure, file)
 
@@ -121,7 +134,7 @@ def draw_ratios(knn, caption, folder):
                           color=colour, label=structure, markersize=4)
             axis.axhline(1, color=STYLES[report_ratios.BASE][0])
             log_log(axis, f"k = {k}", "photons")
-        axes[0].set_ylabel(f"times as long as {report_ratios.BASE}")
+        label_rows(axes, f"times as long as {report_ratios.BASE}")
         legend_beside(axes)
         figure.suptitle(workload)
         drawn.append((workload, f"knn-ratios-{workload}.svg"))

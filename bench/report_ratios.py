@@ -10,6 +10,8 @@ import json
 import pathlib
 import sys
 
+from report_tables import figure, table
+
 BASE = "uniform-grid"
 
 
@@ -44,18 +46,13 @@ def visits(rows):
     return found
 
 
-def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|---|" + "--:|" * (len(header) - 1)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
-
-
 def text(rows):
     parts = []
     for (workload, k), structures in ratios(rows).items():
         counts = sorted({count for ratio in structures.values() for count in ratio})
         parts.append(f"**{workload}, k = {k}**, times as long as {BASE}\n\n" + table(
             ["structure", *(f"{count:,} photons" for count in counts)],
-            [[name, *(f"{ratio[count]:.2g}" if count in ratio else "" for count in counts)]
+            [[name, *(figure(ratio[count]) if count in ratio else "" for count in counts)]
              for name, ratio in structures.items()]))
     for (workload, photons, k), structures in visits(rows).items():
         parts.append(f"**{workload}, {photons:,} photons, k = {k}**, looked at for each query\n\n" + table(

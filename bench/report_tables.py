@@ -18,6 +18,11 @@ def times(timing, scale=1e3, digits=3):
     return f"{middle} ({low}-{high})"
 
 
+def figure(ratio):
+    """Two digits, or all before the point."""
+    return f"{ratio:.2g}" if ratio < 100 else f"{ratio:.0f}"
+
+
 def knn_text():
     return """
 Microseconds a query; all hardware threads, the same queries, in the order of the renderer: by sided
@@ -79,7 +84,7 @@ def knn_table(rows):
                 cells += ["failed" if "failure" in row else "", ""]
                 continue
             ratio = seconds_per_query(by_key[REFERENCE, k]) / seconds_per_query(row)
-            cells += [times(row["seconds"], 1e6 / row["queries"]), f"{ratio:.2g}"]
+            cells += [times(row["seconds"], 1e6 / row["queries"]), figure(ratio)]
         lines.append(cells)
     header = ["structure"]
     for k in ks:
