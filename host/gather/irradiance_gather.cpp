@@ -16,6 +16,7 @@
 #include "photile/limits.hpp"
 #include "photile/shard.hpp"
 #include "photile/statistics.hpp"
+#include "render/neighbour_choice.hpp"
 #include "render/reflected_radiance.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/flush_denormals.hpp"
@@ -49,6 +50,7 @@ struct RunLight {
   const EndLight& ends;
   const Estimates& caustics;  ///< of all points; empty where there are none
   double caustic_relative_variance;
+  std::span<const double> layer_powers;
 
   /// Of the run's point i, which is `point` of all.
   void add_indirect(std::size_t i, BatchSums& sums) const {
@@ -61,9 +63,10 @@ struct RunLight {
       sums.add(light.light, batch_of(light.pixel), light.radiance);
     }
   }
-  void add_direct(std::size_t i, std::size_t point, BatchSums& sums) const {
+  ///   indirect   luminance of the irradiance of all lights together
+  void add_direct(std::size_t i, std::size_t point, double indirect, BatchSums& sums) const {
     if (looks_per_batch > 0) {
-      look(point, sums);
+      look(point, indirect, sums);
       add_seen_lamps(i, sums);
     }
     if (caustics.irradiance.empty()) return;
@@ -85,7 +88,7 @@ struct RunLight {
     return ray / static_cast<std::uint32_t>(rays_per_batch) %
            static_cast<std::uint32_t>(parameters.batches);
   }
-  void look(std::size_t point, BatchSums& sums) const {
+  void look(std::size_t point, double indirect, BatchSums& sums) const {
     const trace::SurfacePoint where = trace::point_of(rays.scene(), points, point);
     const auto batches = static_cast<std::uint32_t>(parameters.batches);
     const auto samples_of = [&](std::uint32_t batch) {
@@ -95,19 +98,25 @@ struct RunLight {
       thread_local trace::LampChances chances;
       thread_local trace::LampLooks looks;
       lamps.weigh(where.position, where.normal, chances);
-      const auto count = static_cast<std::uint32_t>(looks_per_batch);
+      // What rays that meet lamps count is weighed by the looks of most points.
       const auto rays_per_look =
           static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch);
-      const glm::vec3 weight(1.0f / static_cast<float>(looks_per_batch));
-      looks.clear();
-      for (std::uint32_t batch = 0; batch < batches; ++batch) {
-        const trace::LookSamples samples = samples_of(batch);
-        for (std::uint32_t i = 0; i < count; ++i) {
-          looks.add(lamps, where, samples.lamp(i), weight, rays_per_look, chances, batch);
+      const auto found_by = [&](int count) {
+        const glm::vec3 weight(1.0f / static_cast<float>(count));
+        looks.clear();
+        for (std::uint32_t batch = 0; batch < batches; ++batch) {
+          const trace::LookSamples samples = samples_of(batch);
+          for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+            looks.add(lamps, where, samples.lamp(i), weight, rays_per_look, chances, batch);
+          }
         }
-      }
-      for (const auto& light : looks.found(rays))
-        sums.add(light.layer, light.tag, light.irradiance);
+        return looks.found(rays);
+      };
+      const int again = defaults::looks_again * looks_per_batch;
+      std::span<const trace::LampLooks::Found> found = found_by(looks_per_batch);
+      if (again * parameters.batches <= defaults::most_looks_again && is_uncertain(found, indirect))
+        found = found_by(again);
+      for (const auto& light : found) sums.add(light.layer, light.tag, light.irradiance);
       return;
     }
     thread_local std::vector<trace::ReceivedLight> found;
@@ -119,6 +128,21 @@ struct RunLight {
         sums.add(light.layer, batch, light.irradiance);
       }
     }
+  }
+  /// Whether the scatter of the batches is a visible part of all light.
+  bool is_uncertain(std::span<const trace::LampLooks::Found> found, double indirect) const {
+    if (found.empty()) return false;
+    thread_local std::vector<double> of_batch;
+    of_batch.assign(static_cast<std::size_t>(parameters.batches), 0.0);
+    for (const auto& light : found) {
+      of_batch[light.tag] += layer_powers[light.layer] * luminance(glm::dvec3(light.irradiance));
+    }
+    const auto count = static_cast<double>(of_batch.size());
+    const double mean = std::accumulate(of_batch.begin(), of_batch.end(), 0.0) / count;
+    double squares = 0;
+    for (const double light : of_batch) squares += (light - mean) * (light - mean);
+    const double tolerated = defaults::tolerated_look_error * (mean + indirect);
+    return squares > tolerated * tolerated * count * (count - 1);
   }
   void add_seen_lamps(std::size_t i, BatchSums& sums) const {
     if (!traced) return;
@@ -144,7 +168,8 @@ void add_run(const RunLight& light, std::size_t first, std::size_t count, Gather
     for (std::size_t i = part * points_per_task; i < last; ++i) {
       light.add_indirect(i, indirect);
       indirect.end_point();
-      light.add_direct(i, first + i, direct);
+      const std::size_t row = i - part * points_per_task;
+      light.add_direct(i, first + i, own.indirect.total(row, light.layer_powers).luminance, direct);
       direct.end_point();
       own.distance.push_back(light.distance(i));
     }
@@ -207,6 +232,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, MapEstimators& photons,
       parameters_(parameters),
       lamps_(rays.scene()),
       emitted_(emitted_radiance_at_unit_power(rays.scene())),
+      layer_powers_(layer_powers(rays.scene())),
       ends_(rays, photons, ends) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_final_gather_rays);
   check_range("looks at lamps from a point", parameters.looks, 0, limits::max_direct_rays);
@@ -237,7 +263,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            int looks, std::size_t most, const Progress& progress) {
   const EndLight::Costs before = ends_.costs();
   const Stopwatch caustics_watch;
-  const Estimates caustics = caustics_ ? caustics_->estimate(points) : Estimates{};
+  const Estimates caustics = caustics_ ? caustics_->estimate(points, Counted::seen) : Estimates{};
   costs_.estimate_seconds += caustics_watch.seconds();
   costs_.estimated += caustics_ ? points.size() : 0;
 
@@ -288,7 +314,8 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
              .traced = rays_per_batch > 0 ? &traced : nullptr,
              .ends = ends_,
              .caustics = caustics,
-             .caustic_relative_variance = caustics_ ? 1.0 / caustics_->neighbours() : 0.0},
+             .caustic_relative_variance = caustics_ ? 1.0 / caustics_->neighbours() : 0.0,
+             .layer_powers = layer_powers_},
             first, count, all);
     costs_.sum_seconds += sum_watch.seconds();
   }

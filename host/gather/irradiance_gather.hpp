@@ -108,6 +108,7 @@ class IrradianceGather {
   IrradianceGatherParameters parameters_;
   trace::LightSampler lamps_;
   std::vector<glm::vec3> emitted_;  ///< per light
+  std::vector<double> layer_powers_;
   gathering::EndLight ends_;
   Costs costs_;
 };

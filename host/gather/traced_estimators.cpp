@@ -35,17 +35,26 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
                            ? std::make_shared<const SurfaceIndex>(index_surface(
                                  scene, traced.photons, radius, plan.used().angle_degrees))
                            : nullptr;
-  const auto estimators_of = [&](Photons photons) {
+  const auto estimators_of = [&](Photons photons, std::shared_ptr<const SeenPhotons> seen) {
     std::vector<EstimateParameters> levels = plan.estimates(0, surface);
     estimate_each_alone(levels, devices.front());
     return MapEstimators(devices, scene,
-                         build_maps_on_each(devices, scene, std::move(photons), groups,
-                                            plan.maps(0, radius), progress),
-                         levels, layer_powers_);
+                         {build_maps_on_each(devices, scene, std::move(photons), groups,
+                                             plan.maps(0, radius), progress),
+                          std::move(levels), std::move(seen)},
+                         layer_powers_);
   };
   ends_ = plan.ends(0, radius, scene, traced.photons, layer_powers_);
-  photons_.emplace(estimators_of(std::move(traced.photons)));
-  if (traced.caustics.size() > 0) caustics_.emplace(estimators_of(std::move(traced.caustics)));
+  const auto seen = [&](const Photons& photons) {
+    return traced.caustics.size() > 0 ? std::make_shared<const SeenPhotons>(rays, photons)
+                                      : nullptr;
+  };
+  auto seen_photons = seen(traced.photons);
+  photons_.emplace(estimators_of(std::move(traced.photons), std::move(seen_photons)));
+  if (traced.caustics.size() > 0) {
+    auto seen_caustics = seen(traced.caustics);
+    caustics_.emplace(estimators_of(std::move(traced.caustics), std::move(seen_caustics)));
+  }
 }
 
 }  // namespace photile

@@ -1,36 +1,26 @@
 #include "light_maps/node_sight.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "trace/ray_query.hpp"
+#include "trace/surface_sight.hpp"
 
 namespace photile::light_maps {
 namespace {
 
-struct Place {
-  glm::vec3 position, normal;
-};
+using trace::place_on;
+using trace::SurfacePlace;
 
-Place place_of(const Scene& scene, std::uint32_t sided_triangle, const glm::vec3& position) {
-  return {position, glm::vec3(sided_normal(scene, sided_triangle))};
-}
-
-/// Whether nothing is between two places of one surface, just above it. Where it is curved, a line
-/// of sight as deep in it as a circle's chord is lifted out by twice as much.
-bool see_each_other(const RayScene& rays, const Place& from, const Place& to) {
-  const glm::vec3 way = to.position - from.position;
-  const float turn =
-      std::max(std::abs(glm::dot(way, from.normal)), std::abs(glm::dot(way, to.normal)));
-  const float lift = defaults::sight_lift * glm::length(way) + 0.5f * turn;
-  const glm::vec3 start = from.position + lift * from.normal;
-  const glm::vec3 end = to.position + lift * to.normal;
-  return !trace::occluded(rays, start, end + defaults::sight_left_out * (start - end));
+bool see_each_other(const RayScene& rays, const SurfacePlace& from, const SurfacePlace& to) {
+  return trace::see_each_other(
+      rays, from, to,
+      {defaults::sight_lift * glm::distance(from.position, to.position), defaults::sight_left_out});
 }
 
 /// Whether something lies in front of a place, nearer than this. The edge that it may lie on is
 /// left out by a step to a point of the surface.
-bool is_covered(const RayScene& rays, const Place& place, const glm::vec3& beside, float reach) {
+bool is_covered(const RayScene& rays, const SurfacePlace& place, const glm::vec3& beside,
+                float reach) {
   const glm::vec3 foot = place.position + defaults::sight_left_out * (beside - place.position);
   return trace::occluded(rays, foot + defaults::sight_lift * reach * place.normal,
                          foot + reach * place.normal);
@@ -45,7 +35,7 @@ bool NodeSight::is_in_slit(const glm::vec3& position, const glm::vec3& normal,
   const LightMaps::NodePoint& point = maps_.point(node);
   const float apart = glm::distance(position, point.position);
   if (maps_.distance(node) >= apart) return false;
-  const Place there = place_of(rays_.scene(), point.sided_triangle, point.position);
+  const SurfacePlace there = place_on(rays_.scene(), point.sided_triangle, point.position);
   return is_covered(rays_, there, position, apart) &&
          !is_covered(rays_, {position, normal}, there.position, apart);
 }
@@ -54,13 +44,13 @@ bool NodeSight::look(std::uint32_t sided_triangle, const glm::vec3& position,
                      NodeBlend& blend) const {
   if (!maps_.uneven(blend, contrast_)) return true;
   const Scene& scene = rays_.scene();
-  const Place here = place_of(scene, sided_triangle, position);
+  const SurfacePlace here = place_on(scene, sided_triangle, position);
   NodeBlend seen = blend;
   float sum = 0;
   for (std::size_t i = 0; i < seen.node.size(); ++i) {
     if (seen.weight[i] == 0.0f) continue;
     const LightMaps::NodePoint& node = maps_.point(seen.node[i]);
-    if (see_each_other(rays_, here, place_of(scene, node.sided_triangle, node.position)) &&
+    if (see_each_other(rays_, here, place_on(scene, node.sided_triangle, node.position)) &&
         !is_in_slit(position, here.normal, seen.node[i])) {
       sum += seen.weight[i];
     } else {
@@ -77,18 +67,18 @@ bool NodeSight::is_open(const NodeBlend& cell) const {
   const Scene& scene = rays_.scene();
   glm::vec3 middle(0.0f);
   for (const std::uint32_t node : cell.node) middle += 0.25f * maps_.point(node).position;
-  const Place here = place_of(scene, maps_.point(cell.node[0]).sided_triangle, middle);
+  const SurfacePlace here = place_on(scene, maps_.point(cell.node[0]).sided_triangle, middle);
   return std::all_of(cell.node.begin(), cell.node.end(), [&](std::uint32_t index) {
     const LightMaps::NodePoint& node = maps_.point(index);
-    return see_each_other(rays_, here, place_of(scene, node.sided_triangle, node.position));
+    return see_each_other(rays_, here, place_on(scene, node.sided_triangle, node.position));
   });
 }
 
 bool NodeSight::sees(std::uint32_t sided_triangle, const glm::vec3& from,
                      const glm::vec3& to) const {
   const Scene& scene = rays_.scene();
-  return see_each_other(rays_, place_of(scene, sided_triangle, from),
-                        place_of(scene, sided_triangle, to));
+  return see_each_other(rays_, place_on(scene, sided_triangle, from),
+                        place_on(scene, sided_triangle, to));
 }
 
 }  // namespace photile::light_maps

@@ -32,6 +32,9 @@ class DeviceEstimators {
   /// Errors: as Estimator, see for_each_device.
   Estimates estimate(const PrimaryHits& hits);
 
+  /// Of the first device: the same on all. Errors: as Estimator.
+  NeighbourLists nearest(const PrimaryHits& hits) { return estimators_.front().nearest(hits); }
+
   /// Each device's part of all hits so far.
   std::vector<double> shares() const { return balance_.shares(); }
 

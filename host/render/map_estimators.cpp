@@ -12,6 +12,8 @@ namespace {
 
 /// Parts of what is looked at; each goes through all photons.
 constexpr std::size_t parts_in_sight = 2;
+/// Lists of neighbours at a time: 26 MB of them at k = 100.
+constexpr std::size_t hits_looked_at_together = std::size_t{1} << 16;
 
 }  // namespace
 
@@ -24,14 +26,10 @@ void estimate_each_alone(std::span<EstimateParameters> levels, const Device& dev
   }
 }
 
-MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene,
-                             std::vector<PhotonMaps> maps,
-                             std::span<const EstimateParameters> levels,
+MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene, Parts parts,
                              std::span<const double> layer_powers)
     : MapEstimators(devices, scene, nullptr, layer_powers) {
-  Parts parts{std::move(maps), {levels.begin(), levels.end()}};
-  make_ = [&parts] { return std::move(parts); };
-  built();
+  built_.push_back(built_of(std::move(parts)));
 }
 
 MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene,
@@ -71,6 +69,7 @@ void MapEstimators::look_at(std::span<const std::uint32_t> sided_triangles) {
 std::unique_ptr<MapEstimators::Built> MapEstimators::built_of(Parts parts) const {
   auto built = std::make_unique<Built>();
   built->maps = std::move(parts.maps);
+  built->seen = std::move(parts.seen);
   for (const EstimateParameters& level : parts.levels) {
     built->neighbours.push_back(level.neighbours);
     built->estimators.emplace_back(devices_, built->maps, scene_, level);
@@ -84,21 +83,22 @@ MapEstimators::Built& MapEstimators::built() const {
   return *built_.front();
 }
 
-Estimates MapEstimators::estimate(const PrimaryHits& hits) {
-  if (!owners_) return estimate_here(hits);
-  return owners_->estimate(hits, [this](const PrimaryHits& own) { return estimate_here(own); });
+Estimates MapEstimators::estimate(const PrimaryHits& hits, Counted counted) {
+  if (!owners_) return estimate_here(hits, counted);
+  return owners_->estimate(hits,
+                           [&](const PrimaryHits& own) { return estimate_here(own, counted); });
 }
 
-Estimates MapEstimators::estimate_same(const PrimaryHits& hits) {
-  if (!owners_) return estimate_here(hits);
-  return owners_->estimate_same(hits,
-                                [this](const PrimaryHits& own) { return estimate_here(own); });
+Estimates MapEstimators::estimate_same(const PrimaryHits& hits, Counted counted) {
+  if (!owners_) return estimate_here(hits, counted);
+  return owners_->estimate_same(
+      hits, [&](const PrimaryHits& own) { return estimate_here(own, counted); });
 }
 
-Estimates MapEstimators::estimate_here(const PrimaryHits& hits) {
+Estimates MapEstimators::estimate_here(const PrimaryHits& hits, Counted counted) {
   look_at(hits.sided_triangle);
-  if (!patches_) return estimate_by(built(), hits, layer_powers_);
-  if (built_.size() == 1) return estimate_by(*built_.front(), hits, layer_powers_);
+  if (!patches_) return estimate_by(built(), hits, counted);
+  if (built_.size() == 1) return estimate_by(*built_.front(), hits, counted);
   std::vector<std::uint32_t> part_of_hit;
   for (const std::uint32_t sided : hits.sided_triangle) {
     part_of_hit.push_back(part_of_[patches_->map(sided)]);
@@ -113,21 +113,21 @@ Estimates MapEstimators::estimate_here(const PrimaryHits& hits) {
     const std::uint32_t part = part_of_hit[*first];
     const auto last = std::find_if(first, order.end(),
                                    [&](std::uint32_t hit) { return part_of_hit[hit] != part; });
-    all.append(
-        estimate_by(*built_[part], estimate::reordered(hits, 0, {first, last}), layer_powers_));
+    all.append(estimate_by(*built_[part], estimate::reordered(hits, 0, {first, last}), counted));
     first = last;
   }
   return estimate::restored(std::move(all), order, layer_powers_.size());
 }
 
-Estimates MapEstimators::estimate_by(Built& built, const PrimaryHits& hits,
-                                     std::span<const double> layer_powers) {
+Estimates MapEstimators::estimate_by(Built& built, const PrimaryHits& hits, Counted counted) const {
+  const SeenPhotons* const seen = counted == Counted::seen ? built.seen.get() : nullptr;
   const auto in_order = [&](const PrimaryHits& ordered) {
     std::vector<Estimates> by_level;
-    for (DeviceEstimators& one : built.estimators) by_level.push_back(one.estimate(ordered));
+    for (DeviceEstimators& one : built.estimators)
+      by_level.push_back(estimate_by(one, seen, ordered));
     return by_level.size() == 1
                ? std::move(by_level.front())
-               : estimates_of_least_error(std::move(by_level), built.neighbours, layer_powers);
+               : estimates_of_least_error(std::move(by_level), built.neighbours, layer_powers_);
   };
   const std::span<const std::uint32_t> map_of = built.maps.front().map_of();
   std::vector<std::uint32_t> maps = hits.sided_triangle;
@@ -138,7 +138,22 @@ Estimates MapEstimators::estimate_by(Built& built, const PrimaryHits& hits,
   const std::vector<std::uint32_t> order = estimate::order_by_map(maps);
   return order.empty() ? in_order(hits)
                        : estimate::restored(in_order(estimate::reordered(hits, 0, order)), order,
-                                            layer_powers.size());
+                                            layer_powers_.size());
+}
+
+Estimates MapEstimators::estimate_by(DeviceEstimators& estimators, const SeenPhotons* seen,
+                                     const PrimaryHits& hits) const {
+  Estimates estimates = estimators.estimate(hits);
+  if (!seen) return estimates;
+  const std::vector<std::uint32_t> lit =
+      SeenPhotons::lit(estimates, hits.size(), layer_powers_.size());
+  for (std::size_t first = 0; first < lit.size(); first += hits_looked_at_together) {
+    const std::span<const std::uint32_t> chosen =
+        std::span(lit).subspan(first, std::min(hits_looked_at_together, lit.size() - first));
+    const NeighbourLists near = estimators.nearest(estimate::reordered(hits, 0, chosen));
+    seen->leave_out_hidden(hits, chosen, near, estimates);
+  }
+  return estimates;
 }
 
 }  // namespace photile

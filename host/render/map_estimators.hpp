@@ -12,6 +12,7 @@
 #include "photile/estimator.hpp"
 #include "render/device_estimators.hpp"
 #include "render/owner_estimates.hpp"
+#include "render/seen_photons.hpp"
 
 namespace photile {
 
@@ -19,21 +20,24 @@ namespace photile {
 /// make use of one for the next, whose sums then have another order.
 void estimate_each_alone(std::span<EstimateParameters> levels, const Device& device);
 
+/// Photons that an estimate counts: all, or those that the hit sees (where they are known, else
+/// all). To look at them takes k rays a hit: that is for points that serve many pixels.
+enum class Counted : std::uint8_t { all, seen };
+
 class MapEstimators {
  public:
+  struct Parts {
+    std::vector<PhotonMaps> maps;            ///< the same on each device
+    std::vector<EstimateParameters> levels;  ///< ascending in k: hits choose one, each its own
+    /// Of the photons of these maps; null: all count as seen.
+    std::shared_ptr<const SeenPhotons> seen = nullptr;
+  };
   /// References are kept.
-  ///   maps           the same on each device
-  ///   levels         ascending in k: hits choose one, each its own
   ///   layer_powers   by which hits choose their own k
   /// Errors: as Estimator.
-  MapEstimators(std::span<Device> devices, const Scene& scene, std::vector<PhotonMaps> maps,
-                std::span<const EstimateParameters> levels, std::span<const double> layer_powers);
+  MapEstimators(std::span<Device> devices, const Scene& scene, Parts parts,
+                std::span<const double> layer_powers);
 
-  /// Maps and levels.
-  struct Parts {
-    std::vector<PhotonMaps> maps;
-    std::vector<EstimateParameters> levels;
-  };
   /// The same of what `make` gives when it is first needed: errors are then those of `make`, too.
   MapEstimators(std::span<Device> devices, const Scene& scene, std::function<Parts()> make,
                 std::span<const double> layer_powers);
@@ -58,9 +62,9 @@ class MapEstimators {
   const OwnerEstimates* owners() const { return owners_ ? &*owners_ : nullptr; }
 
   /// Of hits in any order, of this process alone. Errors: as DeviceEstimators.
-  Estimates estimate(const PrimaryHits& hits);
+  Estimates estimate(const PrimaryHits& hits, Counted counted = Counted::all);
   /// Of hits that are the same in all processes.
-  Estimates estimate_same(const PrimaryHits& hits);
+  Estimates estimate_same(const PrimaryHits& hits, Counted counted = Counted::all);
 
   /// Per sided triangle, as PhotonMaps has it: the order of hits. Empty where maps are made as they
   /// are looked at, or are those of several processes.
@@ -84,13 +88,15 @@ class MapEstimators {
     std::vector<PhotonMaps> maps;              ///< on each device
     std::vector<int> neighbours;               ///< of each level
     std::vector<DeviceEstimators> estimators;  ///< of each level; they keep references to the maps
+    std::shared_ptr<const SeenPhotons> seen;   ///< as Parts has it
   };
 
   /// By maps of this process.
-  Estimates estimate_here(const PrimaryHits& hits);
+  Estimates estimate_here(const PrimaryHits& hits, Counted counted);
   std::unique_ptr<Built> built_of(Parts parts) const;
-  static Estimates estimate_by(Built& built, const PrimaryHits& hits,
-                               std::span<const double> layer_powers);
+  Estimates estimate_by(Built& built, const PrimaryHits& hits, Counted counted) const;
+  Estimates estimate_by(DeviceEstimators& estimators, const SeenPhotons* seen,
+                        const PrimaryHits& hits) const;
   Built& built() const;
 
   std::span<Device> devices_;

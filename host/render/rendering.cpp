@@ -103,16 +103,18 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
   }
   Maps maps = trace_and_build(pass, prepared, keep);
   const Stopwatch stopwatch;
-  const auto estimators_of = [&](std::vector<PhotonMaps>& built) {
-    MapEstimators::Parts parts = parts_of(std::move(built));
-    MapEstimators made(devices_, scene_, std::move(parts.maps), parts.levels, layer_powers_);
+  const auto estimators_of = [&](MapEstimators::Parts parts) {
+    MapEstimators made(devices_, scene_, std::move(parts), layer_powers_);
     if (Communicator* const processes = plan_.used().processes) {
       made.share({*processes, owners_, layer_powers_.size(), rays_.needs().many_lights()});
     }
     return made;
   };
-  photons_.emplace(estimators_of(maps.photons));
-  if (!maps.caustics.empty()) caustics_.emplace(estimators_of(maps.caustics));
+  photons_.emplace(estimators_of(parts_of(std::move(maps.photons), std::move(maps.seen_photons))));
+  if (!maps.caustics.empty()) {
+    caustics_.emplace(
+        estimators_of(parts_of(std::move(maps.caustics), std::move(maps.seen_caustics))));
+  }
   costs_.estimators.add(stopwatch.taken());
 }
 
@@ -146,18 +148,24 @@ bool Rendering::reads_light_maps_of(const PreparedPhotons& prepared) {
 void Rendering::wait_with(PreparedPhotons& prepared, const KeepPhotons* keep) {
   radius_ = prepared.radius;
   choose_light_maps(0, prepared.photons);
-  const auto maker = [this](std::vector<PhotonMaps> Maps::*which) {
-    return [this, which] {
+  const auto maker = [this](const auto& parts_in) {
+    return [this, parts_in] {
       if (!late_maps_) {
         report_to(Progress::none());  // photons that are given up on the way would be lost
         late_maps_ = trace_and_build(0, &waiting_, nullptr);
       }
-      return parts_of(std::move((*late_maps_).*which));
+      return parts_in(*late_maps_);
     };
   };
-  photons_.emplace(devices_, scene_, maker(&Maps::photons), layer_powers_);
+  photons_.emplace(devices_, scene_, maker([this](Maps& maps) {
+                     return parts_of(std::move(maps.photons), std::move(maps.seen_photons));
+                   }),
+                   layer_powers_);
   if (plan_.keeps_caustics() && prepared.caustics->size() > 0) {
-    caustics_.emplace(devices_, scene_, maker(&Maps::caustics), layer_powers_);
+    caustics_.emplace(devices_, scene_, maker([this](Maps& maps) {
+                        return parts_of(std::move(maps.caustics), std::move(maps.seen_caustics));
+                      }),
+                      layer_powers_);
   }
   light_maps().maps().restore(std::move(*prepared.light_maps));
   prepared.light_maps.reset();

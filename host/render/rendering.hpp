@@ -89,6 +89,8 @@ class Rendering {
   struct Maps {
     std::vector<PhotonMaps> photons;
     std::vector<PhotonMaps> caustics;  ///< for rays that gather, where there are any
+    /// Where there are caustics, of both.
+    std::shared_ptr<const SeenPhotons> seen_photons = nullptr, seen_caustics = nullptr;
   };
 
   /// Whose photons are at hand.
@@ -102,7 +104,8 @@ class Rendering {
   void wait_with(PreparedPhotons& prepared, const KeepPhotons* keep);
   /// Chooses nodes for the photons of a pass.
   void choose_light_maps(int pass, const Photons& photons);
-  MapEstimators::Parts parts_of(std::vector<PhotonMaps> maps) const;
+  MapEstimators::Parts parts_of(std::vector<PhotonMaps> maps,
+                                std::shared_ptr<const SeenPhotons> seen = nullptr) const;
   /// Where several processes share the rendering: brings photons to the owners of their maps.
   void move_to_owners(PhotonTracerResult& traced);
   /// Rows of the film that this process makes.

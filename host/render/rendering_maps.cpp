@@ -15,8 +15,9 @@ constexpr int look_step = 4;
 
 }  // namespace
 
-MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps) const {
-  MapEstimators::Parts parts{std::move(maps), plan_.estimates(pass_, surface_)};
+MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps,
+                                         std::shared_ptr<const SeenPhotons> seen) const {
+  MapEstimators::Parts parts{std::move(maps), plan_.estimates(pass_, surface_), std::move(seen)};
   if (plan_.reads_light_maps() || plan_.used().processes) {
     estimate_each_alone(parts.levels, devices_.front());
   }
@@ -89,7 +90,12 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
                                            const KeepPhotons* keep) {
   PhotonTracerResult traced = trace(pass, prepared, keep);
   const PhotonMapParameters parameters = plan_.maps(pass, radius_);
-  Maps maps{build(std::move(traced.photons), parameters), {}};
+  Maps maps;
+  if (traced.caustics.total() > 0) {
+    maps.seen_photons = std::make_shared<const SeenPhotons>(rays_, traced.photons);
+    maps.seen_caustics = std::make_shared<const SeenPhotons>(rays_, traced.caustics);
+  }
+  maps.photons = build(std::move(traced.photons), parameters);
   costs_.maps = maps.photons.front().statistics().maps;
   costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
   costs_.map_sizes = maps.photons.front().statistics().map_sizes;

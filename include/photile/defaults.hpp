@@ -52,6 +52,10 @@ inline constexpr float strong_lobe = 0.2f;
 /// Looks at lamps for each ray of a node; in the open, where light is bright beside dark and the
 /// sky may be seen through a window, more.
 inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;
+/// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks so
+/// many times as often, unless that is more often than `most_looks_again`: 2% shows as ragged borders.
+inline constexpr double tolerated_look_error = 0.02;
+inline constexpr int looks_again = 4, most_looks_again = 128;
 /// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one place to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
@@ -66,6 +70,8 @@ inline constexpr double weight_of_parents = 3;
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
 /// on the foot of a wall.
 inline constexpr float sight_lift = 0x1p-9f, sight_left_out = 0x1p-5f;
+/// Those from a hit to the photons of its estimate run above it by this part of the radius.
+inline constexpr float photon_sight_lift = 0x1p-4f;
 
 // Glass
 /// Share of a pixel's sample from which on reflection and refraction are both followed. Glass seen

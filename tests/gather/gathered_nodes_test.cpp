@@ -148,7 +148,8 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
         static_cast<double>(floor.size());
   }
   CAPTURE(rms, mean, std::sqrt(squares));
-  CHECK(rms < 0.6 * std::sqrt(squares));
+  CHECK(rms < 0.75 * std::sqrt(squares));  // points that are in doubt look again, filter or not
+  CHECK(rms < 0.02);
   CHECK(std::abs(mean) < 0.01);
 }
 

@@ -202,6 +202,33 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
   CHECK_VERDICT(mean_is(ratio, 1.0, 0.1));
 }
 
+TEST_CASE("gathering: no caustic shines through a screen that stands on the floor") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, black);
+  builder.grid({-9, -9, 1.2f}, {0, 18, 0}, {18, 0, 0}, 1, builder.add(mirror({1, 1, 1})));
+  builder.grid({1.1f, -0.2f, 1}, {0.2f, 0, 0}, {0, 0.4f, 0}, 1, black,
+               builder.add(area_light("lamp")));
+  builder.grid({0, -2, 0}, {0, 4, 0}, {0, 0, 1.1f}, 1, black);
+  const Scene scene = builder.build();
+  GatheringScene place(scene, looked_up(60'000, 1));
+  const GatheredIrradiance behind =
+      place.at(sensors_on({-0.2, -0.3, 0}, {0.19, 0, 0}, {0, 0.6, 0}, up, 6));
+  for (std::size_t i = 0; i < 36; ++i) CHECK(lux(behind, i) == 0.0);
+
+  // Farther from it than all neighbours are, the floor is lit as without it.
+  const std::vector<Sensor> before = sensors_on({0.35, -0.3, 0}, {0.35, 0, 0}, {0, 0.6, 0}, up, 6);
+  const GatheredIrradiance lit = place.at(before);
+  double sum = 0, truth = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    sum += lux(lit, i);
+    truth += validation::rectangle_factor(before[i].position, up, {1.1, -0.2, 1.4}, {0.2, 0, 0},
+                                          {0, 0.4, 0}) /
+             (0.2 * 0.4);
+  }
+  CHECK(sum / truth == Approx(1).margin(0.1));
+}
+
 TEST_CASE("gathering: surroundings are direct light, and seen once") {
   SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));
