@@ -3,7 +3,9 @@ with what they print and the pictures that they leave. bench/worked_example.py a
 
 import argparse
 import dataclasses
+import hashlib
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -14,10 +16,10 @@ from report_section import replace_section
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PICTURES = ROOT / "docs/pictures"
-QUICK = {"render": "--quality draft --photons 20k -k 50 --size 96x64",
-         "measure": "--rays 16 --repeats 2 --photons 20k",
-         "daylight": "--rays 16 --repeats 2 --photons 20k --patches 145",
-         "glare": "--rays 16 --repeats 2 --photons 20k --samples 1 --picture-size 32"}
+QUICK = {"render": "--quality draft --photons 5k -k 50 --size 48x32",
+         "measure": "--rays 4 --repeats 2 --photons 5k",
+         "daylight": "--rays 4 --repeats 2 --photons 5k --patches 145",
+         "glare": "--rays 4 --repeats 2 --photons 5k --samples 1 --picture-size 32"}
 
 
 @dataclasses.dataclass
@@ -37,6 +39,8 @@ def arguments(description):
     parser.add_argument("--photile", default=ROOT / "build/release/photile", type=pathlib.Path)
     parser.add_argument("--quick", action="store_true",
                         help="few photons and rays: shows that the commands work, writes nothing")
+    parser.add_argument("--work", type=pathlib.Path, metavar="FOLDER",
+                        help="keep all files there, and run no command again that has run there")
     return parser.parse_args()
 
 
@@ -54,8 +58,17 @@ def output_of(photile, command, folder):
     return (done.stderr + done.stdout).splitlines()
 
 
+def kept_output_of(photile, command, folder):
+    """The same, from the folder where the same command has run there."""
+    kept = folder / f"{hashlib.sha256(command.encode()).hexdigest()[:16]}.out"
+    if not kept.is_file():
+        kept.write_text("\n".join(output_of(photile, command, folder)))
+    return kept.read_text().splitlines()
+
+
 def quick(command):
-    return " ".join([command, *(less for word, less in QUICK.items() if word in command.split())])
+    command = re.sub(r" --size \S+", "", command)
+    return " ".join([command, *(less for word, less in QUICK.items() if command.split()[1] == word)])
 
 
 def shown(lines, starts):
@@ -90,8 +103,8 @@ def run_page(page, script, steps, room, prefix, options, prepare=lambda folder: 
     page that is the script's, and its pictures as docs/pictures/PREFIX-..., unless options.quick."""
     photile = options.photile.resolve()
     text = []
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = options.work or pathlib.Path(scratch)
         shutil.copytree(room, folder, dirs_exist_ok=True)
         prepare(folder)
         for step in steps:
@@ -100,7 +113,8 @@ def run_page(page, script, steps, room, prefix, options, prepare=lambda folder: 
                 (folder / name).write_text(content)
                 text += [f"    $ cat {name}", *(f"    {line}" for line in content.splitlines()), ""]
             if step.command:
-                lines = output_of(photile, quick(step.command) if options.quick else step.command, folder)
+                lines = kept_output_of(photile, quick(step.command) if options.quick else step.command,
+                                       folder)
                 text += wrapped(step.command) + [f"    {line}" for line in shown(lines, step.starts)] + [""]
             for picture, caption in step.pictures.items():
                 if options.quick and picture.rsplit("-", 1)[-1].removesuffix(".png").isdigit():

@@ -67,10 +67,10 @@ Parities usual_parities(const std::vector<Parities>& all) {
   return usual;
 }
 
-bool has_surface_near(const RayScene& rays, const Sensor& sensor, double clearance) {
+bool has_surface_near(const RayScene& rays, const Sensor& sensor, double clearance, bool on_wall) {
   if (!(clearance > 0)) return false;
   const glm::dvec3 reach = clearance * sensor.normal;
-  return trace::occluded(rays, glm::vec3(sensor.position - reach),
+  return trace::occluded(rays, glm::vec3(sensor.position - (on_wall ? 0.0 : 1.0) * reach),
                          glm::vec3(sensor.position + reach));
 }
 
@@ -79,6 +79,7 @@ bool has_surface_near(const RayScene& rays, const Sensor& sensor, double clearan
 std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid& grid) {
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
+  const bool on_wall = grid.role == GridRole::wall || grid.role == GridRole::ceiling;
   std::vector<Parities> parities;
   std::vector<bool> near;
   for (const Sensor& sensor : grid.sensors) {
@@ -86,7 +87,7 @@ std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid
     // Rays along a surface that the sensor lies on would meet its edges by chance.
     parities.push_back(
         parities_at(rays, {there.position + off_surface * there.normal, there.normal}));
-    near.push_back(has_surface_near(rays, there, clearance));
+    near.push_back(has_surface_near(rays, there, clearance, on_wall));
   }
   const Parities usual = usual_parities(parities);
   std::vector<Sensor> sensors;

@@ -9,7 +9,9 @@
 namespace photile::measuring {
 
 /// Makes those sensors of a grid blank, and takes the cells of a plane that are theirs:
-/// - with a surface nearer than `clearance` metres, along or against their direction; 0 = none;
+/// - with a surface nearer than `clearance` metres, along or against their direction, on walls and
+/// ceilings
+///   along it; 0 = none;
 /// - inside a solid, or beyond the walls that most of the grid stands within: of six rays, along
 /// and across their direction, at least five cross an odd number
 ///   of surfaces where the same ray of most sensors of the grid crosses an even one, or the other

@@ -84,7 +84,7 @@ def _shelf(document):
         for shape, more in zip(rows, row):
             shape.add(more)
     mesh = document.mesh("shelf", (white, shelf), *zip(binders, rows))
-    document.place("shelf", mesh, (2.2, GAP, 0.02))
+    document.place("shelf", mesh, (2.2, GAP, 0.06))
 
 
 def _document(title):

@@ -192,4 +192,29 @@ TEST_CASE("points in a solid are blank with a reason and their place in the grid
   CHECK(grid.sensors.size() == 3);
 }
 
+TEST_CASE("a clearance looks before a wall, not into it") {
+  SceneBuilder builder("room");
+  const auto white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.box({0, 0, 0}, {4, 2.5f, 6}, white, true);
+  builder.grid({3.5f, 0, 1}, {0, 2, 0}, {0, 0, 2}, 1, white);  // a screen before the wall at x = 4
+  builder.add(point_light("lamp", {2, 2.2f, 3}));
+  const Scene scene = builder.build();
+  for (SensorGrid& grid : wall_grids(scene, at_middle("floor"))) {
+    CAPTURE(grid.name);
+    std::size_t behind = 0;
+    for (const Sensor& sensor : grid.sensors) {
+      const glm::dvec3& p = sensor.position;
+      behind += p.x > 3.9 && p.y < 2 && p.z > 1 && p.z < 3 ? 1 : 0;
+    }
+    CHECK((behind > 10) == (grid.name == "wall at 90 degrees"));
+    SensorGrid near = grid;
+    CHECK(leave_out_furniture(scene, 0.4, near) == 0);
+    CHECK(leave_out_furniture(scene, 0.6, grid) >= behind);
+    for (const Sensor& sensor : grid.sensors) {
+      const glm::dvec3& p = sensor.position;
+      CHECK_FALSE((p.x > 3.9 && p.y < 2 && p.z > 1 && p.z < 3));
+    }
+  }
+}
+
 }  // namespace photile::test
