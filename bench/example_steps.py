@@ -87,10 +87,13 @@ def wrapped(command, width=110):
 
 
 def picture_in(folder, name):
-    """A picture that a command left, or the page of a PDF: report.pdf gives report-1.png."""
+    """A picture that a command left, or a page of a PDF: report.pdf gives report-1.png and report-last.png."""
     file = folder / name
-    if not file.is_file() and "-" in name and (pdf := folder / (name.rsplit("-", 1)[0] + ".pdf")).is_file():
+    if "-" in name and (pdf := folder / (name.rsplit("-", 1)[0] + ".pdf")).is_file():
         page = name.rsplit("-", 1)[1].removesuffix(".png")
+        if page == "last":
+            told = subprocess.run(["pdfinfo", pdf], check=True, text=True, capture_output=True).stdout
+            page = re.search(r"Pages:\s+(\d+)", told)[1]
         subprocess.run(["pdftoppm", "-png", "-r", "120", "-f", page, "-l", page, "-singlefile", pdf,
                         file.with_suffix("")], check=True)
     if not file.is_file():
@@ -108,7 +111,7 @@ def run_page(page, script, steps, room, prefix, options, prepare=lambda folder: 
         shutil.copytree(room, folder, dirs_exist_ok=True)
         prepare(folder)
         for step in steps:
-            text += [step.purpose, ""]
+            text += [step.purpose, ""] if step.purpose else []
             for name, content in step.files.items():
                 (folder / name).write_text(content)
                 text += [f"    $ cat {name}", *(f"    {line}" for line in content.splitlines()), ""]
@@ -117,7 +120,7 @@ def run_page(page, script, steps, room, prefix, options, prepare=lambda folder: 
                                        folder)
                 text += wrapped(step.command) + [f"    {line}" for line in shown(lines, step.starts)] + [""]
             for picture, caption in step.pictures.items():
-                if options.quick and picture.rsplit("-", 1)[-1].removesuffix(".png").isdigit():
+                if options.quick and (folder / (picture.rsplit("-", 1)[0] + ".pdf")).is_file():
                     continue  # a page of a PDF: the command has checked that it is one
                 file = picture_in(folder, picture)
                 if not options.quick:

@@ -91,7 +91,7 @@ def _document(title):
     document = GltfDocument(title)
     _shell(document)
     _windows(document)
-    document.camera("from the door", (5.5, 1.6, 0.45), (1.6, 0.95, 3.6), 58, 1.5)
+    document.camera("from the windows", (0.45, 1.6, 4.7), (4.1, 0.85, 1.2), 58, 1.5)
     return document
 
 

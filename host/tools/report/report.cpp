@@ -41,7 +41,7 @@ th { border-bottom: 1px solid #222; } th:first-child, td:first-child { text-alig
 .error { color: #777; font-size: 85%; } .plan svg { max-width: 100%; height: auto; }
 figure { display: inline-block; width: 48%; margin: 0 1% 0.8em 0; vertical-align: top; }
 img { max-width: 100%; } figcaption { color: #777; }
-.texts th, .texts td { text-align: left; }
+.texts th, .texts td { text-align: left; } .target td { white-space: nowrap; }
 .sign { margin-top: 2.5em; width: 100%; break-inside: avoid; }
 .sign td { text-align: left; width: 33%; padding-right: 3em; padding-top: 2em; }
 .sign .line { border-top: 1px solid #222; color: #777; padding-top: 0.15em; }
@@ -85,11 +85,10 @@ std::string grid_heading(const SensorGrid& grid) {
 
 std::string judgement_row(const Judgement& judgement) {
   const bool lux = judgement.figure == "Em";
-  const std::string value =
-      lux ? lux_cell(judgement.measured)
-      : judgement.figure == "Uo"
-          ? ratio_cell(judgement.measured)
-          : cell(fmt::format("{:.1f}", judgement.measured.value), judgement.measured);
+  const std::string value = lux ? lux_cell(judgement.measured)
+                            : judgement.figure == "Uo"
+                                ? ratio_cell(judgement.measured)
+                                : fmt::format("<td>{:.1f}</td>", judgement.measured.value);
   return fmt::format("<tr><td>{}</td><td>{}</td><td>{} {:g}</td>{}<td>{}</td></tr>\n",
                      escaped_xml(judgement.grid), judgement.figure,
                      judgement.at_most ? "at most" : "at least", judgement.required, value,
@@ -100,8 +99,8 @@ std::string judgement_row(const Judgement& judgement) {
 std::string target_section(const Measurement& measurement, const Requirement& requirement,
                            const std::optional<Judgement>& glare) {
   std::string text = fmt::format(
-      "<h2>Target: {}</h2>\n<table>\n<tr><th>{}</th><th></th><th>required</th><th>measured</th>"
-      "<th></th></tr>\n",
+      "<h2>Target: {}</h2>\n<p>{}</p>\n<table class=\"target\">\n<tr><th></th><th></th>"
+      "<th>required</th><th>measured</th><th></th></tr>\n",
       escaped_xml(requirement.name),
       escaped_xml(requirement.reference.empty() ? ""
                                                 : requirement.reference + ", " + requirement.what));
@@ -125,7 +124,9 @@ std::string target_section(const Measurement& measurement, const Requirement& re
   return text + "</table>\n";
 }
 
-std::string project_section(const ReportProject& project) {
+/// The project, and the date among the facts.
+std::string project_section(const ReportText& report) {
+  const ReportProject& project = report.project;
   if (!project.said()) return {};
   std::string text = "<dl class=\"project\">\n";
   for (const auto& [name, value] :
@@ -133,6 +134,9 @@ std::string project_section(const ReportProject& project) {
         std::pair("designer", project.designer)}) {
     if (value.empty()) continue;
     text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escaped_xml(value));
+  }
+  for (const auto& [name, value] : report.facts) {
+    if (name == "date") text += fmt::format("<dt>date</dt><dd>{}</dd>\n", escaped_xml(value));
   }
   return text + "</dl>\n";
 }
@@ -214,7 +218,7 @@ std::string report_html(const Measurement& measurement, const ReportText& text,
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{0}</title>\n"
       "{1}</head>\n<body>\n<h1>Illuminance: {0}</h1>\n",
       escaped_xml(text.title), style);
-  page += project_section(text.project);
+  page += project_section(text);
   if (text.requirement) page += target_section(measurement, *text.requirement, text.glare);
   page += picture_section(text.pictures);
   for (std::size_t grid = 0; grid < measurement.size(); ++grid) {
