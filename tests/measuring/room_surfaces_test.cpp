@@ -164,7 +164,7 @@ TEST_CASE("a task has a band of surroundings around it") {
 TEST_CASE("a band of more cells than memory holds is refused") {
   const TemporaryFolder folder;
   const auto file = folder.path / "desk.json";
-  for (const char* band : {"1e-9", "1e-4", "1e9"}) {
+  for (const char* band : {"1e-9", "1e-4", "1000", "1e9"}) {
     std::ofstream(file) << R"({"origin": [1, 0.75, 1], "u": [0, 0, 1], "v": [1.6, 0, 0],
                               "columns": 9, "rows": 9, "surroundings": )"
                         << band << "}";
