@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
+#include "photile/defaults.hpp"
 #include "scene/photometry.hpp"
 
 namespace photile::daylight {
@@ -36,6 +38,21 @@ std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, S
   }
   add_patch("ground", {0, 2 * pi, -1, 0}, scene);
   return first;
+}
+
+std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const SunPosition& sun,
+                                   const SkyIrradiance& irradiance, int day) {
+  const PerezSky sky(sun.elevation, irradiance, day);
+  std::vector<double> luminances = patch_luminances(patches, sky, sun);
+  double on_ground = sky.diffuse_illuminance();
+  if (sun.elevation > 0) {
+    on_ground += sky.direct_illuminance() * std::sin(sun.elevation);
+    for (const auto& [patch, share] : sun_patches(patches, sun)) {
+      luminances[patch] += share * sky.direct_illuminance() / patches[patch].solid_angle();
+    }
+  }
+  luminances.push_back(defaults::ground_reflectance * on_ground / pi);
+  return luminances;
 }
 
 double patch_flux(const Scene& scene, double solid_angle) {

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "daylight/perez_sky.hpp"
 #include "daylight/sky_patches.hpp"
+#include "daylight/sun_position.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::daylight {
@@ -16,6 +18,12 @@ std::string patch_name(std::size_t patch);
 /// the power that it has at 1 cd/m2 (or W/(m2 sr)). Returns the number of the first.
 ///   north   radians clockwise from -z
 std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, Scene& scene);
+
+/// Luminances of these lights, cd/m2, the ground last: those of a Perez sky, the sun in the four
+/// patches nearest to it, and a ground of defaults::ground_reflectance that both light.
+///   day   of the year, from 1
+std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const SunPosition& sun,
+                                   const SkyIrradiance& irradiance, int day);
 
 /// Flux that a patch of this solid angle and 1 cd/m2 sends through the disc of the scene's bounding
 /// sphere.

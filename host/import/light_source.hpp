@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "import/luminaires.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::scene_io {
@@ -33,6 +34,7 @@ struct LightSource {
 struct SourcedScene {
   Scene scene;
   std::vector<LightSource> sources;
+  std::vector<PlacedLuminaires> luminaires;  ///< of each entry of the list of luminaires
 };
 
 /// load_scene, which keeps no sources. Errors: the same.

@@ -121,6 +121,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   SceneFolder folder(file, options.allow_outside);
   Warnings warnings;
   AreaLights area_lights(scene);
+  std::vector<PlacedLuminaires> placed;
   ImportContext context{scene, folder, options, warnings, area_lights, {}};
   try {
     import_by_extension(context);
@@ -133,9 +134,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
       context.light_sources.push_back(source_of(origin, context));
     }
     finish_directional_lights(context);
-    if (!options.luminaires.empty()) {
-      add_luminaires(options.luminaires, options.lumen_per_watt, scene, warnings);
-    }
+    placed = add_luminaires(options, scene, warnings);
     add_surroundings(scene, options);
     context.light_sources.resize(scene.lights.size());
     if (scene.lights.empty() && !options.may_be_dark) {
@@ -164,7 +163,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
                                            [](const Light& light) { return light.is_distant(); });
   if (lit_from_beyond) scene.portals = trace::portals_asked_for(scene, options.portals);
   scene.report.warnings = warnings.lines();
-  return {std::move(scene), std::move(context.light_sources)};
+  return {std::move(scene), std::move(context.light_sources), std::move(placed)};
 }
 
 }  // namespace scene_io

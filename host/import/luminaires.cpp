@@ -17,6 +17,7 @@
 #include "import/photometry/photometric_file.hpp"
 #include "import/scene_folder.hpp"
 #include "measuring/room.hpp"
+#include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/default_camera.hpp"
@@ -48,15 +49,8 @@ struct Shared {
 };
 
 struct LuminaireArray {
-  std::string name;
+  PlacedLuminaires placed;
   LampKind kind;
-  glm::dvec3 position{0.0};  ///< of its middle, in the scene
-  glm::dvec3 aim{0.0, -1.0, 0.0};
-  double rotation = 0;  ///< radians
-  double lumens = 0;
-  int columns = 1, rows = 1;
-  double column_spacing = 0, row_spacing = 0;  ///< metres
-  Panel opening = {};
 };
 
 /// A pair of numbers, or nothing where the member is missing.
@@ -141,60 +135,50 @@ glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene&
 
 /// Along x and across, of the flat opening that is seen from below; of a round one a rectangle of
 /// the same area. Nothing where the file states none.
-std::optional<std::array<double, 2>> size_of(const LuminousOpening& opening) {
+std::optional<glm::dvec2> size_of(const LuminousOpening& opening) {
   if (!(opening.along_zero > 0 && opening.along_quarter > 0)) return std::nullopt;
   const double squared = opening.round ? std::sqrt(std::numbers::pi) / 2 : 1;
-  return std::array{squared * opening.along_zero, squared * opening.along_quarter};
+  return glm::dvec2(squared * opening.along_zero, squared * opening.along_quarter);
 }
 
 LuminaireArray array_of(const json& entry, const JsonObject& object,
                         const std::filesystem::path& folder, Shared& shared, Scene& scene,
                         Warnings& warnings) {
   const std::filesystem::path file = folder / object.text("file", "");
-  LuminaireArray lamps{object.text("name", file.stem().string()),
-                       kind_of(file, object, shared, scene, warnings)};
+  LuminaireArray lamps{{}, kind_of(file, object, shared, scene, warnings)};
   const IntensityDistribution& distribution = scene.distributions[lamps.kind.distribution];
-  lamps.position = position_of(entry, object, scene, shared);
-  if (object.has("aim")) lamps.aim = direction_in_scene(scene, object.vector("aim"));
-  if (!(glm::length(lamps.aim) > 0)) object.refuse("'aim' is 0 0 0; it has to point somewhere");
-  lamps.aim = glm::normalize(lamps.aim);
-  if (object.has("rotation")) lamps.rotation = glm::radians(object.number("rotation", -360, 360));
-  lamps.lumens = distribution.flux();
-  if (object.has("lumens")) lamps.lumens = object.number("lumens", 0, limits::max_light_power);
+  PlacedLuminaires& placed = lamps.placed;
+  placed.name = object.text("name", file.stem().string());
+  placed.position = position_of(entry, object, scene, shared);
+  glm::dvec3 aim(0.0, -1.0, 0.0);
+  if (object.has("aim")) aim = direction_in_scene(scene, object.vector("aim"));
+  if (!(glm::length(aim) > 0)) object.refuse("'aim' is 0 0 0; it has to point somewhere");
+  if (object.has("rotation")) placed.rotation = glm::radians(object.number("rotation", -360, 360));
+  placed.axes = luminaire_axes(glm::normalize(aim), placed.rotation);
+  placed.lumens = distribution.flux();
+  if (object.has("lumens")) placed.lumens = object.number("lumens", 0, limits::max_light_power);
   if (const auto count = pair_of(entry, object, "count", 1, most_in_a_row)) {
-    lamps.columns = static_cast<int>((*count)[0]);
-    lamps.rows = static_cast<int>((*count)[1]);
-    if (lamps.columns != (*count)[0] || lamps.rows != (*count)[1]) {
+    placed.columns = static_cast<int>((*count)[0]);
+    placed.rows = static_cast<int>((*count)[1]);
+    if (placed.columns != (*count)[0] || placed.rows != (*count)[1]) {
       object.refuse("'count' is not two whole numbers");
     }
   }
   if (const auto spacing = pair_of(entry, object, "spacing", 0, limits::max_coordinate)) {
-    lamps.column_spacing = (*spacing)[0];
-    lamps.row_spacing = (*spacing)[1];
-  } else if (lamps.columns * lamps.rows > 1) {
+    placed.spacing = {(*spacing)[0], (*spacing)[1]};
+  } else if (placed.columns * placed.rows > 1) {
     object.refuse("'count' of several lamps needs 'spacing', two numbers of metres");
   }
-  auto size = pair_of(entry, object, "size", 1e-4, limits::max_coordinate);
-  if (!size) size = size_of(distribution.opening());
+  std::optional<glm::dvec2> size = size_of(distribution.opening());
+  if (const auto given = pair_of(entry, object, "size", 1e-4, limits::max_coordinate)) {
+    size = glm::dvec2((*given)[0], (*given)[1]);
+  }
   if (!size) {
     object.refuse(
         "'size' is missing, and the file states no luminous opening; give two numbers of metres");
   }
-  lamps.opening.width = (*size)[0];
-  lamps.opening.height = (*size)[1];
+  placed.opening = *size;
   return lamps;
-}
-
-/// x, y and z of a lamp that shines along -z; not rotated, its x axis lies in the horizon, along
-/// that of the world where it shines up or down.
-glm::dmat3 axes_of(const LuminaireArray& lamps) {
-  const glm::dvec3 z = -lamps.aim;
-  const bool upright = std::abs(z.y) > 0.999;
-  const glm::dvec3 level = upright ? glm::dvec3(1, 0, 0) : glm::cross(glm::dvec3(0, 1, 0), z);
-  const glm::dvec3 x = glm::normalize(level - glm::dot(level, z) * z);
-  const glm::dvec3 y = glm::cross(z, x);
-  const double cosine = std::cos(lamps.rotation), sine = std::sin(lamps.rotation);
-  return {cosine * x + sine * y, cosine * y - sine * x, z};
 }
 
 std::uint32_t black_material(Scene& scene) {
@@ -206,65 +190,124 @@ std::uint32_t black_material(Scene& scene) {
 
 void add_array(const LuminaireArray& lamps, double lumen_per_watt, std::uint32_t material,
                MeshBuilder& mesh, Scene& scene) {
-  const glm::dmat3 axes = axes_of(lamps);
+  const PlacedLuminaires& placed = lamps.placed;
   Light light;
   light.kind = LightKind::area;
-  light.power = scene.unit == PowerUnit::lumen ? lamps.lumens : lamps.lumens / lumen_per_watt;
-  light.direction = glm::vec3(lamps.aim);
-  light.x_axis = glm::vec3(axes[0]);
+  light.power = scene.unit == PowerUnit::lumen ? placed.lumens : placed.lumens / lumen_per_watt;
+  light.direction = glm::vec3(-placed.axes[2]);
+  light.x_axis = glm::vec3(placed.axes[0]);
   light.two_sided = lamps.kind.uplight;
   light.distribution = lamps.kind.distribution;
-  const bool alone = lamps.columns * lamps.rows == 1;
-  if (!alone) light.group = lamps.name;
-  for (int row = 0; row < lamps.rows; ++row) {
-    for (int column = 0; column < lamps.columns; ++column) {
-      const glm::dvec3 place =
-          lamps.position + (column - 0.5 * (lamps.columns - 1)) * lamps.column_spacing * axes[0] +
-          (row - 0.5 * (lamps.rows - 1)) * lamps.row_spacing * axes[1];
-      glm::dmat4 world(axes);
-      world[3] = glm::dvec4(place, 1.0);
-      const auto number = static_cast<std::uint32_t>(scene.lights.size());
-      light.name = alone ? lamps.name : fmt::format("{}_{}_{}", lamps.name, column + 1, row + 1);
-      light.triangles.clear();
-      for (const auto& corners : panel_triangles(lamps.opening, world)) {
-        const auto index = static_cast<std::uint32_t>(scene.triangles.size());
-        if (mesh.add({Corner{corners[0]}, Corner{corners[1]}, Corner{corners[2]}}, material,
-                     number))
-          light.triangles.push_back(index);
-      }
-      if (!light.triangles.empty()) scene.lights.push_back(light);
+  const std::vector<glm::dvec3> middles = placed.middles();
+  const bool alone = middles.size() == 1;
+  if (!alone) light.group = placed.name;
+  const auto columns = static_cast<std::size_t>(placed.columns);
+  for (std::size_t i = 0; i < middles.size(); ++i) {
+    glm::dmat4 world(placed.axes);
+    world[3] = glm::dvec4(middles[i], 1.0);
+    const auto number = static_cast<std::uint32_t>(scene.lights.size());
+    light.name = alone ? placed.name
+                       : fmt::format("{}_{}_{}", placed.name, i % columns + 1, i / columns + 1);
+    light.triangles.clear();
+    const Panel opening{.width = placed.opening.x, .height = placed.opening.y};
+    for (const auto& corners : panel_triangles(opening, world)) {
+      const auto index = static_cast<std::uint32_t>(scene.triangles.size());
+      if (mesh.add({Corner{corners[0]}, Corner{corners[1]}, Corner{corners[2]}}, material, number))
+        light.triangles.push_back(index);
     }
+    if (!light.triangles.empty()) scene.lights.push_back(light);
   }
+}
+
+/// A lamp to see by in a room that has none yet.
+void add_work_light(double lumen_per_watt, Scene& scene) {
+  Light light;
+  light.name = "work_light";
+  light.kind = LightKind::point;
+  light.power = scene.unit == PowerUnit::lumen ? defaults::work_light
+                                               : defaults::work_light / lumen_per_watt;
+  const Camera camera = scene.cameras.empty() ? place_camera(scene) : scene.cameras.front();
+  light.position = glm::vec3(camera.position);
+  scene.lights.push_back(std::move(light));
 }
 
 }  // namespace
 
-void add_luminaires(const std::filesystem::path& file, double lumen_per_watt, Scene& scene,
-                    Warnings& warnings) {
-  const json content = read_input_json(file);
-  const json list = content.is_array() ? content : json::array({content});
+std::vector<glm::dvec3> PlacedLuminaires::middles() const {
+  std::vector<glm::dvec3> middles;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      middles.push_back(position + (column - 0.5 * (columns - 1)) * spacing.x * axes[0] +
+                        (row - 0.5 * (rows - 1)) * spacing.y * axes[1]);
+    }
+  }
+  return middles;
+}
+
+glm::dmat3 luminaire_axes(const glm::dvec3& aim, double rotation) {
+  const glm::dvec3 z = -aim;
+  const bool upright = std::abs(z.y) > 0.999;
+  const glm::dvec3 level = upright ? glm::dvec3(1, 0, 0) : glm::cross(glm::dvec3(0, 1, 0), z);
+  const glm::dvec3 x = glm::normalize(level - glm::dot(level, z) * z);
+  const glm::dvec3 y = glm::cross(z, x);
+  const double cosine = std::cos(rotation), sine = std::sin(rotation);
+  return {cosine * x + sine * y, cosine * y - sine * x, z};
+}
+
+std::optional<glm::dvec2> stated_opening(const std::filesystem::path& photometry) {
+  Warnings unheard;
+  const auto bytes = read_regular_file(photometry, limits::max_photometry_bytes);
+  return size_of(read_photometry(photometry.string(), bytes, unheard).opening());
+}
+
+std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
+                                             const std::filesystem::path& file,
+                                             double lumen_per_watt, Scene& scene,
+                                             Warnings& warnings) {
   std::vector<LuminaireArray> arrays;
   Shared shared;
   std::size_t lamps = scene.lights.size();
-  for (std::size_t i = 0; i < list.size(); ++i) {
+  for (std::size_t i = 0; i < list.entries.size(); ++i) {
+    const json entry = list.entries[i];
     const JsonObject object(
-        list[i], fmt::format("{}: luminaire {}", file.string(), i + 1),
+        entry, fmt::format("{}: luminaire {}", file.string(), i + 1),
         {"name", "file", "position", "aim", "rotation", "lumens", "count", "spacing", "size"});
-    arrays.push_back(array_of(list[i], object, file.parent_path(), shared, scene, warnings));
-    lamps += static_cast<std::size_t>(arrays.back().columns) *
-             static_cast<std::size_t>(arrays.back().rows);
+    arrays.push_back(array_of(entry, object, file.parent_path(), shared, scene, warnings));
+    const PlacedLuminaires& placed = arrays.back().placed;
+    lamps += static_cast<std::size_t>(placed.columns) * static_cast<std::size_t>(placed.rows);
     if (lamps > limits::max_lights) {
       object.refuse(fmt::format("more than {} lights together; place fewer", limits::max_lights));
     }
   }
-  if (arrays.empty()) throw InputError(fmt::format("{}: holds no luminaire", file.string()));
+  std::vector<PlacedLuminaires> placed;
+  if (arrays.empty()) return placed;
   const std::uint32_t material = black_material(scene);
   MeshBuilder mesh(scene, {.uv = !scene.corner_uv.empty(),
                            .emission_uv = !scene.corner_emission_uv.empty(),
                            .normals = !scene.corner_normal.empty(),
                            .tangents = !scene.corner_tangent.empty()});
-  for (const LuminaireArray& array : arrays)
+  for (const LuminaireArray& array : arrays) {
+    placed.push_back(array.placed);
     add_array(array, lumen_per_watt, material, mesh, scene);
+  }
+  return placed;
+}
+
+std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Scene& scene,
+                                             Warnings& warnings) {
+  const std::filesystem::path& file = options.luminaires;
+  if (file.empty()) return {};
+  const bool edited = !options.luminaires_text.empty();
+  const LuminaireList list = edited
+                                 ? LuminaireList::parse(options.luminaires_text, file.string())
+                                 : read_luminaires(file);
+  if (list.entries.empty() && !edited) {
+    throw InputError(fmt::format("{}: holds no luminaire", file.string()));
+  }
+  auto placed = add_luminaires(list, file, options.lumen_per_watt, scene, warnings);
+  const bool lit = options.sky || options.sun || !options.environment.file.empty();
+  if (edited && scene.lights.empty() && !lit) add_work_light(options.lumen_per_watt, scene);
+  return placed;
 }
 
 }  // namespace photile::scene_io

@@ -58,9 +58,10 @@ void KeptMaps::add_passes(Progress& progress) {
   }
 }
 
-RenderResult KeptMaps::render(const HitSource& hits, const Film& film, Progress& progress) {
+RenderResult KeptMaps::render(const HitSource& hits, const Film& film, Progress& progress,
+                              const LightPooling* pooling) {
   rendering_.report_to(progress);
-  rendering_.start(film, rendering_.passes_kept());
+  rendering_.start(film, rendering_.passes_kept(), pooling);
   for (int pass = 0; pass < rendering_.passes_kept(); ++pass) {
     rendering_.add_pass(hits, static_cast<std::size_t>(pass));
   }
@@ -90,8 +91,9 @@ std::shared_ptr<SceneRenderer::Pass> SceneRenderer::prepare_pass(int pass,
 
 void SceneRenderer::add(Pass& pass) { impl_->add(std::move(pass)); }
 
-RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progress& progress) {
-  return impl_->render(CameraHits(camera), film, progress);
+RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progress& progress,
+                                   const LightPooling* pooling) {
+  return impl_->render(CameraHits(camera), film, progress, pooling);
 }
 
 DrawnFrame SceneRenderer::draw(const Camera& camera, const Film& film,
@@ -111,8 +113,9 @@ std::optional<LightMapContents> SceneRenderer::light_maps() const {
 }
 
 RenderResult SceneRenderer::render_reflections(const Camera& camera, const Film& film,
-                                               Progress& progress) {
-  return impl_->render(ReflectedHits(camera), film, progress);
+                                               Progress& progress,
+                                               const LightPooling* pooling) {
+  return impl_->render(ReflectedHits(camera), film, progress, pooling);
 }
 
 }  // namespace photile

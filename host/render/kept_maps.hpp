@@ -25,7 +25,9 @@ class KeptMaps {
   /// All that are not added yet.
   void add_passes(Progress& progress);
 
-  RenderResult render(const HitSource& hits, const Film& film, Progress& progress);
+  /// As SceneRenderer.
+  RenderResult render(const HitSource& hits, const Film& film, Progress& progress,
+                      const LightPooling* pooling = nullptr);
 
   /// Quick pictures, where light maps are read.
   LightMapFrames& frames(Progress& progress) {

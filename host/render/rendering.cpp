@@ -11,6 +11,7 @@
 #include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/path_numbers.hpp"
+#include "render/pooled_estimates.hpp"
 #include "render/row_exchange.hpp"
 #include "render/sample_errors.hpp"
 #include "render/setting.hpp"
@@ -66,9 +67,11 @@ Rendering::Rendering(const PreparedScene& scene, std::span<Device> devices,
   costs_.structure = scene.cost;
 }
 
-void Rendering::start(const Film& film, int passes) {
+void Rendering::start(const Film& film, int passes, const LightPooling* pooling) {
   film_ = plan_.hits(film, passes > 0 ? passes : plan_.passes());
-  layers_ = LightLayers(film_.width, film_.height, scene_);
+  pooling_ = pooling;
+  layers_ = pooling ? LightLayers(film_.width, film_.height, pooling->layers)
+                    : LightLayers(film_.width, film_.height, scene_);
   shares_.assign(devices_.size(), 0.0);
   costs_.start_picture();
 }
@@ -241,22 +244,6 @@ void Rendering::release() {
   costs_.release.add(stopwatch.taken());
 }
 
-Shard Rendering::own_rows() const {
-  const Communicator* const processes = plan_.used().processes;
-  return processes ? Shard{processes->rank(), processes->size()} : Shard{};
-}
-
-OwnerEstimates::Moved Rendering::moved() const {
-  OwnerEstimates::Moved sum;
-  for (const auto* estimators : {&photons_, &caustics_}) {
-    if (!*estimators || !(*estimators)->owners()) continue;
-    const OwnerEstimates::Moved& moved = (*estimators)->owners()->moved();
-    sum.hits += moved.hits;
-    sum.bytes += moved.bytes;
-  }
-  return sum;
-}
-
 RenderResult Rendering::finish() {
   if (Communicator* const processes = plan_.used().processes) bring_rows(*processes, layers_);
   // Looks at lamps may take more off a surface than light maps, which blur, hold there.
@@ -284,7 +271,9 @@ int Rendering::rows_per_batch(const HitSource& source) const {
   const std::int64_t hits_per_row = std::int64_t{film_.width} *
                                     (film_.samples_per_pixel / film_.passes) *
                                     std::max(1, plan_.used().final_gather_rays);
-  const int most = source.watched() ? (film_.height - 1) / watched_batches + 1 : film_.height;
+  // Estimates of hundreds of lights take a hundred times what they are pooled to.
+  const bool small = source.watched() || pooling_;
+  const int most = small ? (film_.height - 1) / watched_batches + 1 : film_.height;
   // Where light maps are read, only their nodes take long.
   const int neighbours = reads_light_maps(source) ? defaults::neighbours : plan_.used().neighbours;
   return static_cast<int>(
@@ -306,9 +295,13 @@ PrimaryHitBatch Rendering::trace_rows(const HitSource& source, int first, int la
 void Rendering::add_rows(const HitSource& source, PrimaryHitBatch batch, int first, int last) {
   const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight,
                        std::span<const std::uint8_t> by_photons) {
-    const Estimates estimates = reads_light_maps(source) ? read_light_maps(seen.hits, by_photons)
-                                                         : estimate(seen.hits, first, last);
+    Estimates estimates = reads_light_maps(source) ? read_light_maps(seen.hits, by_photons)
+                                                   : estimate(seen.hits, first, last);
     const Stopwatch film_watch;
+    if (pooling_) {
+      estimates = pooled(*pooling_, estimates, seen.hits.size());
+      pool_emission(*pooling_, seen);
+    }
     if (source.errors()) {
       add_to_film(runs_, seen, estimates, illuminance_weight);
       join_runs(seen, film_.runs);

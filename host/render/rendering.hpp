@@ -49,7 +49,8 @@ class Rendering {
   void expect_one_picture() { one_picture_ = true; }
 
   /// Begins a picture of so many passes; 0: of all there will be.
-  void start(const Film& film, int passes = 0);
+  ///   pooling   as SceneRenderer::render has it; kept as a reference
+  void start(const Film& film, int passes = 0, const LightPooling* pooling = nullptr);
 
   /// Traces the photons of a pass and builds their maps. Those of the pass before are gone.
   ///   prepared   photons and groups in place of traced ones, or null; taken
@@ -145,6 +146,7 @@ class Rendering {
   const RenderPlan plan_;
   std::optional<KernelPreparation> kernels_;  ///< begun where photons are needed
   PrimaryHitParameters film_;
+  const LightPooling* pooling_ = nullptr;  ///< of the picture; null = none
   LightLayers layers_;
   LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples
   std::vector<std::uint64_t> paths_before_;  ///< per light

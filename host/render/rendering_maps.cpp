@@ -223,4 +223,20 @@ void Rendering::find_surface(const Photons& photons) {
   costs_.surface_leaves = surface_->leaves.size();
 }
 
+Shard Rendering::own_rows() const {
+  const Communicator* const processes = plan_.used().processes;
+  return processes ? Shard{processes->rank(), processes->size()} : Shard{};
+}
+
+OwnerEstimates::Moved Rendering::moved() const {
+  OwnerEstimates::Moved sum;
+  for (const auto* estimators : {&photons_, &caustics_}) {
+    if (!*estimators || !(*estimators)->owners()) continue;
+    const OwnerEstimates::Moved& moved = (*estimators)->owners()->moved();
+    sum.hits += moved.hits;
+    sum.bytes += moved.bytes;
+  }
+  return sum;
+}
+
 }  // namespace photile

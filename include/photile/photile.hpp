@@ -22,6 +22,7 @@
 #include "photile/light_maps.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/light_options.hpp"
+#include "photile/light_pooling.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/patches.hpp"

@@ -307,6 +307,9 @@ struct SceneLoadOptions {
   bool may_be_dark = false;  ///< no error where there is no light
   SkySituation situation = {};
   std::filesystem::path luminaires = {};  ///< lamps to place, JSON (docs/luminaires.md); "" = none
+  /// What stands for the content of that file while it is edited, "" = the file; a scene without
+  /// any light then gets one to see by.
+  std::string luminaires_text = {};
   /// Windows for the light of suns and skies: "auto" finds them, "off" takes none, else globs of
   /// the names of materials that fill them.
   std::vector<std::string> portals = {};  ///< empty = auto

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "photile/light_maps.hpp"
+#include "photile/light_pooling.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
@@ -69,8 +70,10 @@ class SceneRenderer {
 
   /// The picture that `render` gives with this film, bit for bit. Statistics contain the costs of
   /// the maps each time.
+  ///   pooling   of its layers, before they take memory; null = each for itself
   RenderResult render(const Camera& camera, const Film& film,
-                      Progress& progress = Progress::none());
+                      Progress& progress = Progress::none(),
+                      const LightPooling* pooling = nullptr);
 
   /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a sample,
   /// glossy surfaces as if they were matt (host/render/light_map_frames.hpp). For parameters that
@@ -98,7 +101,8 @@ class SceneRenderer {
   /// The part of that picture which comes by a mirror, by glass that bends or reflects it, or by a
   /// glossy lobe.
   RenderResult render_reflections(const Camera& camera, const Film& film,
-                                  Progress& progress = Progress::none());
+                                  Progress& progress = Progress::none(),
+                                  const LightPooling* pooling = nullptr);
 
  private:
   struct Impl;

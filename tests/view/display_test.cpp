@@ -95,7 +95,7 @@ TEST_CASE("what an estimate's noise depends on follows from k, the kernel and th
   parameters.photons.emitted_photons = 10'000;
   EstimateNoise noise = EstimateNoise::of(scene, parameters);
   CHECK(noise.photons == 50);
-  CHECK(std::accumulate(noise.paths.begin(), noise.paths.end(), std::uint64_t{0}) == 10'000);
+  CHECK(std::accumulate(noise.paths.begin(), noise.paths.end(), 0.0) == 10'000);
   parameters.kernel = DensityKernel::cone;
   CHECK(EstimateNoise::of(scene, parameters).photons == Approx(50 / 1.5));
 }

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "test_scenes.hpp"
+#include "tools/view/light_board.hpp"
 #include "tools/view/point_worker.hpp"
 
 namespace photile::test {
@@ -37,8 +38,9 @@ std::vector<ClickedPoint> wait_for(const PointWorker& worker, std::size_t repeat
 }  // namespace
 
 TEST_CASE("a clicked point reads I cos / d^2 of each lamp at its power") {
-  const Scene scene = floor();
-  PointWorker worker(scene);
+  const auto held = std::make_shared<const Scene>(floor());
+  const Scene& scene = *held;
+  PointWorker worker(held);
   CHECK(worker.add({0, 0, 0}, {0, 0, 1}) == 1);
   CHECK(worker.add({3, 0, 0}, {0, 0, 1}) == 2);
   const auto points = wait_for(worker, 4);
@@ -52,15 +54,34 @@ TEST_CASE("a clicked point reads I cos / d^2 of each lamp at its power") {
   CHECK(first[0].value == Approx(truth(100, 2, 0)).epsilon(1e-3));
   CHECK(first[1].value == Approx(truth(400, 4, 3)).epsilon(1e-3));
   CHECK(first[2].value == Approx(first[0].value + first[1].value));
+  // Layers that are pooled are read together.
+  const LightPooling one{{"both"}, {0, 0}, {1, 1}};
+  const auto pooled = points[0].lux(mix, 1, &one);
+  REQUIRE(pooled.size() == 2);
+  CHECK(pooled[0].value == Approx(truth(100, 2, 0) + truth(400, 4, 3)).epsilon(1e-3));
   // A slider needs no new rays, and a maintenance factor is one.
   mix.lights[0].power = 50;
   mix.lights[1].power = 0;
   CHECK(points[1].lux(mix, 0.8).back().value == Approx(0.8 * truth(50, 2, 3)).epsilon(1e-3));
 }
 
+TEST_CASE("points are measured anew when the scene is another") {
+  Scene scene = floor();
+  PointWorker worker(std::make_shared<const Scene>(scene));
+  worker.add({0, 0, 0}, {0, 0, 1});
+  wait_for(worker, 2);
+  scene.lights.resize(1);
+  const auto edited = std::make_shared<const Scene>(scene);
+  worker.use(edited);
+  const auto points = wait_for(worker, 2);
+  CHECK(points[0].number == 1);
+  const auto lux = points[0].lux(LightMix::of(*edited, 683), 1);
+  REQUIRE(lux.size() == 2);
+  CHECK(lux[0].value == Approx(100 / (4 * glm::pi<double>()) / 4).epsilon(1e-3));
+}
+
 TEST_CASE("points are removed by their numbers, which stay") {
-  const Scene scene = floor();
-  PointWorker worker(scene);
+  PointWorker worker(std::make_shared<const Scene>(floor()));
   worker.add({0, 0, 0}, {0, 0, 1});
   worker.add({1, 0, 0}, {0, 0, 1});
   worker.remove(1);
@@ -72,16 +93,18 @@ TEST_CASE("points are removed by their numbers, which stay") {
 }
 
 TEST_CASE("points are kept as lines for measure, and as a table") {
-  const Scene scene = floor();
-  PointWorker worker(scene);
+  const auto held = std::make_shared<const Scene>(floor());
+  const Scene& scene = *held;
+  PointWorker worker(held);
   worker.add({0, 0, 0}, {0, 0, 1});
   const auto points = wait_for(worker, 2);
   CHECK(points_text(points) == "0 0 0 0 0 1\n");
-  const std::string csv = points_csv(points, LightMix::of(scene, 683), 1);
+  const LightPooling as_they_are = LightBoard(LightMix::of(scene, 683)).pooling();
+  const std::string csv = points_csv(points, LightMix::of(scene, 683), as_they_are, 1);
   CHECK_THAT(csv, Catch::Contains("point,x,y,z,dx,dy,dz,lux,standard_error,lux near") &&
                       Catch::Contains("\n1,0,0,0,0,0,1,"));
   const ClickedPoint unread{7, {1, 2, 3}, {0, 0, 1}};
-  CHECK_THAT(points_csv({unread}, LightMix::of(scene, 683), 1),
+  CHECK_THAT(points_csv({unread}, LightMix::of(scene, 683), as_they_are, 1),
              Catch::Contains("7,1,2,3,0,0,1,,,,,,\n"));
 }
 

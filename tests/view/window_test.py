@@ -71,17 +71,24 @@ class Picture:
 class Window:
     """photile view, and the hands on its keyboard and mouse."""
 
-    def __init__(self, photile, scene, folder):
+    settings, finished = SETTINGS, "4 of 4 samples, 0.1M paths"
+
+    def __init__(self, photile, scene, folder, *options):
         self.folder = folder
         self.process = subprocess.Popen(
-            [photile, "view", scene, "--outputs", folder, "--view", "standard", *SETTINGS],
+            [photile, "view", scene, "--outputs", folder, "--view", "standard", *self.settings, *options],
             stderr=subprocess.PIPE, text=True)
         self.id = until(lambda: self.running() and self.find("photile"), "the window")
         self.finish()
 
     def finish(self):
-        until(lambda: self.running() and self.find("4 of 4 samples, 0.1M paths"),
+        until(lambda: self.running() and self.find(self.finished),
               "the finished picture")
+
+    def close(self):
+        self.press("ctrl+q")
+        if self.process.wait(PATIENCE) != 0:
+            fail(f"closing ended with {self.process.returncode}: {self.process.stderr.read()}")
 
     def running(self):
         if self.process.poll() is not None:
@@ -281,10 +288,9 @@ def main():
                                       (400, 300), "a picture of the new size")
         del resized
 
-        window.press("ctrl+q")
-        if window.process.wait(PATIENCE) != 0:
-            fail(f"closing ended with {window.process.returncode}: {window.process.stderr.read()}")
+        window.close()
     print("walked, clicked, dragged, resized, closed")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "import/light_source.hpp"
 #include "photile/errors.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/output_files.hpp"
@@ -17,6 +18,7 @@
 #include "tools/command/threads.hpp"
 #include "tools/command/tone_mapping_options.hpp"
 #include "tools/command/validators.hpp"
+#include "tools/view/moving_sky.hpp"
 #include "tools/view/viewer.hpp"
 
 namespace photile::app {
@@ -29,6 +31,15 @@ struct ViewOptions {
   DisplayView view = ToneMapping{}.view;
 };
 
+/// Lights that options name may be gone by then.
+LightMix mix_again(const Scene& scene, const RenderOptions& options) {
+  try {
+    return mix_of(scene, options);
+  } catch (const UsageError&) {
+    return LightMix::of(scene, options.load.lumen_per_watt);
+  }
+}
+
 void run_view(ViewOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
@@ -37,7 +48,13 @@ void run_view(ViewOptions& options) {
     throw UsageError(
         fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
   }
+  // It may be written, and is not there yet where it is a new one.
+  const std::filesystem::path luminaires = std::exchange(render.load.luminaires, {});
   note_inputs_of(render);
+  if (!luminaires.empty()) {
+    render.load.luminaires = luminaires;
+    render.load.luminaires_text = scene_io::read_own_luminaires(luminaires).text();
+  }
   if (!render.save_maps.empty()) {
     const std::filesystem::path file = render.save_maps;
     check_outputs(std::span(&file, 1));
@@ -45,7 +62,9 @@ void run_view(ViewOptions& options) {
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  const Scene scene = load_scene(render.scene, render.load);
+  const SkySituation situation = view::take_moving_sky(render.load);
+  const scene_io::SourcedScene sourced = scene_io::load_sourced_scene(render.scene, render.load);
+  const Scene& scene = sourced.scene;
   render.mood.edited = true;
   const LightMix mix = mix_of(scene, render);
   const Camera& camera = choose_camera(scene, render.camera);
@@ -66,6 +85,10 @@ void run_view(ViewOptions& options) {
   };
   parameters.light_map_bytes = render.device.memory_bytes;
   parameters.load = render.load;
+  parameters.situation = situation;
+  parameters.mix_of = [&](const Scene& edited) { return mix_again(edited, render); };
+  parameters.luminaire_file = luminaires;
+  parameters.luminaires = sourced.luminaires;
   parameters.preview = render.preview;
   parameters.notes = &progress;
   parameters.interrupted = [&progress] { return progress.cancelled(); };

@@ -123,7 +123,7 @@ std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, i
                        lux_of(mixed, mix) * static_cast<double>(illuminance);
                    if (light >= frame.noise.paths.size()) return;
                    photons[light] = static_cast<double>(illuminance) *
-                                    static_cast<double>(frame.noise.paths[light]);
+                                    frame.noise.paths[light];
                  });
   const double all = std::accumulate(photons.begin(), photons.end(), 0.0);
   for (std::size_t light = 0; light < readings.size(); ++light) {

@@ -49,13 +49,13 @@ bool draw_glare(PanelState& state, const Frame* frame) {
     state.display.glare_limit = static_cast<double>(limit);
     changed = true;
   }
-  const char* unit = luminance_unit(state.lights.mix());
+  const char* unit = luminance_unit(state.lights.shown_mix());
   if (ImGui::IsItemHovered()) {
     ImGui::SetTooltip("up to 100: times the mean luminance of the picture; above: %s", unit);
   }
   if (!frame || !frame->reflections) return changed;
   const image::Glare glare = image::find_glare(frame->layers, *frame->reflections,
-                                               state.lights.mix(), state.display.glare_limit);
+                                               state.lights.shown_mix(), state.display.glare_limit);
   ImGui::Text("above %s %s", measuring::number_text(glare.limit, 4).c_str(), unit);
   for (std::size_t light = 0; light < glare.lights.size(); ++light) {
     const image::LightGlare& its = glare.lights[light];
@@ -127,7 +127,7 @@ void draw_legend(const PanelState& state, const Frame* frame) {
   if (!frame || display.mode != DisplayMode::illuminance) return;
   double automatic = 0;
   if (!(display.false_colour.scale > 0)) {
-    automatic = measuring::automatic_top(mixed_illuminance(frame->layers, state.lights.mix()));
+    automatic = measuring::automatic_top(mixed_illuminance(frame->layers, state.lights.shown_mix()));
   }
   const measuring::ColourScale scale(display.false_colour, automatic);
   std::vector<double> levels = scale.levels();

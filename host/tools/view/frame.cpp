@@ -1,6 +1,7 @@
 #include "tools/view/frame.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "photile/light_groups.hpp"
 
@@ -34,9 +35,21 @@ EstimateNoise EstimateNoise::of(const Scene& scene, const RenderParameters& para
   const auto paths =
       photons_per_light(scene, parameters.photons.emitted_photons, parameters.photons.quota);
   for (std::size_t light = 0; light < paths.size(); ++light) {
-    noise.paths[groups.group_of[light]] += paths[light];
+    noise.paths[groups.group_of[light]] += static_cast<double>(paths[light]);
   }
   return noise;
+}
+
+EstimateNoise EstimateNoise::pooled(const LightPooling& pooling) const {
+  std::vector<double> sums(pooling.layers.size()), powers(pooling.layers.size());
+  for (std::size_t light = 0; light < paths.size(); ++light) {
+    sums[pooling.layer_of[light]] += paths[light];
+    powers[pooling.layer_of[light]] += static_cast<double>(pooling.scale[light]);
+  }
+  for (std::size_t layer = 0; layer < sums.size(); ++layer) {
+    sums[layer] = powers[layer] > 0 ? sums[layer] / powers[layer] : 0.0;
+  }
+  return {photons, std::move(sums)};
 }
 
 }  // namespace photile::view

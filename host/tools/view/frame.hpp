@@ -9,6 +9,7 @@
 
 #include "photile/camera.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/light_pooling.hpp"
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
 #include "tools/view/photon_map_view.hpp"
@@ -19,9 +20,11 @@ namespace photile::view {
 struct EstimateNoise {
   /// Photons of one estimate, as many as equal weights would need for its noise; 0 = not known.
   double photons = 0;
-  std::vector<std::uint64_t> paths;  ///< of each layer's lights
+  /// Of each layer's lights; of a pooled layer, those of its lights over their powers together.
+  std::vector<double> paths;
 
   static EstimateNoise of(const Scene& scene, const RenderParameters& parameters);
+  EstimateNoise pooled(const LightPooling& pooling) const;
 };
 
 struct Frame {
@@ -31,6 +34,7 @@ struct Frame {
   /// The part of it that came by reflection, where it was asked for.
   std::optional<LightLayers> reflections;
   std::shared_ptr<const InspectablePhotons> photons;  ///< of the maps it was estimated from
+  std::shared_ptr<const Scene> scene;                 ///< that it shows, as the maps hold it
   Camera camera;                                      ///< in the scene's coordinates
   int samples_per_pixel = 1;
   std::uint64_t emitted_photons = 0;  ///< paths of the maps it was estimated from

@@ -48,6 +48,14 @@ void FrameWorker::use(std::shared_ptr<MapGeneration> maps) {
   wake_.notify_all();
 }
 
+void FrameWorker::use(std::shared_ptr<MapGeneration> maps, const FrameRequest& request) {
+  const std::lock_guard lock(mutex_);
+  maps_ = std::move(maps);
+  request_ = request;
+  ++version_;
+  wake_.notify_all();
+}
+
 std::shared_ptr<const Frame> FrameWorker::latest() const {
   const std::lock_guard lock(mutex_);
   return latest_;
@@ -106,6 +114,7 @@ std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, cons
     draw_seconds_ = of_drawing.seconds() - drawn.fill_seconds;
     return drawn;
   };
+  if (drawn_maps_ && drawn_maps_->scene != task.maps->scene) drawn_maps_ = nullptr;
   DrawnFrame drawn = draw_from(*task.maps, time_to_fill(wanted.moving));
   std::shared_ptr<MapGeneration> maps = task.maps;
   if (drawn.empty > 0 && drawn_maps_ && drawn_maps_ != task.maps) {
@@ -118,6 +127,7 @@ std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, cons
   drawn_maps_ = maps;
   lacks_nodes_ = drawn.lacking > 0;
   frame.photons = maps->photons;
+  frame.scene = maps->scene;
   frame.camera = wanted.camera;
   frame.emitted_photons = maps->emitted_photons;
   frame.noise = maps->noise;
@@ -140,11 +150,13 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
     return stop.stop_requested() || (!task.request.moving && task.version != version_);
   });
   const Stopwatch stopwatch;
-  RenderResult result = task.maps->renderer->render(task.request.camera, film, progress);
+  const LightPooling* const pooling = task.request.pooling.get();
+  RenderResult result = task.maps->renderer->render(task.request.camera, film, progress, pooling);
   std::optional<LightLayers> reflections;
   if (task.request.reflections) {
     reflections = std::move(
-        task.maps->renderer->render_reflections(task.request.camera, film, progress).layers);
+        task.maps->renderer->render_reflections(task.request.camera, film, progress, pooling)
+            .layers);
   }
   const double seconds = stopwatch.seconds();
   // The first frame of maps waits for kernels to be compiled.
@@ -156,10 +168,12 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
                                        {},
                                        std::move(reflections),
                                        task.maps->photons,
+                                       task.maps->scene,
                                        task.request.camera,
                                        result.used.film.samples_per_pixel,
                                        task.maps->emitted_photons,
-                                       task.maps->noise,
+                                       pooling ? task.maps->noise.pooled(*pooling)
+                                               : task.maps->noise,
                                        seconds,
                                        std::move(result.statistics)});
 }

@@ -26,6 +26,8 @@ struct FrameRequest {
   /// Per layer, power x tint: asks for quick frames where there are light maps, while the viewer
   /// moves and until no node is lacking. Empty: frames with layers are wanted.
   std::vector<glm::vec3> powers = {};
+  /// Of the layers of frames that have some; null = each light for itself.
+  std::shared_ptr<const LightPooling> pooling = nullptr;
 };
 
 /// Renders what was asked for last from the newest maps. A frame in the making is finished while
@@ -39,6 +41,8 @@ class FrameWorker {
 
   void show(const FrameRequest& request);
   void use(std::shared_ptr<MapGeneration> maps);
+  /// The same with what is to be seen: of maps of another scene, which has other powers.
+  void use(std::shared_ptr<MapGeneration> maps, const FrameRequest& request);
 
   /// Ends the work. Returns the newest maps, which nobody uses any longer; null: there are none.
   std::shared_ptr<MapGeneration> stop();

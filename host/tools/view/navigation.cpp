@@ -21,7 +21,7 @@ double key(int plus, int minus) {
 
 }  // namespace
 
-bool Navigation::update(Viewpoint& viewpoint) {
+bool Navigation::update(Viewpoint& viewpoint, bool left_taken) {
   const ImGuiIO& io = ImGui::GetIO();
   bool moved = false;
   if (!io.WantCaptureKeyboard && !io.KeyCtrl) {
@@ -39,7 +39,7 @@ bool Navigation::update(Viewpoint& viewpoint) {
     const double across = turn_per_pixel * static_cast<double>(io.MouseDelta.x);
     const double upwards = -turn_per_pixel * static_cast<double>(io.MouseDelta.y);
     const bool dragged = across != 0 || upwards != 0;
-    if (dragged && ImGui::IsMouseDragging(ImGuiMouseButton_Left, click_tremble)) {
+    if (dragged && !left_taken && ImGui::IsMouseDragging(ImGuiMouseButton_Left, click_tremble)) {
       viewpoint.turn(-across, -upwards);  // what was grabbed follows the pointer
       moved = true;
     } else if (dragged && ImGui::IsMouseDragging(ImGuiMouseButton_Right, click_tremble)) {

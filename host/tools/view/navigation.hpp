@@ -14,7 +14,8 @@ class Navigation {
       : speed_(speed), orbit_distance_(orbit_distance) {}
 
   /// Applies the input of this frame. Returns whether the viewpoint moved.
-  bool update(Viewpoint& viewpoint);
+  ///   left_taken   the left button drags something else
+  bool update(Viewpoint& viewpoint, bool left_taken = false);
 
   /// Whether a click, no drag, ended in this frame; where.
   bool clicked(double& x, double& y) const;

@@ -67,10 +67,6 @@ void draw_frame_times(const PanelReadings& readings) {
   }
 }
 
-std::string text_of(const Measured& measured) {
-  return measuring::text_with_error(measured.value, measured.standard_error);
-}
-
 /// What reaches the clicked place, and the list of all.
 void draw_probe(PanelState& state, const Frame* frame, PanelEvents& events) {
   draw_point_markers(state, frame);
@@ -81,7 +77,7 @@ void draw_probe(PanelState& state, const Frame* frame, PanelEvents& events) {
                           ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize(ImVec2(width, 0), ImGuiCond_FirstUseEver);
   if (ImGui::Begin("Reading", &open)) {
-    const LightMix mix = state.lights.mix();
+    const LightMix mix = state.lights.shown_mix();
     const int x = static_cast<int>(state.probe->x * frame->layers.width);
     const int y = static_cast<int>(state.probe->y * frame->layers.height);
     const LightReading sum = sum_of(readings_at(*frame, mix, x, y));
@@ -98,6 +94,10 @@ void draw_probe(PanelState& state, const Frame* frame, PanelEvents& events) {
 
 }  // namespace
 
+std::string text_of(const Measured& measured) {
+  return measuring::text_with_error(measured.value, measured.standard_error);
+}
+
 PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
   PanelEvents events;
   ImGui::SetNextWindowPos(ImVec2(border, border), ImGuiCond_FirstUseEver);
@@ -108,6 +108,8 @@ PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
     ImGui::PushItemWidth(-label_width);
     draw_frame_times(readings);
     if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
+    events.lights_changed |= draw_daylight(state);
+    draw_luminaires(state, readings, events);
     events.lights_changed |= draw_lights(state);
     events.lights_changed |= draw_moods(state, events);
     draw_display(state, readings, events);
@@ -120,15 +122,16 @@ PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
       ImGui::TextWrapped(
           "W A S D walk, E and Q rise and sink, Shift hurries. Left button looks, right button "
           "orbits, wheel goes ahead. A click measures the light there. F2 hides the panels, F12 "
-          "keeps a screenshot, Ctrl+S the picture with its layers. Ctrl+Z takes back what was set "
-          "on the "
-          "lamps, Ctrl+Y sets it again.");
+          "keeps a screenshot, Ctrl+S the picture with its layers. Ctrl+Z takes back what was set, "
+          "Ctrl+Y sets it again. Left and Right move the hour, Page Up and Page Down the day. "
+          "Luminaires: P places, R turns, Ctrl+D duplicates, Delete removes.");
     }
     ImGui::PopItemWidth();
   }
   ImGui::End();
   draw_probe(state, readings.frame, events);
   draw_legend(state, readings.frame);
+  if (state.closing) draw_closing(state, events);
   return events;
 }
 

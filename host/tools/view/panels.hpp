@@ -8,6 +8,7 @@
 
 #include "tools/view/display.hpp"
 #include "tools/view/light_board.hpp"
+#include "tools/view/luminaire_session.hpp"
 #include "tools/view/moods.hpp"
 #include "tools/view/photon_map_view.hpp"
 #include "tools/view/photon_worker.hpp"
@@ -40,6 +41,8 @@ struct PanelState {
   const std::vector<ClickedPoint>& points;  ///< the newest last
   PointSettings& point_settings;
   const Scene& scene;
+  LuminaireTool* luminaires = nullptr;  ///< null where no file of them is edited
+  bool closing = false;  ///< the window is asked to close, and there are unsaved changes
 };
 
 /// What they show alone.
@@ -48,6 +51,7 @@ struct PanelReadings {
   WorkProgress work;
   const std::deque<float>& frame_milliseconds;  ///< newest last
   const PhotonMapView* photon_map = nullptr;    ///< that is shown
+  bool loading = false;                         ///< the scene, with other luminaires
 };
 
 /// What was asked for by them in this frame.
@@ -58,6 +62,8 @@ struct PanelEvents {
   bool expose = false;           ///< set the exposure by the picture
   int removed_point = 0;         ///< its number; 0 = none
   bool keep_points = false;      ///< write the list of points
+  bool save_luminaires = false;  ///< write their file
+  Closing closing = Closing::undecided;
   std::string mood_to_scene;     ///< write this one into a copy of the scene; "" = none
 };
 

@@ -21,6 +21,7 @@ namespace photile::view {
 
 /// Photon maps on devices of their own, so that one set can be built while another is in use.
 struct MapGeneration {
+  std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where somebody else holds it
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
   std::uint64_t emitted_photons = 0;  ///< of the passes that are added

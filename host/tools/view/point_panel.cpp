@@ -16,10 +16,6 @@ namespace {
 constexpr float marker_radius = 5;  // pixels
 constexpr float line_gap = 2;
 
-std::string text_of(const Measured& measured) {
-  return measuring::text_with_error(measured.value, measured.standard_error);
-}
-
 /// "250 +-3 lx", and whether the target is met there.
 std::string lux_text(const ClickedPoint& point, const PointSettings& settings,
                      const LightMix& mix) {
@@ -97,13 +93,14 @@ void draw_newest_point(PanelState& state) {
   ImGui::Text("at %.3f, %.3f, %.3f m", point.position.x, point.position.y, point.position.z);
   if (!point.read()) return;
   ImGui::Separator();
-  const std::vector<Measured> lux = point.lux(mix, state.point_settings.maintenance);
+  const LightPooling layers = state.lights.pooling();
+  const std::vector<Measured> lux = point.lux(mix, state.point_settings.maintenance, &layers);
   for (std::size_t light = 0; light + 1 < lux.size(); ++light) {
     if (lux[light].value == 0) continue;
     // Names last: they may be long.
     ImGui::TextWrapped("%12s lx %4.0f%%  %s", text_of(lux[light]).c_str(),
                        100 * lux[light].value / std::max(lux.back().value, 1e-300),
-                       mix.lights[light].name.c_str());
+                       layers.layers[light].c_str());
   }
 }
 

@@ -15,30 +15,38 @@
 
 namespace photile::view {
 
-std::vector<Measured> ClickedPoint::lux(const LightMix& mix, double factor) const {
-  std::vector<std::vector<float>> values;  // per repeat: each light, then the sum
+std::vector<Measured> ClickedPoint::lux(const LightMix& mix, double factor,
+                                        const LightPooling* layers) const {
+  const std::size_t count = layers ? layers->layers.size() : mix.lights.size();
+  std::vector<std::vector<float>> values;  // per repeat: each layer, then the sum
   for (const auto& repeat : repeats) {
-    auto& row = values.emplace_back();
-    float sum = 0;
+    auto& row = values.emplace_back(count + 1);
     for (std::size_t light = 0; light < repeat.size(); ++light) {
       const MixedLight& mixed = mix.lights[light];
       const double lumens = mixed.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
-      row.push_back(
+      const auto lux =
           static_cast<float>(factor * lumens * mixed.power *
-                             luminance(glm::dvec3(mixed.tint) * glm::dvec3(repeat[light]))));
-      sum += row.back();
+                             luminance(glm::dvec3(mixed.tint) * glm::dvec3(repeat[light])));
+      row[layers ? layers->layer_of[light] : light] += lux;
+      row.back() += lux;
     }
-    row.push_back(sum);
   }
-  if (values.size() < 2) return std::vector<Measured>(mix.lights.size() + 1);
+  if (values.size() < 2) return std::vector<Measured>(count + 1);
   return measuring::means_of(values);
 }
 
-PointWorker::PointWorker(const Scene& scene)
-    : scene_(scene), thread_([this](const std::stop_token& stop) { work(stop); }) {}
+PointWorker::PointWorker(std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)), thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 PointWorker::~PointWorker() {
   thread_.request_stop();
+  wake_.notify_all();
+}
+
+void PointWorker::use(std::shared_ptr<const Scene> scene) {
+  const std::lock_guard lock(mutex_);
+  scene_ = std::move(scene);
+  for (ClickedPoint& point : points_) point.repeats.clear();
   wake_.notify_all();
 }
 
@@ -62,6 +70,7 @@ std::vector<ClickedPoint> PointWorker::points() const {
 void PointWorker::work(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     ClickedPoint next;
+    std::shared_ptr<const Scene> scene;
     {
       std::unique_lock lock(mutex_);
       const auto lacking = [&] {
@@ -75,19 +84,21 @@ void PointWorker::work(const std::stop_token& stop) {
       });
       if (stop.stop_requested()) return;
       next = *lacking();
+      scene = scene_;
     }
-    const Sensor sensor = in_scene(scene_, {next.position, next.normal});
+    const Sensor sensor = in_scene(*scene, {next.position, next.normal});
     const std::uint64_t seed =
         trace::seed_of_repeat(defaults::seed, static_cast<std::uint32_t>(1000 * next.number) +
                                                   static_cast<std::uint32_t>(next.repeats.size()));
     const LightLayers layers =
-        gather_by_paths(scene_, std::span(&sensor, 1), {.rays = defaults::clicked_rays}, seed)
+        gather_by_paths(*scene, std::span(&sensor, 1), {.rays = defaults::clicked_rays}, seed)
             .layers.dense();
     std::vector<glm::vec3> irradiance;
     for (const auto& layer : layers.layers) {
       irradiance.push_back(glm::pi<float>() * layer.radiance.front());
     }
     const std::lock_guard lock(mutex_);
+    if (scene != scene_) continue;
     for (ClickedPoint& point : points_) {
       if (point.number == next.number) point.repeats.push_back(std::move(irradiance));
     }
@@ -105,18 +116,18 @@ std::string points_text(const std::vector<ClickedPoint>& points) {
 }
 
 std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& mix,
-                       double factor) {
+                       const LightPooling& layers, double factor) {
   std::string text = "point,x,y,z,dx,dy,dz,lux,standard_error";
-  for (const MixedLight& light : mix.lights) {
-    text += fmt::format(",{},{}", measuring::csv_field("lux " + light.name),
-                        measuring::csv_field("standard_error " + light.name));
+  for (const std::string& layer : layers.layers) {
+    text += fmt::format(",{},{}", measuring::csv_field("lux " + layer),
+                        measuring::csv_field("standard_error " + layer));
   }
   text += "\n";
   for (const ClickedPoint& point : points) {
     const glm::dvec3 &p = point.position, &n = point.normal;
     text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g}", point.number, p.x, p.y, p.z,
                         n.x, n.y, n.z);
-    std::vector<Measured> lux = point.lux(mix, factor);
+    std::vector<Measured> lux = point.lux(mix, factor, &layers);
     std::rotate(lux.begin(), lux.end() - 1, lux.end());  // all together first
     for (const Measured& each : lux) {
       text += point.read() ? fmt::format(",{:.6g},{:.3g}", each.value, each.standard_error) : ",,";

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -11,6 +12,7 @@
 
 #include "measuring/grid_statistics.hpp"
 #include "photile/light_mix.hpp"
+#include "photile/light_pooling.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::view {
@@ -25,7 +27,9 @@ struct ClickedPoint {
 
   /// Lux of each light of a mix, and of all together last, times a factor. Standard errors are from
   /// the scatter of repeats; there are none before the second.
-  std::vector<Measured> lux(const LightMix& mix, double factor) const;
+  ///   layers   into which the lights' lux are summed; null = each light's own
+  std::vector<Measured> lux(const LightMix& mix, double factor,
+                            const LightPooling* layers = nullptr) const;
   bool read() const { return repeats.size() >= 2; }
 };
 
@@ -33,8 +37,11 @@ struct ClickedPoint {
 /// fewest repeats first, until each has defaults::clicked_repeats of them.
 class PointWorker {
  public:
-  explicit PointWorker(const Scene& scene);
+  explicit PointWorker(std::shared_ptr<const Scene> scene);
   ~PointWorker();
+
+  /// From now on points are those of another scene, in the same world: they are measured anew.
+  void use(std::shared_ptr<const Scene> scene);
 
   /// The number of the new point.
   int add(const glm::dvec3& position, const glm::dvec3& normal);
@@ -44,9 +51,9 @@ class PointWorker {
  private:
   void work(const std::stop_token& stop);
 
-  const Scene& scene_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
+  std::shared_ptr<const Scene> scene_;
   std::vector<ClickedPoint> points_;
   int clicked_ = 0;
   std::jthread thread_;  // last: it uses all of the above
@@ -55,7 +62,9 @@ class PointWorker {
 /// Lines x y z dx dy dz, as `photile measure --points` reads them.
 std::string points_text(const std::vector<ClickedPoint>& points);
 
-/// A line for each point: number, place, normal, lux and standard error of all lights and of each.
-std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& mix, double factor);
+/// A line for each point: number, place, normal, lux and standard error of all lights and of each
+/// layer.
+std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& mix,
+                       const LightPooling& layers, double factor);
 
 }  // namespace photile::view

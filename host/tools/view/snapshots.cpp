@@ -4,8 +4,11 @@
 
 #include <string>
 
+#include "common/output_file.hpp"
+#include "export/edited_scene.hpp"
 #include "image/srgb.hpp"
 #include "photile/camera_attributes.hpp"
+#include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 
 namespace photile::view {
@@ -16,6 +19,28 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
     const std::filesystem::path file = folder / fmt::format("{}-{:04}{}", stem, number, extension);
     if (!std::filesystem::exists(file)) return file;
   }
+}
+
+std::string keep_as(const std::filesystem::path& folder, const std::string& stem,
+                    const std::string& extension,
+                    const std::function<void(const std::filesystem::path&)>& write) {
+  try {
+    const std::filesystem::path file = free_name(folder, stem, extension);
+    write(file);
+    return fmt::format("{} is kept", file.filename().string());
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+std::string keep_points(const std::filesystem::path& folder,
+                        const std::vector<ClickedPoint>& points, const LightBoard& lights,
+                        double maintenance) {
+  keep_as(folder, "points", ".pts",
+          [&](const std::filesystem::path& file) { write_file(file, points_text(points)); });
+  return keep_as(folder, "points", ".csv", [&](const std::filesystem::path& file) {
+    write_file(file, points_csv(points, lights.mix(), lights.pooling(), maintenance));
+  });
 }
 
 void write_screenshot(const std::filesystem::path& file, int width, int height,
@@ -38,6 +63,21 @@ void write_frame(const std::filesystem::path& file, const Scene& scene, const Fr
   set_camera_attributes(picture->header(), in_world(scene, frame.camera), frame.layers.width,
                         frame.layers.height);
   write_exr(file, *picture);
+}
+
+std::string write_mood(const Scene& scene, const SceneLoadOptions& load, LightBoard board,
+                       const Moods& moods, const std::string& mood) {
+  try {
+    for (LightControl& control : board.controls()) control.solo = false;
+    moods.apply(mood, board);
+    const scene_io::EditedScene copy =
+        scene_io::write_edited_scene(scene.source, load, board.lamps_mix(), mood);
+    std::string told = fmt::format("{} is written", copy.file.filename().string());
+    for (const std::string& line : copy.left_out) told += "\n" + line;
+    return told;
+  } catch (const Error& error) {
+    return error.what();
+  }
 }
 
 }  // namespace photile::view

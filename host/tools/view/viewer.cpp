@@ -5,23 +5,24 @@
 #include <imgui.h>
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "common/output_file.hpp"
-#include "export/edited_scene.hpp"
 #include "photile/errors.hpp"
 #include "tools/preview/live_preview.hpp"
 #include "tools/view/display.hpp"
 #include "tools/view/frame_worker.hpp"
 #include "tools/view/light_board.hpp"
-#include "tools/view/light_history.hpp"
+#include "tools/view/luminaire_session.hpp"
 #include "tools/view/moods.hpp"
 #include "tools/view/navigation.hpp"
-#include "tools/view/panels.hpp"
+#include "tools/view/panel_parts.hpp"
+#include "tools/view/photon_feed.hpp"
 #include "tools/view/photon_map_overlay.hpp"
 #include "tools/view/point_worker.hpp"
+#include "tools/view/settings_history.hpp"
 #include "tools/view/snapshots.hpp"
 #include "tools/view/viewpoint.hpp"
 #include "tools/view/window.hpp"
@@ -42,53 +43,80 @@ class Viewer {
  public:
   Viewer(const Scene& scene, const Camera& camera, const LightMix& mix,
          PhotonWorker::OpenDevices open_devices, ViewerParameters parameters)
-      : scene_(scene),
+      : scene_(std::shared_ptr<void>(), &scene),
+        newest_scene_(scene_),
         parameters_(std::move(parameters)),
-        open_devices_(std::move(open_devices)),
-        lights_(mix),
+        lights_(mix, MovingSky::of(mix, parameters_.situation)),
         moods_(parameters_.moods.empty() ? Moods::file_of(scene.source) : parameters_.moods),
         viewpoint_(camera),
         navigation_(walked_share * bounding_sphere(scene).radius,
                     orbit_share * bounding_sphere(scene).radius),
         window_(fmt::format("{} - photile", scene.source.filename().string()),
                 parameters_.render.film.width, parameters_.render.film.height),
-        inspector_(scene),
-        points_(scene),
-        frames_(parameters_.render.film.samples_per_pixel, parameters_.frames_per_second) {
+        points_(scene_),
+        frames_(parameters_.render.film.samples_per_pixel, parameters_.frames_per_second),
+        photons_(std::move(open_devices), parameters_.light_map_bytes) {
     if (!parameters_.preview.empty()) {
-      preview_.emplace(parameters_.preview, scene.source.filename().string(), mix,
+      preview_.emplace(parameters_.preview, scene.source.filename().string(), lights_.shown_mix(),
                        *parameters_.notes);
     }
+    inspector_.emplace(scene);
     display_.view = parameters_.view;
-    build_maps(std::exchange(parameters_.prepared, std::nullopt), parameters_.keep);
+    if (!parameters_.luminaire_file.empty()) {
+      luminaires_.emplace(parameters_.luminaire_file, parameters_.luminaires, scene,
+                          parameters_.load);
+    }
+    history_.emplace(lights_, luminaires_ ? &*luminaires_ : nullptr);
+    if (parameters_.situation.time) {
+      lights_.daylight().moment = SkyMoment::of(*parameters_.situation.time);
+    }
+    if (lights_.sky()) move_sky();
+    photons_.trace(scene_, parameters_.render, std::exchange(parameters_.prepared, std::nullopt),
+                   parameters_.keep);
   }
 
   void run() {
-    while (!window_.should_close() && !parameters_.interrupted()) {
+    while (!closed() && !parameters_.interrupted()) {
       window_.begin_frame(redraw_seconds);
       take_keys();
+      history_->begin_frame();
+      take_edit_keys();
       follow_input();
+      take_maps();
       const bool new_frame = take_frame();
       take_errors();
       picked_ = pick_triangle();
-      measure_clicked();
-      PanelEvents events = panels_shown_ ? show_panels() : PanelEvents();
+      take_click();
+      PanelEvents events = panels_shown_ || closing() ? show_panels() : PanelEvents();
+      events.lights_changed |= std::exchange(lights_keyed_, false);
+      history_->end_frame(events.lights_changed, ImGui::IsAnyItemActive());
       events.lights_changed |= std::exchange(lights_restored_, false);
+      const bool sky_moved = lights_.sky() && !(lights_.daylight().moment == shown_moment_);
+      if (sky_moved) move_sky();
       if (events.expose && frame_) set_exposure();
       if (frame_ && (new_frame || events.lights_changed || events.display_changed ||
                      events.expose || picked_)) {
-        DisplayedFrame shown = display(*frame_, lights_.mix(), display_);
-        if (display_.photon_map) inspector_.draw(*frame_, shown);
+        DisplayedFrame shown = display(*frame_, lights_.shown_mix(), display_);
+        if (display_.photon_map) inspector_->draw(*frame_, shown);
         window_.set_picture(shown.width, shown.height, shown.rgb);
       }
       // A quick frame holds no lamps: it is drawn anew by the nodes.
       relit_ = events.lights_changed && frame_ && !frame_->mixed.empty();
-      exposed_ = exposed_ || events.display_changed || (frame_ && events.lights_changed);
+      exposed_ = exposed_ || events.display_changed ||
+                 (frame_ && events.lights_changed && !sky_moved);
       if (preview_ && frame_ && (new_frame || events.lights_changed)) show_preview();
-      if (events.maps_changed) build_maps(std::nullopt, {});
-      if (!events.mood_to_scene.empty()) write_scene(events.mood_to_scene);
+      if (events.maps_changed) trace();
+      if (!events.mood_to_scene.empty()) {
+        message_ = write_mood(*scene_, parameters_.load, lights_, moods_, events.mood_to_scene);
+      }
       if (events.removed_point > 0) points_.remove(events.removed_point);
-      if (events.keep_points) keep_points();
+      if (events.keep_points) {
+        message_ = keep_points(parameters_.outputs, points_.points(), lights_,
+                               point_settings_.maintenance);
+      }
+      if (events.save_luminaires) luminaires_->save(message_);
+      if (luminaires_ && luminaires_->close_as(events.closing, message_)) window_.close();
+      if (luminaires_ && panels_shown_) luminaires_->tool().draw(viewpoint_.camera());
       window_.draw_frame();
       keep_screenshot();
       window_.show_frame();
@@ -96,9 +124,10 @@ class Viewer {
         parameters_.redrawn({frame_.get(), new_frame, was_moving_});
       }
     }
-    photons_.reset();
+    if (luminaires_) luminaires_->tell_unsaved(*parameters_.notes);
+    photons_.stop();
     const std::shared_ptr<MapGeneration> maps = frames_.stop();
-    if (!parameters_.keep_light_maps || !maps) return;
+    if (!parameters_.keep_light_maps || !maps || maps->scene != first_scene_) return;
     if (maps->emitted_photons != parameters_.render.photons.emitted_photons) return;
     if (const auto light_maps = maps->renderer->light_maps()) {
       parameters_.keep_light_maps(*light_maps);
@@ -106,19 +135,43 @@ class Viewer {
   }
 
  private:
-  void build_maps(std::optional<PreparedPhotons> prepared, KeepPhotons keep) {
-    photons_.reset();  // ends what it is at
-    photons_.emplace(
-        scene_, open_devices_, parameters_.render, std::move(prepared), std::move(keep),
-        [this,
-         bounded = std::shared_ptr<MapGeneration>()](std::shared_ptr<MapGeneration> maps) mutable {
-          if (maps != bounded) {  // else frames are drawn from it by now
-            maps->renderer->bound_light_maps(parameters_.light_map_bytes);
-          }
-          bounded = maps;
-          frames_.use(std::move(maps));
-        });
+  /// Photons are kept of the first scene alone: of others there is no file.
+  void trace() { photons_.trace(newest_scene_, parameters_.render, std::nullopt, {}); }
+
+  /// Another scene is shown from its first maps on; until then, the last is.
+  void take_maps() {
+    if (luminaires_) {
+      if (auto scene = luminaires_->take_scene(message_)) {
+        newest_scene_ = std::move(scene);
+        parameters_.load.luminaires_text = luminaires_->editor().list().text();
+        trace();
+      }
+    }
+    std::shared_ptr<MapGeneration> maps = photons_.take();
+    if (!maps) return;
+    if (maps->scene == scene_) {
+      frames_.use(std::move(maps));
+      return;
+    }
+    scene_ = maps->scene;
+    const LightMix mix = parameters_.mix_of(*scene_);
+    lights_.adopt(mix, MovingSky::of(mix, parameters_.situation));
+    if (lights_.sky()) pooling_ = std::make_shared<const LightPooling>(lights_.pooling());
+    points_.use(scene_);
+    inspector_.emplace(*scene_);
+    frame_.reset();  // its layers are those of other lights; the window goes on showing it
+    frames_.use(std::move(maps), request(was_moving_));
   }
+
+  /// What is not saved is asked about first.
+  bool closed() {
+    if (!window_.should_close()) return false;
+    if (!luminaires_ || luminaires_->may_close()) return true;
+    window_.keep_open();
+    return false;
+  }
+
+  bool closing() const { return luminaires_ && luminaires_->closing(); }
 
   void take_keys() {
     const ImGuiIO& io = ImGui::GetIO();
@@ -126,32 +179,48 @@ class Viewer {
     if (ImGui::IsKeyPressed(GLFW_KEY_F2, false)) panels_shown_ = !panels_shown_;
     screenshot_wanted_ = ImGui::IsKeyPressed(GLFW_KEY_F12, false);
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
-    if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_S, false)) keep_frame();
-    if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Z, true)) {
-      lights_restored_ = io.KeyShift ? history_.redo(lights_) : history_.undo(lights_);
+    if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_S, false)) {
+      keep_frame();
+      if (luminaires_ && luminaires_->editor().unsaved()) luminaires_->save(message_);
     }
-    if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Y, true)) {
-      lights_restored_ = history_.redo(lights_);
+    const bool undo = io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Z, true);
+    const bool redo = io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Y, true);
+    if (undo || redo) {
+      lights_restored_ = undo && !io.KeyShift ? history_->undo() : history_->redo();
     }
+  }
+
+  /// Those of the sky and of luminaires.
+  void take_edit_keys() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput) return;
+    lights_keyed_ = lights_.sky() && take_sky_keys(lights_.daylight().moment);
+    if (luminaires_) luminaires_->tool().take_keys();
+  }
+
+  /// Frames' layers hold the sky of a moment: others are asked for, quick ones while it moves.
+  void move_sky() {
+    shown_moment_ = lights_.daylight().moment;
+    pooling_ = std::make_shared<const LightPooling>(lights_.pooling());
+    last_motion_ = glfwGetTime();
+    sky_moved_ = true;
+    if (display_.adapts) exposed_ = false;
   }
 
   /// Asks for frames of where the viewer is by now.
   void follow_input() {
     const double now = glfwGetTime();
-    const bool moved = navigation_.update(viewpoint_);
+    const bool lamps_held = luminaires_ && luminaires_->tool().drag(viewpoint_.camera());
+    const bool moved = navigation_.update(viewpoint_, lamps_held);
     if (moved) last_motion_ = now;
     const bool moving = last_motion_ && now - *last_motion_ < settling_seconds;
     const int width = window_.width(), height = window_.height();
     const bool reflections = display_.mode == DisplayMode::glare;
-    if (moved || relit_ || moving != was_moving_ || reflections != had_reflections_ ||
-        width != asked_width_ || height != asked_height_) {
+    const bool sky_moved = std::exchange(sky_moved_, false);
+    if (moved || relit_ || sky_moved || moving != was_moving_ ||
+        reflections != had_reflections_ || width != asked_width_ || height != asked_height_) {
       // A window that is made small to nothing keeps its last picture.
-      if (width > 0 && height > 0) {
-        // Layers are needed for all but the picture itself.
-        const bool quick = display_.mode == DisplayMode::picture && !display_.photon_map;
-        frames_.show({viewpoint_.camera(), width, height, moving, reflections,
-                      quick ? scales_of(lights_.mix()) : std::vector<glm::vec3>()});
-      }
+      if (width > 0 && height > 0) frames_.show(request(moving));
       was_moving_ = moving;
       had_reflections_ = reflections;
       asked_width_ = width;
@@ -165,29 +234,38 @@ class Viewer {
     }
   }
 
+  FrameRequest request(bool moving) const {
+    // Layers are needed for all but the picture itself.
+    const bool quick = display_.mode == DisplayMode::picture && !display_.photon_map;
+    return {viewpoint_.camera(),
+            window_.width(),
+            window_.height(),
+            moving,
+            display_.mode == DisplayMode::glare,
+            quick ? scales_of(lights_.mix()) : std::vector<glm::vec3>(),
+            pooling_};
+  }
+
   /// Whether a click has picked a triangle whose photons are to be shown.
   bool pick_triangle() {
     if (!clicked_ || !display_.photon_map || !frame_ || !probe_) return false;
-    inspector_.pick(*frame_, probe_->x, probe_->y);
+    inspector_->pick(*frame_, probe_->x, probe_->y);
     return true;
   }
 
-  /// A click is a measurement, unless it asks for a triangle's photons.
-  void measure_clicked() {
+  /// A click is a measurement, unless it asks for a triangle's photons, or for lamps.
+  void take_click() {
     if (!clicked_ || display_.photon_map || !frame_ || !probe_) return;
-    if (const auto place = inspector_.place_at(*frame_, probe_->x, probe_->y)) {
-      points_.add(place_in_world(scene_, place->position),
-                  direction_in_world(scene_, place->normal));
+    const auto place = inspector_->place_at(*frame_, probe_->x, probe_->y);
+    const int width = window_.width(), height = window_.height();
+    const glm::dvec3 direction =
+        frame_->camera.direction(probe_->x * width, probe_->y * height, width, height);
+    if (luminaires_ && luminaires_->click(frame_->camera, direction, place, message_)) {
+      probe_.reset();
+    } else if (place) {
+      points_.add(place_in_world(*scene_, place->position),
+                  direction_in_world(*scene_, place->normal));
     }
-  }
-
-  void keep_points() {
-    const std::vector<ClickedPoint> points = points_.points();
-    keep("points", ".pts",
-         [&](const std::filesystem::path& file) { write_file(file, points_text(points)); });
-    keep("points", ".csv", [&](const std::filesystem::path& file) {
-      write_file(file, points_csv(points, lights_.mix(), point_settings_.maintenance));
-    });
   }
 
   /// Frames of a moving viewer are too many to be of use elsewhere, or too small.
@@ -195,30 +273,17 @@ class Viewer {
     const int width = frame_->layers.width, height = frame_->layers.height;
     if (was_moving_ || width != window_.width() || height != window_.height()) return;
     if (frame_->mixed.empty()) {
-      preview_->picture(frame_->layers, lights_.mix());
+      preview_->picture(frame_->layers, lights_.shown_mix());
     } else {
       preview_->picture(width, height, frame_->mixed);
-    }
-  }
-
-  void write_scene(const std::string& mood) {
-    try {
-      LightBoard board = lights_;
-      for (LightControl& control : board.controls()) control.solo = false;
-      moods_.apply(mood, board);
-      const scene_io::EditedScene copy =
-          scene_io::write_edited_scene(scene_.source, parameters_.load, board.mix(), mood);
-      message_ = fmt::format("{} is written", copy.file.filename().string());
-      for (const std::string& line : copy.left_out) message_ += "\n" + line;
-    } catch (const Error& error) {
-      message_ = error.what();
     }
   }
 
   /// Whether there is a new frame.
   bool take_frame() {
     std::shared_ptr<const Frame> latest = frames_.latest();
-    if (latest == frame_) return false;
+    if (latest == frame_ || !latest || latest->scene != scene_) return false;
+    seen_ = true;
     frame_ = std::move(latest);
     milliseconds_.push_back(static_cast<float>(1e3 * frame_->seconds));
     if (milliseconds_.size() > frames_in_graph) milliseconds_.pop_front();
@@ -226,19 +291,19 @@ class Viewer {
     if (!exposed_) set_exposure();
     exposed_ = exposed_ || frame_->mixed.empty();
     window_.set_title(fmt::format("{} - photile: {} of {} samples, {:.4g}M paths",
-                                  scene_.source.filename().string(), frame_->samples_per_pixel,
+                                  scene_->source.filename().string(), frame_->samples_per_pixel,
                                   parameters_.render.film.samples_per_pixel,
                                   static_cast<double>(frame_->emitted_photons) / 1e6));
     return true;
   }
 
-  void set_exposure() { display_.exposure = automatic_stops(*frame_, lights_.mix()); }
+  void set_exposure() { display_.exposure = automatic_stops(*frame_, lights_.shown_mix()); }
 
   /// Before there is a picture an error ends the walkthrough; later ones are told.
   void take_errors() {
-    for (const std::exception_ptr& error : {photons_->take_error(), frames_.take_error()}) {
+    for (const std::exception_ptr& error : {photons_.take_error(), frames_.take_error()}) {
       if (!error) continue;
-      if (!frame_) std::rethrow_exception(error);
+      if (!seen_) std::rethrow_exception(error);
       try {
         std::rethrow_exception(error);
       } catch (const std::exception& told) {
@@ -259,53 +324,43 @@ class Viewer {
                      new_mood_,
                      points,
                      point_settings_,
-                     scene_};
-    const LightBoard before = lights_;
-    const PanelEvents events =
-        draw_panels(state, {frame_.get(), photons_->progress(), milliseconds_,
-                            display_.photon_map ? inspector_.map() : nullptr});
-    history_.note(before, events.lights_changed, ImGui::IsAnyItemActive());
-    return events;
+                     *scene_,
+                     luminaires_ ? &luminaires_->tool() : nullptr,
+                     closing()};
+    return draw_panels(state, {frame_.get(), photons_.progress(), milliseconds_,
+                               display_.photon_map ? inspector_->map() : nullptr,
+                               luminaires_ && luminaires_->loading()});
   }
 
   void keep_screenshot() {
     if (!screenshot_wanted_) return;
-    keep("screenshot", ".png", [&](const std::filesystem::path& file) {
+    message_ = keep_as(parameters_.outputs, "screenshot", ".png", [&](const auto& file) {
       write_screenshot(file, window_.width(), window_.height(), window_.read_pixels());
     });
   }
 
   void keep_frame() {
     if (!frame_ || !frame_->mixed.empty()) return;
-    keep("view", ".exr", [&](const std::filesystem::path& file) {
-      write_frame(file, scene_, *frame_, lights_.mix());
+    message_ = keep_as(parameters_.outputs, "view", ".exr", [&](const auto& file) {
+      write_frame(file, *scene_, *frame_, lights_.shown_mix());
     });
   }
 
-  template <class Write>
-  void keep(const std::string& stem, const std::string& extension, const Write& write) {
-    try {
-      const std::filesystem::path file = free_name(parameters_.outputs, stem, extension);
-      write(file);
-      message_ = fmt::format("{} is kept", file.filename().string());
-    } catch (const Error& error) {
-      message_ = error.what();
-    }
-  }
-
-  const Scene& scene_;
+  std::shared_ptr<const Scene> scene_;         ///< that is shown
+  std::shared_ptr<const Scene> newest_scene_;  ///< that photons are traced in
+  const std::shared_ptr<const Scene> first_scene_ = scene_;
   ViewerParameters parameters_;
-  const PhotonWorker::OpenDevices open_devices_;
   LightBoard lights_;
-  LightHistory history_;
   Moods moods_;
   DisplaySettings display_;
   Viewpoint viewpoint_;
   Navigation navigation_;
   Window window_;
-  PhotonInspector inspector_;
+  std::optional<PhotonInspector> inspector_;
   PointWorker points_;
   PointSettings point_settings_;
+  std::optional<LuminaireSession> luminaires_;  ///< where a file of them is edited
+  std::optional<SettingsHistory> history_;
   std::optional<image::LivePreview> preview_;
   std::optional<Probe> probe_;
   std::string message_, new_mood_;
@@ -314,10 +369,15 @@ class Viewer {
   std::optional<double> last_motion_;  ///< GLFW's clock, seconds
   bool was_moving_ = false, had_reflections_ = false, clicked_ = false, picked_ = false;
   int asked_width_ = 0, asked_height_ = 0;
-  bool relit_ = false, exposed_ = false, lights_restored_ = false;
+  /// Of a sky that hours move: that frames were asked for with.
+  SkyMoment shown_moment_;
+  std::shared_ptr<const LightPooling> pooling_;
+  bool sky_moved_ = false;
+  bool relit_ = false, exposed_ = false, lights_restored_ = false, lights_keyed_ = false;
+  bool seen_ = false;  ///< any frame
   bool panels_shown_ = true, screenshot_wanted_ = false;
   FrameWorker frames_;
-  std::optional<PhotonWorker> photons_;  // last: it delivers to frames_
+  PhotonFeed photons_;
 };
 
 }  // namespace

@@ -85,6 +85,8 @@ bool Window::should_close() const { return glfwWindowShouldClose(impl_->handle) 
 
 void Window::close() { glfwSetWindowShouldClose(impl_->handle, GLFW_TRUE); }
 
+void Window::keep_open() { glfwSetWindowShouldClose(impl_->handle, GLFW_FALSE); }
+
 void Window::begin_frame(double longest_wait) {
   glfwWaitEventsTimeout(longest_wait);
   ImGui_ImplOpenGL3_NewFrame();

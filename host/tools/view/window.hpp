@@ -20,6 +20,7 @@ class Window {
 
   bool should_close() const;
   void close();
+  void keep_open();  ///< although it was asked to close
 
   /// Waits for input, at most so many seconds, and begins a frame of panels.
   void begin_frame(double longest_wait);

@@ -1,8 +1,9 @@
 // Changes of lamps, taken back and made again.
-#include "tools/view/light_history.hpp"
+#include "tools/view/history.hpp"
 
 #include <catch2/catch.hpp>
 
+#include "tools/view/light_board.hpp"
 #include "two_lights.hpp"
 
 namespace photile::test {
@@ -10,7 +11,7 @@ namespace {
 
 struct Subject {
   view::LightBoard board{two_lights("ceiling", 100, "desk", 300)};
-  view::LightHistory history;
+  view::History<view::LightBoard> history;
 
   void set(double power, bool held = false) {
     const view::LightBoard before = board;
