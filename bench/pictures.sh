@@ -57,6 +57,17 @@ window "1 of 1 samples, 0.03M" 1 "27 310" "720 495" -- \
   scenes/cornell-box/cornell-box-specular.gltf --size 960x720 --samples 1 --photons 30k
 mv "$outputs/screenshot-0001.png" "$pictures/photon-map.png"
 
+# The sun of a morning in a room without lamps; the click is on the panel.
+window "4 of 4 samples, 4M" 1 "150 60" -- scenes/gallery/sun-and-sky.gltf --size 960x720 --samples 4 \
+  --photons 4M --neighbours 2000 --site 52.5,13.4,1 --time 2026-06-21T09:00
+mv "$outputs/screenshot-0001.png" "$pictures/view-daylight.png"
+
+# The same room with a lamp that two clicks place, on "place" and under the ceiling.
+cp scenes/gallery/downlight.ies "$outputs"
+window "4 of 4 samples, 1M" 1 "38 165" "480 25" "150 60" -- scenes/gallery/sun-and-sky.gltf \
+  --size 960x720 --samples 4 --photons 1M --neighbours 300 --luminaires "$outputs/lamps.json"
+mv "$outputs/screenshot-0001.png" "$pictures/view-luminaires.png"
+
 build/release/bench/photile_bench_light_maps --only "living room" --paths 1000000 \
   --nodes "$pictures/light-map-nodes.png" > /dev/null
 

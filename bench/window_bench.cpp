@@ -100,8 +100,12 @@ class Operator {
   Operator(Observer& observer, std::uint64_t paths, BenchRecord& record)
       : observer_(observer), paths_(paths), record_(record) {}
 
-  void work() {
+  void work(bool sunny) {
     rest();
+    if (sunny) {
+      walk("", {"Right"}), walk("the hour moved", {"Right"});
+      return;
+    }
     walk("", {"w"}), walk("", {"s"});  // all that is seen on the way has nodes now
     walk("ahead, through nodes that are there", {"w"});
     walk("back", {"s"});
@@ -149,9 +153,17 @@ class Operator {
   BenchRecord& record_;
 };
 
+/// A room without lamps, under patches that the hour moves.
+Scene sunny_room() {
+  SceneLoadOptions options;
+  options.sky = Sky{SkyKind::patches, 0, 0, 0, defaults::view_sky_patches};
+  return load_scene(PHOTILE_SOURCE_DIR "/scenes/gallery/sun-and-sky.gltf", options);
+}
+
 bool run(const BenchOptions& options, const Settings& settings) {
   BenchRecord record("window", options);
-  const auto interior = shared_interior(settings.scene);
+  const bool sunny = settings.scene == "sun and sky";
+  const auto interior = sunny ? std::optional(sunny_room()) : shared_interior(settings.scene);
   const Scene scene = interior ? *interior : living_room();
   view::ViewerParameters parameters;
   parameters.frames_per_second = settings.frame_rate;
@@ -167,6 +179,8 @@ bool run(const BenchOptions& options, const Settings& settings) {
   record.set("paths", settings.paths);
   record.set("k", settings.neighbours);
 
+  if (sunny) parameters.situation.site = Site{52.5, 13.4, 1};
+
   Observer observer;
   std::atomic<bool> done{false};
   std::exception_ptr error;
@@ -174,7 +188,7 @@ bool run(const BenchOptions& options, const Settings& settings) {
   parameters.interrupted = [&] { return done.load(); };
   std::jthread operating([&] {
     try {
-      Operator(observer, settings.paths, record).work();
+      Operator(observer, settings.paths, record).work(sunny);
     } catch (...) {
       error = std::current_exception();
     }
@@ -201,7 +215,8 @@ int main(int argument_count, char** arguments) {
   add_options(command, options, Repeating::no);
   Settings settings;
   command.add_option("--size", settings.size, "of the window")->capture_default_str();
-  command.add_option("--scene", settings.scene, "or classroom, kitchen")->capture_default_str();
+  command.add_option("--scene", settings.scene, "or classroom, kitchen, sun and sky")
+      ->capture_default_str();
   command.add_option("--paths", settings.paths, "from all lamps")->capture_default_str();
   command.add_option("-k", settings.neighbours, "photons of an estimate")->capture_default_str();
   command.add_option("--frame-rate", settings.frame_rate, "aimed at")->capture_default_str();

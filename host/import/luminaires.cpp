@@ -224,8 +224,8 @@ void add_work_light(double lumen_per_watt, Scene& scene) {
   Light light;
   light.name = "work_light";
   light.kind = LightKind::point;
-  light.power = scene.unit == PowerUnit::lumen ? defaults::work_light
-                                               : defaults::work_light / lumen_per_watt;
+  light.power =
+      scene.unit == PowerUnit::lumen ? defaults::work_light : defaults::work_light / lumen_per_watt;
   const Camera camera = scene.cameras.empty() ? place_camera(scene) : scene.cameras.front();
   light.position = glm::vec3(camera.position);
   scene.lights.push_back(std::move(light));
@@ -298,9 +298,8 @@ std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Sc
   const std::filesystem::path& file = options.luminaires;
   if (file.empty()) return {};
   const bool edited = !options.luminaires_text.empty();
-  const LuminaireList list = edited
-                                 ? LuminaireList::parse(options.luminaires_text, file.string())
-                                 : read_luminaires(file);
+  const LuminaireList list =
+      edited ? LuminaireList::parse(options.luminaires_text, file.string()) : read_luminaires(file);
   if (list.entries.empty() && !edited) {
     throw InputError(fmt::format("{}: holds no luminaire", file.string()));
   }

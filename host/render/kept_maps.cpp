@@ -113,8 +113,7 @@ std::optional<LightMapContents> SceneRenderer::light_maps() const {
 }
 
 RenderResult SceneRenderer::render_reflections(const Camera& camera, const Film& film,
-                                               Progress& progress,
-                                               const LightPooling* pooling) {
+                                               Progress& progress, const LightPooling* pooling) {
   return impl_->render(ReflectedHits(camera), film, progress, pooling);
 }
 

@@ -118,10 +118,10 @@ inline constexpr int view_samples_per_pixel = 16;
 inline constexpr std::uint64_t view_first_photons = 8192;  ///< paths of the first picture
 inline constexpr int clicked_rays = 1'024;                 ///< of each repeat at a clicked point
 inline constexpr std::size_t clicked_repeats = 64;
-inline constexpr int view_sky_patches = 145;  ///< Tregenza's, of a sky that hours move
-inline constexpr int view_day = 80;           ///< of the year: the 21st of March
-inline constexpr double view_hour = 12;       ///< of that day, standard time
-inline constexpr double work_light = 1'000;   ///< lm at the eye, of a room without any lamp yet
+inline constexpr int view_sky_patches = 145;   ///< Tregenza's, of a sky that hours move
+inline constexpr int view_day = 80;            ///< of the year: the 21st of March
+inline constexpr double view_hour = 12;        ///< of that day, standard time
+inline constexpr double work_light = 1'000;    ///< lm at the eye, of a room without any lamp yet
 inline constexpr double luminaire_side = 0.6;  ///< metres, of an opening that no file states
 
 // Several processes

@@ -71,8 +71,7 @@ class SceneRenderer {
   /// The picture that `render` gives with this film, bit for bit. Statistics contain the costs of
   /// the maps each time.
   ///   pooling   of its layers, before they take memory; null = each for itself
-  RenderResult render(const Camera& camera, const Film& film,
-                      Progress& progress = Progress::none(),
+  RenderResult render(const Camera& camera, const Film& film, Progress& progress = Progress::none(),
                       const LightPooling* pooling = nullptr);
 
   /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a sample,

@@ -28,7 +28,8 @@ TEST_CASE("days between are between, the turn of the year too") {
     const double today = clear_sky(0.7, day).direct_normal;
     CHECK(std::abs(clear_sky(0.7, day + 1).direct_normal - today) < 3);
   }
-  CHECK(clear_sky(0.7, 1).direct_normal == Approx(clear_sky(0.7, 365).direct_normal).epsilon(0.005));
+  CHECK(clear_sky(0.7, 1).direct_normal ==
+        Approx(clear_sky(0.7, 365).direct_normal).epsilon(0.005));
 }
 
 TEST_CASE("a clear sky gives open ground what Haurwitz measured, within 12%") {

@@ -72,7 +72,7 @@ bool fuzz_luminaires(Bytes bytes) {
   return accepts([&] {
     Scene scene = room();
     scene_io::Warnings warnings;
-    scene_io::add_luminaires(file, 683, scene, warnings);
+    scene_io::add_luminaires(scene_io::read_luminaires(file), file, 683, scene, warnings);
     scene_io::make_light_names_unique(scene.lights);
     try {
       check_scene(scene);

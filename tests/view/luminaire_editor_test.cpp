@@ -72,8 +72,9 @@ glm::dvec3 middle_of(const Scene& scene, const Light& light) {
 TEST_CASE("a list of luminaires is written as it was read, member by member") {
   const auto list = scene_io::LuminaireList::parse(two_entries, "test");
   CHECK(scene_io::LuminaireList::parse(list.text(), "test") == list);
-  CHECK_THAT(list.text(), Catch::Contains(R"("position":"ceiling","size":[1.2,0.3],"count":[3,2])") &&
-                              Catch::Contains(R"({"rotation":30,"file")"));
+  CHECK_THAT(list.text(),
+             Catch::Contains(R"("position":"ceiling","size":[1.2,0.3],"count":[3,2])") &&
+                 Catch::Contains(R"({"rotation":30,"file")"));
   const auto alone = scene_io::LuminaireList::parse(R"({"file": "a.ies"})", "test");
   CHECK(alone.text() == "{\"file\":\"a.ies\"}\n");
   CHECK_THROWS_AS(scene_io::LuminaireList::parse("{", "test"), InputError);
@@ -139,8 +140,8 @@ TEST_CASE("a lamp is placed on a surface, and shines away from it") {
     CHECK(glm::distance(lit.luminaires[i].position, editor.placed()[i].position) < 1e-9);
     CHECK(lit.luminaires[i].axes == editor.placed()[i].axes);
     CHECK(lit.luminaires[i].opening == editor.placed()[i].opening);
-    CHECK(glm::distance(middle_of(lit.scene, lit.scene.lights[i]),
-                        editor.placed()[i].position) < 1e-5);
+    CHECK(glm::distance(middle_of(lit.scene, lit.scene.lights[i]), editor.placed()[i].position) <
+          1e-5);
   }
   std::filesystem::remove(room.path / "downlight.ies");
   LuminaireEditor empty(room.list, {}, dark.scene);
@@ -154,8 +155,8 @@ TEST_CASE("rays meet openings, and what is held follows the pointer in its plane
   const glm::dvec3 eye = spot.position - glm::dvec3(0.3, 1.1, 0.2);
   const auto towards = [&](const glm::dvec3& place) { return glm::normalize(place - eye); };
   CHECK(editor.along(eye, towards(spot.position), 10) == 1u);
-  CHECK_FALSE(editor.along(eye, towards(spot.position), 1));      // something hides it
-  CHECK_FALSE(editor.along(eye, -towards(spot.position), 10));    // behind
+  CHECK_FALSE(editor.along(eye, towards(spot.position), 1));    // something hides it
+  CHECK_FALSE(editor.along(eye, -towards(spot.position), 10));  // behind
   const glm::dvec3 beside = spot.position + 0.51 * spot.opening.x * spot.axes[0];
   CHECK_FALSE(editor.along(eye, towards(beside), 10));
   CHECK(editor.along(eye, towards(editor.placed()[0].middles()[4]), 10) == 0u);
@@ -211,7 +212,12 @@ TEST_CASE("lamps and luminaires have one history") {
     history.end_frame(of_lights, false);
   };
   frame([&] { lights.controls()[0].power = 7; }, true);
-  frame([&] { session.editor().select(1); session.editor().remove(); }, false);
+  frame(
+      [&] {
+        session.editor().select(1);
+        session.editor().remove();
+      },
+      false);
   frame([&] { lights.controls()[0].on = false; }, true);
   CHECK(history.undo());
   CHECK(lights.controls()[0].on);

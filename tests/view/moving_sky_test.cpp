@@ -78,9 +78,9 @@ TEST_CASE("the patches shine where the sun is, and give open ground what the wea
     CHECK(degrees * std::acos(glm::dot(to_sun, to_patch)) < 9);  // half a patch's diagonal
     const daylight::PerezSky perez(sun.elevation, daylight::clear_sky(sun.elevation, moment.day),
                                    moment.day);
-    CHECK(horizontal(powers) == Approx(perez.diffuse_illuminance() + perez.direct_illuminance() *
-                                                                         std::sin(sun.elevation))
-                                    .epsilon(0.06));
+    CHECK(horizontal(powers) ==
+          Approx(perez.diffuse_illuminance() + perez.direct_illuminance() * std::sin(sun.elevation))
+              .epsilon(0.06));
   }
 }
 
@@ -97,7 +97,8 @@ TEST_CASE("at night nothing shines, and the window says so") {
 TEST_CASE("the weather of a file lights its own place, in watts by the efficacy") {
   TemporaryFolder folder;
   const auto file = folder.path / "year.epw";
-  write_file(file, weather_text([](int, int, int) { return 0; }, [](int, int, int) { return 100; }));
+  write_file(file,
+             weather_text([](int, int, int) { return 0; }, [](int, int, int) { return 100; }));
   LightMix mix = sky_mix();
   for (MixedLight& light : mix.lights) light.unit = PowerUnit::watt;
   mix.lumen_per_watt = 100;

@@ -182,8 +182,7 @@ TEST_CASE("pooled layers of a frame are the sums of its lights at their powers")
   REQUIRE(frame->noise.paths.size() == 2);
   RenderParameters parameters = few_photons();
   parameters.film = {40, 30, 4};
-  const LightLayers all =
-      render(scene, from_above(), test::device(), parameters).layers.dense();
+  const LightLayers all = render(scene, from_above(), test::device(), parameters).layers.dense();
   for (const std::size_t layer : {0u, 1u}) {
     for (std::size_t pixel = 0; pixel < 40 * 30; ++pixel) {
       float expected = 0;

@@ -122,8 +122,7 @@ std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, i
                    readings[light].illuminance.value =
                        lux_of(mixed, mix) * static_cast<double>(illuminance);
                    if (light >= frame.noise.paths.size()) return;
-                   photons[light] = static_cast<double>(illuminance) *
-                                    frame.noise.paths[light];
+                   photons[light] = static_cast<double>(illuminance) * frame.noise.paths[light];
                  });
   const double all = std::accumulate(photons.begin(), photons.end(), 0.0);
   for (std::size_t light = 0; light < readings.size(); ++light) {

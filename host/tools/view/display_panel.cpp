@@ -127,7 +127,8 @@ void draw_legend(const PanelState& state, const Frame* frame) {
   if (!frame || display.mode != DisplayMode::illuminance) return;
   double automatic = 0;
   if (!(display.false_colour.scale > 0)) {
-    automatic = measuring::automatic_top(mixed_illuminance(frame->layers, state.lights.shown_mix()));
+    automatic =
+        measuring::automatic_top(mixed_illuminance(frame->layers, state.lights.shown_mix()));
   }
   const measuring::ColourScale scale(display.false_colour, automatic);
   std::vector<double> levels = scale.levels();

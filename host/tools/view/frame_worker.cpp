@@ -164,18 +164,18 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
     size_.record(static_cast<double>(film.width) * film.height * task.samples, seconds);
   }
   drawn_maps_ = task.maps;
-  return std::make_shared<Frame>(Frame{std::move(result.layers),
-                                       {},
-                                       std::move(reflections),
-                                       task.maps->photons,
-                                       task.maps->scene,
-                                       task.request.camera,
-                                       result.used.film.samples_per_pixel,
-                                       task.maps->emitted_photons,
-                                       pooling ? task.maps->noise.pooled(*pooling)
-                                               : task.maps->noise,
-                                       seconds,
-                                       std::move(result.statistics)});
+  return std::make_shared<Frame>(
+      Frame{std::move(result.layers),
+            {},
+            std::move(reflections),
+            task.maps->photons,
+            task.maps->scene,
+            task.request.camera,
+            result.used.film.samples_per_pixel,
+            task.maps->emitted_photons,
+            pooling ? task.maps->noise.pooled(*pooling) : task.maps->noise,
+            seconds,
+            std::move(result.statistics)});
 }
 
 void FrameWorker::work(std::stop_token stop) {

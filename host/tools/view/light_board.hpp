@@ -81,8 +81,8 @@ class LightBoard {
 
   LightMix scene_;
   std::shared_ptr<const MovingSky> sky_;
-  std::string sky_name_;              ///< of its layer
-  std::vector<std::size_t> lights_;   ///< of the controls: into the scene's
+  std::string sky_name_;             ///< of its layer
+  std::vector<std::size_t> lights_;  ///< of the controls: into the scene's
   std::vector<LightControl> controls_;
   std::map<std::string, LightControl> gone_;  ///< of lights that the scene had before
   Daylight daylight_;

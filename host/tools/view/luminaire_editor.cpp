@@ -150,9 +150,9 @@ void LuminaireEditor::write_position(const glm::dvec3& in_scene) {
 void LuminaireEditor::place(const glm::dvec3& position, const glm::dvec3& normal) {
   const std::string name = next_file();
   if (name.empty()) {
-    throw UsageError(fmt::format(
-        "there is no lamp to place: put a photometric file (.ies, .ldt) beside {}",
-        file_.string()));
+    throw UsageError(
+        fmt::format("there is no lamp to place: put a photometric file (.ies, .ldt) beside {}",
+                    file_.string()));
   }
   nlohmann::ordered_json entry{{"name", free_name(std::filesystem::path(name).stem().string())},
                                {"file", name}};
@@ -213,8 +213,7 @@ bool LuminaireEditor::drag(const glm::dvec3& eye, const glm::dvec3& from, const 
   if (!lamps) return false;
   const glm::dvec3 normal = lamps->axes[2];
   const auto on_plane = [&](const glm::dvec3& direction) -> std::optional<glm::dvec3> {
-    const double distance =
-        glm::dot(lamps->position - eye, normal) / glm::dot(direction, normal);
+    const double distance = glm::dot(lamps->position - eye, normal) / glm::dot(direction, normal);
     // Towards the plane's horizon a pixel would move it by kilometres.
     constexpr double farthest = 100;
     if (!(distance > 0) || distance > farthest) return std::nullopt;

@@ -32,8 +32,8 @@ void draw_list(LuminaireEditor& editor) {
   const auto& entries = editor.list().entries;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    const std::string name = i < editor.placed().size() ? editor.placed()[i].name
-                                                        : entries[i].value("name", "...");
+    const std::string name =
+        i < editor.placed().size() ? editor.placed()[i].name : entries[i].value("name", "...");
     if (ImGui::Selectable(name.c_str(), editor.selected() == i)) editor.select(i);
     ImGui::PopID();
   }
@@ -88,9 +88,7 @@ void draw_luminaires(PanelState& state, const PanelReadings& readings, PanelEven
   ImGui::SameLine();
   if (ImGui::Button("save")) events.save_luminaires = true;
   ImGui::SameLine();
-  ImGui::TextUnformatted(readings.loading     ? "loading ..."
-                         : editor.unsaved() ? "not saved"
-                                            : "");
+  ImGui::TextUnformatted(readings.loading ? "loading ..." : editor.unsaved() ? "not saved" : "");
   draw_list(editor);
   draw_selected(editor);
 }

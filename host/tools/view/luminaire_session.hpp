@@ -24,9 +24,7 @@ class LuminaireSession {
   LuminaireSession(const std::filesystem::path& file,
                    std::vector<scene_io::PlacedLuminaires> placed, const Scene& scene,
                    const SceneLoadOptions& load)
-      : editor_(file, std::move(placed), scene),
-        tool_(editor_),
-        loader_(scene.source, load) {}
+      : editor_(file, std::move(placed), scene), tool_(editor_), loader_(scene.source, load) {}
 
   LuminaireEditor& editor() { return editor_; }
   const LuminaireEditor& editor() const { return editor_; }

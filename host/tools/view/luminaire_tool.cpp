@@ -85,9 +85,8 @@ bool LuminaireTool::click(const Camera& camera, const glm::dvec3& direction,
     editor_.place(surface->position, surface->normal);
     return true;
   }
-  const double farthest = surface
-                              ? glm::distance(camera.position, surface->position) + on_surface
-                              : std::numeric_limits<double>::max();
+  const double farthest = surface ? glm::distance(camera.position, surface->position) + on_surface
+                                  : std::numeric_limits<double>::max();
   const auto under = editor_.along(camera.position, direction, farthest);
   if (under) editor_.select(under);
   return under.has_value();

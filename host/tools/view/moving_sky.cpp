@@ -70,8 +70,7 @@ SkySituation take_moving_sky(SceneLoadOptions& options) {
   return taken;
 }
 
-std::shared_ptr<const MovingSky> MovingSky::of(const LightMix& mix,
-                                               const SkySituation& situation) {
+std::shared_ptr<const MovingSky> MovingSky::of(const LightMix& mix, const SkySituation& situation) {
   const std::shared_ptr<MovingSky> sky(new MovingSky);
   sky->patches_ = scene_io::patches_of(mix);
   if (sky->patches_.empty()) return nullptr;

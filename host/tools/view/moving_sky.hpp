@@ -17,8 +17,8 @@ namespace photile::view {
 
 /// A moment of any year, in the site's standard time.
 struct SkyMoment {
-  int day = defaults::view_day;        ///< of a year without a leap day, from 1
-  double hour = defaults::view_hour;   ///< from midnight, in [0, 24)
+  int day = defaults::view_day;       ///< of a year without a leap day, from 1
+  double hour = defaults::view_hour;  ///< from midnight, in [0, 24)
 
   static SkyMoment of(const LocalTime& time);
   LocalTime time() const;
@@ -60,8 +60,8 @@ class MovingSky {
   MovingSky() = default;
 
   std::vector<daylight::SkyPatch> patches_;
-  std::vector<std::size_t> lights_;    ///< of each patch, and of the ground
-  std::vector<double> unit_powers_;    ///< of each, at 1 cd/m2
+  std::vector<std::size_t> lights_;  ///< of each patch, and of the ground
+  std::vector<double> unit_powers_;  ///< of each, at 1 cd/m2
   Site site_;
   std::optional<scene_io::WeatherYear> weather_;  ///< none: clear skies
 };

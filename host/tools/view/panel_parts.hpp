@@ -11,8 +11,8 @@ bool draw_lights(PanelState& state);
 /// Day and hour of a sky that they move. Returns whether it is another sky now.
 bool draw_daylight(PanelState& state);
 
-/// Moves it by Left and Right, a quarter of an hour, and by Page Up and Page Down, a day; with Shift
-/// by an hour and by thirty days. Returns whether it moved.
+/// Moves it by Left and Right, a quarter of an hour, and by Page Up and Page Down, a day; with
+/// Shift by an hour and by thirty days. Returns whether it moved.
 bool take_sky_keys(SkyMoment& moment);
 
 /// The moods that are kept. Returns whether one has been applied.

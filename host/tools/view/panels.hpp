@@ -64,7 +64,7 @@ struct PanelEvents {
   bool keep_points = false;      ///< write the list of points
   bool save_luminaires = false;  ///< write their file
   Closing closing = Closing::undecided;
-  std::string mood_to_scene;     ///< write this one into a copy of the scene; "" = none
+  std::string mood_to_scene;  ///< write this one into a copy of the scene; "" = none
 };
 
 PanelEvents draw_panels(PanelState& state, const PanelReadings& readings);

@@ -20,7 +20,8 @@ namespace photile::view {
 std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem,
                                 const std::string& extension);
 
-/// Has `write` write a file of a free name. Returns what there is to tell: the name, or what failed.
+/// Has `write` write a file of a free name. Returns what there is to tell: the name, or what
+/// failed.
 std::string keep_as(const std::filesystem::path& folder, const std::string& stem,
                     const std::string& extension,
                     const std::function<void(const std::filesystem::path&)>& write);

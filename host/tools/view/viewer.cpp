@@ -102,8 +102,8 @@ class Viewer {
       }
       // A quick frame holds no lamps: it is drawn anew by the nodes.
       relit_ = events.lights_changed && frame_ && !frame_->mixed.empty();
-      exposed_ = exposed_ || events.display_changed ||
-                 (frame_ && events.lights_changed && !sky_moved);
+      exposed_ =
+          exposed_ || events.display_changed || (frame_ && events.lights_changed && !sky_moved);
       if (preview_ && frame_ && (new_frame || events.lights_changed)) show_preview();
       if (events.maps_changed) trace();
       if (!events.mood_to_scene.empty()) {
@@ -217,8 +217,8 @@ class Viewer {
     const int width = window_.width(), height = window_.height();
     const bool reflections = display_.mode == DisplayMode::glare;
     const bool sky_moved = std::exchange(sky_moved_, false);
-    if (moved || relit_ || sky_moved || moving != was_moving_ ||
-        reflections != had_reflections_ || width != asked_width_ || height != asked_height_) {
+    if (moved || relit_ || sky_moved || moving != was_moving_ || reflections != had_reflections_ ||
+        width != asked_width_ || height != asked_height_) {
       // A window that is made small to nothing keeps its last picture.
       if (width > 0 && height > 0) frames_.show(request(moving));
       was_moving_ = moving;

@@ -30,11 +30,11 @@ struct ViewerParameters {
   std::uint64_t light_map_bytes = 0;    ///< that nodes may take; 0 = no bound
   /// Photons of an earlier run in place of all tracing, or none.
   std::optional<PreparedPhotons> prepared;
-  SceneLoadOptions load;  ///< with which the scene was loaded, for copies of its file
+  SceneLoadOptions load;   ///< with which the scene was loaded, for copies of its file
   SkySituation situation;  ///< of a sky of patches; without a place nothing moves it
   /// Makes the mix of a scene that was loaded again, as `mix` was made of the first.
   std::function<LightMix(const Scene&)> mix_of;
-  std::filesystem::path luminaire_file;  ///< that is edited; "" = none
+  std::filesystem::path luminaire_file;                ///< that is edited; "" = none
   std::vector<scene_io::PlacedLuminaires> luminaires;  ///< as the scene has its entries
   DisplayView view = ToneMapping{}.view;
   std::string preview;                  ///< HOST:PORT of a tev that gets the pictures; "" = none

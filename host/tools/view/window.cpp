@@ -92,13 +92,14 @@ void Window::begin_frame(double longest_wait) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-}
-
-void Window::draw_frame() {
+  // Before all that is drawn over it.
   if (impl_->has_picture) {
     ImGui::GetBackgroundDrawList()->AddImage(id_of(impl_->texture), ImVec2(0, 0),
                                              ImGui::GetIO().DisplaySize);
   }
+}
+
+void Window::draw_frame() {
   ImGui::Render();
   glViewport(0, 0, width(), height());
   glClearColor(0, 0, 0, 1);
