@@ -271,9 +271,8 @@ int Rendering::rows_per_batch(const HitSource& source) const {
   const std::int64_t hits_per_row = std::int64_t{film_.width} *
                                     (film_.samples_per_pixel / film_.passes) *
                                     std::max(1, plan_.used().final_gather_rays);
-  // Estimates of hundreds of lights take a hundred times what they are pooled to.
-  const bool small = source.watched() || pooling_;
-  const int most = small ? (film_.height - 1) / watched_batches + 1 : film_.height;
+  const int least = (film_.height - 1) / watched_batches + 1;
+  const int most = source.watched() || pooling_ ? least : film_.height;
   // Where light maps are read, only their nodes take long.
   const int neighbours = reads_light_maps(source) ? defaults::neighbours : plan_.used().neighbours;
   return static_cast<int>(

@@ -146,7 +146,8 @@ class Rendering {
   const RenderPlan plan_;
   std::optional<KernelPreparation> kernels_;  ///< begun where photons are needed
   PrimaryHitParameters film_;
-  const LightPooling* pooling_ = nullptr;  ///< of the picture; null = none
+  /// Of the picture; null = none. Few rows at a time: estimates take more than their pools.
+  const LightPooling* pooling_ = nullptr;
   LightLayers layers_;
   LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples
   std::vector<std::uint64_t> paths_before_;  ///< per light
