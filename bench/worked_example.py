@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Runs the worked example of docs/walkthrough.md as it is written there: puts the commands with
-what they print into the page and their pictures into docs/pictures.
+"""Runs the worked example of docs/walkthrough.md, and the one measurement of docs/measuring.md, as they are
+written there: puts the commands with what they print into the pages and their pictures into docs/pictures.
 
     bench/worked_example.py [--photile FILE] [--quick]
 
@@ -43,7 +43,11 @@ STEPS = (
          {}, ("glare",)),
 )
 
+MEASUREMENT = (Step("", "photile measure living-room.gltf --plane floor+0.75 --maintenance 0.8 -q", {}, ("",)),)
+
 
 if __name__ == "__main__":
+    run_page(ROOT / "docs/measuring.md", "worked_example.py", MEASUREMENT, ROOT / "scenes/living-room",
+             "example", arguments(__doc__))
     run_page(ROOT / "docs/walkthrough.md", "worked_example.py", STEPS, ROOT / "scenes/living-room",
              "example", arguments(__doc__))

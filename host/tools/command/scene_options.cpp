@@ -13,10 +13,10 @@ void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::
       ->type_name("NAME|INDEX")
       ->group(group);
   command
-      .add_option("--up", options.up,
-                  "axis of the file that points up: x, y, z, -x, -y or -z; default: y, and a "
-                  "warning where it seems to be z")
-      ->type_name("AXIS")
+      .add_option(
+          "--up", options.up,
+          "axis of the file that points up; default: y, and a warning where it seems to be z")
+      ->type_name("")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
       ->group(group);
   command
