@@ -33,9 +33,8 @@ EYES = """# four who sit, and look over their screens
 4.02 1.2 3.3  -1 0 0
 """
 MOODS = """{"photile_moods": 1, "moods": {
-  "working after dark": {"sun": {"power": 0}, "sky": {"power": 0}},
-  "presentation": {"sun": {"power": 0}, "sky": {"power": 0},
-                   "window_row": {"power": 1500}, "inner_row": {"power": 6000, "kelvin": 3000}}}}
+  "working after dark": {"window_row": {"power": 10800}, "inner_row": {"power": 10800}},
+  "presentation": {"window_row": {"power": 1500}, "inner_row": {"power": 6000, "kelvin": 3000}}}}
 """
 PLANE = ("working plane", "lux", "all lights", "target", "UGR", "Ra")
 FIGURES = ("desks", "eyes", "lux", "all lights", "target", "UGR", "Ra", "wall at", "ceiling", "cylindrical")
@@ -76,10 +75,13 @@ STEPS = (
          {}, ("desks", "sDA", "ASE", "DA", "UDI", "EN", "window_row", "inner_row", "lamps", "mean")),
     Step("EN 17037 calls that medium, and daylight saves nine tenths of the lamps' energy. But half of the points have more "
          "than 250 hours of sun a year (ASE): these windows need blinds, and glare by daylight is to be rated with "
-         "`--ratings dgp`.\n\n## Moods\n\nOne picture holds a layer for each row of lamps, for the sun and for the sky.",
+         "`--ratings dgp`.\n\n## Moods\n\nThe room on an afternoon in March:",
          f"photile render office.gltf {LAMPS} --weather year.epw --time 2026-03-10T15:00 --size 960x640 "
-         "-o office.exr --png day.png",
+         "-o day.exr --png day.png",
          {"day.png": "An afternoon in March, all lamps on"}),
+    Step("A picture is as clean as the light that it was rendered with asks for: lamps that shine beside the sun are "
+         "mottled once it is taken away. The evening is a picture of its own, with a layer for each row of lamps.",
+         f"photile render office.gltf {LAMPS} --size 960x640 -o office.exr"),
     Step("Moods are kept in the window, or written by hand beside the scene; a power of 0 is off:",
          files={"office.moods.json": MOODS}),
     Step("", "photile relight office.exr --mood presentation -o presentation.png",

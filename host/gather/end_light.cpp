@@ -72,7 +72,7 @@ std::uint64_t EndLight::bytes() const {
 
 Estimates EndLight::irradiance(const PrimaryHits& nodes) {
   costs_.estimated += nodes.size();
-  return photons_.estimate_same(nodes, Counted::seen);
+  return photons_.estimate_same(nodes);
 }
 
 void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,

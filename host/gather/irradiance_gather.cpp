@@ -263,7 +263,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            int looks, std::size_t most, const Progress& progress) {
   const EndLight::Costs before = ends_.costs();
   const Stopwatch caustics_watch;
-  const Estimates caustics = caustics_ ? caustics_->estimate(points, Counted::seen) : Estimates{};
+  const Estimates caustics = caustics_ ? caustics_->estimate(points) : Estimates{};
   costs_.estimate_seconds += caustics_watch.seconds();
   costs_.estimated += caustics_ ? points.size() : 0;
 

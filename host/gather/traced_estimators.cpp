@@ -45,15 +45,10 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
                          layer_powers_);
   };
   ends_ = plan.ends(0, radius, scene, traced.photons, layer_powers_);
-  const auto seen = [&](const Photons& photons) {
-    return traced.caustics.size() > 0 ? std::make_shared<const SeenPhotons>(rays, photons)
-                                      : nullptr;
-  };
-  auto seen_photons = seen(traced.photons);
-  photons_.emplace(estimators_of(std::move(traced.photons), std::move(seen_photons)));
+  photons_.emplace(estimators_of(std::move(traced.photons), nullptr));
   if (traced.caustics.size() > 0) {
-    auto seen_caustics = seen(traced.caustics);
-    caustics_.emplace(estimators_of(std::move(traced.caustics), std::move(seen_caustics)));
+    auto seen = std::make_shared<const SeenPhotons>(rays, traced.caustics);
+    caustics_.emplace(estimators_of(std::move(traced.caustics), std::move(seen)));
   }
 }
 

@@ -83,22 +83,20 @@ MapEstimators::Built& MapEstimators::built() const {
   return *built_.front();
 }
 
-Estimates MapEstimators::estimate(const PrimaryHits& hits, Counted counted) {
-  if (!owners_) return estimate_here(hits, counted);
-  return owners_->estimate(hits,
-                           [&](const PrimaryHits& own) { return estimate_here(own, counted); });
+Estimates MapEstimators::estimate(const PrimaryHits& hits) {
+  if (!owners_) return estimate_here(hits);
+  return owners_->estimate(hits, [&](const PrimaryHits& own) { return estimate_here(own); });
 }
 
-Estimates MapEstimators::estimate_same(const PrimaryHits& hits, Counted counted) {
-  if (!owners_) return estimate_here(hits, counted);
-  return owners_->estimate_same(
-      hits, [&](const PrimaryHits& own) { return estimate_here(own, counted); });
+Estimates MapEstimators::estimate_same(const PrimaryHits& hits) {
+  if (!owners_) return estimate_here(hits);
+  return owners_->estimate_same(hits, [&](const PrimaryHits& own) { return estimate_here(own); });
 }
 
-Estimates MapEstimators::estimate_here(const PrimaryHits& hits, Counted counted) {
+Estimates MapEstimators::estimate_here(const PrimaryHits& hits) {
   look_at(hits.sided_triangle);
-  if (!patches_) return estimate_by(built(), hits, counted);
-  if (built_.size() == 1) return estimate_by(*built_.front(), hits, counted);
+  if (!patches_) return estimate_by(built(), hits);
+  if (built_.size() == 1) return estimate_by(*built_.front(), hits);
   std::vector<std::uint32_t> part_of_hit;
   for (const std::uint32_t sided : hits.sided_triangle) {
     part_of_hit.push_back(part_of_[patches_->map(sided)]);
@@ -113,18 +111,17 @@ Estimates MapEstimators::estimate_here(const PrimaryHits& hits, Counted counted)
     const std::uint32_t part = part_of_hit[*first];
     const auto last = std::find_if(first, order.end(),
                                    [&](std::uint32_t hit) { return part_of_hit[hit] != part; });
-    all.append(estimate_by(*built_[part], estimate::reordered(hits, 0, {first, last}), counted));
+    all.append(estimate_by(*built_[part], estimate::reordered(hits, 0, {first, last})));
     first = last;
   }
   return estimate::restored(std::move(all), order, layer_powers_.size());
 }
 
-Estimates MapEstimators::estimate_by(Built& built, const PrimaryHits& hits, Counted counted) const {
-  const SeenPhotons* const seen = counted == Counted::seen ? built.seen.get() : nullptr;
+Estimates MapEstimators::estimate_by(Built& built, const PrimaryHits& hits) const {
   const auto in_order = [&](const PrimaryHits& ordered) {
     std::vector<Estimates> by_level;
     for (DeviceEstimators& one : built.estimators)
-      by_level.push_back(estimate_by(one, seen, ordered));
+      by_level.push_back(estimate_by(one, built.seen.get(), ordered));
     return by_level.size() == 1
                ? std::move(by_level.front())
                : estimates_of_least_error(std::move(by_level), built.neighbours, layer_powers_);

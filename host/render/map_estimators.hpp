@@ -20,16 +20,12 @@ namespace photile {
 /// make use of one for the next, whose sums then have another order.
 void estimate_each_alone(std::span<EstimateParameters> levels, const Device& device);
 
-/// Photons that an estimate counts: all, or those that the hit sees (where they are known, else
-/// all). To look at them takes k rays a hit: that is for points that serve many pixels.
-enum class Counted : std::uint8_t { all, seen };
-
 class MapEstimators {
  public:
   struct Parts {
     std::vector<PhotonMaps> maps;            ///< the same on each device
     std::vector<EstimateParameters> levels;  ///< ascending in k: hits choose one, each its own
-    /// Of the photons of these maps; null: all count as seen.
+    /// Of the photons of these maps: what a hit does not see does not count. Null: all count.
     std::shared_ptr<const SeenPhotons> seen = nullptr;
   };
   /// References are kept.
@@ -62,9 +58,9 @@ class MapEstimators {
   const OwnerEstimates* owners() const { return owners_ ? &*owners_ : nullptr; }
 
   /// Of hits in any order, of this process alone. Errors: as DeviceEstimators.
-  Estimates estimate(const PrimaryHits& hits, Counted counted = Counted::all);
+  Estimates estimate(const PrimaryHits& hits);
   /// Of hits that are the same in all processes.
-  Estimates estimate_same(const PrimaryHits& hits, Counted counted = Counted::all);
+  Estimates estimate_same(const PrimaryHits& hits);
 
   /// Per sided triangle, as PhotonMaps has it: the order of hits. Empty where maps are made as they
   /// are looked at, or are those of several processes.
@@ -92,9 +88,9 @@ class MapEstimators {
   };
 
   /// By maps of this process.
-  Estimates estimate_here(const PrimaryHits& hits, Counted counted);
+  Estimates estimate_here(const PrimaryHits& hits);
   std::unique_ptr<Built> built_of(Parts parts) const;
-  Estimates estimate_by(Built& built, const PrimaryHits& hits, Counted counted) const;
+  Estimates estimate_by(Built& built, const PrimaryHits& hits) const;
   Estimates estimate_by(DeviceEstimators& estimators, const SeenPhotons* seen,
                         const PrimaryHits& hits) const;
   Built& built() const;

@@ -113,7 +113,7 @@ void Rendering::prepare(int pass, PreparedPhotons* prepared, const KeepPhotons* 
     }
     return made;
   };
-  photons_.emplace(estimators_of(parts_of(std::move(maps.photons), std::move(maps.seen_photons))));
+  photons_.emplace(estimators_of(parts_of(std::move(maps.photons))));
   if (!maps.caustics.empty()) {
     caustics_.emplace(
         estimators_of(parts_of(std::move(maps.caustics), std::move(maps.seen_caustics))));
@@ -160,9 +160,8 @@ void Rendering::wait_with(PreparedPhotons& prepared, const KeepPhotons* keep) {
       return parts_in(*late_maps_);
     };
   };
-  photons_.emplace(devices_, scene_, maker([this](Maps& maps) {
-                     return parts_of(std::move(maps.photons), std::move(maps.seen_photons));
-                   }),
+  photons_.emplace(devices_, scene_,
+                   maker([this](Maps& maps) { return parts_of(std::move(maps.photons)); }),
                    layer_powers_);
   if (plan_.keeps_caustics() && prepared.caustics->size() > 0) {
     caustics_.emplace(devices_, scene_, maker([this](Maps& maps) {

@@ -90,8 +90,7 @@ class Rendering {
   struct Maps {
     std::vector<PhotonMaps> photons;
     std::vector<PhotonMaps> caustics;  ///< for rays that gather, where there are any
-    /// Where there are caustics, of both.
-    std::shared_ptr<const SeenPhotons> seen_photons = nullptr, seen_caustics = nullptr;
+    std::shared_ptr<const SeenPhotons> seen_caustics;
   };
 
   /// Whose photons are at hand.

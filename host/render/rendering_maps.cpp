@@ -90,17 +90,15 @@ Rendering::Maps Rendering::trace_and_build(int pass, PreparedPhotons* prepared,
                                            const KeepPhotons* keep) {
   PhotonTracerResult traced = trace(pass, prepared, keep);
   const PhotonMapParameters parameters = plan_.maps(pass, radius_);
-  Maps maps;
-  if (traced.caustics.total() > 0) {
-    maps.seen_photons = std::make_shared<const SeenPhotons>(rays_, traced.photons);
-    maps.seen_caustics = std::make_shared<const SeenPhotons>(rays_, traced.caustics);
-  }
-  maps.photons = build(std::move(traced.photons), parameters);
+  Maps maps{build(std::move(traced.photons), parameters), {}, nullptr};
   costs_.maps = maps.photons.front().statistics().maps;
   costs_.mixed_maps = maps.photons.front().statistics().mixed_maps;
   costs_.map_sizes = maps.photons.front().statistics().map_sizes;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
-  if (traced.caustics.total() > 0) maps.caustics = build(std::move(traced.caustics), parameters);
+  if (traced.caustics.total() > 0) {
+    maps.seen_caustics = std::make_shared<const SeenPhotons>(rays_, traced.caustics);
+    maps.caustics = build(std::move(traced.caustics), parameters);
+  }
   const Stopwatch release_watch;
   traced = {};
   costs_.release.add(release_watch.taken());

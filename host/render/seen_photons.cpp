@@ -11,7 +11,6 @@
 #include "trace/surface_sight.hpp"
 
 namespace photile {
-
 SeenPhotons::SeenPhotons(const RayScene& rays, const Photons& photons)
     : rays_(rays),
       position_(photons.position),
@@ -56,7 +55,9 @@ void SeenPhotons::leave_out_hidden(const PrimaryHits& hits, std::span<const std:
       all[layer] += flux_[photon];
       const trace::SurfacePlace there =
           trace::place_on(scene, sided_triangle_[photon], position_[photon]);
-      if (trace::see_each_other(rays_, here, there, {lift})) seen[layer] += flux_[photon];
+      // Nodes may lie on the foot of a wall: the line ends short of them.
+      if (trace::see_each_other(rays_, there, here, {lift, defaults::sight_left_out}))
+        seen[layer] += flux_[photon];
     }
     for_each_estimate(estimates, hit, lights, [&](std::size_t layer, std::size_t i) {
       if (!(seen[layer] < all[layer])) return;

@@ -21,8 +21,8 @@ inline SurfacePlace place_on(const Scene& scene, std::uint32_t sided_triangle,
 
 /// How a line of sight differs from the straight way between two places.
 struct SightLine {
-  float lift;             ///< it runs so far above them, metres
-  float left_out = 0.0f;  ///< and ends short of the second by this part of its length
+  float lift;      ///< it runs so far above them, metres
+  float left_out;  ///< and ends short of the second by this part of its length
 };
 
 /// Whether nothing is between two places of one surface, just above it. Where it is curved, a line
