@@ -43,6 +43,14 @@ class Room:
     spacing: float = 0.5
 
 
+OFFICE_WINDOWS = tuple((side, 0.6 + 2.4 * i, 2.4 + 2.4 * i, 0.9, 2.6) for side in ("south", "north") for i in range(9))
+OFFICE_BOXES = tuple(
+    box for i in range(9) for j in range(4) for x, z in [(1.2 + 2.4 * i, 1.6 + 2.6 * j)]
+    for box in (((x, 0.7, z), (x + 1.6, 0.74, z + 0.8), 0.5), ((x, 0, z + 0.76), (x + 1.6, 1.1, z + 0.8), 0.35),
+                ((x + 0.5, 0.78, z + 0.55), (x + 1.1, 1.15, z + 0.59), 0.1))
+) + tuple(((x, 0, 5.7), (x + 2, 0.8, 6.2), 0.6) for x in (3, 10, 17)) + (
+    ((0, 2.75, 12.05), (24, 2.85, 13.2), 0.6), ((-30, -0.4, -40), (54, -0.3, 40), 0.2), ((-10, -0.3, -30), (40, 9, -22), 0.3))
+
 ROOMS = (
     Room("side window", "A room of 4 m x 5 m with one window of 2.4 m2 to the south.", (4, 2.7, 5),
          (("south", 1.2, 2.8, 0.9, 2.4),)),
@@ -53,6 +61,8 @@ ROOMS = (
     Room("deep", "A room 9 m deep with a band of windows to the north, and a building opposite.", (5, 2.8, 9),
          (("north", 0.4, 4.6, 1.0, 2.5),),
          (((-6, -0.3, -16), (11, 6, -14), 0.4), ((-20, -0.4, -20), (25, -0.3, 20), 0.2))),
+    Room("office", "An office of 24 m x 12 m with windows along two sides, 36 desks with screens, cupboards, piers "
+         "and overhangs: 1,012 points.", (24, 3, 12), OFFICE_WINDOWS, OFFICE_BOXES, spacing=0.5),
 )
 
 

@@ -14,32 +14,57 @@ namespace {
 
 constexpr int any_common_year = 2026;  ///< weather files join years
 
-/// In lanes, so that it runs as vectors.
-float dot(const float* a, const float* b, std::size_t count) {
-  constexpr std::size_t lanes = 8;
-  std::array<float, lanes> sums{};
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
+/// Adds the luminances with the sun spread over its patches.
+template <class Number>
+void add_sun(const SkyHour& hour, const std::vector<SkyPatch>& patches, Number* luminance) {
+  for (const auto& [patch, share] : hour.sun_shares) {
+    luminance[patch] += static_cast<Number>(share * hour.sun_lux / patches[patch].solid_angle());
   }
-  float sum = 0;
-  for (; i < count; ++i) sum += a[i] * b[i];
-  for (const float lane : sums) sum += lane;
-  return sum;
 }
 
-/// Luminances with the sun spread over its patches.
-std::vector<double> with_sun(const SkyHour& hour, const std::vector<SkyPatch>& patches) {
-  std::vector<double> luminance = hour.luminance;
-  for (const auto& [patch, share] : hour.sun_shares)
-    luminance[patch] += share * hour.sun_lux / patches[patch].solid_angle();
-  return luminance;
+// The product of two matrices in blocks that fit the caches.
+constexpr std::size_t hours_at_once = 64, patches_at_once = 128, hours_in_registers = 16;
+
+/// lux[sensor][hour] += sum over patches of row[sensor][patch] x luminance[patch][hour].
+///   luminance   by patch, then the block's hours
+///   lux         by sensor, `stride` apart
+void add_product(const float* rows, std::size_t sensors, std::size_t patches,
+                 const float* luminance, std::size_t stride, float* lux) {
+  for (std::size_t first = 0; first < patches; first += patches_at_once) {
+    const std::size_t last = std::min(patches, first + patches_at_once);
+    for (std::size_t sensor = 0; sensor < sensors; ++sensor) {
+      const float* const row = rows + sensor * patches;
+      for (std::size_t h = 0; h < hours_at_once; h += hours_in_registers) {
+        std::array<float, hours_in_registers> sum{};
+        for (std::size_t patch = first; patch < last; ++patch) {
+          const float weight = row[patch];
+          const float* const from = luminance + patch * hours_at_once + h;
+          for (std::size_t i = 0; i < hours_in_registers; ++i) sum[i] += weight * from[i];
+        }
+        for (std::size_t i = 0; i < hours_in_registers; ++i) lux[sensor * stride + h + i] += sum[i];
+      }
+    }
+  }
+}
+
+/// Patches that give any sensor light.
+std::vector<std::size_t> patches_that_count(const DaylightMatrix& matrix) {
+  std::vector<bool> counts(matrix.patches, false);
+  for (std::size_t i = 0; i < matrix.from_sky.size(); ++i) {
+    if (matrix.from_sky[i] != 0.0f) counts[i % matrix.patches] = true;
+  }
+  std::vector<std::size_t> found;
+  for (std::size_t patch = 0; patch < counts.size(); ++patch) {
+    if (counts[patch]) found.push_back(patch);
+  }
+  return found;
 }
 
 }  // namespace
 
 std::vector<SkyHour> sky_hours(const scene_io::WeatherYear& weather,
                                const std::vector<SkyPatch>& patches, double ground) {
+  const SkyInPatches in_patches(patches);
   std::vector<SkyHour> hours(weather.hours.size());
   tbb::parallel_for(std::size_t{0}, hours.size(), [&](std::size_t i) {
     const scene_io::WeatherHour& from = weather.hours[i];
@@ -47,6 +72,7 @@ std::vector<SkyHour> sky_hours(const scene_io::WeatherYear& weather,
     hour.month = from.month;
     hour.day = from.day;
     hour.hour = from.hour;
+    hour.weekday = (weather.first_weekday + static_cast<int>(i / 24)) % 7;
     // The 29th of February has the sun of the 28th, all but.
     const bool leap_day = from.month == 2 && from.day == 29;
     const LocalTime time{any_common_year, from.month, leap_day ? 28 : from.day, from.hour};
@@ -55,14 +81,14 @@ std::vector<SkyHour> sky_hours(const scene_io::WeatherYear& weather,
     if (irradiance.direct_normal + irradiance.diffuse_horizontal <= 1e-4) return;
     const PerezSky sky(hour.sun.elevation, irradiance, day_of_year(time));
     hour.diffuse_lux = sky.diffuse_illuminance();
-    hour.luminance = patch_luminances(patches, sky, hour.sun);
+    hour.luminance = in_patches.luminances(sky, hour.sun);
     double on_ground = sky.diffuse_illuminance();
     if (hour.sun.elevation > 0 && sky.direct_illuminance() > 0) {
       hour.sun_lux = sky.direct_illuminance();
-      hour.sun_shares = sun_patches(patches, hour.sun);
+      hour.sun_shares = in_patches.sun(hour.sun);
       on_ground += hour.sun_lux * std::sin(hour.sun.elevation);
     }
-    hour.luminance.push_back(ground * on_ground / glm::pi<double>());
+    hour.luminance.push_back(static_cast<float>(ground * on_ground / glm::pi<double>()));
   });
   return hours;
 }
@@ -72,45 +98,75 @@ std::vector<double> mean_luminances(const std::vector<SkyHour>& hours,
   std::vector<double> mean(patches.size() + 1, 0.0);
   for (const SkyHour& hour : hours) {
     if (hour.luminance.empty()) continue;
-    const std::vector<double> luminance = with_sun(hour, patches);
-    for (std::size_t i = 0; i < mean.size(); ++i)
-      mean[i] += luminance[i] / static_cast<double>(hours.size());
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += double{hour.luminance[i]};
+    add_sun(hour, patches, mean.data());
   }
+  for (double& luminance : mean) luminance /= static_cast<double>(hours.size());
   return mean;
 }
 
-AnnualProfile annual_profile(const DaylightMatrix& matrix, const std::vector<SkyHour>& hours,
-                             const std::vector<SkyPatch>& patches, double north, double maintenance,
-                             const StraightLight* straight) {
-  AnnualProfile profile;
-  profile.hours = hours.size();
-  profile.all.assign(matrix.sensors * hours.size(), 0.0f);
-  if (straight != nullptr) profile.sun = profile.all;
+std::vector<float> sun_profile(const StraightLight& straight, const std::vector<SkyHour>& hours,
+                               double north, double maintenance) {
+  std::vector<float> lux(straight.sensors() * hours.size(), 0.0f);
   tbb::parallel_for(std::size_t{0}, hours.size(), [&](std::size_t h) {
-    const SkyHour& hour = hours[h];
-    if (hour.luminance.empty()) return;
+    if (!(hours[h].sun_lux > 0)) return;
     const trace::FlushDenormals flush_denormals;
-    const std::vector<double> mixed =
-        straight == nullptr ? with_sun(hour, patches) : hour.luminance;
-    const std::vector<float> luminance(mixed.begin(), mixed.end());
-    const glm::dvec3 to_sun = direction_of(hour.sun.azimuth + north, hour.sun.elevation);
-    for (std::size_t sensor = 0; sensor < matrix.sensors; ++sensor) {
-      const float* row = matrix.from_sky.data() + sensor * matrix.patches;
-      double lux = dot(row, luminance.data(), matrix.patches);
-      if (straight != nullptr && hour.sun_lux > 0) {
-        for (const auto& [patch, share] : hour.sun_shares) {
-          const std::size_t at = sensor * matrix.patches + patch;
-          lux += share * hour.sun_lux / patches[patch].solid_angle() *
-                 double{matrix.from_sky[at] - matrix.straight[at]};
-        }
-        const double sun = maintenance * hour.sun_lux * straight->from(to_sun, sensor);
-        profile.sun[sensor * hours.size() + h] = static_cast<float>(sun);
-        lux += sun;
-      }
-      profile.all[sensor * hours.size() + h] = static_cast<float>(std::max(0.0, lux));
+    const glm::dvec3 to_sun = direction_of(hours[h].sun.azimuth + north, hours[h].sun.elevation);
+    for (std::size_t sensor = 0; sensor < straight.sensors(); ++sensor) {
+      lux[sensor * hours.size() + h] =
+          static_cast<float>(maintenance * hours[h].sun_lux * straight.from(to_sun, sensor));
     }
   });
-  return profile;
+  return lux;
+}
+
+std::vector<float> annual_profile(const DaylightMatrix& matrix, const std::vector<SkyHour>& hours,
+                                  const std::vector<SkyPatch>& patches,
+                                  const std::vector<float>& sun) {
+  const std::vector<std::size_t> counting = patches_that_count(matrix);
+  std::vector<float> rows(matrix.sensors * counting.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i] = matrix.from_sky[i / counting.size() * matrix.patches + counting[i % counting.size()]];
+  }
+  std::vector<std::size_t> lit;
+  for (std::size_t h = 0; h < hours.size(); ++h) {
+    if (!hours[h].luminance.empty()) lit.push_back(h);
+  }
+  std::vector<float> lux(matrix.sensors * hours.size(), 0.0f);
+  const std::size_t blocks = (lit.size() + hours_at_once - 1) / hours_at_once;
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+    const trace::FlushDenormals flush_denormals;
+    const std::size_t first = block * hours_at_once;
+    const std::size_t count = std::min(hours_at_once, lit.size() - first);
+    std::vector<float> luminance(counting.size() * hours_at_once, 0.0f);
+    std::vector<float> found(matrix.sensors * hours_at_once, 0.0f), mixed;
+    for (std::size_t i = 0; i < count; ++i) {
+      const SkyHour& hour = hours[lit[first + i]];
+      mixed = hour.luminance;
+      if (sun.empty()) add_sun(hour, patches, mixed.data());
+      for (std::size_t patch = 0; patch < counting.size(); ++patch)
+        luminance[patch * hours_at_once + i] = mixed[counting[patch]];
+    }
+    add_product(rows.data(), matrix.sensors, counting.size(), luminance.data(), hours_at_once,
+                found.data());
+    for (std::size_t sensor = 0; sensor < matrix.sensors; ++sensor) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const SkyHour& hour = hours[lit[first + i]];
+        const std::size_t at = sensor * hours.size() + lit[first + i];
+        double all = double{found[sensor * hours_at_once + i]};
+        if (!sun.empty()) {
+          for (const auto& [patch, share] : hour.sun_shares) {
+            const std::size_t of_patch = sensor * matrix.patches + patch;
+            all += share * hour.sun_lux / patches[patch].solid_angle() *
+                   double{matrix.from_sky[of_patch] - matrix.straight[of_patch]};
+          }
+          all += double{sun[at]};
+        }
+        lux[at] = static_cast<float>(std::max(0.0, all));
+      }
+    }
+  });
+  return lux;
 }
 
 }  // namespace photile::daylight

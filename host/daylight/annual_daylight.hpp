@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "daylight/daylight_matrix.hpp"
@@ -20,11 +19,12 @@ enum class SunModel : std::uint8_t {
 /// The sky of one hour.
 struct SkyHour {
   int month = 1, day = 1;
+  int weekday = 0;    ///< 0 = Monday
   double hour = 0.5;  ///< the middle, standard time
   SunPosition sun;
-  double sun_lux = 0;             ///< facing it; 0 below the horizon
-  double diffuse_lux = 0;         ///< horizontal
-  std::vector<double> luminance;  ///< cd/m2 of the patches, then of the ground, without the sun
+  double sun_lux = 0;            ///< facing it; 0 below the horizon
+  double diffuse_lux = 0;        ///< horizontal
+  std::vector<float> luminance;  ///< cd/m2 of the patches, then of the ground, without the sun
   std::vector<PatchShare> sun_shares;  ///< empty where there is no sun
 };
 
@@ -37,17 +37,15 @@ std::vector<SkyHour> sky_hours(const scene_io::WeatherYear& weather,
 std::vector<double> mean_luminances(const std::vector<SkyHour>& hours,
                                     const std::vector<SkyPatch>& patches);
 
-/// Lux of every hour at every sensor.
-struct AnnualProfile {
-  std::size_t hours = 0;
-  std::vector<float> all;  ///< by sensor, then hour
-  std::vector<float> sun;  ///< of it, straight from the sun; empty where the sun is patches
-};
+/// Lux straight from the sun, by sensor, then hour.
+///   north   radians clockwise from -z
+std::vector<float> sun_profile(const StraightLight& straight, const std::vector<SkyHour>& hours,
+                               double north, double maintenance);
 
-///   north      radians clockwise from -z
-///   straight   null where the sun is patches
-AnnualProfile annual_profile(const DaylightMatrix& matrix, const std::vector<SkyHour>& hours,
-                             const std::vector<SkyPatch>& patches, double north, double maintenance,
-                             const StraightLight* straight);
+/// Lux of every hour at every sensor, by sensor, then hour.
+///   sun   that of sun_profile; empty where the sun is patches
+std::vector<float> annual_profile(const DaylightMatrix& matrix, const std::vector<SkyHour>& hours,
+                                  const std::vector<SkyPatch>& patches,
+                                  const std::vector<float>& sun);
 
 }  // namespace photile::daylight

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "daylight/sky_patches.hpp"
@@ -19,8 +18,6 @@ struct DaylightMatrix {
   std::vector<float> from_sky;
   /// The part of it that comes straight, through panes at most.
   std::vector<float> straight;
-  std::vector<std::string> lamps;  ///< groups of the scene's own lights
-  std::vector<float> from_lamps;   ///< lux at their powers, by lamp, then sensor
   /// Standard error of the illuminance under the mean sky, over it, by sensor.
   std::vector<float> relative_error;
 
@@ -30,19 +27,18 @@ struct DaylightMatrix {
 };
 
 struct MatrixParameters {
+  /// Its rays and repeats, whose seeds follow from that of its photons. There are no photons.
   MeasuringParameters measuring;
-  /// cd/m2 of each patch and of the ground, as a mean over the year: what is worth photons.
-  std::vector<double> mean_luminance;
-  bool straight = true;  ///< whether to find DaylightMatrix::straight
+  double north = 0;                    ///< radians clockwise from -z
+  std::vector<double> mean_luminance;  ///< cd/m2 of each patch and of the ground, over the year
 };
 
-/// `gather`, repeated, of a scene whose sky is add_sky_lights.
+/// Light of the sky alone: none from the scene's lights. By rays and radiosity, see
+/// light_transport.hpp.
 ///   sensors   in the scene file's world
-///   mix       powers of the lamps
-///   first     the light of the first patch
-/// Errors: those of `gather`.
-DaylightMatrix daylight_matrix(Scene scene, std::span<const Sensor> sensors, const LightMix& mix,
-                               const std::vector<SkyPatch>& patches, std::span<Device> devices,
+/// Errors: Interrupted, when `progress` says so.
+DaylightMatrix daylight_matrix(const Scene& scene, std::span<const Sensor> sensors,
+                               const std::vector<SkyPatch>& patches,
                                const MatrixParameters& parameters,
                                Progress& progress = Progress::none());
 
@@ -53,6 +49,7 @@ class StraightLight {
  public:
   StraightLight(const Scene& scene, std::span<const Sensor> sensors);
   double from(const glm::dvec3& direction, std::size_t sensor) const;
+  std::size_t sensors() const { return sensors_.size(); }
 
  private:
   RayScene rays_;

@@ -32,13 +32,6 @@ double reached_by(std::vector<double> values, double share) {
 
 }  // namespace
 
-std::vector<bool> occupied_hours(const std::vector<SkyHour>& hours, const Occupancy& occupancy) {
-  std::vector<bool> occupied;
-  for (const SkyHour& hour : hours)
-    occupied.push_back(hour.hour > occupancy.from && hour.hour < occupancy.to);
-  return occupied;
-}
-
 std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours) {
   std::vector<std::size_t> order(hours.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -11,12 +11,6 @@
 
 namespace photile::daylight {
 
-/// Hours in which a room is used, every day of the year.
-struct Occupancy {
-  double from = 8, to = 18;  ///< standard time, hours
-};
-std::vector<bool> occupied_hours(const std::vector<SkyHour>& hours, const Occupancy& occupancy);
-
 /// The half of all hours with the most diffuse light, the daylight hours of EN 17037: 4,380.
 std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours);
 

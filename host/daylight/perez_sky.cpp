@@ -112,6 +112,19 @@ PerezSky::PerezSky(double sun_elevation, const SkyIrradiance& irradiance, int da
   shape_ = shape_of(bin, zenith, clearness_, brightness_);
 }
 
+float PerezSky::gradation(float sine) const {
+  return 1 + static_cast<float>(shape_[0]) *
+                 std::exp(static_cast<float>(shape_[1]) / std::max(sine, 0.01f));
+}
+
+float PerezSky::indicatrix(float cosine) const {
+  cosine = std::clamp(cosine, -1.0f, 1.0f);
+  return 1 +
+         static_cast<float>(shape_[2]) *
+             std::exp(static_cast<float>(shape_[3]) * std::acos(cosine)) +
+         static_cast<float>(shape_[4]) * cosine * cosine;
+}
+
 double PerezSky::relative_luminance(double elevation, double from_sun) const {
   const auto& [a, b, c, d, e] = shape_;
   const double cosine = std::cos(from_sun);

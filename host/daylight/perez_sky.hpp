@@ -33,6 +33,11 @@ class PerezSky {
   ///   from_sun    angle between it and the sun, radians
   double relative_luminance(double elevation, double from_sun) const;
 
+  /// The factors of that, in single precision: by the sine of the elevation, at least that of
+  /// gendaylit, and by the cosine of the angle to the sun.
+  float gradation(float sine) const;
+  float indicatrix(float cosine) const;
+
  private:
   double clearness_ = 1, brightness_ = 0.01;
   double direct_ = 0, diffuse_ = 0;

@@ -1,6 +1,7 @@
 // The sky in patches: Tregenza's 145, or Reinhart's finer ones.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -30,16 +31,53 @@ glm::dvec3 direction_of(double azimuth, double elevation);
 std::vector<SkyPatch> sky_patches(int count);
 inline constexpr int patch_counts[] = {145, 577, 2305};
 
-/// Luminance of each patch, cd/m2: that of the model in its middle, scaled together so that they
-/// give the diffuse illuminance. Without the sun itself.
-std::vector<double> patch_luminances(const std::vector<SkyPatch>& patches, const PerezSky& sky,
-                                     const SunPosition& sun);
+/// Tells the patch that a direction points into.
+class PatchFinder {
+ public:
+  ///   patches   as sky_patches makes them
+  ///   north     radians clockwise from -z
+  PatchFinder(const std::vector<SkyPatch>& patches, double north);
+
+  /// Index of the patch of a unit direction, or below the horizon their number: the ground.
+  std::uint32_t operator()(const glm::vec3& direction) const;
+  std::size_t patches() const { return patches_; }
+
+ private:
+  struct Row {
+    std::uint32_t first;
+    float number, per_radian;  ///< patches in the row, and in a radian of it
+  };
+  std::vector<Row> rows_;
+  std::size_t patches_;
+  float rows_per_radian_, north_;
+};
 
 /// What stands for the sun: the four patches nearest to it, as gendaymtx has them.
 struct PatchShare {
   std::size_t patch;
   double share;  ///< of the sun's light; all sum to 1
 };
+
+/// Skies of many hours in patches.
+class SkyInPatches {
+ public:
+  explicit SkyInPatches(const std::vector<SkyPatch>& patches);
+
+  /// Luminance of each patch, cd/m2: that of the model in its middle, scaled together so that they
+  /// give the diffuse illuminance. Without the sun itself.
+  std::vector<float> luminances(const PerezSky& sky, const SunPosition& sun) const;
+
+  std::vector<PatchShare> sun(const SunPosition& sun) const;
+
+ private:
+  std::vector<glm::vec3> middles_;  ///< unit
+  std::vector<float> horizontal_;   ///< lux on the ground for each cd/m2
+  std::vector<float> sines_;        ///< of the middles' elevations
+};
+
+/// The same for one hour.
+std::vector<double> patch_luminances(const std::vector<SkyPatch>& patches, const PerezSky& sky,
+                                     const SunPosition& sun);
 std::vector<PatchShare> sun_patches(const std::vector<SkyPatch>& patches, const SunPosition& sun);
 
 }  // namespace photile::daylight

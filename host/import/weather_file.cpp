@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -17,6 +18,9 @@ namespace {
 
 constexpr std::size_t header_lines = 8;
 constexpr std::size_t hours_of_year = 8'760, hours_of_leap_year = 8'784;
+constexpr std::size_t periods_line = 7, weekday_field = 4;
+constexpr std::array<const char*, 7> weekdays{"monday", "tuesday",  "wednesday", "thursday",
+                                              "friday", "saturday", "sunday"};
 constexpr double missing_irradiance = 9'999, missing_temperature = 99.9;
 
 /// Days of each month; the 29th of February is one where a file has it.
@@ -99,6 +103,10 @@ WeatherYear read_weather_hours(const std::filesystem::path& file) {
   }
   WeatherYear year;
   year.site = site_of(Line(file, 1, lines.front()));
+  const std::string weekday =
+      lower(Line(file, periods_line + 1, lines[periods_line]).field(weekday_field));
+  const auto day = std::find(weekdays.begin(), weekdays.end(), weekday);
+  if (day != weekdays.end()) year.first_weekday = static_cast<int>(day - weekdays.begin());
   for (std::size_t i = header_lines; i < lines.size(); ++i) {
     if (trimmed(lines[i]).empty()) continue;
     year.hours.push_back(hour_of(Line(file, i + 1, lines[i])));

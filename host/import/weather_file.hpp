@@ -19,6 +19,8 @@ struct WeatherHour {
 struct WeatherYear {
   Site site;
   std::vector<WeatherHour> hours;  ///< 8,760, or 8,784 of a leap year
+  /// That the file says its first day is, 0 = Monday; Sunday where it says none.
+  int first_weekday = 6;
 };
 
 /// Reads the place, and of each hour the direct normal and diffuse horizontal irradiance and the

@@ -2,78 +2,18 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <utility>
 #include <vector>
 
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
+#include "trace/photometer.hpp"
 #include "trace/ray_query.hpp"
-#include "trace/sampling.hpp"
 #include "trace/sobol.hpp"
 
 namespace photile::trace {
 namespace {
-
-glm::vec3 origin_of(const Sensor& sensor, SensorResponse response) {
-  if (response != SensorResponse::planar) return glm::vec3(sensor.position);
-  // A plane sensor may lie on a surface: its rays start a little above.
-  const glm::dvec3 size = glm::abs(sensor.position);
-  const double clearance = clearance_per_coordinate * std::max({size.x, size.y, size.z, 1e-3});
-  return glm::vec3(sensor.position + clearance * sensor.normal);
-}
-
-/// One sensor: what weighs light, and where rays go.
-class Photometer {
- public:
-  Photometer(const Sensor& sensor, SensorResponse response)
-      : origin_(origin_of(sensor, response)),
-        normal_(sensor.normal),
-        facing_(sensor.facing),
-        response_(response),
-        sees_lamps_(sensor.sees_lamps),
-        frame_(normal_) {}
-
-  const glm::vec3& origin() const { return origin_; }
-  bool sees_lamps() const { return sees_lamps_; }
-
-  /// Density of `sample`, per steradian: the response over pi.
-  float density(const glm::vec3& direction) const {
-    const float cosine = glm::dot(direction, normal_);
-    if (response_ == SensorResponse::planar) {
-      return glm::one_over_pi<float>() * std::max(0.0f, cosine);
-    }
-    const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
-    const float round = glm::one_over_pi<float>() * glm::one_over_pi<float>() * sine;
-    if (response_ == SensorResponse::cylindrical) return round;
-    return round + glm::one_over_pi<float>() * glm::one_over_pi<float>() *
-                       glm::dot(direction, facing_);  // sine x cosine of the angle to `facing`
-  }
-
-  /// A direction for two numbers that are spread over the unit square and two of its own.
-  glm::vec3 sample(const glm::dvec2& spread, float own, float side) const {
-    const glm::vec3 local =
-        sample_cosine_hemisphere(static_cast<float>(spread.x), static_cast<float>(spread.y));
-    if (response_ == SensorResponse::planar) return frame_.to_world(local);
-    // Round the axis all vertical planes are alike: one at random, then as on a plane.
-    const glm::vec3 round = Frame(frame_.to_world(direction_at(0.0f, own))).to_world(local);
-    if (response_ == SensorResponse::cylindrical) return round;
-    // As often as (1 - cos alpha) / 2 says it goes to the other side, which is seen that much more.
-    const float along = glm::dot(round, normal_);
-    const float sine = std::sqrt(std::max(1e-12f, 1.0f - along * along));
-    if (side >= 0.5f * (1.0f - glm::dot(round, facing_) / sine)) return round;
-    return 2.0f * along * normal_ - round;
-  }
-
- private:
-  glm::vec3 origin_, normal_, facing_;
-  SensorResponse response_;
-  bool sees_lamps_;
-  Frame frame_;
-};
 
 /// All rays of a row's sensor.
 class Gatherer {

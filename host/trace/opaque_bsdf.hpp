@@ -43,6 +43,10 @@ class OpaqueBsdf {
   /// scatters, more where all light of the surface is its, and comes from many directions.
   int lobe_rays() const;
 
+  /// Share of the directions drawn that are the lobe's, in [0, 1]: about its part of what the
+  /// surface reflects.
+  float lobe_share() const { return lobe_ ? lobe_->share : 0.0f; }
+
   /// Share of light from all sides that is reflected, but for one facet's reflection.
   glm::vec3 base_reflectance() const;
 

@@ -27,7 +27,7 @@ namespace photile::trace {
 namespace {
 
 // The search. None of these changes what is estimated, only how soon.
-constexpr std::uint64_t first_paths = 16'384, most_paths = 131'072;
+constexpr std::uint64_t paths_of_search = 16'384, most_paths = 131'072;
 constexpr int path_bounces = 3;
 constexpr std::size_t enough_escapes = 400;
 /// Of the rays from a camera that leave at once: beyond, it stands outside.
@@ -61,14 +61,16 @@ std::optional<SurfacePoint> opaque_surface(const RayScene& rays, glm::vec3 origi
   return std::nullopt;
 }
 
-/// Ways out on paths from a point; none where it stands outside.
-std::vector<Escape> escapes_from(const RayScene& rays, const glm::vec3& start) {
+/// Ways out on paths from a point, one of so many; none where it stands outside.
+std::vector<Escape> escapes_from(const RayScene& rays, const glm::vec3& start, std::size_t points) {
+  const std::uint64_t first_paths = paths_of_search / points;
   std::vector<Escape> escapes;
   std::uint64_t at_once = 0;
   for (std::uint64_t path = 0; path < most_paths; ++path) {
-    if (path == first_paths && static_cast<double>(at_once) > outside_share * first_paths)
+    if (path == first_paths &&
+        static_cast<double>(at_once) > outside_share * static_cast<double>(first_paths))
       return {};
-    if (path >= first_paths && escapes.size() >= enough_escapes) break;
+    if (path >= first_paths && escapes.size() * points >= enough_escapes) break;
     const RandomStream random(0, path, 0);
     const RandomBlock first = random.block(Purpose::eye_scattering, 0);
     glm::vec3 origin = start, direction = sample_sphere(first.uniform(0), first.uniform(1));
@@ -346,7 +348,8 @@ std::vector<Portal> find_portals(const Scene& scene, std::span<const glm::dvec3>
   const FlushDenormals flush_denormals;
   std::vector<Escape> escapes;
   for (const glm::dvec3& start : starts) {
-    for (const Escape& escape : escapes_from(rays, glm::vec3(start))) escapes.push_back(escape);
+    for (const Escape& escape : escapes_from(rays, glm::vec3(start), starts.size()))
+      escapes.push_back(escape);
   }
   if (escapes.empty()) return {};
   const std::size_t least = std::max<std::size_t>(

@@ -148,6 +148,7 @@ inline constexpr int sky_patches = 577;            ///< Reinhart's, of a year of
 inline constexpr double ground_reflectance = 0.2;  ///< of the ground that surrounds a scene
 inline constexpr double daylight_lux = 300;        ///< of daylight autonomy: LM-83 and EN 17037
 inline constexpr double lamp_efficacy = 100;       ///< lm/W, of lamps that dim with daylight
+inline constexpr int daylight_rays = 256;  ///< of each sensor and repeat
 inline constexpr int daylight_repeats = 4;
 
 // Measuring: a mean of repeats with photons of their own, whose scatter tells the standard error

@@ -70,6 +70,59 @@ TEST_CASE("a year of daylight fills its files") {
     CHECK(values == hours);
   }
   CHECK(lines == points);
+  // The same values as NumPy has them: after a head that tells their number, four bytes each.
+  const std::string array = folder.read("bee/__static_apertures__/default/total/working_plane.npy");
+  CHECK_THAT(array, Contains("'shape': (" + std::to_string(points) + ", " + std::to_string(hours) +
+                             ")"));
+  CHECK(array.size() % 64 == 4 * points * hours % 64);
+  CHECK(array.size() > 4 * points * hours);
+}
+
+TEST_CASE("blinds close by the hour, as a scene of their own says") {
+  const FileFolder folder;
+  const std::string scene = write_open_box(folder), weather = write_weather(folder);
+  folder.write("closed.obj", box_obj());
+  const Outcome outcome = run_photile(
+      quick("daylight", scene,
+            {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--blinds",
+             folder / "closed.obj", "--days", "mon-fri", "-o", folder / "a.csv", "-o",
+             folder / "a.json", "--honeybee", folder / "bee"}));
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("blinds closed"));
+  const auto grid = nlohmann::json::parse(folder.read("a.json")).at(0);
+  CHECK(grid["occupied_hours"] == 2610);
+  const auto& states = grid["blinds"]["states"];
+  REQUIRE(states.size() == 2);
+  // A box that is closed is dark; by schedule it is dark in some hours.
+  CHECK(states[1]["mean_lux"] == 0);
+  CHECK(states[0]["mean_lux"] > grid["mean_lux"]);
+  CHECK(grid["mean_lux"] > 0);
+  CHECK(grid["ASE"] == states[0]["ASE"]);
+  std::size_t closed = 0;
+  for (const std::size_t state : grid["blinds"]["state_of_hour"]) closed += state;
+  CHECK(closed == grid["blinds"]["closed_hours"]);
+  CHECK_THAT(folder.read("a.csv"), Contains(",blinds\n") && Contains(",\"closed\"\n"));
+  CHECK(nlohmann::json::parse(folder.read("bee/states_schedule.json"))["blinds"]["schedule"] ==
+        grid["blinds"]["state_of_hour"]);
+  CHECK(!folder.read("bee/blinds/1_blinds/direct/working_plane.npy").empty());
+}
+
+TEST_CASE("a room that no sky shines into is warned of") {
+  const FileFolder folder;
+  folder.write("box.mtl", box_mtl());
+  const std::string closed = folder.write("closed.obj", box_obj());
+  std::vector<std::string> arguments =
+      quick("daylight", closed, {"--inside", "0,0,0", "--weather", write_weather(folder)});
+  std::erase(arguments, "--quiet");
+  const Outcome year = run_photile(arguments);
+  CHECK(year.exit_code == 0);
+  CHECK_THAT(year.errors, Contains("no light of the sky") && Contains("glass"));
+  arguments = quick("measure", closed, {"--inside", "0,0,0", "--daylight-factor"});
+  std::erase(arguments, "--quiet");
+  const Outcome factors = run_photile(arguments);
+  CHECK(factors.exit_code == 0);
+  CHECK_THAT(factors.errors, Contains("no light of the sky") && Contains("glass"));
 }
 
 TEST_CASE("daylight without weather, or with a sky of its own, is refused in a line") {
@@ -86,6 +139,8 @@ TEST_CASE("daylight without weather, or with a sky of its own, is refused in a l
              Contains("--sky"));
   CHECK_THAT(refused({"--weather", write_weather(folder), "--occupied", "9"}),
              Contains("--occupied"));
+  CHECK_THAT(refused({"--weather", write_weather(folder), "--blinds", "*=0.1", "--suns", "patches"}),
+             Contains("--suns"));
 }
 
 TEST_CASE("daylight factors are per cent of the sky's lux") {

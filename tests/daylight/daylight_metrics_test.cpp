@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
+#include "daylight/occupancy.hpp"
+
 namespace photile::test {
 
 using namespace photile::daylight;

@@ -1,65 +1,37 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <numbers>
-#include <numeric>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "common/ascii_text.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
-#include "daylight/annual_daylight.hpp"
-#include "daylight/daylight_metrics.hpp"
 #include "import/weather_file.hpp"
 #include "measuring/measure_grids.hpp"
 #include "photile/errors.hpp"
+#include "photile/illuminance.hpp"
+#include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
 #include "tools/command/commands.hpp"
+#include "tools/command/daylight_results.hpp"
 #include "tools/command/output_files.hpp"
-#include "tools/command/place_options.hpp"
-#include "tools/command/render_options.hpp"
 #include "tools/command/run_notes.hpp"
 #include "tools/command/sensor_options.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
 #include "tools/command/validators.hpp"
-#include "tools/report/daylight_tables.hpp"
+#include "tools/report/honeybee_year.hpp"
 
 namespace photile::app {
 namespace {
 
 using namespace daylight;
-using measuring::GridDaylight;
-
-struct DaylightOptions {
-  RenderOptions render;
-  MeasuringParameters parameters;
-  PlaceOptions places;
-  std::vector<std::string> outputs;  ///< .csv, .json
-  std::string honeybee;              ///< folder, "" = none
-  int patches = defaults::sky_patches;
-  double ground = defaults::ground_reflectance;
-  std::string suns = "rays";
-  measuring::DaylightAsked asked{defaults::daylight_lux, {}};
-  std::string occupied = "8-18";
-  double lamps_to = 0;  ///< lux that lamps keep; 0 = no lamps
-  double lamp_efficacy = defaults::lamp_efficacy;
-};
-
-Occupancy parse_occupancy(const std::string& text) {
-  const std::size_t dash = text.find('-');
-  if (dash != std::string::npos) {
-    const auto from = parse_signed(text.substr(0, dash)), to = parse_signed(text.substr(dash + 1));
-    if (from && to && *from >= 0 && *from < *to && *to <= 24) return {*from, *to};
-  }
-  throw UsageError(
-      fmt::format("--occupied {}: use FROM-TO, such as 8-18, hours within 0 and 24", text));
-}
 
 std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, const Scene& scene,
                                             std::size_t hours, Progress& progress) {
@@ -69,72 +41,36 @@ std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, cons
     clear_of_furniture(options.places.plane, scene, grid, progress);
     sensors += grid.sensors.size();
   }
-  if (sensors * hours > limits::max_profile_values) {
-    throw UsageError(fmt::format("{} points of {} hours are more than {} values; give fewer points",
-                                 sensors, hours, limits::max_profile_values));
+  const std::size_t states =
+      options.blinds_are_scene() ? 2 : std::size_t{1} << options.blinds.size();
+  if (sensors * hours * states > limits::max_profile_values) {
+    throw UsageError(
+        fmt::format("{} points of {} hours in {} states are more than {} values; give "
+                    "fewer points",
+                    sensors, hours, states, limits::max_profile_values));
   }
   return grids;
 }
 
-/// What the lamps over a grid use in a year.
-std::vector<LampEnergy> energies_of(const DaylightOptions& options, const DaylightMatrix& matrix,
-                                    const LightMix& mix, const std::vector<bool>& occupied,
-                                    const GridDaylight& grid, std::size_t first) {
-  if (!(options.lamps_to > 0) || matrix.lamps.empty()) return {};
-  const std::size_t count = grid.grid.sensors.size(), hours = occupied.size();
-  std::vector<double> mean(hours, 0.0), of_lamp, watts;
-  for (std::size_t i = 0; i < count * hours; ++i)
-    mean[i % hours] += double{grid.lux[i]} / static_cast<double>(count);
-  for (std::size_t lamp = 0; lamp < matrix.lamps.size(); ++lamp) {
-    const float* lux = matrix.from_lamps.data() + lamp * matrix.sensors + first;
-    of_lamp.push_back(std::accumulate(lux, lux + count, 0.0) / static_cast<double>(count));
-    for (const MixedLight& light : mix.lights) {
-      if (light.name != matrix.lamps[lamp]) continue;
-      const double lumens = light.power * (light.unit == PowerUnit::lumen ? 1 : mix.lumen_per_watt);
-      watts.push_back(lumens / options.lamp_efficacy);
-    }
-  }
-  return lamp_energy(mean, occupied, matrix.lamps, of_lamp, watts, options.lamps_to);
+/// The scene's own lamps at the points; daylight leaves them out.
+std::vector<LightIlluminance> lamps_of(const DaylightOptions& options, const Scene& scene,
+                                       std::span<const Sensor> sensors, const LightMix& mix,
+                                       Progress& progress) {
+  if (!(options.lamps_to > 0) || scene.lights.empty()) return {};
+  std::vector<Device> devices = devices_for(options.render, progress);
+  MeasuringParameters parameters = options.parameters;
+  parameters.photons = options.render.parameters;
+  auto found = measure_illuminance(scene, sensors, mix, devices, parameters, progress);
+  const LightGroups groups = light_groups_of(scene);
+  std::erase_if(found, [&](const LightIlluminance& light) {
+    return std::none_of(groups.groups.begin(), groups.groups.end(), [&](const LightGroup& group) {
+      return group.name == light.light && !scene.lights[group.lights.front()].is_distant();
+    });
+  });
+  return found;
 }
 
-std::vector<GridDaylight> results_of(const DaylightOptions& options,
-                                     std::vector<measuring::SensorGrid> grids,
-                                     const DaylightMatrix& matrix, const AnnualProfile& profile,
-                                     const std::vector<SkyHour>& hours, const LightMix& mix) {
-  const std::vector<bool> occupied = occupied_hours(hours, options.asked.occupancy);
-  const std::vector<bool> by_day = daylight_hours(hours);
-  std::vector<GridDaylight> results;
-  std::size_t first = 0;
-  for (measuring::SensorGrid& grid : grids) {
-    GridDaylight result;
-    const std::size_t count = grid.sensors.size();
-    const auto part = [&](const std::vector<float>& all, std::size_t each) {
-      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first * each);
-      return all.empty()
-                 ? std::vector<float>{}
-                 : std::vector<float>(begin, begin + static_cast<std::ptrdiff_t>(count * each));
-    };
-    result.grid = std::move(grid);
-    result.lux = part(profile.all, profile.hours);
-    result.sun = part(profile.sun, profile.hours);
-    result.relative_error = part(matrix.relative_error, 1);
-    for (std::size_t sensor = 0; sensor < count; ++sensor) {
-      const auto row = [&](const std::vector<float>& all) {
-        return all.empty() ? std::span<const float>()
-                           : std::span(all).subspan(sensor * profile.hours, profile.hours);
-      };
-      result.points.push_back(point_daylight(row(result.lux), row(result.sun), occupied, by_day,
-                                             options.asked.wanted_lux));
-    }
-    result.room = room_daylight(result.points);
-    result.lamps = energies_of(options, matrix, mix, occupied, result, first);
-    first += count;
-    results.push_back(std::move(result));
-  }
-  return results;
-}
-
-void write(const DaylightOptions& options, const std::vector<GridDaylight>& results,
+void write(const DaylightOptions& options, const measuring::DaylightResults& results,
            const std::vector<SkyHour>& hours) {
   for (const std::filesystem::path file : options.outputs) {
     write_file(file, file.extension() == ".csv"
@@ -142,8 +78,11 @@ void write(const DaylightOptions& options, const std::vector<GridDaylight>& resu
                          : measuring::daylight_json(results, options.asked).dump(1) + "\n");
   }
   if (options.honeybee.empty()) return;
-  for (const auto& [name, content] : measuring::annual_files(results, hours))
-    write_file(std::filesystem::path(options.honeybee) / name, content);
+  const std::filesystem::path folder = options.honeybee;
+  for (const auto& [name, content] : measuring::annual_files(results, hours)) {
+    make_folder((folder / name).parent_path());
+    write_file(folder / name, content);
+  }
 }
 
 /// The lights of the scene are lamps, those from beyond it are the sky's.
@@ -155,6 +94,49 @@ void check_lights(const DaylightOptions& options) {
         "--environment and --time");
   }
   if (load.situation.weather.empty()) throw UsageError("daylight needs --weather FILE.epw");
+  if (!options.blinds.empty() && options.suns != "rays") {
+    throw UsageError("--blinds close where the sun shines straight; leave out --suns patches");
+  }
+  if (options.blinds.size() > most_blind_groups) {
+    throw UsageError(
+        fmt::format("--blinds: {} groups of panes, more than {}; let some close together",
+                    options.blinds.size(), most_blind_groups));
+  }
+}
+
+/// The sky's lights are needed to find the windows, and for no more.
+Scene scene_under_sky(const std::string& file, SceneLoadOptions load) {
+  load.sky = Sky{SkyKind::patches, 0, 0, 0, patch_counts[0]};
+  load.situation.weather.clear();
+  load.situation.site.reset();
+  load.portals = {"off"};  // those of the grids are looked for
+  return load_scene(file, load);
+}
+
+void take_windows(const DaylightOptions& options, std::span<const measuring::SensorGrid> grids,
+                  Scene& scene) {
+  scene.portals = measuring::portals_of_grids(scene, grids, options.render.load.portals);
+  std::erase_if(scene.lights, [](const Light& light) { return light.is_sky_patch(); });
+}
+
+void warn_of_darkness(const std::vector<SkyState>& states, Progress& progress) {
+  const std::vector<float>& lux = states.front().matrix.from_sky;
+  if (std::any_of(lux.begin(), lux.end(), [](float value) { return value > 0; })) return;
+  progress.note(measuring::no_sky_warning);
+}
+
+std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year, Scene& scene,
+                                std::span<const measuring::SensorGrid> grids, Progress& progress) {
+  if (options.blinds_are_scene()) {
+    Scene closed = scene_under_sky(options.blinds.front(), options.render.load);
+    take_windows(options, grids, closed);
+    std::vector<SkyState> states{sky_state(year, scene, "open", 0, progress)};
+    states.push_back(sky_state(year, closed, "closed", 1, progress));
+    return states;
+  }
+  std::vector<BlindGroup> groups;
+  for (const std::string& text : options.blinds) groups.push_back(BlindGroup::parse(text));
+  return sky_states(year, scene, groups, progress);
 }
 
 void run_daylight(DaylightOptions& options) {
@@ -162,12 +144,16 @@ void run_daylight(DaylightOptions& options) {
   RenderOptions& render = options.render;
   check_settings(render);
   check_lights(options);
-  options.asked.occupancy = parse_occupancy(options.occupied);
+  options.asked.occupancy.set_hours(options.occupied);
+  options.asked.occupancy.set_days(options.days);
+  options.asked.occupancy.schedule = options.schedule;
   if (options.places.empty()) {
     throw UsageError("no points; give --plane floor+0.75, --grid FILE or --points FILE");
   }
   note_inputs_of(render);
   note_places(options.places);
+  if (options.blinds_are_scene()) note_input(options.blinds.front());
+  if (!options.schedule.empty()) note_input(options.schedule);
   if (!options.honeybee.empty()) make_folder(options.honeybee);
   check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
 
@@ -175,38 +161,31 @@ void run_daylight(DaylightOptions& options) {
   TerminalProgress progress(render.quiet);
   scene_io::WeatherYear weather = scene_io::read_weather(render.load.situation.weather);
   if (render.load.situation.site) weather.site = *render.load.situation.site;
-  const double north = render.load.situation.north_degrees * std::numbers::pi / 180;
-  render.load.sky = Sky{SkyKind::patches, 0, 0, 0, options.patches};
-  render.load.situation.weather.clear();
-  render.load.situation.site.reset();
-  Scene scene = load_scene(render.scene, render.load);
-  const LightMix mix = mix_of(scene, render);
-  auto grids = grids_of(options, scene, weather.hours.size(), progress);
-  std::vector<Device> devices = devices_for(render, progress);
-  scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
+  Year year{{}, sky_patches(options.patches), {}, options.suns == "rays", {}};
+  year.hours = sky_hours(weather, year.patches, options.ground);
+  options.asked.occupied = occupied_hours(year.hours, options.asked.occupancy);
+
+  Scene scene = scene_under_sky(render.scene, render.load);
+  const auto grids = grids_of(options, scene, weather.hours.size(), progress);
+  take_windows(options, grids, scene);
   if (scene.portals.empty()) {
     progress.note(
-        "no windows were found: photons of the sky start all around the scene; name the "
-        "panes' material by --portals if there are some");
+        "no windows were found: rays look for the sky everywhere; name the panes' material by "
+        "--portals if there are some");
   }
-
-  const std::vector<SkyPatch> patches = sky_patches(options.patches);
-  const std::vector<SkyHour> hours = sky_hours(weather, patches, options.ground);
-  MatrixParameters parameters{options.parameters, mean_luminances(hours, patches),
-                              options.suns == "rays"};
-  parameters.measuring.photons = render.parameters;
-  std::vector<Sensor> sensors;
+  const LightMix mix = mix_of(scene, render);
   for (const auto& grid : grids)
-    sensors.insert(sensors.end(), grid.sensors.begin(), grid.sensors.end());
-  const DaylightMatrix matrix =
-      daylight_matrix(scene, sensors, mix, patches, devices, parameters, progress);
-  std::optional<StraightLight> straight;
-  if (parameters.straight) straight.emplace(scene, sensors);
-  const AnnualProfile profile =
-      annual_profile(matrix, hours, patches, north, options.parameters.maintenance,
-                     straight ? &*straight : nullptr);
-  const auto results = results_of(options, std::move(grids), matrix, profile, hours, mix);
-  write(options, results, hours);
+    year.sensors.insert(year.sensors.end(), grid.sensors.begin(), grid.sensors.end());
+  year.parameters = {options.parameters,
+                     render.load.situation.north_degrees * std::numbers::pi / 180,
+                     mean_luminances(year.hours, year.patches)};
+  year.parameters.measuring.photons = render.parameters;
+  const std::vector<SkyState> states = states_of(options, year, scene, grids, progress);
+  warn_of_darkness(states, progress);
+  const auto lamps = lamps_of(options, scene, year.sensors, mix, progress);
+  const measuring::DaylightResults results =
+      daylight_results(options, year, grids, states, lamps, mix);
+  write(options, results, year.hours);
   for (const auto& line : measuring::daylight_lines(results, options.asked))
     std::cout << line << '\n';
 }
@@ -236,9 +215,26 @@ void add_year(CLI::App& command, DaylightOptions& options) {
       ->transform(positive_number())
       ->capture_default_str()
       ->group("Year");
-  command.add_option("--occupied", options.occupied, "hours of every day in standard time")
+  command.add_option("--occupied", options.occupied, "hours of a day in standard time")
       ->type_name("FROM-TO")
       ->capture_default_str()
+      ->group("Year");
+  command
+      .add_option("--days", options.days, "on which they are occupied, by the weather's calendar")
+      ->type_name("DAYS")
+      ->capture_default_str()
+      ->group("Year");
+  command
+      .add_option("--schedule", options.schedule,
+                  "in their place: a value for each hour of the year, occupied above 0")
+      ->type_name("FILE.csv")
+      ->group("Year");
+  command
+      .add_option("--blinds", options.blinds,
+                  "that close where the sun comes in (IES LM-83): the scene with closed ones, or "
+                  "panes and what they let through then; repeatable")
+      ->type_name("SCENE|MATERIAL=TRANSMITTANCE")
+      ->allow_extra_args(false)
       ->group("Year");
   command
       .add_option("--lamps-to", options.lamps_to,
@@ -269,13 +265,13 @@ void add_daylight_command(CLI::App& photile) {
       ->group("Output");
   command
       ->add_option("--honeybee", options->honeybee,
-                   "folder for <grid>.ill, sun-up-hours.txt and grids_info.json: the lux of every "
-                   "hour")
+                   "folder for the lux of every hour, as annual recipes leave it")
       ->type_name("FOLDER")
       ->group("Output");
   add_place_options(*command, options->places);
   add_year(*command, *options);
   options->parameters.repeats = defaults::daylight_repeats;
+  options->parameters.gathering.rays = defaults::daylight_rays;
   add_maintenance_option(*command, options->parameters, "Measuring");
   add_sensor_options(*command, options->parameters, "Measuring");
   add_setting_options(*command, options->render,

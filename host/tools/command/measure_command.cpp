@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -27,6 +28,7 @@
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
 #include "tools/command/validators.hpp"
+#include "tools/report/daylight_tables.hpp"
 #include "tools/report/sensor_tables.hpp"
 
 namespace photile::app {
@@ -69,6 +71,14 @@ void keep_sky(measuring::Measurement& measurement) {
       break;
     }
   }
+}
+
+bool all_dark(const measuring::Measurement& measurement) {
+  const auto dark = [](const Measured& reading) { return !(reading.value > 0); };
+  return std::all_of(measurement.begin(), measurement.end(), [&](const auto& grid) {
+    const auto& sensors = grid.total().sensors;
+    return std::all_of(sensors.begin(), sensors.end(), dark);
+  });
 }
 
 /// Everything that the command line asks to be measured.
@@ -154,7 +164,10 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
       measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
-  if (options.daylight_factor) keep_sky(measurement);
+  if (options.daylight_factor) {
+    keep_sky(measurement);
+    if (all_dark(measurement)) progress.note(measuring::no_sky_warning);
+  }
   outputs.write(measurement,
                 {scene, mix, parameters, render.mood.mood, requirement, moods, included});
   for (const auto& line : measuring::measurement_lines(measurement, outputs.unit())) {

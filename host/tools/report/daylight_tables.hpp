@@ -1,12 +1,13 @@
-// A year of daylight as text: lines, CSV, JSON, Honeybee's files.
+// A year of daylight as text: lines, CSV, JSON.
 #pragma once
 
-#include <map>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "daylight/daylight_metrics.hpp"
+#include "daylight/occupancy.hpp"
 #include "measuring/sensor_grid.hpp"
 
 namespace photile::measuring {
@@ -21,23 +22,35 @@ struct GridDaylight {
   std::vector<daylight::LampEnergy> lamps;  ///< empty where there are none
 };
 
+/// One state of the blinds all year.
+struct DaylightState {
+  std::string name;
+  std::vector<GridDaylight> grids;
+};
+
+struct DaylightResults {
+  std::vector<GridDaylight> grids;  ///< with blinds, where there are some, as they close
+  // Without blinds empty.
+  std::vector<DaylightState> states;
+  std::vector<std::size_t> state_of_hour;
+};
+
 /// What the numbers were asked for.
 struct DaylightAsked {
   double wanted_lux = 300;
   daylight::Occupancy occupancy;
+  std::vector<bool> occupied;  ///< by the hour
 };
 
-std::vector<std::string> daylight_lines(const std::vector<GridDaylight>& grids,
-                                        const DaylightAsked& asked);
-std::string daylight_csv(const std::vector<GridDaylight>& grids);
-nlohmann::ordered_json daylight_json(const std::vector<GridDaylight>& grids,
-                                     const DaylightAsked& asked);
+/// What to say where no light of the sky reaches any point.
+inline constexpr const char* no_sky_warning =
+    "warning: no light of the sky reaches any point: the room has no opening and no pane of glass; "
+    "leave out what closes its windows, or make it of glass (KHR_materials_transmission in glTF, d "
+    "below 1 or illum 4 in MTL)";
 
-/// As Honeybee's annual recipe leaves them: `<grid>.ill`, a line for each sensor with the lux of
-/// each hour with the sun up; `<grid>_direct.ill` of the sun alone, where it is known;
-/// `sun-up-hours.txt`, hours of the year; `grids_info.json`. By name. Errors: UsageError where two
-/// grids have one name.
-std::map<std::string, std::string> annual_files(const std::vector<GridDaylight>& grids,
-                                                const std::vector<daylight::SkyHour>& hours);
+std::vector<std::string> daylight_lines(const DaylightResults& results, const DaylightAsked& asked);
+/// With a column for the state of the blinds where there are some.
+std::string daylight_csv(const DaylightResults& results);
+nlohmann::ordered_json daylight_json(const DaylightResults& results, const DaylightAsked& asked);
 
 }  // namespace photile::measuring
