@@ -24,10 +24,12 @@ constexpr std::array<Level, 3> levels{
 /// What a share of the values reach or exceed.
 double reached_by(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  std::sort(values.begin(), values.end(), std::greater<>());
   const auto count =
       static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::clamp<std::size_t>(count, 1, values.size()) - 1];
+  const auto reached = values.begin() + static_cast<std::ptrdiff_t>(
+                                            std::clamp<std::size_t>(count, 1, values.size()) - 1);
+  std::nth_element(values.begin(), reached, values.end(), std::greater<>());
+  return *reached;
 }
 
 }  // namespace

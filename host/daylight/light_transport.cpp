@@ -17,8 +17,10 @@ constexpr std::size_t rows_at_once = 256;
 /// Of the median distance from a sensor to what its rays meet.
 constexpr double cell_of_distance = 0.1;
 constexpr int most_generations = 16;
+/// Of the first generation from cells, about: however few sensors there are.
+constexpr std::size_t least_rays = 65'536;
 /// Of a cell, for each batch: as many as ends there, up to this part of a sensor's.
-constexpr int rays_of_cell = 4;
+constexpr int rays_of_cell = 16;
 
 /// What a row's rays saw, but for the cells of surfaces.
 TransportRow row_of(const SeenByRays& seen, const TransportParameters& parameters) {
@@ -82,7 +84,7 @@ double median_distance(const std::vector<SeenByRays>& seen) {
 class Tracer {
  public:
   Tracer(const RayScene& rays, const PatchFinder& patches, const TransportParameters& parameters,
-         const Progress& progress, LightTransport& transport)
+         Progress& progress, LightTransport& transport)
       : rays_(rays),
         parameters_(parameters),
         progress_(progress),
@@ -110,11 +112,14 @@ class Tracer {
         for (const trace::SurfacePoint& point : cells_->places(i)) found.emplace_back(point);
         return found;
       };
-      const auto rays = [&](std::size_t i) {
-        const int most = std::max(2, parameters_.rays / rays_of_cell);
-        const auto wanted = static_cast<int>(std::min<std::uint32_t>(
-            cells_->ends(i) / static_cast<std::uint32_t>(parameters_.sky.batches), 1u << 16));
-        return wanted < 2 ? 1 : std::min(most, wanted / 2 * 2);
+      const std::size_t batches = static_cast<std::size_t>(parameters_.sky.batches);
+      const std::size_t from_sensors =
+          transport_.sensors.size() * static_cast<std::size_t>(parameters_.rays) * batches;
+      const std::size_t each = generation > 0 ? 1 : 1 + least_rays / from_sensors;
+      const auto rays = [&, each](std::size_t i) {
+        const auto most = static_cast<std::size_t>(std::max(2, parameters_.rays / rays_of_cell));
+        const std::size_t wanted = cells_->ends(i) * each / batches;
+        return wanted < 2 ? 1 : static_cast<int>(std::min(most, wanted / 2 * 2));
       };
       trace_rows(transport_.cells, first, transport_.sensors.size(), places, rays);
     }
@@ -151,12 +156,13 @@ class Tracer {
           transport_.coloured = transport_.coloured || is_coloured(patch.all);
       }
       tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { join_cells(rows[begin + i]); });
+      if (first_number == 0) progress_.advance(count);
     }
   }
 
   const RayScene& rays_;
   const TransportParameters& parameters_;
-  const Progress& progress_;
+  Progress& progress_;
   LightTransport& transport_;
   SkyRays sky_rays_;
   std::unique_ptr<SurfaceCells> cells_;
@@ -166,13 +172,15 @@ class Tracer {
 
 LightTransport light_transport(const RayScene& rays, std::span<const Sensor> sensors,
                                const PatchFinder& patches, const TransportParameters& parameters,
-                               const Progress& progress) {
+                               Progress& progress) {
   LightTransport transport;
   transport.patches = patches.patches() + 1;
   transport.batches = parameters.sky.batches;
   Tracer tracer(rays, patches, parameters, progress, transport);
+  progress.begin("trace the sky", sensors.size(), "points");
   tracer.trace_sensors(sensors);
   tracer.trace_cells();
+  progress.end();
   return transport;
 }
 

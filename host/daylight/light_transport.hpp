@@ -47,7 +47,7 @@ struct TransportParameters {
 ///   sensors   in the scene's coordinates
 LightTransport light_transport(const RayScene& rays, std::span<const Sensor> sensors,
                                const PatchFinder& patches, const TransportParameters& parameters,
-                               const Progress& progress);
+                               Progress& progress);
 
 /// Lux for each cd/m2, by sensor, then patch: solved for all patches at once.
 std::vector<float> lux_of_patches(const LightTransport& transport);

@@ -10,7 +10,7 @@ namespace photile::daylight {
 namespace {
 
 constexpr int most_levels = 16;
-constexpr double parts_of_cube = 4;       ///< along a side
+constexpr int most_beside = 16;           ///< cells of one cube: leaves of a tree hide each other
 constexpr double sight_above = 1.0 / 32;  ///< of the cell's size, of lines of sight
 /// Where no plane of a building lies, or seldom.
 constexpr double cube_offset = 0.3819660113;
@@ -51,9 +51,10 @@ std::uint32_t SurfaceCells::find(std::uint64_t cube, const trace::SurfacePoint& 
       std::max(2 * point.clearance, static_cast<float>(sight_above * cell_size)) * point.normal;
   const auto [entry, fresh] = in_cube_.try_emplace(cube, static_cast<std::uint32_t>(cells_.size()));
   std::uint32_t last = none;
+  int tried = 0;
   for (std::uint32_t cell = fresh ? none : entry->second; cell != none;
        cell = cells_[cell].beside) {
-    if (!trace::occluded(rays_, sight, cells_[cell].sight)) return cell;
+    if (++tried > most_beside || !trace::occluded(rays_, sight, cells_[cell].sight)) return cell;
     last = cell;
   }
   const auto made = static_cast<std::uint32_t>(cells_.size());
@@ -63,26 +64,21 @@ std::uint32_t SurfaceCells::find(std::uint64_t cube, const trace::SurfacePoint& 
 }
 
 std::uint32_t SurfaceCells::cell_of(const trace::SurfacePoint& point, float length) {
-  const int level = std::clamp(
-      static_cast<int>(std::floor(std::log2(std::max(1e-3, length / near_)))), 0, most_levels);
+  const trace::FlushDenormals flush_denormals;
+  const double farther = std::log2(std::max(1.0, double{length} / near_));
+  const int level = std::min(static_cast<int>(farther), most_levels);
   const double cube = std::ldexp(size_, level);
-  const glm::dvec3 position(point.position);
-  const std::uint64_t range = normal_range(point.normal);
-  const std::uint64_t part = key_of(position, cube / parts_of_cube, level + most_levels + 1, range);
-  const auto [entry, fresh] = in_part_.try_emplace(part, 0);
-  if (fresh) {
-    const trace::FlushDenormals flush_denormals;
-    entry->second = find(key_of(position, cube, level, range), point, cube);
-  }
-  Cell& cell = cells_[entry->second];
-  const std::uint64_t number = cell.ends++;
+  const std::uint32_t number = find(
+      key_of(glm::dvec3(point.position), cube, level, normal_range(point.normal)), point, cube);
+  Cell& cell = cells_[number];
+  const std::uint64_t before = cell.ends++;
   if (cell.places.size() < most_places) {
     cell.places.push_back(point);
   } else {  // reservoir sampling: Vitter's algorithm R
-    const std::uint64_t at = mixed(number * 0x9E37'79B9'7F4A'7C15u + entry->second) % (number + 1);
+    const std::uint64_t at = mixed(before * 0x9E37'79B9'7F4A'7C15u + number) % (before + 1);
     if (at < most_places) cell.places[at] = point;
   }
-  return entry->second;
+  return number;
 }
 
 }  // namespace photile::daylight

@@ -50,8 +50,6 @@ class SurfaceCells {
   double size_, near_;
   std::vector<Cell> cells_;
   std::unordered_map<std::uint64_t, std::uint32_t> in_cube_;  ///< the first of them
-  /// Of parts of cubes: one line of sight serves all that ends there.
-  std::unordered_map<std::uint64_t, std::uint32_t> in_part_;
 };
 
 }  // namespace photile::daylight

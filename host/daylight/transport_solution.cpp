@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "daylight/light_transport.hpp"
@@ -14,7 +15,7 @@ namespace {
 /// Columns that are solved together: the light of some thousand cells under them fits a cache.
 constexpr std::size_t columns_at_once = 64;
 constexpr int most_sweeps = 256;
-constexpr double change_at_end = 1e-4;  ///< of the sum of all cells
+constexpr double change_at_end = 5e-4;  ///< of the sum of all cells
 
 /// Rows of one channel, without their batches.
 struct SparseRows {
@@ -56,10 +57,15 @@ std::vector<std::uint32_t> columns_of(const LightTransport& transport, std::size
 
 /// Adds what a row has from cells to its block of columns.
 void add_cells(const SparseRows& rows, std::size_t row, const float* cells, float* sum) {
-  for (std::size_t i = rows.first[row]; i < rows.first[row + 1]; ++i) {
-    const float* const from = cells + rows.column[i] * columns_at_once;
-    const float weight = rows.weight[i];
-    for (std::size_t c = 0; c < columns_at_once; ++c) sum[c] += weight * from[c];
+  constexpr std::size_t lanes = 32;  // that stay in registers
+  for (std::size_t first = 0; first < columns_at_once; first += lanes) {
+    std::array<float, lanes> part{};
+    for (std::size_t i = rows.first[row]; i < rows.first[row + 1]; ++i) {
+      const float* const from = cells + rows.column[i] * columns_at_once + first;
+      const float weight = rows.weight[i];
+      for (std::size_t lane = 0; lane < lanes; ++lane) part[lane] += weight * from[lane];
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) sum[first + lane] += part[lane];
   }
 }
 

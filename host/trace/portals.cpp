@@ -62,7 +62,8 @@ double Portals::weigh(const glm::dvec3& from, std::vector<double>& weights) cons
     if (height > 0) {
       const glm::dvec3 middle = portal.corner + 0.5 * (portal.u + portal.v) - from;
       // About its solid angle, and never 0 where it can be seen.
-      weight = portal.area * height / std::pow(glm::dot(middle, middle) + 0.25 * portal.area, 1.5);
+      const double squared = glm::dot(middle, middle) + 0.25 * portal.area;
+      weight = portal.area * height / (squared * std::sqrt(squared));
     }
     sum += weight;
     weights.push_back(weight);

@@ -2,6 +2,7 @@
 #include "daylight/blinds.hpp"
 
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "daylight/sky_states.hpp"
 #include "photile/errors.hpp"
@@ -16,7 +17,7 @@ using Room = RoomWithWindow;
 
 namespace {
 
-constexpr double pi = 3.14159265358979;
+using std::numbers::pi;
 
 Material pane(const std::string& name) {
   Material material;

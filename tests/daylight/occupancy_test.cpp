@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <fstream>
 
-#include "file_folder.hpp"
 #include "photile/errors.hpp"
+#include "temporary_folder.hpp"
 
 namespace photile::test {
 
@@ -46,15 +47,19 @@ TEST_CASE("working days are counted by the calendar of the weather") {
 }
 
 TEST_CASE("a schedule has a value for each hour") {
-  const FileFolder folder;
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& content) {
+    std::ofstream(folder.path / name) << content;
+    return folder.path / name;
+  };
   std::string text = "hour,occupancy\n";
   for (int i = 0; i < 8760; ++i) text += i % 24 == 10 ? "x,0.5\n" : "x,0\n";
   Occupancy occupancy;
-  occupancy.schedule = folder.write("a.csv", text);
+  occupancy.schedule = write("a.csv", text);
   CHECK(count(occupancy) == 365);
-  occupancy.schedule = folder.write("b.csv", text + "x,1\n");
+  occupancy.schedule = write("b.csv", text + "x,1\n");
   CHECK_THROWS_WITH(count(occupancy), Contains("8761 hours"));
-  occupancy.schedule = folder.write("c.csv", "0\n-1\n");
+  occupancy.schedule = write("c.csv", "0\n-1\n");
   CHECK_THROWS_WITH(count(occupancy), Contains("line 2: '-1'"));
 }
 
