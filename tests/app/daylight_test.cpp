@@ -91,7 +91,7 @@ TEST_CASE("blinds close by the hour, as a scene of their own says") {
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("blinds closed"));
   const auto grid = nlohmann::json::parse(folder.read("a.json")).at(0);
-  CHECK(grid["occupied_hours"] == 2610);
+  CHECK(grid["occupied_hours"] == 2600);
   const auto& states = grid["blinds"]["states"];
   REQUIRE(states.size() == 2);
   // A box that is closed is dark; by schedule it is dark in some hours.
