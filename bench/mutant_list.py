@@ -192,9 +192,9 @@ MUTANTS = (
            "keep_caustics && specular && !straight", "keep_caustics && !straight",
            (("render", "final gathering*"),)),
     Mutant("photons of all light for those of caustics", "host/render/rendering_maps.cpp",
-           "  Maps maps{build(std::move(traced.photons), parameters), {}};",
+           "  Maps maps{build(std::move(traced.photons), parameters), {}, nullptr};",
            "  traced.caustics = traced.photons;\n"
-           "  Maps maps{build(std::move(traced.photons), parameters), {}};",
+           "  Maps maps{build(std::move(traced.photons), parameters), {}, nullptr};",
            (("render", "final gathering*"),)),
     Mutant("radiance seen through water as bright as in it", "host/trace/scatter_specular.cpp",
            "if (material.thin) return 1;", "return 1;",

@@ -13,7 +13,7 @@
 namespace photile::daylight {
 namespace {
 
-// IES LM-83-12, section 2.2.
+// IES LM-83-12.
 constexpr float glaring_lux = 1'000;
 constexpr double most_points = 0.02;
 

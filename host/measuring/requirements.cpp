@@ -35,7 +35,7 @@ const std::array<Requirement, 17> rows{{
     {"office-cad", "table 34", "CAD workstations", 500, 0.60, 19, 80, 150, 150, 100, unconfirmed},
     {"meeting-room", "table 34", "conference and meeting rooms", 500, 0.60, 19, 80, 150, 150, 100},
     {"conference-table", "table 34", "conference tables", 500, 0.60, 19, 80, 150, 150, 100},
-    {"reception-desk", "table 34", "reception desks", 300, 0.60, 22, 80, 100, 100, 75},
+    {"reception-desk", "table 34", "reception desks", 300, 0.60, 22, 80, 100, 100, 75, unconfirmed},
     {"archive", "table 34", "archives", 200, 0.40, 25, 80, 75, 75, 50, unconfirmed},
     {"classroom", "table 44", "classrooms, general activities", 500, 0.60, 19, 80, 150, 150, 100,
      unconfirmed},

@@ -66,10 +66,16 @@ TEST_CASE("a folder in place of a scene is an input error") {
   CHECK_THAT(refusal(folder, folder / "folder.obj"), Contains("folder.obj"));
 }
 
-TEST_CASE("a scene without lights is an input error that says so") {
+TEST_CASE("a picture of a scene without lights is an input error that says so; info describes it") {
   const FileFolder folder;
   folder.write("box.mtl", "newmtl wall\nKd 0.7 0.6 0.5\nnewmtl red_lamp\nnewmtl blue_lamp\n");
-  CHECK_THAT(refusal(folder, folder.write("box.obj", box_obj())), Contains("light"));
+  const std::string scene = folder.write("box.obj", box_obj());
+  const Outcome render = run_photile({"render", scene, "-o", folder / "out.exr"});
+  CHECK_THAT(last_error(render, bad_input), Contains("no lights"));
+  CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
+  const Outcome info = run_photile({"info", scene});
+  CHECK(info.exit_code == 0);
+  CHECK_THAT(info.output + info.errors, Contains("no lights"));
 }
 
 TEST_CASE("a scene without geometry is an input error that says so") {

@@ -122,8 +122,7 @@ TEST_CASE("a mood is the same in render, relight and measure as its powers by --
   const FileFolder folder;
   const std::string scene = write_box(folder);
   folder.write("box.moods.json", R"({"photile_moods": 1, "moods": {"night": {
-      "left": {"power": 3, "unit": "W"}, "right": {"power": 9, "unit": "W", "on": false},
-      "gone": {"power": 1, "unit": "W"}}}})");
+      "left": {"power": 3, "unit": "W"}, "right": {"power": 9, "unit": "W", "on": false}}}})");
   const std::vector<std::string> plain{"--light", "left=3", "--light", "right=off"};
   const std::string by_mood = render_box(folder, "mood.exr", {"--mood", "night"});
   const std::string by_light = render_box(folder, "light.exr", plain);
