@@ -65,8 +65,8 @@ mv "$outputs/screenshot-0001.png" "$pictures/view-daylight.png"
 
 # The same room with a lamp that two clicks place, on "place" and under the ceiling.
 cp scenes/gallery/downlight.ies "$outputs"
-window "4 of 4 samples, 1M" 1 "38 165" "480 25" "250 625" -- scenes/gallery/sun-and-sky.gltf \
-  --size 960x720 --samples 4 --photons 1M --neighbours 300 --luminaires "$outputs/lamps.json"
+window "4 of 4 samples, 0.5M" 1 "38 165" "480 25" "250 165" -- scenes/gallery/sun-and-sky.gltf \
+  --size 960x720 --samples 4 --quality good --luminaires "$outputs/lamps.json"
 mv "$outputs/screenshot-0001.png" "$pictures/view-luminaires.png"
 
 build/release/bench/photile_bench_light_maps --only "living room" --paths 1000000 \
