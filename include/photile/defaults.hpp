@@ -52,8 +52,9 @@ inline constexpr float strong_lobe = 0.2f;
 /// Looks at lamps for each ray of a node; in the open, where light is bright beside dark and the
 /// sky may be seen through a window, more.
 inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;
-/// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks so
-/// many times as often, unless that is more often than `most_looks_again`: 2% shows as ragged borders.
+/// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks
+/// so many times as often, unless that is more often than `most_looks_again`: 2% shows as ragged
+/// borders.
 inline constexpr double tolerated_look_error = 0.02;
 inline constexpr int looks_again = 4, most_looks_again = 128;
 /// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
@@ -148,7 +149,7 @@ inline constexpr int sky_patches = 577;            ///< Reinhart's, of a year of
 inline constexpr double ground_reflectance = 0.2;  ///< of the ground that surrounds a scene
 inline constexpr double daylight_lux = 300;        ///< of daylight autonomy: LM-83 and EN 17037
 inline constexpr double lamp_efficacy = 100;       ///< lm/W, of lamps that dim with daylight
-inline constexpr int daylight_rays = 256;  ///< of each sensor and repeat
+inline constexpr int daylight_rays = 256;          ///< of each sensor and repeat
 inline constexpr int daylight_repeats = 4;
 
 // Measuring: a mean of repeats with photons of their own, whose scatter tells the standard error

@@ -72,8 +72,8 @@ TEST_CASE("a year of daylight fills its files") {
   CHECK(lines == points);
   // The same values as NumPy has them: after a head that tells their number, four bytes each.
   const std::string array = folder.read("bee/__static_apertures__/default/total/working_plane.npy");
-  CHECK_THAT(array, Contains("'shape': (" + std::to_string(points) + ", " + std::to_string(hours) +
-                             ")"));
+  CHECK_THAT(array,
+             Contains("'shape': (" + std::to_string(points) + ", " + std::to_string(hours) + ")"));
   CHECK(array.size() % 64 == 4 * points * hours % 64);
   CHECK(array.size() > 4 * points * hours);
 }
@@ -82,11 +82,11 @@ TEST_CASE("blinds close by the hour, as a scene of their own says") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder), weather = write_weather(folder);
   folder.write("closed.obj", box_obj());
-  const Outcome outcome = run_photile(
-      quick("daylight", scene,
-            {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--blinds",
-             folder / "closed.obj", "--days", "mon-fri", "-o", folder / "a.csv", "-o",
-             folder / "a.json", "--honeybee", folder / "bee"}));
+  const Outcome outcome =
+      run_photile(quick("daylight", scene,
+                        {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--blinds",
+                         folder / "closed.obj", "--days", "mon-fri", "-o", folder / "a.csv", "-o",
+                         folder / "a.json", "--honeybee", folder / "bee"}));
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("blinds closed"));
@@ -139,8 +139,9 @@ TEST_CASE("daylight without weather, or with a sky of its own, is refused in a l
              Contains("--sky"));
   CHECK_THAT(refused({"--weather", write_weather(folder), "--occupied", "9"}),
              Contains("--occupied"));
-  CHECK_THAT(refused({"--weather", write_weather(folder), "--blinds", "*=0.1", "--suns", "patches"}),
-             Contains("--suns"));
+  CHECK_THAT(
+      refused({"--weather", write_weather(folder), "--blinds", "*=0.1", "--suns", "patches"}),
+      Contains("--suns"));
 }
 
 TEST_CASE("daylight factors are per cent of the sky's lux") {
