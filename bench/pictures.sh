@@ -41,6 +41,7 @@ window() {
       xdotool mousedown 1; sleep 0.4
       xdotool mouseup 1; sleep 2
       if ((left-- > screenshots)); then continue; fi
+      until xdotool search --name "$title" > /dev/null; do sleep 1; done
       xdotool keydown F12; sleep 0.4; xdotool keyup F12; sleep 2
     done
     kill "$process"  # Ctrl+Q would ask about luminaires that are not saved
