@@ -61,8 +61,9 @@ bool is_fresh(const Device& device) {
   return device.programs_built() + device.programs_from_cache() == 0;
 }
 
+///   specular   scenes have mirrors or glass: neighbours of caustics are looked at (SeenPhotons)
 void prepare(Device& device, const estimate::TuningSample& sample,
-             const RenderParameters& parameters) {
+             const RenderParameters& parameters, bool specular) {
   try {
     const NeighbourGroups groups = find_map_groups(sample.scene, sample.photons, parameters.maps,
                                                    {sample.radius, parameters.angle_degrees});
@@ -75,7 +76,9 @@ void prepare(Device& device, const estimate::TuningSample& sample,
     if (parameters.light_maps != LightMapMode::off || parameters.processes) {
       estimate_each_alone({&estimate, 1}, device);
     }
-    Estimator(maps, sample.scene, estimate).estimate(sample.hits);
+    Estimator estimator(maps, sample.scene, estimate);
+    estimator.estimate(sample.hits);
+    if (specular && parameters.light_map_rays > 0) estimator.nearest(sample.hits);
   } catch (const DeviceMemoryError&) {
   }
 }
@@ -86,10 +89,11 @@ KernelPreparation::KernelPreparation(const Scene& scene, std::span<Device> devic
                                      const RenderParameters& parameters) {
   if (std::none_of(devices.begin(), devices.end(), is_fresh)) return;
   done_ = std::async(std::launch::async, [&scene, devices, &parameters] {
-    const estimate::TuningSample sample = sample_of(
-        needs_of(scene), may_mix_normals(scene, parameters.angle_degrees), parameters.neighbours);
+    const SceneNeeds needs = needs_of(scene);
+    const estimate::TuningSample sample =
+        sample_of(needs, may_mix_normals(scene, parameters.angle_degrees), parameters.neighbours);
     for (Device& device : devices) {
-      if (is_fresh(device)) prepare(device, sample, parameters);
+      if (is_fresh(device)) prepare(device, sample, parameters, needs.specular_paths);
     }
   });
 }
@@ -106,7 +110,7 @@ void compile_usual_kernels(Device& device, Progress& progress) {
     for (SceneNeeds needs : surfaces) {
       for (needs.light_count = 1; needs.light_count <= max_dense_lights; ++needs.light_count) {
         progress.throw_if_cancelled();
-        prepare(device, sample_of(needs, true, parameters.neighbours), parameters);
+        prepare(device, sample_of(needs, true, parameters.neighbours), parameters, true);
         progress.advance(1);
       }
     }

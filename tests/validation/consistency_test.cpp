@@ -126,7 +126,7 @@ TEST_CASE("interreflected light is read without bias in the middle of a wall", "
   const std::vector<Sensor> sensors = square_of_sensors(10, 0.06, {0, 0, 1});
   std::vector<double> values;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    values.push_back(mean(readings(scene, sensors, with(200'000, 300, seed))[0]));
+    values.push_back(mean(readings(scene, sensors, with(300'000, 450, seed))[0]));
   }
   const double truth = pi / (1 - 0.8);
   CHECK_VERDICT(test::mean_is(values, truth, 0.02 * truth));
