@@ -113,6 +113,7 @@ PerezSky::PerezSky(double sun_elevation, const SkyIrradiance& irradiance, int da
 }
 
 float PerezSky::gradation(float sine) const {
+  // gendaylit's least sine: at the horizon itself the law has none.
   return 1 + static_cast<float>(shape_[0]) *
                  std::exp(static_cast<float>(shape_[1]) / std::max(sine, 0.01f));
 }
@@ -123,15 +124,6 @@ float PerezSky::indicatrix(float cosine) const {
          static_cast<float>(shape_[2]) *
              std::exp(static_cast<float>(shape_[3]) * std::acos(cosine)) +
          static_cast<float>(shape_[4]) * cosine * cosine;
-}
-
-double PerezSky::relative_luminance(double elevation, double from_sun) const {
-  const auto& [a, b, c, d, e] = shape_;
-  const double cosine = std::cos(from_sun);
-  // gendaylit's least sine: at the horizon itself the law has none.
-  const double gradation = 1 + a * std::exp(b / std::max(std::sin(elevation), 0.01));
-  const double indicatrix = 1 + c * std::exp(d * from_sun) + e * cosine * cosine;
-  return std::max(0.0, gradation * indicatrix);
 }
 
 }  // namespace photile::daylight

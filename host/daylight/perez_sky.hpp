@@ -1,6 +1,7 @@
 // The all-weather sky of Perez, Seals and Michalsky.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 namespace photile::daylight {
@@ -29,12 +30,12 @@ class PerezSky {
   double brightness() const { return brightness_; }        ///< delta
 
   /// Luminance over a factor that is the same everywhere, not negative.
-  ///   elevation   of the place in the sky, radians
-  ///   from_sun    angle between it and the sun, radians
-  double relative_luminance(double elevation, double from_sun) const;
-
-  /// The factors of that, in single precision: by the sine of the elevation, at least that of
-  /// gendaylit, and by the cosine of the angle to the sun.
+  ///   sine     of the elevation of the place in the sky, taken to be at least that of gendaylit
+  ///   cosine   of the angle between it and the sun
+  float relative_luminance(float sine, float cosine) const {
+    return std::max(0.0f, gradation(sine) * indicatrix(cosine));
+  }
+  /// The factors of that.
   float gradation(float sine) const;
   float indicatrix(float cosine) const;
 

@@ -43,11 +43,13 @@ std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, S
 std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const SunPosition& sun,
                                    const SkyIrradiance& irradiance, int day) {
   const PerezSky sky(sun.elevation, irradiance, day);
-  std::vector<double> luminances = patch_luminances(patches, sky, sun);
+  const SkyInPatches in_patches(patches);
+  const std::vector<float> found = in_patches.luminances(sky, sun);
+  std::vector<double> luminances(found.begin(), found.end());
   double on_ground = sky.diffuse_illuminance();
   if (sun.elevation > 0) {
     on_ground += sky.direct_illuminance() * std::sin(sun.elevation);
-    for (const auto& [patch, share] : sun_patches(patches, sun)) {
+    for (const auto& [patch, share] : in_patches.sun(sun)) {
       luminances[patch] += share * sky.direct_illuminance() / patches[patch].solid_angle();
     }
   }

@@ -105,14 +105,4 @@ std::vector<PatchShare> SkyInPatches::sun(const SunPosition& sun) const {
   return {shares.begin(), shares.end()};
 }
 
-std::vector<double> patch_luminances(const std::vector<SkyPatch>& patches, const PerezSky& sky,
-                                     const SunPosition& sun) {
-  const std::vector<float> found = SkyInPatches(patches).luminances(sky, sun);
-  return {found.begin(), found.end()};
-}
-
-std::vector<PatchShare> sun_patches(const std::vector<SkyPatch>& patches, const SunPosition& sun) {
-  return SkyInPatches(patches).sun(sun);
-}
-
 }  // namespace photile::daylight

@@ -58,7 +58,7 @@ struct PatchShare {
   double share;  ///< of the sun's light; all sum to 1
 };
 
-/// Skies of many hours in patches.
+/// Skies of any hours in patches.
 class SkyInPatches {
  public:
   explicit SkyInPatches(const std::vector<SkyPatch>& patches);
@@ -74,10 +74,5 @@ class SkyInPatches {
   std::vector<float> horizontal_;   ///< lux on the ground for each cd/m2
   std::vector<float> sines_;        ///< of the middles' elevations
 };
-
-/// The same for one hour.
-std::vector<double> patch_luminances(const std::vector<SkyPatch>& patches, const PerezSky& sky,
-                                     const SunPosition& sun);
-std::vector<PatchShare> sun_patches(const std::vector<SkyPatch>& patches, const SunPosition& sun);
 
 }  // namespace photile::daylight

@@ -53,9 +53,8 @@ EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_su
       if (kind == SkyKind::overcast) value = 1 + above + below;
       if (kind == SkyKind::perez) {
         const glm::dvec3 direction = places.direction_at(column + 0.5, row, 0.5);
-        value = perez->relative_luminance(
-            std::asin(std::clamp(direction.y, -1.0, 1.0)),
-            std::acos(std::clamp(glm::dot(direction, to_sun), -1.0, 1.0)));
+        value = double{perez->relative_luminance(static_cast<float>(direction.y),
+                                                 static_cast<float>(glm::dot(direction, to_sun)))};
       }
       if (kind == SkyKind::clear)
         value = clear_luminance(places.direction_at(column + 0.5, row, 0.5), to_sun);

@@ -75,7 +75,7 @@ TEST_CASE("patches have the luminances that gendaymtx gives them") {
   for (const Reference& reference : references) {
     const SunPosition sun = sun_position(berlin, reference.time);
     const PerezSky sky(sun.elevation, reference.irradiance, day_of_year(reference.time));
-    const auto luminances = patch_luminances(patches, sky, sun);
+    const auto luminances = SkyInPatches(patches).luminances(sky, sun);
     for (const auto& [patch, luminance] : reference.sky) {
       INFO(reference.time.month << ", patch " << patch);
       // The suns stand up to a third of a degree apart, and gendaymtx prints three digits.
@@ -92,7 +92,7 @@ TEST_CASE("patches have the luminances that gendaymtx gives them") {
     for (const auto& [patch, luminance] : reference.sun)
       sum += luminance * patches[patch - 1].solid_angle();
     CHECK(sky.direct_illuminance() == Approx(sum).epsilon(0.01));
-    for (const auto& [patch, share] : sun_patches(patches, sun)) {
+    for (const auto& [patch, share] : SkyInPatches(patches).sun(sun)) {
       REQUIRE(reference.sun.count(patch + 1) == 1);
       const double luminance = share * sky.direct_illuminance() / patches[patch].solid_angle();
       CHECK(luminance == Approx(reference.sun.at(patch + 1)).epsilon(0.25).margin(5000));
@@ -113,7 +113,7 @@ TEST_CASE("patches of a sky give the diffuse illuminance, however many there are
   for (const int count : patch_counts) {
     const auto patches = sky_patches(count);
     REQUIRE(patches.size() == static_cast<std::size_t>(count));
-    const auto luminances = patch_luminances(patches, sky, sun);
+    const auto luminances = SkyInPatches(patches).luminances(sky, sun);
     double solid_angle = 0, illuminance = 0;
     for (std::size_t i = 0; i < patches.size(); ++i) {
       solid_angle += patches[i].solid_angle();
@@ -122,7 +122,7 @@ TEST_CASE("patches of a sky give the diffuse illuminance, however many there are
     CHECK(solid_angle == Approx(2 * pi));
     CHECK(illuminance == Approx(sky.diffuse_illuminance()));
     double shares = 0;
-    for (const auto& share : sun_patches(patches, sun)) shares += share.share;
+    for (const auto& share : SkyInPatches(patches).sun(sun)) shares += share.share;
     CHECK(shares == Approx(1));
   }
 }
@@ -156,7 +156,7 @@ TEST_CASE("irradiances at the ends of the model leave finite, positive skies") {
     for (const SkyIrradiance& irradiance :
          {SkyIrradiance{0, 0}, {0, 1}, {1, 0}, {1500, 1}, {1, 900}, {1000, 1000, -40}}) {
       const PerezSky sky(elevation, irradiance, 1);
-      const auto luminances = patch_luminances(sky_patches(145), sky, {1.0, elevation});
+      const auto luminances = SkyInPatches(sky_patches(145)).luminances(sky, {1.0, elevation});
       for (const double luminance : luminances) {
         REQUIRE(std::isfinite(luminance));
         REQUIRE(luminance >= 0);

@@ -41,6 +41,7 @@ const Scene& room() {
 /// Its sky and sun, as renderings and years of daylight take them.
 void check_hour(const Site& site, const scene_io::WeatherHour& hour) {
   static const auto patches = daylight::sky_patches(145);
+  static const daylight::SkyInPatches in_patches(patches);
   const LocalTime time{2024, hour.month, hour.day, hour.hour};  // a leap year
   const daylight::SunPosition sun = daylight::sun_position(site, time);
   require(std::isfinite(sun.azimuth + sun.elevation), "a sun that is nowhere");
@@ -48,11 +49,11 @@ void check_hour(const Site& site, const scene_io::WeatherHour& hour) {
   const auto lux = [](double value) { return std::isfinite(value) && value >= 0; };
   require(lux(sky.direct_illuminance()), "a sun of no lux");
   require(lux(sky.diffuse_illuminance()), "a sky of no lux");
-  for (const double luminance : daylight::patch_luminances(patches, sky, sun)) {
+  for (const double luminance : in_patches.luminances(sky, sun)) {
     require(lux(luminance), "a patch of the sky of no luminance");
   }
   double all = 0;
-  for (const auto& [patch, share] : daylight::sun_patches(patches, sun)) {
+  for (const auto& [patch, share] : in_patches.sun(sun)) {
     require(patch < patches.size(), "a patch that is not there");
     all += share;
   }

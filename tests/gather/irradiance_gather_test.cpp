@@ -39,6 +39,23 @@ Scene furnace(const Material& wall) {
   return scene;
 }
 
+/// A floor, and a lamp that shines up, away from it, at a mirror 0.2 m above. Material 0 is black.
+SceneBuilder lamp_below_mirror() {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, black);
+  builder.grid({-9, -9, 1.2f}, {0, 18, 0}, {18, 0, 0}, 1, builder.add(mirror({1, 1, 1})));
+  builder.grid({1.1f, -0.2f, 1}, {0.2f, 0, 0}, {0, 0.4f, 0}, 1, black,
+               builder.add(area_light("lamp")));
+  return builder;
+}
+
+/// What that floor gets at unit power, W/m2: the lamp's image is 1.4 m above it.
+double lux_of_image(const glm::dvec3& position) {
+  return validation::rectangle_factor(position, up, {1.1, -0.2, 1.4}, {0.2, 0, 0}, {0, 0.4, 0}) /
+         (0.2 * 0.4);
+}
+
 /// Mean and squared error of the mean over paths, per light and sensor, row-major [sensor][light].
 struct PathReference {
   std::vector<double> lux, variance;
@@ -175,14 +192,7 @@ TEST_CASE("gathering: layers of glossy rooms are those of paths", "[slow]") {
 }
 
 TEST_CASE("gathering: the light of a caustic arrives once") {
-  // A lamp that shines up, away from the floor, at a mirror 0.2 m above it.
-  SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, black);
-  builder.grid({-9, -9, 1.2f}, {0, 18, 0}, {18, 0, 0}, 1, builder.add(mirror({1, 1, 1})));
-  builder.grid({1.1f, -0.2f, 1}, {0.2f, 0, 0}, {0, 0.4f, 0}, 1, black,
-               builder.add(area_light("lamp")));
-  const Scene scene = builder.build();
+  const Scene scene = lamp_below_mirror().build();
   const std::vector<Sensor> sensors = sensors_on({-0.3, -0.3, 0}, {0.6, 0, 0}, {0, 0.6, 0}, up, 6);
   std::vector<double> ratio;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
@@ -191,9 +201,7 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
     double sum = 0, truth = 0;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
       sum += lux(light, i);
-      truth += validation::rectangle_factor(sensors[i].position, up, {1.1, -0.2, 1.4}, {0.2, 0, 0},
-                                            {0, 0.4, 0}) /
-               (0.2 * 0.4);
+      truth += lux_of_image(sensors[i].position);
       CHECK(light.error(i) > 0.05 * lux(light, i));  // that of 100 photons at least, about
       CHECK(light.error(i) < 0.2 * lux(light, i));
     }
@@ -203,13 +211,8 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
 }
 
 TEST_CASE("gathering: no caustic shines through a screen that stands on the floor") {
-  SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, black);
-  builder.grid({-9, -9, 1.2f}, {0, 18, 0}, {18, 0, 0}, 1, builder.add(mirror({1, 1, 1})));
-  builder.grid({1.1f, -0.2f, 1}, {0.2f, 0, 0}, {0, 0.4f, 0}, 1, black,
-               builder.add(area_light("lamp")));
-  builder.grid({0, -2, 0}, {0, 4, 0}, {0, 0, 1.1f}, 1, black);
+  SceneBuilder builder = lamp_below_mirror();
+  builder.grid({0, -2, 0}, {0, 4, 0}, {0, 0, 1.1f}, 1, 0);
   const Scene scene = builder.build();
   GatheringScene place(scene, looked_up(60'000, 1));
   const GatheredIrradiance behind =
@@ -222,9 +225,7 @@ TEST_CASE("gathering: no caustic shines through a screen that stands on the floo
   double sum = 0, truth = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     sum += lux(lit, i);
-    truth += validation::rectangle_factor(before[i].position, up, {1.1, -0.2, 1.4}, {0.2, 0, 0},
-                                          {0, 0.4, 0}) /
-             (0.2 * 0.4);
+    truth += lux_of_image(before[i].position);
   }
   CHECK(sum / truth == Approx(1).margin(0.1));
 }

@@ -23,29 +23,19 @@ class Generator : CommandBuilder {
   using CommandBuilder::CommandBuilder;
 
   RandomCommand make() {
-    const double kind = dice_.unit();
-    if (kind < 0.40) {
-      render();
-    } else if (kind < 0.58) {
-      relight();
-    } else if (kind < 0.67) {
-      measure();
-    } else if (kind < 0.74) {
-      walk();
-    } else if (kind < 0.81) {
-      info();
-    } else if (kind < 0.86) {
-      compare();
-    } else if (kind < 0.89) {
-      bake();
-    } else if (kind < 0.92) {
-      glare();
-    } else if (kind < 0.94) {
-      daylight();
-    } else if (kind < 0.97) {
-      ies();
-    } else {
-      shards();
+    using Make = void (Generator::*)();
+    static constexpr std::pair<double, Make> kinds[] = {
+        // in these shares
+        {0.40, &Generator::render}, {0.18, &Generator::relight}, {0.09, &Generator::measure},
+        {0.07, &Generator::walk},   {0.07, &Generator::info},    {0.05, &Generator::compare},
+        {0.03, &Generator::bake},   {0.03, &Generator::glare},   {0.02, &Generator::daylight},
+        {0.03, &Generator::ies},    {1.00, &Generator::shards}};  // all that are left
+    double left = dice_.unit();
+    for (const auto& [share, make] : kinds) {
+      left -= share;
+      if (left >= 0) continue;
+      (this->*make)();
+      break;
     }
     return std::move(command_);
   }

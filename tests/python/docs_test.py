@@ -40,15 +40,15 @@ def test_types_are_shipped():
     assert (PACKAGE / "py.typed").exists() and (PACKAGE / "_photile.pyi").exists()
 
 
-def test_the_stub_names_what_the_extension_has():
-    stub = (PACKAGE / "_photile.pyi").read_text()
+def test_the_types_name_what_the_extension_has():
+    types = (PACKAGE / "_photile.pyi").read_text()
     for name, value in vars(photile._photile).items():
         if name.startswith("__"):
             continue
-        assert re.search(rf"^(class |def )?{name}\b", stub, re.M), name
+        assert re.search(rf"^(class |def )?{name}\b", types, re.M), name
         for member in vars(value) if inspect.isclass(value) else ():
             if not member.startswith("_"):
-                assert re.search(rf"    def {member}\b", stub), f"{name}.{member}"
+                assert re.search(rf"    def {member}\b", types), f"{name}.{member}"
 
 
 def test_types_agree():
