@@ -79,8 +79,8 @@ STEPS = (
          f"photile render office.gltf {LAMPS} --weather year.epw --time 2026-03-10T15:00 --size 960x640 "
          "-o day.exr --png day.png",
          {"day.png": "An afternoon in March, all lamps on"}),
-    Step("A picture is as clean as the light that it was rendered with asks for: lamps that shine beside the sun are "
-         "mottled once it is taken away. The evening is a picture of its own, with a layer for each row of lamps.",
+    Step("`photile relight day.exr --light sun=off --light sky=off` shows the room after dark. A picture of its own has "
+         "less noise, for all its rays look for lamps. It has a layer for each row of them.",
          f"photile render office.gltf {LAMPS} --size 960x640 -o office.exr"),
     Step("Moods are kept in the window, or written by hand beside the scene; a power of 0 is off:",
          files={"office.moods.json": MOODS}),

@@ -1,10 +1,7 @@
 #include "gather/gathered_nodes.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "estimate/map_order.hpp"
@@ -25,9 +22,6 @@ constexpr NodeSource::Surroundings averaged{.window = defaults::averaged_window,
 constexpr NoiseTolerance of_indirect{.errors = defaults::tolerated_errors};
 constexpr NoiseTolerance of_direct{.errors = defaults::tolerated_errors,
                                    .ratio = defaults::tolerated_error_ratio};
-
-/// Large enough to make a task's cost vanish, small enough to share work.
-constexpr std::size_t nodes_per_task = 256;
 
 /// The point of a triangle next to this one that is so far from its edges; the middle of triangles
 /// that have none.
@@ -81,30 +75,14 @@ PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> 
   return links;
 }
 
-/// Means that `add(i, means)` makes of each of so many places; `like` has their batches and form.
-template <class Add>
-GatheredIrradiance means_of(std::size_t lights, const GatheredIrradiance& like, std::size_t count,
-                            const Add& add) {
-  std::vector<GatheredIrradiance> parts((count + nodes_per_task - 1) / nodes_per_task);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    gathering::WeightedPoints means(lights, like, parts[part]);
-    const std::size_t last = std::min(count, (part + 1) * nodes_per_task);
-    for (std::size_t i = part * nodes_per_task; i < last; ++i) {
-      add(i, means);
-      means.end_point();
-    }
-  });
-  GatheredIrradiance all;
-  all.batches = like.batches;
-  if (!like.mean.first.empty()) all.mean.first.push_back(0);
-  for (GatheredIrradiance& part : parts) all.append(std::move(part));
-  return all;
-}
-
-void append(const GatheredParts& from, std::size_t point, std::size_t lights, GatheredParts& to) {
-  to.indirect.append(from.indirect, point, lights);
-  to.direct.append(from.direct, point, lights);
-  to.distance.push_back(from.distance[point]);
+/// Standard errors in the colour of the light, in its form.
+Estimates errors_of(const GatheredIrradiance& light) {
+  Estimates errors = light.mean;
+  for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
+    const double mean = luminance(glm::dvec3(light.mean.irradiance[i]));
+    errors.irradiance[i] *= mean > 0 ? static_cast<float>(light.error(i) / mean) : 0.0f;
+  }
+  return errors;
 }
 
 }  // namespace
@@ -128,15 +106,14 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double ins
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
 
 std::uint64_t GatheredNodes::bytes() const {
-  return raw_.bytes() + nodes_.bytes() + gather_.bytes() +
-         (raw_of_.size() + row_of_.size()) * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
+  return raw_.bytes() + errors_.irradiance.size() * sizeof(glm::vec3) + gather_.bytes() +
+         raw_of_.size() * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
 }
 
 void GatheredNodes::forget() {
   raw_of_.clear();
-  row_of_.clear();
   raw_ = {};
-  nodes_ = {};
+  errors_ = {};
   gather_.forget();
 }
 
@@ -150,48 +127,28 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   gather_new(batch, fine, parameters_.fine, progress);
   const GatheredParts smooth = smoothed(batch, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
-  const auto averaged_fine = [&](const GatheredIrradiance& raw, const GatheredIrradiance& known,
-                                 const NoiseTolerance& tolerated) {
-    return corrected(known, with_neighbours(raw, batch, fine, tolerated), batch, fine, tolerated);
-  };
-  const GatheredIrradiance indirect = averaged_fine(raw_.indirect, nodes_.indirect, of_indirect);
-  const GatheredIrradiance direct = averaged_fine(raw_.direct, nodes_.direct, of_direct);
+  const GatheredIrradiance coarse_light = sum_of(smooth.indirect, smooth.direct, lights);
+  const GatheredIrradiance fine_light =
+      sum_of(with_neighbours(raw_.indirect, batch, fine, of_indirect),
+             with_neighbours(raw_.direct, batch, fine, of_direct), lights);
 
-  const std::size_t before = nodes_.distance.size();
+  GatheredIrradiance all;
+  NodeValues values;
   std::size_t next_coarse = 0, next_fine = 0;
   for (std::uint32_t node = 0; node < batch.nodes; ++node) {
-    row_of_.insert_or_assign(batch.number[node],
-                             static_cast<std::uint32_t>(nodes_.distance.size()));
-    if (batch.parents[node][0] == NodeBatch::no_parent) {
-      append(smooth, next_coarse++, lights, nodes_);
+    if (batch.coarse[node]) {
+      all.append(coarse_light, next_coarse++, lights);
     } else {
-      nodes_.indirect.append(indirect, next_fine, lights);
-      nodes_.direct.append(direct, next_fine++, lights);
-      nodes_.distance.push_back(raw_.distance[raw_of_.at(batch.number[node])]);
+      all.append(fine_light, next_fine++, lights);
     }
+    values.distance.push_back(raw_.distance[raw_of_.at(batch.number[node])]);
   }
-  GatheredParts own;
-  for (std::size_t row = before; row < nodes_.distance.size(); ++row) {
-    append(nodes_, row, lights, own);
-  }
-  GatheredIrradiance all = sum_of(own.indirect, own.direct, lights);
-  NodeValues values;
   for (std::size_t node = 0; node < batch.nodes; ++node) {
     values.error.push_back(static_cast<float>(all.total(node, layer_powers_).error));
-    values.distance.push_back(nodes_.distance[before + node]);
   }
+  errors_.append(errors_of(all));
   values.irradiance = std::move(all.mean);
   return values;
-}
-
-Estimates GatheredNodes::errors() const {
-  const GatheredIrradiance all = sum_of(nodes_.indirect, nodes_.direct, layer_powers_.size());
-  Estimates errors = all.mean;
-  for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
-    const double light = luminance(glm::dvec3(all.mean.irradiance[i]));
-    errors.irradiance[i] *= light > 0 ? static_cast<float>(all.error(i) / light) : 0.0f;
-  }
-  return errors;
 }
 
 PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
@@ -227,7 +184,9 @@ GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
   const std::size_t lights = layer_powers_.size();
   GatheredParts parts;
   for (const std::uint32_t point : coarse) {
-    append(raw_, raw_of_.at(batch.number[point]), lights, parts);
+    const std::uint32_t row = raw_of_.at(batch.number[point]);
+    parts.indirect.append(raw_.indirect, row, lights);
+    parts.direct.append(raw_.direct, row, lights);
   }
   if (coarse.empty()) return parts;
   const PointLinks links = links_between(batch, coarse);
@@ -243,41 +202,12 @@ GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
                                                   const NodeBatch& batch,
                                                   std::span<const std::uint32_t> fine,
                                                   const NoiseTolerance& tolerated) const {
-  return means_of(layer_powers_.size(), raw, fine.size(), [&](std::size_t i, auto& means) {
-    const std::uint32_t node = fine[i], row = raw_of_.at(batch.number[node]);
-    const GatheredIrradiance::Total own = raw.total(row, layer_powers_);
-    means.add(raw, row, 1.0);
+  return gathering::means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+    const std::uint32_t node = fine[i];
+    mean.add_own(raw, raw_of_.at(batch.number[node]));
     for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
-      const std::uint32_t other = raw_of_.at(batch.number[batch.neighbour[j]]);
-      const double weight = likeness(own, raw.total(other, layer_powers_), tolerated);
-      if (weight > 0) means.add(raw, other, weight);
+      mean.add_other(raw, raw_of_.at(batch.number[batch.neighbour[j]]), tolerated);
     }
-  });
-}
-
-/// Finer nodes averaged with what lies around them at coarser levels.
-///   known   of nodes valued before
-///   found   of the fine nodes
-GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
-                                            const GatheredIrradiance& found, const NodeBatch& batch,
-                                            std::span<const std::uint32_t> fine,
-                                            const NoiseTolerance& tolerated) const {
-  return means_of(layer_powers_.size(), found, fine.size(), [&](std::size_t i, auto& means) {
-    GatheredIrradiance::Total expected;
-    std::array<std::uint32_t, 4> rows;
-    double variance = 0;
-    for (std::size_t parent = 0; parent < rows.size(); ++parent) {
-      rows[parent] = row_of_.at(batch.parents[fine[i]][parent]);
-      const GatheredIrradiance::Total total = known.total(rows[parent], layer_powers_);
-      expected.luminance += 0.25 * total.luminance;
-      variance += 0.25 * total.error * total.error;
-    }
-    expected.error = std::sqrt(variance);
-    const double weight =
-        defaults::weight_of_parents * likeness(found.total(i, layer_powers_), expected, tolerated);
-    means.add(found, i, 1.0);
-    if (weight <= 0) return;
-    for (const std::uint32_t row : rows) means.add(known, row, 0.25 * weight);
   });
 }
 

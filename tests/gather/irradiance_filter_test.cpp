@@ -158,26 +158,28 @@ TEST_CASE("filter: light that few rays find is spread over the points that found
   CHECK(rms_error(after, even, border, side - border) < 0.35 * before);
 }
 
-TEST_CASE("filter: layers have common weights, so that their mix is the filtered mix") {
-  const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 1.6; };
-  const std::vector<double> powers{3, 0.5};
-  const GatheredIrradiance two = noisy(step, 0.05, 5, 2);
-  GatheredIrradiance mix;
-  mix.batches = batches;
+TEST_CASE("filter: noise of a lamp falls beside the border of the sun as it does without the sun") {
+  const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 90.0; };
+  const Truth even = [](int, int) { return 2.0; };
+  const GatheredIrradiance sun = noisy(step, 0.5, 5), lamp = noisy(even, 0.1, 6);
+  GatheredIrradiance both;
+  both.batches = batches;
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
-    mix.mean.irradiance.push_back(3.0f * two.mean.irradiance[2 * i] +
-                                  0.5f * two.mean.irradiance[2 * i + 1]);
-    for (std::size_t b = 0; b < batches; ++b) {
-      mix.batch.push_back(3.0f * two.batch[2 * i * batches + b] +
-                          0.5f * two.batch[(2 * i + 1) * batches + b]);
-    }
+    for (const GatheredIrradiance* one : {&sun, &lamp}) both.append(*one, i, 1);
   }
-  const GatheredIrradiance layers = filter_irradiance(two, lattice(), powers);
-  const GatheredIrradiance whole = filter_irradiance(mix, lattice(), one_light);
+  const GatheredIrradiance layers = filter_irradiance(both, lattice(), std::vector<double>{1, 1});
+  GatheredIrradiance of_sun, of_lamp;
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
-    REQUIRE(3.0f * layers.mean.irradiance[2 * i].g + 0.5f * layers.mean.irradiance[2 * i + 1].g ==
-            Approx(whole.mean.irradiance[i].g).epsilon(1e-4));
+    of_sun.mean.irradiance.push_back(layers.mean.irradiance[2 * i]);
+    of_lamp.mean.irradiance.push_back(layers.mean.irradiance[2 * i + 1]);
   }
+  const auto beside_border = [](const GatheredIrradiance& light, const Truth& truth) {
+    return rms_error(light, truth, side / 2 - 2, side / 2 + 2);
+  };
+  const double alone = beside_border(filter_irradiance(lamp, lattice(), one_light), even);
+  CHECK(alone < 0.5 * beside_border(lamp, even));
+  CHECK(beside_border(of_lamp, even) < 1.1 * alone);
+  CHECK(beside_border(of_sun, step) < 0.5);  // and the border stays
 }
 
 TEST_CASE("filter: sparse layers are filtered as dense ones, on any number of threads") {
