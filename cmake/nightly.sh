@@ -72,19 +72,23 @@ slow() {
   step "slow $1" env PHOTILE_PROPERTIES="$properties" ctest --preset slow --no-tests=error -R "^$1/"
 }
 
-readers=(scene image measuring saved_maps fuzz)
-reader_tests="^($(IFS='|'; echo "${readers[*]}"))/"
+# What reads files, then the stages; random commands reach what is between them.
+sanitized=(scene image measuring saved_maps fuzz trace groups surface maps light_maps daylight glare
+  gather walk property)
+sanitized_tests="^($(IFS='|'; echo "${sanitized[*]}"))/"
 step "build" cmake/build.sh release
 step "quick tests" ctest --preset release --parallel "$jobs"
-for area in app device estimate faults gather groups property reference render runtimes trade \
-  validation; do
+for area in app blender device estimate faults gather groups mpi package property python reference \
+  render runtimes trade validation; do
   slow "$area"
 done
-step "build sanitizers" cmake/build.sh sanitizers "${readers[@]/#/photile_tests_}"
-step "sanitizers" ctest --preset sanitizers --no-tests=error -R "$reader_tests"
-step "build threads" cmake/build.sh threads photile_tests_{view,render} photile_command
+step "build sanitizers" cmake/build.sh sanitizers "${sanitized[@]/#/photile_tests_}"
+step "sanitizers" ctest --preset sanitizers --no-tests=error -R "$sanitized_tests"
+step "build threads" cmake/build.sh threads \
+  photile_tests_{view,render,gather,trace,groups,daylight} photile_command
 # On one processor, where oneTBB has no threads of its own: docs/testing.md.
-step "threads" taskset -c 0 ctest --preset threads --no-tests=error -R "^(view|render/several)"
+step "threads" taskset -c 0 ctest --preset threads --no-tests=error \
+  -R "^((view|gather|trace|groups|daylight)/|render/(several|shared_rendering|load_balance|reproducible))"
 step "build fuzzers" cmake/build.sh fuzzers photile_fuzz
 step "soak" bench/soak.sh "$hours"
 step "build coverage" cmake/build.sh coverage photile_fuzz

@@ -13,10 +13,10 @@
 
 namespace photile::geometry {
 
-/// Sorts items in ascending order of key_of(item), an unsigned number below 2^bits; equal ones keep
-/// their order. Digits from the lowest on, each shared among all cores: 2 (bits / 8) moves of an
-/// item, and room for all of them once more. (Zagha and Blelloch, "Radix sort for vector
-/// multiprocessors", Supercomputing 1991.)
+/// Sorts items in ascending order of key_of(item), an unsigned number below 2^bits, of 64 bits at
+/// most; equal ones keep their order. Digits from the lowest on, each shared among all cores:
+/// 2 (bits / 8) moves of an item, and room for all of them once more. (Zagha and Blelloch, "Radix
+/// sort for vector multiprocessors", Supercomputing 1991.)
 template <class Item, class KeyOf>
 void radix_sort(std::vector<Item>& items, int bits, const KeyOf& key_of) {
   constexpr int digit_bits = 8;  // as many places to write to as caches and TLBs keep at hand

@@ -91,6 +91,7 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
     : used_(asked),
       asked_light_maps_(asked.light_maps),
       asked_passes_(asked.passes),
+      least_radius_(photile::least_radius(rays.scene())),
       scene_(rays.scene().source.filename().string()) {
   check(asked);
   if (asked.processes) check_for_several(asked);
@@ -134,10 +135,15 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
     if (all_photons(used_).store_direct) {
       progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
     }
-    return 1;  // any serves
+    return std::max(1.0, least_radius_);  // any serves
   }
   try {
-    return automatic_radius(photons, used_.neighbours);
+    const double radius = automatic_radius(photons, used_.neighbours);
+    if (radius >= least_radius_) return radius;
+    throw UsageError(fmt::format(
+        "automatic radius: {:.3g} m is less than {:.3g} m, the least in a scene of this "
+        "extent; remove what lies far from the rest, or give a radius",
+        radius, least_radius_));
   } catch (const UsageError& error) {
     throw SettingError(setting_named("radius"), fmt::format("{}: {}", scene_, error.what()));
   }

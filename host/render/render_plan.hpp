@@ -86,7 +86,8 @@ class RenderPlan {
   RenderParameters used_;
   LightMapMode asked_light_maps_;
   int asked_passes_;
-  std::string scene_;  ///< for messages
+  double least_radius_;  ///< metres
+  std::string scene_;    ///< for messages
 };
 
 }  // namespace photile

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint32_t cells_per_axis = 1u << HitCells::bits_per_axis;
 constexpr int code_bits = 3 * HitCells::bits_per_axis;
+constexpr std::uint32_t no_map = (1u << (64 - code_bits)) - 1;  // after all others, within 64 bits
 
 struct Key {
   std::uint64_t order;   ///< map, Morton code
@@ -47,7 +48,7 @@ std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const ge
     std::uint32_t number = first[record];
     for (const EyeHit& hit : records[record].hits) {
       const std::uint32_t own = hit.sided_triangle;
-      const std::uint32_t map = map_of.empty() ? own : map_of[own];
+      const std::uint32_t map = std::min(map_of.empty() ? own : map_of[own], no_map);
       last_map[record] = std::max(last_map[record], map);
       keys[number] = {std::uint64_t{map} << code_bits | cells.morton_code(hit.position), number};
       record_of[number++] = static_cast<std::uint32_t>(record);

@@ -14,7 +14,7 @@ namespace photile::trace {
 /// The cells of a box, equally many along each axis, by which hits on one map are sorted.
 class HitCells {
  public:
-  /// So that code and map together, which are below 2^30 (limits::max_triangles), fit 64 bits.
+  /// So that code and map together, which is below 2^30 (limits::max_triangles), fit 64 bits.
   static constexpr int bits_per_axis = 11;
 
   explicit HitCells(const geometry::Box& box);
@@ -34,7 +34,8 @@ struct HitPlace {
 };
 
 /// All hits in the order map, Morton code of their cell of `box`, place.
-///   map_of   per sided triangle; empty where a sided triangle is the map itself
+///   map_of   per sided triangle, `none`, which is the last, where it has no map; empty where a
+///            sided triangle is the map itself
 std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
                                     std::span<const std::uint32_t> map_of);
 

@@ -1,5 +1,7 @@
 // Small scenes of any shape through groups, maps and estimates, against the oracle: what nobody
 // thought of as a case. PHOTILE_RANDOM_SCENES is how many, PHOTILE_RANDOM_SCENES_SEED the first.
+// Of many, most are tried in one mode, with one number of neighbours and one or two structures.
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -10,6 +12,9 @@ namespace photile::test {
 namespace {
 
 constexpr std::uint64_t quick_scenes = 3;
+/// Beyond the first, one of so many scenes is tried in every mode, with every structure.
+constexpr std::uint64_t whole_trials = 200;
+constexpr std::array neighbour_counts{1, 8, 50};
 
 std::uint64_t number_from(const char* variable, std::uint64_t otherwise) {
   const char* const value = std::getenv(variable);
@@ -70,10 +75,28 @@ TEST_CASE("neighbours and irradiance in scenes at random are the oracle's") {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     CAPTURE(seed);
     RandomScene made(seed);
-    const auto photons = static_cast<std::size_t>(std::pow(10.0f, made.between(0, 3)));
+    const auto photon_count = static_cast<std::size_t>(std::pow(10.0f, made.between(0, 3)));
     const double radius = static_cast<double>(std::pow(10.0f, made.between(-2, 0.5f)));
-    check_against_oracle(made.scene(), uniform_photons(made.scene(), photons, 2 * seed),
-                         uniform_hits(made.scene(), 20, 2 * seed + 1), radius, {1, 8, 50}, true);
+    const Photons photons = uniform_photons(made.scene(), photon_count, 2 * seed);
+    const PrimaryHits hits = uniform_hits(made.scene(), 20, 2 * seed + 1);
+    if (seed < first + quick_scenes || seed % whole_trials == 0) {
+      check_against_oracle(made.scene(), photons, hits, radius,
+                           {neighbour_counts[0], neighbour_counts[1], neighbour_counts[2]}, true);
+      continue;
+    }
+    const auto mode = std::array{MapMode::naive, MapMode::triangle,
+                                 MapMode::patch}[static_cast<std::size_t>(made.whole(0, 2))];
+    const MapsUnderTest maps(made.scene(), photons, hits, radius, mode);
+    const auto k = static_cast<std::size_t>(made.whole(0, 2));
+    const auto check = [&](MapStructure structure) {
+      maps.check(structure, std::span(neighbour_counts).subspan(k, 1), true);
+    };
+    check(MapStructure::uniform_grid);
+    const auto other = static_cast<std::size_t>(
+        made.whole(0, 4 * static_cast<int>(std::size(all_map_structures)) - 1));
+    if (other < std::size(all_map_structures) && maps.has(all_map_structures[other])) {
+      check(all_map_structures[other]);
+    }
   }
 }
 

@@ -61,7 +61,8 @@ class PlateSource : public NodeSource {
 /// Floor triangles come first; the side that looks up.
 std::uint32_t floor_under(const Scene& scene, const glm::vec3& p) {
   for (std::uint32_t t = 0; t < 8; ++t) {
-    const auto [a, b, c] = scene.corners(t);
+    const auto corners = scene.corners(t);
+    const glm::vec3 a = corners[0], b = corners[1], c = corners[2];
     const auto left = [&](const glm::vec3& from, const glm::vec3& to) {
       return glm::cross(to - from, p - from).z * glm::cross(b - a, c - a).z >= 0.0f;
     };

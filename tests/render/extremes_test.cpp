@@ -264,6 +264,30 @@ TEST_CASE("extremes: a lamp of a millimetre in a hall of 1e5 m lights it as theo
   CHECK_VERDICT(test::mean_is(within, 0.5, 0.02));
 }
 
+TEST_CASE(
+    "a room and a triangle as far away as the sun: an error says why there is no automatic "
+    "radius") {
+  const std::string room =
+      "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n"
+      "usemtl wall\nf 1 4 3 2\nusemtl lamp\nf 5 6 7 8\n";
+  const std::string far = "v 9e11 0 0\nv 9e11 1e10 0\nv 9e11 0 1e10\nusemtl wall\nf 9 10 11\n";
+  RenderParameters parameters = one_pass_picture();
+  parameters.photons.emitted_photons = 2'000;
+  parameters.film.width = parameters.film.height = 8;
+  const auto error_of = [&](const std::string& obj) {
+    try {
+      const Scene scene = test::load_obj(obj, test::lamp_and_wall);
+      render(scene, scene.cameras.front(), test::device(), parameters);
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(error_of(room).empty());
+  CHECK_THAT(error_of(room + far),
+             Catch::Contains("automatic radius") && Catch::Contains("far from the rest"));
+}
+
 TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a line") {
   RenderParameters parameters = one_pass_picture();
   parameters.photons.emitted_photons = 500;

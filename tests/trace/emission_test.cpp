@@ -67,8 +67,9 @@ TEST_CASE("A point light fills the rings below it by their solid angles") {
 }
 
 TEST_CASE("A spot light fills the rings below it by the falloff of KHR_lights_punctual") {
-  for (const auto& [inner, outer] :
+  for (const auto& cone :
        {std::pair{0.0f, 0.7853982f}, std::pair{0.3f, 0.6f}, std::pair{0.5f, 0.5f}}) {
+    const auto inner = cone.first, outer = cone.second;
     const Scene scene = lit_plate(spot_light(inner, outer));
     // Intensity at an angle as the extension's specification writes it, integrated numerically.
     const double cos_outer = std::cos(outer), width = std::cos(inner) - cos_outer;
