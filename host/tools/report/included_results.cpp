@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "common/json_object.hpp"
@@ -28,9 +29,10 @@ std::string place_text(const json& place) {
                      place.at(2).get<double>());
 }
 
-/// -1 where nothing is seen.
-double ugr_of(const json& observer) {
-  return observer.at("ugr").is_null() ? -1.0 : observer["ugr"].at("value").get<double>();
+/// None where no lamp is seen.
+std::optional<double> ugr_of(const json& observer) {
+  if (observer.at("ugr").is_null()) return std::nullopt;
+  return observer["ugr"].at("value").get<double>();
 }
 
 ReportTable glare_table(std::vector<json> observers) {
@@ -53,12 +55,12 @@ ReportTable glare_table(std::vector<json> observers) {
 void judge_glare(const json& observers, const Requirement& requirement, IncludedResults& results) {
   if (!(requirement.glare > 0)) return;
   for (const json& each : observers) {
-    const double value = ugr_of(each);
-    if (value < 0 || (results.glare && results.glare->measured.value >= value)) continue;
+    const std::optional<double> value = ugr_of(each);
+    if (!value || (results.glare && results.glare->measured.value >= *value)) continue;
     results.glare = {each.at("name").get<std::string>(),
                      "UGR",
                      requirement.glare,
-                     {value, each["ugr"].at("standard_error").get<double>()},
+                     {*value, each["ugr"].at("standard_error").get<double>()},
                      true};
   }
 }
