@@ -112,9 +112,10 @@ struct RunLight {
         }
         return looks.found(rays);
       };
-      const int again = defaults::looks_again * looks_per_batch;
+      const int again = std::min(defaults::looks_again * looks_per_batch,
+                                 defaults::most_looks_again / parameters.batches);
       std::span<const trace::LampLooks::Found> found = found_by(looks_per_batch);
-      if (again * parameters.batches <= defaults::most_looks_again && is_uncertain(found, indirect))
+      if (again > looks_per_batch && is_uncertain(found, indirect))
         found = found_by(again);
       for (const auto& light : found) sums.add(light.layer, light.tag, light.irradiance);
       return;

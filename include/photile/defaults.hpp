@@ -53,10 +53,9 @@ inline constexpr float strong_lobe = 0.2f;
 /// sky may be seen through a window, more.
 inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;
 /// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks
-/// so many times as often, unless that is more often than `most_looks_again`: 2% shows as ragged
-/// borders.
+/// so many times as often, but at most `most_looks_again` times: 2% shows as ragged borders.
 inline constexpr double tolerated_look_error = 0.02;
-inline constexpr int looks_again = 4, most_looks_again = 128;
+inline constexpr int looks_again = 4, most_looks_again = 256;
 /// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one place to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
