@@ -1,103 +1,91 @@
 #!/usr/bin/python3
 """Faults drawn at random from the code, rather than chosen: which share of them the tests notice.
 
-    bench/drawn_mutants.py [--count N] [--seed N] [--host] [--build FOLDER] [--tree FOLDER]
+    bench/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--seconds N] [--list] [--page]
 
-Each changes one operator, bound or number of a line: < for <=, + for -, min for max, a whole number by
-one, another by a tenth. Those of kernels/ are run by the tests of the build at hand, as mutants.py does
-it; with --host also those of the folders groups, surface and trace, which are built in a worktree. A
-mutant that does not compile does not count. Survivors are printed with their line: some change nothing
-(a number of photons a block, the order of a sum), and a person has to look which. Results are added to
-docs/testing/drawn_mutants.json; the same seed draws the same mutants of the same code.
+Each changes one operator, bound, constant or truth value of a line (mutant_sites.py) of kernels/ or of
+the folders groups, surface and trace of host/. Mutants of kernels are copies of the folder that
+PHOTILE_KERNEL_DIR names; those of the host are in one build (mutant_schemata.py), linked with the objects
+of the build at hand. Tests that noticed most in the least time come first, and the first that fails
+ends a mutant; one that does not compile does not count.
+
+Results are added to docs/testing/drawn_mutants.json, and those there are not run again. Survivors
+need a look: "equivalent" with a reason there if no result can change, a test otherwise. --page writes the
+share into docs/testing.md.
 """
 
 import argparse
-import dataclasses
+import fcntl
+import hashlib
 import json
 import math
+import os
 import pathlib
 import random
-import re
+import shutil
 import subprocess
 import sys
+import time
 
-import mutants
-from mutant_list import Mutant
+import mutant_sites
+from mutant_builder import Builder, DoesNotCompile
+from mutant_schemata import HEADER, Schemata
+from mutant_tests import CannotRun, Order, Step, run_step, steps_of_folder
+from report_section import replace_section
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs/testing/drawn_mutants.json"
-SECONDS = 1200  # of a program of tests, ten times what it takes; a mutant beyond has been noticed
-
-# Those of the estimate that find most. What excludes comes first: behind a name it would be part of it.
-ESTIMATE_TESTS = ",".join(
-    f"~[slow]{name}*" for name in (
-        "the exact law", "every strategy", "neighbours equal", "irradiance equals", "tiles find",
-        "maps of patches", "clipped irradiance", "tiles on a floor", "thin plates", "extremes"))
-# By the folder of kernels/, the likeliest to notice first: one that notices ends it.
-KERNEL_TESTS = (("estimate", ESTIMATE_TESTS), ("maps", "~[slow]~[long]"))
-GRID_TESTS = tuple(reversed(KERNEL_TESTS))
 HOST_FOLDERS = ("groups", "surface", "trace")
 
-OPERATORS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "+": "-", "-": "+",
-             "*": "/", "/": "*", "&&": "||", "||": "&&", "+=": "-=", "-=": "+="}
-SITES = re.compile(
-    r"(?<=\s)(?:<=|>=|==|!=|&&|\|\||\+=|-=|[<>+\-*/])(?=\s)"  # between blanks: no template, no pointer
-    r"|\b(?:min|max)(?=\()"
-    r"|(?<![\w.])\d+\.\d+(?:e[+-]?\d+)?f?\b|(?<![\w.])\d+(?![\w.])")
+# Cases of the tests of kernels, each with few variants to compile.
+KERNEL_CASES = {
+    "estimate": (
+        "irradiance equals the oracle's for one light",
+        "every strategy and vector width gives the oracle's irradiance for one light",
+        "neighbours equal the oracle's on a plate, for few and many photons and any k",
+        "neighbours equal the oracle's on a torus with triangles smaller than the radius",
+        "neighbours equal the oracle's where three plates meet and two lie back to back",
+        "ties at the border of the neighbourhood go to the smallest photon indices",
+        "clipped irradiance on plates of any triangulation equals the oracle's",
+        "clipped irradiance where surfaces bend out of the slab equals the oracle's",
+        "clipped irradiance on vertices and edges to the last bit equals the oracle's",
+        "the exact law of the estimate in a corner of 45 degrees",
+        "areas at corners, edges and T-junctions of the bundled rooms are the oracle's",
+        "tiles find the oracle's neighbours up to the radius, on either side of every border",
+        "tiles on a floor read 1, in their middle and at the border of the floor",
+        "thin plates of 1 to 20 mm read 1 on their faces: their insides count for nothing",
+        "maps of patches find the oracle's neighbours on a fine torus",
+        "irradiance equals the oracle's per light, for few and for many lights",
+        "glossy radiance equals the BSDF summed over the oracle's neighbours in double",
+        "weighted irradiance equals the oracle's for one light and for many, for any k",
+        "lanes differ from vectors in the order of sums alone",
+        "a hit keeps the lights that reach it, each once, however many there are",
+        "k beyond a heap in private memory and beyond a tile gives the oracle's irradiance",
+        "extremes: photons within the radius by less than rounding moves them across cells",
+        "extremes: surfaces less than a float's rounding apart count as one",
+        "extremes: photons and hits on corners, edges and cell borders, and on the radius",
+        "neighbours equal the oracle's among 2^20 + 1 photons"),
+    "maps": ("[#grid_contents_test]~[slow]~[long]", "[#prefix_sum_test]~[slow]"),
+    "surface": ("[#arctangent_test]", "[#logarithm_test]")}
+# Beyond the tests of the folder itself.
+FURTHER_TESTS = {
+    "groups": (("maps", "grid_contents"), ("estimate", "patches_vs_oracle"),
+               ("estimate", "neighbours_vs_oracle")),
+    "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "plate_irradiance"),
+                ("estimate", "clipped_surfaces")),
+    "trace": (("reference", "form_factors"), ("reference", "path_direct_light"),
+              ("reference", "path_materials"), ("reference", "path_interreflection"),
+              ("render", "direct_rays"), ("gather", "irradiance_gather"), ("measuring", "gather"),
+              ("light_maps", "light_map_sensors"), ("render", "final_gather"))}
 
 
-def changed(token):
-    if token in OPERATORS:
-        return OPERATORS[token]
-    if token in ("min", "max"):
-        return "max" if token == "min" else "min"
-    if token.isdigit():
-        return str(int(token) + 1)
-    number = float(token.rstrip("f"))
-    return f"{1.1 * number or 0.1:.9g}" + ("f" if token.endswith("f") else "")
+def host_files():
+    return [file for folder in HOST_FOLDERS
+            for file in sorted((ROOT / "host" / folder).glob("**/*.[ch]pp"))]
 
 
-def code_lines(text):
-    """(number, line) of those that hold code: no comments, directives or strings."""
-    in_comment = False
-    for number, line in enumerate(text.splitlines()):
-        bare = line.strip()
-        if in_comment or bare.startswith(("//", "#", "/*")) or '"' in line or "static_assert" in line:
-            in_comment = (in_comment or bare.startswith("/*")) and "*/" not in bare
-            continue
-        yield number, line.split("//")[0]
-
-
-def unique_text(lines, number):
-    """How many lines before it make a line unique in its file."""
-    text = "\n".join(lines)
-    for first in range(number, -1, -1):
-        if text.count("\n".join(lines[first:number + 1])) == 1:
-            return first
-    return None
-
-
-def sites(files):
-    """Every mutant that there is."""
-    for file in files:
-        text = file.read_text(encoding="utf-8")
-        lines = text.splitlines()
-        name = str(file.relative_to(ROOT))
-        folder = file.relative_to(ROOT).parts[1]
-        tests = ((folder, "~[slow]"),)
-        if name.startswith("kernels/"):
-            tests = GRID_TESTS if folder == "grid" else KERNEL_TESTS
-        for number, code in code_lines(text):
-            for site in SITES.finditer(code):
-                first = unique_text(lines, number)
-                if first is None:
-                    continue
-                line = lines[number]
-                new = line[:site.start()] + changed(site.group()) + line[site.end():]
-                before = lines[first:number]
-                yield Mutant(f"{name}:{number + 1}:{site.start() + 1} {site.group()} -> "
-                             f"{changed(site.group())}", name, "\n".join([*before, line]),
-                             "\n".join([*before, new]), tests)
+def all_sites():
+    return list(mutant_sites.sites(ROOT, sorted(ROOT.glob("kernels/**/*.cl*")) + host_files()))
 
 
 def wilson(killed, count):
@@ -110,58 +98,214 @@ def wilson(killed, count):
     return middle - half, middle + half
 
 
+class Kernels:
+    """Runs mutants of kernels/ with the programs of the build."""
+
+    def __init__(self, build, work):
+        self.build, self.work = build, work
+        self.steps = [Step(folder, (case,)) for folder, cases in KERNEL_CASES.items() for case in cases]
+        # Kernels that do not include the mutant's file are compiled once for all.
+        self.environment = {**os.environ, "XDG_CACHE_HOME": str(work / "cache"),
+                            "POCL_CACHE_DIR": str(work / "cache/pocl")}
+        (work / "cache/pocl").mkdir(parents=True, exist_ok=True)
+        self.environment.pop("PHOTILE_KERNEL_DIR", None)
+
+    def prepare(self, site):
+        shutil.rmtree(self.work / "kernels", ignore_errors=True)
+        shutil.copytree(ROOT / "kernels", self.work / "kernels")
+        (self.work / site.file).write_text(site.apply((ROOT / site.file).read_text(encoding="utf-8")),
+                                           encoding="utf-8")
+
+    def program(self, folder):
+        return self.build / f"tests/{folder}/photile_tests_{folder}"
+
+    def matters(self, step):
+        return True
+
+    def run(self, step, mutated, limit):
+        environment = dict(self.environment)
+        if mutated:
+            environment["PHOTILE_KERNEL_DIR"] = str(self.work / "kernels")
+        return run_step(self.program(step.folder), step, environment, limit)
+
+
+class Host:
+    """Runs mutants of host/ in their common build, or in one of their own."""
+
+    def __init__(self, build, work, sites, order):
+        builder = Builder(build, work)
+        self.builder, self.work = builder, work
+        self.schemata = Schemata(builder, sites, HOST_FOLDERS)
+        self.numbers = {site.name: number for number, site in self.schemata.sites.items()}
+        self.own = {}  # programs of a mutant that is built alone
+        self.number = 0
+        self.reached = {}  # step -> numbers of the mutants that can change what it does
+        self.folder_steps = {
+            folder: steps_of_folder(self.schemata.program(folder), folder, work / f"{folder}.json",
+                                    order)
+            for folder in HOST_FOLDERS}
+
+    def steps(self, folder):
+        return self.folder_steps[folder] + [Step(other, (f"[#{file}_test]~[slow]",))
+                                            for other, file in FURTHER_TESTS[folder]]
+
+    def prepare(self, site):
+        self.own, self.number = {}, self.numbers[site.name]
+        if self.number not in self.schemata.alone:
+            return
+        copy, text = self.work / site.file, (ROOT / site.file).read_text(encoding="utf-8")
+        instrumented = copy.read_text(encoding="utf-8")
+        copy.write_text(site.apply(text), encoding="utf-8")
+        readers = self.builder.objects_that_read(site.file, HOST_FOLDERS)
+        try:
+            self.own = {name: self.builder.compile(name, ["-Wno-narrowing", "-include", str(HEADER)], "own")
+                        for name in readers if name in self.schemata.objects}
+        except DoesNotCompile:
+            raise CannotRun("it does not compile") from None
+        finally:
+            copy.write_text(instrumented, encoding="utf-8")
+        self.own_programs = {}
+
+    def matters(self, step):
+        """Whether the mutant gives a value of its own anywhere in the step; asked once for all mutants."""
+        if self.own:
+            return True
+        if step.key not in self.reached:
+            file = self.work / "reached" / f"{hashlib.sha256(step.key.encode()).hexdigest()[:16]}.txt"
+            if not file.is_file():
+                file.parent.mkdir(exist_ok=True)
+                part = file.with_suffix(".part")
+                part.unlink(missing_ok=True)
+                environment = {**os.environ, "PHOTILE_MUTANT_RECORD": str(part)}
+                outcome = run_step(self.schemata.program(step.folder), step, environment)
+                if outcome.failed or outcome.crashed:
+                    raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
+                part.touch()  # a step that comes by no mutant writes none
+                part.rename(file)
+            self.reached[step.key] = {int(line) for line in file.read_text(encoding="utf-8").split()}
+        return self.number in self.reached[step.key]
+
+    def run(self, step, mutated, limit):
+        if mutated and self.own:
+            if step.folder not in self.own_programs:
+                self.own_programs[step.folder] = self.builder.link(
+                    step.folder, {**self.schemata.objects, **self.own}, "own")
+            return run_step(self.own_programs[step.folder], step, None, limit)
+        environment = {**os.environ, "PHOTILE_MUTANT": str(self.number if mutated else 0)}
+        return run_step(self.schemata.program(step.folder), step, environment, limit)
+
+
+def try_mutant(site, runner, steps, order):
+    """The test that noticed, or None; with the steps run."""
+    area = "/".join(site.file.split("/")[:2])
+    runner.prepare(site)
+    for step in order.of(steps, area, pathlib.PurePath(site.file).stem if area[0] == "h" else ""):
+        if not runner.matters(step):
+            continue
+        if not order.passed_before(step):
+            outcome = runner.run(step, False, None)
+            if outcome.failed or outcome.crashed:
+                raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
+            order.note(step, outcome.seconds)
+        outcome = runner.run(step, True, order.limit(step))
+        noticed = bool(outcome.failed or outcome.crashed)
+        order.count(step, area, noticed)
+        if noticed:
+            return f"{step.folder}/{outcome.failed[0]}" if outcome.failed else f"{step.folder}: crash"
+        order.note(step, outcome.seconds)
+    return None
+
+
+def stored():
+    text = RESULTS.read_text(encoding="utf-8") if RESULTS.is_file() else ""
+    return json.loads(text or "{}")
+
+
+def store(name, result):
+    with open(RESULTS, "a", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        text = json.dumps({**stored(), name: result}, indent=1) + "\n"
+        RESULTS.write_text(text, encoding="utf-8")
+
+
+def run_all(options, drawn):
+    work = options.build.parent / "mutants"
+    work.mkdir(exist_ok=True)
+    order = Order(work / f"order_{options.only or 'all'}.json")
+    results = stored()
+    left = [site for site in drawn if site.name not in results
+            and (not options.only or site.file.startswith(options.only))]
+    end = time.monotonic() + options.seconds
+    host = None
+    kernels = Kernels(options.build, work)
+    for site in left:
+        if time.monotonic() > end:
+            break
+        in_host = site.file.startswith("host/")
+        if in_host and host is None:
+            host = Host(options.build, work, [site for site in drawn if site.file.startswith("host/")],
+                        order)
+        runner = host if in_host else kernels
+        steps = host.steps(site.file.split("/")[1]) if in_host else kernels.steps
+        before = os.times()
+        try:
+            noticed = try_mutant(site, runner, steps, order)
+            result = {"noticed": noticed} if noticed else {"survives": ""}
+        except CannotRun as reason:
+            result = {"not_counted": str(reason).splitlines()[0]}
+        after = os.times()
+        result["seconds"] = round(after.children_user + after.children_system
+                                  - before.children_user - before.children_system, 1)
+        store(site.name, result)
+        print(f"{site.name}: {result}", flush=True)
+
+
+def page(drawn):
+    """The section of docs/testing.md."""
+    results = stored()
+    results = {site.name: results[site.name] for site in drawn if site.name in results}
+    rows = ["| | drawn | noticed | equivalent | survive | does not compile | share noticed |",
+            "|---|--:|--:|--:|--:|--:|---|"]
+    areas = {"kernels": "kernels/", "groups": "host/groups/", "surface": "host/surface/",
+             "trace": "host/trace/", "all": ""}
+    for name, start in areas.items():
+        of_area = [result for mutant, result in results.items() if mutant.startswith(start)]
+        noticed = sum("noticed" in result for result in of_area)
+        equivalent = sum("equivalent" in result for result in of_area)
+        survive = sum("survives" in result for result in of_area)
+        low, high = wilson(noticed, noticed + survive)
+        share = f"{100 * noticed / max(noticed + survive, 1):.1f}% ({100 * low:.0f} to {100 * high:.0f}%)"
+        rows.append(f"| {name} | {len(of_area)} | {noticed} | {equivalent} | {survive} | "
+                    f"{len(of_area) - noticed - equivalent - survive} | {share} |")
+    return "\n".join(rows) + "\n"
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=300)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--host", action="store_true")
+    parser.add_argument("--seed", type=int, default=29)
+    parser.add_argument("--only", choices=("kernels", "host"))
+    parser.add_argument("--seconds", type=float, default=math.inf, help="after which none is begun")
     parser.add_argument("--list", action="store_true", help="print those drawn, run none")
-    parser.add_argument("--tree", type=pathlib.Path, default=ROOT / "out/mutants/tree")
+    parser.add_argument("--page", action="store_true", help="write docs/testing.md, run none")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
     return parser.parse_args()
 
 
 def main():
     options = arguments()
-    files = sorted(ROOT.glob("kernels/**/*.cl*"))
-    if options.host:
-        for folder in HOST_FOLDERS:
-            files += sorted((ROOT / "host" / folder).glob("**/*.cpp"))
-    everything = list(sites(files))
+    everything = all_sites()
     drawn = random.Random(options.seed).sample(everything, min(options.count, len(everything)))
     if options.list:
-        print("\n".join(mutant.name for mutant in drawn))
-        return
-    runner = mutants.Runner(options)
-    mutants.SECONDS = SECONDS
-    mutants.CATCH_OPTIONS = ("--abort",)  # one that notices is enough
-    results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.is_file() else {}
-    killed = survived = 0
-    for mutant in drawn:
-        # One that notices is enough.
-        noticed = []
-        try:
-            for tests in mutant.tests:
-                one = dataclasses.replace(mutant, tests=(tests,))
-                noticed = runner.in_kernels(one) if mutant.in_kernels else runner.in_host(one)
-                if noticed:
-                    break
-        except mutants.CannotRun as reason:
-            print(f"{mutant.name}: not counted: {str(reason).splitlines()[0]}", flush=True)
-            continue
-        killed += bool(noticed)
-        survived += not noticed
-        results[mutant.name] = noticed[:2]
-        print(f"{mutant.name}: {'; '.join(noticed[:2]) or 'SURVIVES: ' + mutant.replace.strip()}",
-              flush=True)
-        RESULTS.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
-    low, high = wilson(killed, killed + survived)
-    print(f"{killed} of {killed + survived} noticed, of {len(everything)} that there are: "
-          f"between {100 * low:.0f}% and {100 * high:.0f}% with a confidence of 95%")
+        print("\n".join(site.name for site in drawn))
+    elif options.page:
+        replace_section(ROOT / "docs/testing.md", "drawn_mutants.py", page(drawn))
+    else:
+        run_all(options, drawn)
 
 
 if __name__ == "__main__":
     try:
         main()
-    except (OSError, ValueError, subprocess.CalledProcessError) as error:
+    except (OSError, ValueError, CannotRun, DoesNotCompile, subprocess.CalledProcessError) as error:
         sys.exit(f"drawn_mutants.py: error: {error}")

@@ -54,7 +54,7 @@ MUTANTS = (
            (("estimate", "clipped irradiance on vertices*"),)),
     Mutant("edges of other triangles without a side", "kernels/surface/facet_border.clh",
            "const octet_int within = own_triangle | (side > 0.0f);", "const octet_int within = own_triangle;",
-           (("estimate", "slits, T-junctions and needles*"),)),
+           (("estimate", r"slits\, T-junctions and needles*"),)),
     Mutant("all heights in the slab", "kernels/estimate/estimate_hit.clh",
            "return fabs((x + y) + z) <= height;", "return fabs((x + y) + z) <= INFINITY;",
            (("estimate", "clipped irradiance on a torus*"),)),

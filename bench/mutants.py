@@ -1,51 +1,38 @@
 #!/usr/bin/python3
 """Builds faults into photile, one at a time, and says which tests notice: docs/testing.md.
 
-    bench/mutants.py [NAME...] [--redraw] [--tree FOLDER] [--build FOLDER]
+    bench/mutants.py [NAME...] [--redraw] [--build FOLDER]
 
 NAME is a part of the name of those to run; default: all of bench/mutant_list.py. Kernels are changed in
-a copy that PHOTILE_KERNEL_DIR names and run by the tests of the build at hand; other files in a
-worktree of the last commit, which is built with its tests (minutes the first time; ccache helps).
+a copy that PHOTILE_KERNEL_DIR names and run by the tests of the build at hand; of the host, the objects
+that hold a changed file are compiled again and linked with those of that build (mutant_builder.py).
 Every test first has to pass without the mutant. Results stay in docs/testing, and those of earlier runs
 are kept, so that the table can be made in parts.
 """
 
 import argparse
-import dataclasses
 import json
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
-import xml.etree.ElementTree
 
+import mutant_tests
+from mutant_builder import Builder, DoesNotCompile
 from mutant_list import MUTANTS
+from mutant_tests import CannotRun
 from report_section import replace_section
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs/testing/mutants.json"
-SECONDS = None  # that a program of tests may take; one that takes longer counts as a crash
-CATCH_OPTIONS = ()
-
-
-class CannotRun(Exception):
-    """Why nothing can be said about a mutant."""
-
-
-@dataclasses.dataclass
-class Outcome:
-    failed: list  # names of tests
-    crashed: bool
+LIMIT = 600  # seconds of the processor that tests may take; one that takes longer counts as a crash
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--redraw", action="store_true", help="make the table from docs/testing alone")
-    parser.add_argument("--tree", type=pathlib.Path, default=ROOT / "out/mutants/tree",
-                        help="worktree for what has to be built; default: %(default)s")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release",
                         help="where the tests that mutants of kernels run are; default: %(default)s")
     return parser.parse_args()
@@ -61,96 +48,62 @@ def mutate(folder, mutant):
     return text
 
 
-def run_tests(build, folder, specification, kernels=None):
-    """Runs tests of a folder of tests/, with the kernels of another folder if one is given."""
-    environment = dict(os.environ)
-    environment.pop("PHOTILE_KERNEL_DIR", None)
-    if kernels:
-        environment["PHOTILE_KERNEL_DIR"] = str(kernels)
+def program_of(build, folder):
     program = build / "tests" / folder / f"photile_tests_{folder}"
     if not program.is_file():
         raise CannotRun(f"{program} is missing; build the target photile_tests_{folder}")
-    with tempfile.NamedTemporaryFile(suffix=".xml") as report:
-        try:
-            done = subprocess.run([program, specification, *CATCH_OPTIONS, "--reporter", "xml",
-                                   "--out", report.name],
-                                  env=environment, capture_output=True, text=True, check=False,
-                                  timeout=SECONDS)
-        except subprocess.TimeoutExpired:
-            return Outcome([], True)
-        text = pathlib.Path(report.name).read_text(encoding="utf-8", errors="replace")
-    if "does not compile" in text or "BUILD_PROGRAM_FAILURE" in text:
-        raise CannotRun("the mutant's kernels do not compile")
-    try:
-        cases = list(xml.etree.ElementTree.fromstring(text).iter("TestCase"))
-    except xml.etree.ElementTree.ParseError:
-        return Outcome([], True)
-    if not cases:
-        raise CannotRun(f"no test of {folder} matches {specification!r}")
-    failed = [case.get("name") for case in cases
-              if case.find("OverallResult").get("success") != "true"]
-    return Outcome(failed, done.returncode != 0 and not failed)
-
-
-def build_tree(tree, folders):
-    if not (tree / ".git").exists():
-        subprocess.run(["git", "-C", ROOT, "worktree", "prune"], check=True)
-        subprocess.run(["git", "-C", ROOT, "worktree", "add", "--force", "--detach", tree],
-                       check=True, capture_output=True)
-    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    subprocess.run(["cmake", "--preset", "release", *launcher], cwd=tree, check=True,
-                   capture_output=True)
-    done = subprocess.run(["cmake", "--build", "--preset", "release", "--parallel",
-                           str(os.cpu_count()), "--target",
-                           *(f"photile_tests_{folder}" for folder in sorted(folders))], cwd=tree,
-                          check=False, capture_output=True, text=True)
-    if done.returncode != 0:
-        raise CannotRun("it does not compile: " + "".join(done.stdout.splitlines(True)[-20:]))
-    return tree / "build/release"
+    return program
 
 
 class Runner:
     def __init__(self, options):
-        self.options = options
-        self.baselines = {}  # (build, folder, specification) -> Outcome
+        self.build = options.build
+        self.work = options.build.parent / "mutants"
+        self.builder = None
+        self.baselines = {}  # (folder, specification) -> Outcome
 
-    def _baseline(self, build, folder, specification):
-        key = build, folder, specification
-        if key not in self.baselines:
-            self.baselines[key] = run_tests(build, folder, specification)
-        outcome = self.baselines[key]
-        if outcome.failed or outcome.crashed:
-            raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
+    def _check_baselines(self, mutant):
+        for tests in mutant.tests:
+            if tests not in self.baselines:
+                self.baselines[tests] = mutant_tests.run(program_of(self.build, tests[0]), [tests[1]])
+            outcome = self.baselines[tests]
+            if outcome.failed or outcome.crashed:
+                raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
 
-    def _tests(self, mutant, build, kernels=None):
+    @staticmethod
+    def _noticed(mutant, programs, environment=None):
         noticed = []
         for folder, specification in mutant.tests:
-            outcome = run_tests(build, folder, specification, kernels)
+            outcome = mutant_tests.run(programs[folder], [specification], environment, LIMIT)
             noticed += [f"{folder}/{name}" for name in outcome.failed]
             if outcome.crashed:
                 noticed.append(f"{folder}: crash")
         return noticed
 
     def in_kernels(self, mutant):
-        for folder, specification in mutant.tests:
-            self._baseline(self.options.build, folder, specification)
-        with tempfile.TemporaryDirectory(prefix="photile-mutant-") as folder:
-            copy = pathlib.Path(folder)
-            shutil.copytree(ROOT / "kernels", copy / "kernels")
-            mutate(copy, mutant)
-            return self._tests(mutant, self.options.build, copy / "kernels")
+        self._check_baselines(mutant)
+        shutil.rmtree(self.work / "kernels", ignore_errors=True)
+        shutil.copytree(ROOT / "kernels", self.work / "kernels")
+        mutate(self.work, mutant)
+        environment = {**os.environ, "PHOTILE_KERNEL_DIR": str(self.work / "kernels")}
+        return self._noticed(mutant, {folder: program_of(self.build, folder)
+                                      for folder, _ in mutant.tests}, environment)
 
     def in_host(self, mutant):
-        folders = {folder for folder, _ in mutant.tests}
-        build = build_tree(self.options.tree, folders)
-        for folder, specification in mutant.tests:
-            self._baseline(build, folder, specification)
-        text = mutate(self.options.tree, mutant)
+        self._check_baselines(mutant)
+        if self.builder is None:
+            self.builder = Builder(self.build, self.work)
+        folders = [folder for folder, _ in mutant.tests]
+        text = mutate(self.work, mutant)
         try:
-            build_tree(self.options.tree, folders)
-            return self._tests(mutant, build)
+            objects = {name: self.builder.compile(name, (), "own")
+                       for name in self.builder.objects_that_read(mutant.file, folders)}
+        except DoesNotCompile as failure:
+            raise CannotRun("it does not compile: " + str(failure)) from None
         finally:
-            (self.options.tree / mutant.file).write_text(text, encoding="utf-8")
+            (self.work / mutant.file).write_text(text, encoding="utf-8")
+        return self._noticed(mutant, {folder: self.builder.link(folder, objects, "own")
+                                      for folder in folders})
 
 
 def stored_results():
@@ -208,5 +161,5 @@ def main():
 if __name__ == "__main__":
     try:
         main()
-    except (OSError, ValueError, subprocess.CalledProcessError) as error:
+    except (OSError, ValueError, DoesNotCompile, subprocess.CalledProcessError) as error:
         sys.exit(f"mutants.py: error: {error}")

@@ -4,7 +4,10 @@
     tests/bench/mutants_test.py
 """
 
+import json
+import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -12,6 +15,9 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 import drawn_mutants
+import mutant_schemata
+import mutant_sites
+import mutant_tests
 import mutants
 from mutant_list import MUTANTS, Mutant
 
@@ -32,35 +38,111 @@ class Texts(unittest.TestCase):
 
 
 class Drawn(unittest.TestCase):
-    def test_every_one_changes_one_place_of_a_line_of_code(self):
-        drawn = list(drawn_mutants.sites(sorted(ROOT.glob("kernels/estimate/*.cl*"))))
+    def test_every_one_changes_one_line_of_code_at_its_place(self):
+        drawn = list(mutant_sites.sites(ROOT, sorted(ROOT.glob("kernels/estimate/*.cl*"))))
         self.assertGreater(len(drawn), 300)
-        for mutant in drawn:
-            text = (ROOT / mutant.file).read_text(encoding="utf-8")
-            self.assertEqual((mutant.name, text.count(mutant.find)), (mutant.name, 1))
-            self.assertNotEqual(mutant.find, mutant.replace)
-            self.assertFalse(mutant.find.splitlines()[-1].strip().startswith("//"))
+        self.assertEqual(len({site.name for site in drawn}), len(drawn))
+        for site in drawn:
+            before = (ROOT / site.file).read_text(encoding="utf-8").split("\n")
+            after = site.apply("\n".join(before)).split("\n")
+            different = [i for i in range(len(before)) if before[i] != after[i]]
+            self.assertEqual(different, [site.line], site.name)
+            self.assertFalse(before[site.line].strip().startswith("//"))
 
-    def test_the_tests_of_kernels_are_there(self):
-        for folder, specification in drawn_mutants.KERNEL_TESTS:
+    def test_the_tests_to_run_are_there(self):
+        for folder, cases in drawn_mutants.KERNEL_CASES.items():
             sources = "".join(file.read_text(encoding="utf-8")
                               for file in (ROOT / "tests" / folder).glob("*.cpp"))
-            for pattern in specification.split(","):
-                name = pattern.rpartition("]")[2]
-                self.assertNotIn("~", name)  # behind a name, it excludes nothing: no test matches
-                if name:
-                    self.assertTrue(f'TEST_CASE("{name.rstrip("*")}' in sources, name)
+            for name in cases:
+                if name.startswith("["):
+                    self.assertTrue((ROOT / f"tests/{folder}/{name[2:name.index(']')]}.cpp").is_file(), name)
+                else:
+                    self.assertIn(f'TEST_CASE("{name}"', sources)
+        for tests in drawn_mutants.FURTHER_TESTS.values():
+            for folder, file in tests:
+                self.assertTrue((ROOT / f"tests/{folder}/{file}_test.cpp").is_file(), file)
 
     def test_operators_and_numbers_become_others(self):
         for before, after in (("<", "<="), ("max", "min"), ("16", "17"), ("0.5f", "0.55f"),
-                              ("0.0f", "0.1f"), ("&&", "||")):
-            self.assertEqual(drawn_mutants.changed(before), after)
+                              ("0.0f", "0.1f"), ("&&", "||"), (">>", "<<"), ("true", "false"), ("!", "")):
+            self.assertEqual(mutant_sites.changed(before), after)
+
+    def test_templates_pointers_signs_and_comments_are_no_sites(self):
+        for line in ("std::vector<int> a;", "const T& a = *b;", "f(-x);", "// a < b", "  * 2", "a->b();"):
+            self.assertEqual([token.group() for _, code in mutant_sites.code_lines(line)
+                              for token in mutant_sites.SITES.finditer(code)
+                              if not token.group().isdigit()], [], line)
 
     def test_the_interval_holds_the_share_and_is_never_empty(self):
         for killed, count in ((0, 0), (0, 10), (10, 10), (28, 30)):
             low, high = drawn_mutants.wilson(killed, count)
             self.assertLess(low, high)
             self.assertGreaterEqual(high, killed / max(count, 1) - 1e-12)
+
+
+SCHEMATA = """
+#include <algorithm>
+#include <cstdio>
+bool first(int a, int b) { return a < b; }
+int second(int a, int b) { return a - b - 1; }
+int third(int a, int b) { a += b; return std::max(a, 2 * b); }
+bool fourth(bool a, bool b, bool c) { return a && !b || c; }
+int main() {
+  std::printf("%d %d %d %d%d\\n", first(2, 2), second(5, 3), third(1, 4), fourth(false, false, false),
+              fourth(true, false, false));
+}
+"""
+
+
+class Schemata(unittest.TestCase):
+    def test_one_build_does_as_each_of_its_mutants_and_as_none(self):
+        expected = {}
+        sites = []
+        for number, code in mutant_sites.code_lines(SCHEMATA):
+            sites += [mutant_sites.Site("a.cpp", number, found.start(), found.group())
+                      for found in mutant_sites.SITES.finditer(code)]
+        sites = [site for site in sites if 3 <= site.line <= 6]
+        numbered = dict(enumerate(sites, 1))
+        self.assertGreater(len(sites), 9)
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+
+            def build(text, program, *options):
+                (folder / "a.cpp").write_text(text, encoding="utf-8")
+                subprocess.run(["c++", "-std=c++20", "-w", *options, "a.cpp", "-o", program], cwd=folder,
+                               check=True)
+
+            text, left_out = mutant_schemata.instrument(SCHEMATA, numbered)
+            build(text, "all", "-include", str(mutant_schemata.HEADER))
+            self.assertEqual(left_out, set())
+            for number, site in {0: None, **numbered}.items():
+                if number in (0, *list(numbered)[::4]):  # a build each takes its time
+                    build(site.apply(SCHEMATA) if site else SCHEMATA, "one")
+                    expected[number] = subprocess.run([folder / "one"], capture_output=True, check=True).stdout
+            outputs = {number: subprocess.run([folder / "all"], capture_output=True, check=True,
+                                              env={**os.environ, "PHOTILE_MUTANT": str(number)}).stdout
+                       for number in [0, *numbered]}
+            for number, output in expected.items():
+                self.assertEqual(outputs[number], output, number)
+            recorded = folder / "record.txt"
+            subprocess.run([folder / "all"], capture_output=True, check=True,
+                           env={**os.environ, "PHOTILE_MUTANT_RECORD": str(recorded)})
+            matters = {int(line) for line in recorded.read_text(encoding="utf-8").split()}
+            for number in numbered:
+                if outputs[number] != outputs[0]:
+                    self.assertIn(number, matters)
+
+
+class Order(unittest.TestCase):
+    def test_what_notices_more_in_less_time_comes_first(self):
+        with tempfile.TemporaryDirectory() as name:
+            order = mutant_tests.Order(pathlib.Path(name) / "order.json")
+            quick, slow, blind = (mutant_tests.Step("trace", (case,)) for case in ("quick", "slow", "blind"))
+            for step, seconds, noticed in ((quick, 0.1, True), (slow, 9.0, True), (blind, 0.1, False)):
+                order.note(step, seconds)
+                order.count(step, "host/trace", noticed)
+            self.assertEqual(order.of([slow, blind, quick], "host/trace")[0], quick)
+            self.assertEqual(mutant_tests.Order(order.file).known, json.loads(json.dumps(order.known)))
 
 
 class Changes(unittest.TestCase):
