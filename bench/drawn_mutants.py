@@ -1,15 +1,19 @@
 #!/usr/bin/python3
 """Faults drawn at random from the code, rather than chosen: which share of them the tests notice.
 
-    bench/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--seconds N] [--list] [--page]
+    bench/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--quick N] [--seconds N]
+                           [--part I/N --work FOLDER] [--results FILE] [--list] [--page]
 
 Each changes one operator, bound, constant or truth value of a line (mutant_sites.py) of kernels/ or of
 the folders groups, surface and trace of host/. Mutants of kernels are copies of the folder that
 PHOTILE_KERNEL_DIR names; those of the host are in one build (mutant_schemata.py), linked with the objects
 of the build at hand. Tests that noticed most in the least time come first, and the first that fails
-ends a mutant; one that does not compile does not count.
+ends a mutant; one that does not compile does not count. With --quick N only steps that together take N
+seconds are run for each, and what these do not notice is left for a run without it.
 
-Results are added to docs/testing/drawn_mutants.json, and those there are not run again. Survivors
+Results are added to docs/testing/drawn_mutants.json (--results), which holds the text of each line, so that
+its mutants are found again where code has moved; --seed and --count are for a file that is not there yet.
+Those decided there are not run again. Survivors
 need a look: "equivalent" with a reason there if no result can change, a test otherwise. --page writes the
 share into docs/testing.md.
 """
@@ -76,7 +80,9 @@ FURTHER_TESTS = {
     "trace": (("reference", "form_factors"), ("reference", "path_direct_light"),
               ("reference", "path_materials"), ("reference", "path_interreflection"),
               ("render", "direct_rays"), ("gather", "irradiance_gather"), ("measuring", "gather"),
-              ("light_maps", "light_map_sensors"), ("render", "final_gather"))}
+              ("light_maps", "light_map_sensors"), ("light_maps", "light_map_frames"),
+              ("scene", "textured_lights"), ("daylight", "daylight_matrix"),
+              ("render", "final_gather"))}
 
 
 def host_files():
@@ -119,6 +125,9 @@ class Kernels:
     def program(self, folder):
         return self.build / f"tests/{folder}/photile_tests_{folder}"
 
+    def is_built_alone(self, site):
+        return False
+
     def matters(self, step):
         return True
 
@@ -134,7 +143,7 @@ class Host:
 
     def __init__(self, build, work, sites, order):
         builder = Builder(build, work)
-        self.builder, self.work = builder, work
+        self.builder, self.work, self.order = builder, work, order
         self.schemata = Schemata(builder, sites, HOST_FOLDERS)
         self.numbers = {site.name: number for number, site in self.schemata.sites.items()}
         self.own = {}  # programs of a mutant that is built alone
@@ -151,6 +160,7 @@ class Host:
 
     def prepare(self, site):
         self.own, self.number = {}, self.numbers[site.name]
+        self.own_programs = {}
         if self.number not in self.schemata.alone:
             return
         copy, text = self.work / site.file, (ROOT / site.file).read_text(encoding="utf-8")
@@ -164,7 +174,9 @@ class Host:
             raise CannotRun("it does not compile") from None
         finally:
             copy.write_text(instrumented, encoding="utf-8")
-        self.own_programs = {}
+
+    def is_built_alone(self, site):
+        return self.numbers[site.name] in self.schemata.alone
 
     def matters(self, step):
         """Whether the mutant gives a value of its own anywhere in the step; asked once for all mutants."""
@@ -180,6 +192,7 @@ class Host:
                 outcome = run_step(self.schemata.program(step.folder), step, environment)
                 if outcome.failed or outcome.crashed:
                     raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
+                self.order.note(step, outcome.seconds)
                 part.touch()  # a step that comes by no mutant writes none
                 part.rename(file)
             self.reached[step.key] = {int(line) for line in file.read_text(encoding="utf-8").split()}
@@ -195,12 +208,22 @@ class Host:
         return run_step(self.schemata.program(step.folder), step, environment, limit)
 
 
-def try_mutant(site, runner, steps, order):
-    """The test that noticed, or None; with the steps run."""
+class NoTimeLeft(Exception):
+    """The steps that are left would take longer than allowed."""
+
+
+def try_mutant(site, runner, steps, order, seconds):
+    """The test that noticed, or None; NoTimeLeft after steps of so many seconds together."""
     area = "/".join(site.file.split("/")[:2])
+    if seconds < math.inf and runner.is_built_alone(site):
+        raise NoTimeLeft
     runner.prepare(site)
     for step in order.of(steps, area, pathlib.PurePath(site.file).stem if area[0] == "h" else ""):
+        seconds -= order.seconds(step)
+        if seconds < 0 or (seconds < math.inf and not order.passed_before(step)):
+            raise NoTimeLeft
         if not runner.matters(step):
+            seconds += order.seconds(step)
             continue
         if not order.passed_before(step):
             outcome = runner.run(step, False, None)
@@ -216,67 +239,103 @@ def try_mutant(site, runner, steps, order):
     return None
 
 
-def stored():
-    text = RESULTS.read_text(encoding="utf-8") if RESULTS.is_file() else ""
+def stored(file):
+    text = file.read_text(encoding="utf-8") if file.is_file() else ""
     return json.loads(text or "{}")
 
 
-def store(name, result):
-    with open(RESULTS, "a", encoding="utf-8") as lock:
+def store(file, name, result):
+    with open(file, "a", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        text = json.dumps({**stored(), name: result}, indent=1) + "\n"
-        RESULTS.write_text(text, encoding="utf-8")
+        results = stored(file)
+        results[name] = {**results.get(name, {}), **result}
+        file.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+
+
+def decided(result):
+    return any(kind in result for kind in ("noticed", "equivalent", "survives", "not_counted"))
+
+
+def draw(options):
+    """The mutants of the results, or as many as asked for: name -> site, None where its line is gone."""
+    results = stored(options.results)
+    if not results:
+        everything = all_sites()
+        for site in random.Random(options.seed).sample(everything, min(options.count, len(everything))):
+            text = (ROOT / site.file).read_text(encoding="utf-8").split("\n")[site.line]
+            results[site.name] = {"line": text}
+        options.results.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    return {name: found_again(name, result["line"]) for name, result in results.items()}
+
+
+def found_again(name, line):
+    """The site where the text of its line is now, the nearest one."""
+    place, token = name.split(" ")[:2]
+    file, number, column = place.split(":")
+    lines = (ROOT / file).read_text(encoding="utf-8").split("\n") if (ROOT / file).is_file() else []
+    nearest = min((i for i, text in enumerate(lines) if text == line),
+                  key=lambda i: abs(i + 1 - int(number)), default=None)
+    return None if nearest is None else mutant_sites.Site(file, nearest, int(column) - 1, token)
 
 
 def run_all(options, drawn):
-    work = options.build.parent / "mutants"
+    work = options.work.resolve()
     work.mkdir(exist_ok=True)
     order = Order(work / f"order_{options.only or 'all'}.json")
-    results = stored()
-    left = [site for site in drawn if site.name not in results
-            and (not options.only or site.file.startswith(options.only))]
+    results = stored(options.results)
+    left = [(name, site) for name, site in drawn.items() if not decided(results[name])
+            and (not options.only or name.startswith(options.only))]
+    part, parts = map(int, options.part.split("/"))
+    left = left[part - 1::parts]
     end = time.monotonic() + options.seconds
     host = None
     kernels = Kernels(options.build, work)
-    for site in left:
+    for name, site in left:
+        if site is None:
+            store(options.results, name, {"not_counted": "its line is gone"})
+            continue
         if time.monotonic() > end:
             break
         in_host = site.file.startswith("host/")
         if in_host and host is None:
-            host = Host(options.build, work, [site for site in drawn if site.file.startswith("host/")],
+            host = Host(options.build, work, [site for site in drawn.values() if site and site.file.startswith("host/")],
                         order)
         runner = host if in_host else kernels
         steps = host.steps(site.file.split("/")[1]) if in_host else kernels.steps
         before = os.times()
         try:
-            noticed = try_mutant(site, runner, steps, order)
+            noticed = try_mutant(site, runner, steps, order, options.quick)
             result = {"noticed": noticed} if noticed else {"survives": ""}
+        except NoTimeLeft:
+            continue
         except CannotRun as reason:
             result = {"not_counted": str(reason).splitlines()[0]}
         after = os.times()
         result["seconds"] = round(after.children_user + after.children_system
                                   - before.children_user - before.children_system, 1)
-        store(site.name, result)
-        print(f"{site.name}: {result}", flush=True)
+        store(options.results, name, result)
+        print(f"{name}: {result}", flush=True)
 
 
-def page(drawn):
+def page(results):
     """The section of docs/testing.md."""
-    results = stored()
-    results = {site.name: results[site.name] for site in drawn if site.name in results}
-    rows = ["| | drawn | noticed | equivalent | survive | does not compile | share noticed |",
-            "|---|--:|--:|--:|--:|--:|---|"]
+    rows = ["| | drawn | noticed | equivalent | survive | do not compile | not decided | "
+            "share noticed |", "|---|--:|--:|--:|--:|--:|--:|---|"]
     areas = {"kernels": "kernels/", "groups": "host/groups/", "surface": "host/surface/",
              "trace": "host/trace/", "all": ""}
     for name, start in areas.items():
-        of_area = [result for mutant, result in results.items() if mutant.startswith(start)]
-        noticed = sum("noticed" in result for result in of_area)
-        equivalent = sum("equivalent" in result for result in of_area)
-        survive = sum("survives" in result for result in of_area)
+        count = sum(mutant.startswith(start) for mutant in results)
+        of_area = [result for mutant, result in results.items()
+                   if mutant.startswith(start) and decided(result)]
+        noticed, equivalent, survive, refused = (
+            sum(kind in result for result in of_area)
+            for kind in ("noticed", "equivalent", "survives", "not_counted"))
         low, high = wilson(noticed, noticed + survive)
         share = f"{100 * noticed / max(noticed + survive, 1):.1f}% ({100 * low:.0f} to {100 * high:.0f}%)"
-        rows.append(f"| {name} | {len(of_area)} | {noticed} | {equivalent} | {survive} | "
-                    f"{len(of_area) - noticed - equivalent - survive} | {share} |")
+        if len(of_area) < count:  # those that the quickest tests notice are decided first
+            share = f"at least {100 * noticed / max(count - equivalent - refused, 1):.0f}%"
+        rows.append(f"| {name} | {count} | {noticed} | {equivalent} | {survive} | {refused} | "
+                    f"{count - len(of_area)} | {share} |")
     return "\n".join(rows) + "\n"
 
 
@@ -285,21 +344,24 @@ def arguments():
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=29)
     parser.add_argument("--only", choices=("kernels", "host"))
+    parser.add_argument("--quick", type=float, default=math.inf, metavar="SECONDS")
+    parser.add_argument("--part", default="1/1", metavar="I/N", help="of those that are left")
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/mutants")
     parser.add_argument("--seconds", type=float, default=math.inf, help="after which none is begun")
     parser.add_argument("--list", action="store_true", help="print those drawn, run none")
     parser.add_argument("--page", action="store_true", help="write docs/testing.md, run none")
+    parser.add_argument("--results", type=pathlib.Path, default=RESULTS)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
     return parser.parse_args()
 
 
 def main():
     options = arguments()
-    everything = all_sites()
-    drawn = random.Random(options.seed).sample(everything, min(options.count, len(everything)))
+    drawn = draw(options)
     if options.list:
-        print("\n".join(site.name for site in drawn))
+        print("\n".join(drawn))
     elif options.page:
-        replace_section(ROOT / "docs/testing.md", "drawn_mutants.py", page(drawn))
+        replace_section(ROOT / "docs/testing.md", "drawn_mutants.py", page(stored(options.results)))
     else:
         run_all(options, drawn)
 

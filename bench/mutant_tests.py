@@ -13,12 +13,13 @@ import re
 import resource
 import subprocess
 import tempfile
+import time
 import xml.etree.ElementTree
 
 REFUSED = 97  # mutant_schemata.hpp
 GUESSED_SECONDS = 4.0  # of a step that never ran
 LEAST_LIMIT, LIMIT_FACTOR = 30.0, 8  # seconds of the processor, and times what a step takes
-WAITING = 1200  # seconds after which a program that does nothing has been noticed
+STILL_SECONDS = 60  # without work for the processor: threads that wait for each other for good
 
 
 class CannotRun(Exception):
@@ -45,6 +46,30 @@ class Step:
         return f"{self.folder}/{self.file}: {self.cases[0]}{more}"
 
 
+def wait_while_it_works(started):
+    """Ends a program that waits for good; whether it ended by itself."""
+    def worked():
+        try:
+            fields = pathlib.Path(f"/proc/{started.pid}/stat").read_text(encoding="ascii")
+            return sum(map(int, fields.rpartition(")")[2].split()[11:13]))
+        except OSError:
+            return -1
+
+    before, since = worked(), time.monotonic()
+    while True:
+        try:
+            started.wait(5)
+            return True
+        except subprocess.TimeoutExpired:
+            now = worked()
+            if now != before:
+                before, since = now, time.monotonic()
+            elif time.monotonic() - since > STILL_SECONDS:
+                started.kill()
+                started.wait()
+                return False
+
+
 def run(program, arguments, environment=None, limit=None):
     """Runs a program of Catch2; `limit` is in seconds of the processor."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -55,18 +80,18 @@ def run(program, arguments, environment=None, limit=None):
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
     with tempfile.NamedTemporaryFile(suffix=".xml") as report:
-        try:
-            done = subprocess.run([program, *arguments, "--reporter", "xml", "--durations", "yes",
-                                   "--out", report.name],
-                                  env=environment, capture_output=True, text=True, errors="replace",
-                                  check=False, timeout=WAITING, preexec_fn=limited)
-        except subprocess.TimeoutExpired:
-            return Outcome([], True)
+        started = subprocess.Popen([program, *arguments, "--reporter", "xml", "--durations", "yes",
+                                    "--out", report.name],
+                                   env=environment, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, preexec_fn=limited)
+        stopped = not wait_while_it_works(started)
         text = pathlib.Path(report.name).read_text(encoding="utf-8", errors="replace")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    if done.returncode == REFUSED or "does not compile" in text or "BUILD_PROGRAM_FAILURE" in text:
+    if started.returncode == REFUSED or "does not compile" in text or "BUILD_PROGRAM_FAILURE" in text:
         raise CannotRun("it does not compile")
+    if stopped:
+        return Outcome([], True, [], seconds)
     try:
         cases = list(xml.etree.ElementTree.fromstring(text).iter("TestCase"))
     except xml.etree.ElementTree.ParseError:
@@ -75,7 +100,7 @@ def run(program, arguments, environment=None, limit=None):
         raise CannotRun(f"no test of {program.name} matches {arguments}")
     failed = [case.get("name") for case in cases
               if case.find("OverallResult") is None or case.find("OverallResult").get("success") != "true"]
-    return Outcome(failed, done.returncode != 0 and not failed, cases, seconds)
+    return Outcome(failed, started.returncode != 0 and not failed, cases, seconds)
 
 
 def run_step(program, step, environment=None, limit=None):
