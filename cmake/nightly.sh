@@ -94,8 +94,10 @@ step "build fuzzers" cmake/build.sh fuzzers photile_fuzz
 step "soak" bench/soak.sh "$hours"
 step "build coverage" cmake/build.sh coverage photile_fuzz
 step "coverage" bench/fuzz_coverage.py --more build/soak
-step "mutants of kernels" bench/drawn_mutants.py --only kernels --count "$mutants" --seed "$seed"
-step "mutants of the host" bench/drawn_mutants.py --only host --count "$host_mutants" --seed "$seed"
+step "mutants of kernels" bench/drawn_mutants.py --only kernels --results "$folder/mutants-$seed.json" \
+  --count "$((mutants + host_mutants))" --seed "$seed"
+step "mutants of the host" bench/drawn_mutants.py --only host --results "$folder/mutants-$seed.json" \
+  --count "$((mutants + host_mutants))" --seed "$seed"
 step "benches" ctest --test-dir build/release --output-on-failure --no-tests=error -R "^bench/"
 ((list)) && exit 0
 
