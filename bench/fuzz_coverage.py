@@ -20,7 +20,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 FUZZER = ROOT / "build/coverage/tests/fuzz/photile_fuzz"
 PROFILES = ROOT / "build/coverage/profiles"
 READERS = ("host/import/", "host/image/", "host/saved_maps/", "host/measuring/", "host/tools/",
-           "host/light_maps/light_map_contents")
+           "host/light_maps/light_map_contents", "host/daylight/occupancy", "host/daylight/blinds",
+           "host/common/")
 
 
 def run(target, folders):

@@ -25,6 +25,10 @@ fi
 # Rounded up: 0 would be no end.
 seconds=$(awk "BEGIN { print 1 + int($hours * 3600 / ${#targets[@]}) }")
 
+# Bytes of an input at most, as many as the format needs to show what it can: the time of an input
+# grows with them.
+declare -A longest=([options]=256 [schedules]=512 [points]=1024 [ies]=1024 [ldt]=1024)
+
 mkdir -p build/soak
 [[ -d /dev/shm ]] && export TMPDIR=/dev/shm # each input becomes a file, which no disk needs to see
 failed=0
@@ -45,7 +49,8 @@ for target in "${targets[@]}"; do
   mkdir -p "$corpus"
   # Neither entropic schedule nor value profile: with so many counters they take 50 times as long as
   # the readers.
-  options=(-timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=256 -max_len=65536 -entropic=0)
+  options=(-timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=256 -entropic=0
+           "-max_len=${longest[$target]:-4096}")
   [[ -f tests/fuzz/$target.dict ]] && options+=("-dict=tests/fuzz/$target.dict")
   PHOTILE_FUZZ_TARGET=$target nice -n 19 build/fuzzers/tests/fuzz/photile_fuzz "${options[@]}" \
     -max_total_time="$seconds" -print_final_stats=1 -artifact_prefix="build/soak/$target-" \

@@ -23,9 +23,33 @@ bool is_within(const json& value, double lowest, double highest) {
 }  // namespace
 
 json read_input_json(const std::filesystem::path& file) {
-  json content = json::parse(read_input_text(file), nullptr, /*allow_exceptions=*/false);
+  const std::string text = read_input_text(file);
+  check_json_depth(text, file.string());
+  json content = json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (content.is_discarded()) throw InputError(fmt::format("{}: is no JSON", file.string()));
   return content;
+}
+
+void check_json_depth(std::string_view text, const std::string& file) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char letter = text[i];
+    if (quoted) {
+      if (letter == '\\') ++i;
+      quoted = letter != '"';
+    } else if (letter == '"') {
+      quoted = true;
+    } else if (letter == '[' || letter == '{') {
+      ++depth;
+    } else if (letter == ']' || letter == '}') {
+      --depth;
+    }
+    if (depth > limits::max_json_depth) {
+      throw InputError(fmt::format("{}: is nested more than {} deep; no such file needs that", file,
+                                   limits::max_json_depth));
+    }
+  }
 }
 
 JsonObject::JsonObject(const json& object, std::string where,

@@ -6,11 +6,18 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 namespace photile {
 
-/// The content of a file. Errors: those of read_input_text; InputError where it is no JSON.
+/// The content of a file. Errors: those of read_input_text and check_json_depth; InputError where
+/// it is no JSON.
 nlohmann::json read_input_json(const std::filesystem::path& file);
+
+/// Values are copied, compared and written recursively: brackets without end would overflow the
+/// stack. Errors: InputError naming `file` where they are nested deeper than
+/// limits::max_json_depth.
+void check_json_depth(std::string_view text, const std::string& file);
 
 /// One object of a file. Every error is an InputError that names its place in the file.
 class JsonObject {

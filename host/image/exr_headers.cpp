@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "image/decoder.hpp"
 #include "photile/limits.hpp"
@@ -41,11 +42,19 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t>, 24> sizes{{{"bo
                                                                             {"v3f", 12},
                                                                             {"v3i", 12}}};
 
+std::uint64_t little_endian(Imf::IStream& stream, std::size_t size) {
+  char text[8] = {};
+  stream.read(text, static_cast<int>(size));
+  std::uint64_t value = 0;
+  for (std::size_t i = size; i-- > 0;) value = value << 8 | static_cast<unsigned char>(text[i]);
+  return value;
+}
+
 class HeaderCheck {
  public:
   HeaderCheck(Imf::IStream& stream, std::uint64_t bytes) : stream_(stream), bytes_(bytes) {}
 
-  void run() {
+  std::uint64_t run() {
     constexpr std::uint32_t several_parts = 0x1000;
     stream_.seekg(4);
     const bool several = (number() & several_parts) != 0;
@@ -53,19 +62,15 @@ class HeaderCheck {
       const bool empty = read_header();
       more = several && !empty;
     }
+    const std::uint64_t end = stream_.tellg();
     stream_.seekg(0);
+    return end;
   }
 
  private:
   [[noreturn]] static void refuse() { throw DecodeError("the header is damaged"); }
 
-  std::uint32_t number() {
-    std::array<char, 4> text{};
-    stream_.read(text.data(), 4);
-    std::uint32_t value = 0;
-    for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(text[i]);
-    return value;
-  }
+  std::uint32_t number() { return static_cast<std::uint32_t>(little_endian(stream_, 4)); }
 
   std::string word() {
     std::string text;
@@ -144,10 +149,43 @@ class HeaderCheck {
   const std::uint64_t bytes_;
 };
 
+/// Of the block at a place, with what is before its pixels: its part where a file may have several,
+/// its row or its tile and level, its size.
+std::uint64_t block_bytes(Imf::IStream& stream, std::uint64_t place, bool several,
+                          const std::vector<bool>& tiled) {
+  stream.seekg(place);
+  const std::uint64_t part = several ? little_endian(stream, 4) : 0;
+  if (part >= tiled.size()) throw DecodeError("a block of pixels is damaged");
+  for (int i = 0; i < (tiled[part] ? 4 : 1); ++i) little_endian(stream, 4);
+  const std::uint64_t size = little_endian(stream, 4);
+  return stream.tellg() - place + size;
+}
+
 }  // namespace
 
-void check_exr_headers(Imf::IStream& stream, std::uint64_t bytes) {
-  HeaderCheck(stream, bytes).run();
+std::uint64_t check_exr_headers(Imf::IStream& stream, std::uint64_t bytes) {
+  return HeaderCheck(stream, bytes).run();
+}
+
+// OpenEXR, "File Layout": the tables of all parts, of 8 bytes a block, lie before the first block.
+std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::uint64_t bytes,
+                              const std::vector<bool>& tiled) {
+  constexpr std::uint64_t several_parts = 0x1000;
+  const std::uint64_t before = stream.tellg();
+  stream.seekg(4);
+  const bool several = (little_endian(stream, 4) & several_parts) != 0;
+  std::uint64_t first = bytes, sum = 0;
+  constexpr std::uint64_t entry_bytes = 8;
+  for (std::uint64_t entry = table; entry + entry_bytes <= first; entry += entry_bytes) {
+    stream.seekg(entry);
+    const std::uint64_t place = little_endian(stream, entry_bytes);
+    if (place == 0) continue;  // a file that was not finished
+    if (place >= bytes) throw DecodeError("a block of pixels is not within the file");
+    first = std::min(first, place);
+    sum += entry_bytes + std::min(block_bytes(stream, place, several, tiled), bytes - place);
+  }
+  stream.seekg(before);
+  return sum;
 }
 
 }  // namespace photile::image

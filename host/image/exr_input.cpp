@@ -15,6 +15,7 @@
 
 #include "image/decoder.hpp"
 #include "image/exr_headers.hpp"
+#include "image/unchecked_bytes.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::image {
@@ -87,7 +88,10 @@ ExrInput::Part part_of(const Imf::Header& header) {
   std::uint64_t block =
       static_cast<std::uint64_t>(part.width) * rows_of_block(header.compression());
   if (header.hasTileDescription()) {
-    block = std::uint64_t{header.tileDescription().xSize} * header.tileDescription().ySize;
+    // OpenEXR keeps a row of them.
+    const Imf::TileDescription& tile = header.tileDescription();
+    const auto width = static_cast<std::uint64_t>(std::max(part.width, 1));
+    block = std::max<std::uint64_t>(tile.xSize, width) * tile.ySize;  // a row of tiles is kept
   }
   if (block * pixel_bytes > limits::max_image_block_bytes) {
     throw DecodeError(fmt::format("has blocks of {} bytes, more than the limit of {}",
@@ -100,8 +104,9 @@ ExrInput::Part part_of(const Imf::Header& header) {
 
 void set_up_openexr() {
   static const bool done = [] {
-    Imf::setGlobalThreadCount(static_cast<int>(
-        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    const auto threads = static_cast<int>(
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    Imf::setGlobalThreadCount(threads > 1 ? threads : 0);  // 0: the caller's own
     return true;
   }();
   static_cast<void>(done);
@@ -125,22 +130,31 @@ ExrInput::~ExrInput() = default;
 
 void ExrInput::find_parts(std::uint64_t bytes) {
   set_up_openexr();
-  check_exr_headers(*stream_, bytes);
+  const std::uint64_t table = check_exr_headers(*stream_, bytes);
   file_ = std::make_unique<File>(*stream_);
-  std::uint64_t decoded = 0, pixels = 0;
+  std::uint64_t decoded = 0, pixels = 0, channels = 0;
+  std::vector<bool> tiled;
   for (int i = 0; i < file_->parts(); ++i) {
     const Part& part = parts_.emplace_back(part_of(file_->header(i)));
-    pixels = std::max(pixels, static_cast<std::uint64_t>(part.width) * part.height);
-    decoded +=
-        static_cast<std::uint64_t>(part.width) * part.height * part.channels.size() * sizeof(float);
+    const std::uint64_t own = static_cast<std::uint64_t>(part.width) * part.height;
+    pixels = std::max(pixels, own);
+    channels += part.channels.size();
+    decoded += own * part.channels.size() * sizeof(float);
+    tiled.push_back(file_->header(i).hasTileDescription());
   }
-  if (decoded > limits::unchecked_image_bytes &&
-      pixels / bytes >= limits::max_exr_pixels_per_byte) {
-    throw DecodeError(fmt::format(
-        "is damaged or empty: {} bytes for {} x {} pixels; the limit is {} pixels a "
-        "byte; scale it down",
-        bytes, parts_.front().width, parts_.front().height, limits::max_exr_pixels_per_byte));
+  if (decoded <= unchecked_bytes) return;
+  constexpr std::uint64_t bytes_of_channel = 128;  // its name, what the header says of its light
+  const std::uint64_t encoded = exr_pixel_bytes(*stream_, table, bytes, tiled);
+  if (pixels < encoded * limits::max_exr_pixels_per_byte &&
+      decoded / limits::max_image_expansion <= encoded + bytes_of_channel * channels) {
+    return;
   }
+  throw DecodeError(
+      fmt::format("is damaged or empty: {} bytes for the {} channels of {} x {} pixels; the limit "
+                  "is {} pixels a "
+                  "byte, and a factor of {}; scale it down",
+                  encoded, channels, parts_.front().width, parts_.front().height,
+                  limits::max_exr_pixels_per_byte, limits::max_image_expansion));
 }
 
 const Imf::Header& ExrInput::header(std::size_t part) const {

@@ -13,6 +13,7 @@
 
 #include "common/input_file.hpp"
 #include "image/decoder.hpp"
+#include "image/unchecked_bytes.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -158,7 +159,6 @@ void PictureFile::open_exr() {
     add_part(exr_->parts()[part]);
     take_attributes(exr_->header(part), header_);
   }
-  check_expansion(header_.pixels() * header_.channel_names.size() * sizeof(float));
 }
 
 /// Their pixels are decoded at once, when some are asked for.
@@ -178,7 +178,7 @@ void PictureFile::open_other() {
 
 void PictureFile::check_expansion(std::uint64_t decoded) const {
   const std::uintmax_t encoded = fs::file_size(file_);
-  if (decoded > limits::unchecked_image_bytes && decoded / encoded > limits::max_image_expansion) {
+  if (decoded > unchecked_bytes && decoded / encoded > limits::max_image_expansion) {
     refuse(fmt::format("is damaged or empty: {} bytes decode to {}; the limit is a factor of {}",
                        encoded, decoded, limits::max_image_expansion));
   }

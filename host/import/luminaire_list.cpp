@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/input_file.hpp"
+#include "common/json_object.hpp"
 #include "common/output_file.hpp"
 #include "photile/errors.hpp"
 
@@ -19,6 +20,7 @@ std::string LuminaireList::text() const {
 }
 
 LuminaireList LuminaireList::parse(const std::string& text, const std::string& name) {
+  check_json_depth(text, name);
   const auto content = nlohmann::ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (content.is_discarded()) throw InputError(fmt::format("{}: is no JSON", name));
   LuminaireList list;

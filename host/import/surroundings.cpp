@@ -45,8 +45,10 @@ double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& opt
 void add_picture(const EnvironmentPicture& picture, Scene& scene) {
   RadiancePicture read = read_radiance_picture(picture.file);
   std::size_t lost = 0;
+  bool black = true;
   for (glm::vec3& texel : read.texels) {
     texel *= static_cast<float>(picture.scale);
+    black = black && texel == glm::vec3(0.0f);
     lost += std::isfinite(texel.x) && std::isfinite(texel.y) && std::isfinite(texel.z) ? 0 : 1;
   }
   if (lost > 0) {
@@ -55,12 +57,14 @@ void add_picture(const EnvironmentPicture& picture, Scene& scene) {
                     "scale",
                     picture.file.string(), lost, read.texels.size(), picture.scale));
   }
-  EnvironmentMap map(picture.file.filename().string(), read.width, read.height,
-                     std::move(read.texels), picture.rotation_degrees);
-  if (!(luminance(map.integral()) > 0.0)) {
+  const auto refuse_black = [&] {
     throw InputError(fmt::format("{}: the environment is black; give another, or a larger scale",
                                  picture.file.string()));
-  }
+  };
+  if (black) refuse_black();  // before a table of its texels is made
+  EnvironmentMap map(picture.file.filename().string(), read.width, read.height,
+                     std::move(read.texels), picture.rotation_degrees);
+  if (!(luminance(map.integral()) > 0.0)) refuse_black();
   add_environment_light("environment", std::move(map), scene);
   check_flux<InputError>(scene, picture.file.string(), "give a smaller scale");
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "image/decoder.hpp"
+#include "image/unchecked_bytes.hpp"
 #include "import/warnings.hpp"
 #include "photile/limits.hpp"
 
@@ -37,7 +38,7 @@ void check_limits(const PictureShape& shape, std::size_t encoded_bytes) {
     throw ResourceError(
         fmt::format("{} bytes decoded; the limit is {}", decoded, limits::max_image_bytes));
   }
-  if (decoded > limits::unchecked_image_bytes &&
+  if (decoded > image::unchecked_bytes &&
       decoded / std::max<std::size_t>(encoded_bytes, 1) > limits::max_image_expansion) {
     throw ResourceError(fmt::format("{} bytes decode to {}; the limit is a factor of {}",
                                     encoded_bytes, decoded, limits::max_image_expansion));

@@ -1,5 +1,6 @@
 // Small files that ask for much: refused, and in little memory. (Time is no matter of assertions;
 // each of these takes less than a second.)
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
@@ -9,8 +10,10 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
+#include "import/luminaire_list.hpp"
 #include "photile/image.hpp"
 #include "photile/limits.hpp"
+#include "tools/view/moods.hpp"
 
 namespace photile::test {
 namespace {
@@ -79,8 +82,11 @@ TEST_CASE("a PNG of a kilobyte that says that it is huge is refused in little me
   CHECK(taken.kilobytes < most_kilobytes);
 }
 
-TEST_CASE("an EXR of two megabytes that says that it is huge is refused in little memory") {
-  // A header of 9,000 x 9,000 pixels of six channels: zeros would compress to so many bytes.
+TEST_CASE("a small EXR that says that it is huge is refused in little memory") {
+  // A header of 9,000 x 9,000 pixels of six channels: zeros would compress to two megabytes; what
+  // follows the pixels does not count.
+  const std::size_t size = GENERATE(2'100'000, 6'000'000);
+  CAPTURE(size);
   Image row;
   row.width = 9'000;
   row.height = 1;
@@ -95,7 +101,7 @@ TEST_CASE("an EXR of two megabytes that says that it is huge is refused in littl
   const std::string window("dataWindow\0box2i\0", 17);
   const std::int32_t last = 8'999;
   std::memcpy(&bytes[bytes.find(window) + window.size() + 4 * sizeof last], &last, sizeof last);
-  bytes.resize(2'100'000);
+  bytes.resize(size);
   const std::string file = folder.write("a.exr", bytes);
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"relight", file, "-o", folder / "b.exr"},
@@ -108,6 +114,47 @@ TEST_CASE("an EXR of two megabytes that says that it is huge is refused in littl
                                                  Catch::Contains("scale it down"));
     CHECK(taken.kilobytes < most_kilobytes);
   }
+}
+
+TEST_CASE("a Radiance picture of nothing but runs is refused in little memory") {
+  // 9,000 x 9,000 zeros, in runs of 127 at most: 15.7 pixels a byte.
+  constexpr int side = 9'000;
+  std::string row = {2, 2, static_cast<char>(side >> 8), static_cast<char>(side & 255)};
+  for (int component = 0; component < 4; ++component) {
+    for (int left = side; left > 0; left -= 127) {
+      row += {static_cast<char>(128 + std::min(left, 127)), 0};
+    }
+  }
+  const FileFolder folder;
+  const std::string file = folder.write(
+      "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 9000 +X 9000\n" + repeated(row, side));
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"compare", file, file},
+        std::vector<std::string>{"render", write_box(folder), "-o", folder / "b.exr",
+                                 "--environment", file}}) {
+    const Outcome taken = run_photile(command);
+    CHECK_THAT(last_error(taken, bad_input),
+               Catch::Contains("a.hdr: ") && Catch::Contains("pixels a byte"));
+    CHECK(taken.kilobytes < most_kilobytes);
+  }
+}
+
+TEST_CASE("JSON that is nested a million deep is refused in a line") {
+  constexpr std::size_t levels = 1'000'000;
+  const FileFolder folder;
+  const std::string file =
+      folder.write("deep.json", std::string(levels, '[') + "0" + std::string(levels, ']'));
+  const std::string box = write_box(folder);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"info", box, "--luminaires", file},
+        std::vector<std::string>{"measure", box, "--grid", file}}) {
+    CHECK_THAT(last_error(run_photile(command), bad_input),
+               Catch::Contains("deep.json: is nested more than"));
+  }
+  CHECK_THROWS_WITH(view::Moods(file), Catch::Contains("deep.json: is nested more than"));
+  // Brackets in texts are none.
+  const std::string text = "[{\"name\": \"\\\"" + std::string(levels, '[') + "\"}]";
+  CHECK(scene_io::LuminaireList::parse(text, "texts").entries.size() == 1);
 }
 
 }  // namespace photile::test

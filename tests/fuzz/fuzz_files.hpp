@@ -1,10 +1,10 @@
 // What the targets share.
 #pragma once
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 
@@ -33,13 +33,18 @@ class FuzzFolder {
   std::filesystem::path path_;
 };
 
-/// Writes a file for readers that take a name.
+/// Writes a file for readers that take a name, over what the last input left there: its memory
+/// stays.
 inline std::filesystem::path file_of(const std::string& name, Bytes bytes) {
   static const FuzzFolder folder;
   const std::filesystem::path file = folder.path() / name;
-  std::ofstream stream(file, std::ios::binary);
-  stream.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  const bool written =
+      descriptor >= 0 &&
+      ::write(descriptor, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()) &&
+      ::ftruncate(descriptor, static_cast<off_t>(bytes.size())) == 0;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!written) throw std::runtime_error(file.string() + " cannot be written");
   return file;
 }
 

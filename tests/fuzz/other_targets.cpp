@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "daylight/blinds.hpp"
+#include "daylight/occupancy.hpp"
 #include "daylight/sun_position.hpp"
 #include "fuzz_files.hpp"
 #include "glare/observers.hpp"
@@ -72,11 +74,35 @@ void validate(const CLI::Validator& validator, std::string text) {
   require(!text.empty() && text.find("nan") == std::string::npos, "no number");
 }
 
+/// A pane with blinds.
+void check_blinds(const std::string& text) {
+  Scene scene = lit_floor();
+  scene.materials.push_back(glass(1.5f));
+  scene.materials.back().name = "Glass";
+  scene.materials.back().thin = true;
+  const std::array groups{daylight::BlindGroup::parse(text)};
+  for (const Material& material : daylight::materials_with(scene, groups, 1)) {
+    const float share = material.transmission.x;
+    require(share >= 0 && share <= 1, "a pane that lets through more than there is");
+  }
+}
+
+void check_occupancy(const std::string& hours, const std::string& days) {
+  daylight::Occupancy occupancy;
+  occupancy.set_hours(hours);
+  require(occupancy.from >= 0 && occupancy.to <= 24 && occupancy.from < occupancy.to,
+          "hours that no day has");
+  occupancy.set_days(days);
+  require(std::count(occupancy.days.begin(), occupancy.days.end(), true) > 0, "no day");
+}
+
 /// Parses as a command does; throws UsageError where it refuses.
 void parse_option(unsigned char option, const std::string& text) {
   const auto finite = [](double value) { require(std::isfinite(value), "no number"); };
   SceneLoadOptions options;
-  switch (option % 23) {
+  // The last bytes are those of options that came later, so that older inputs keep their meaning.
+  constexpr int last_options = 253;
+  switch (option < last_options ? option % 23 : option) {
     case 0:
       validate(app::count_between(1, 1'000'000), text);
       break;
@@ -161,6 +187,15 @@ void parse_option(unsigned char option, const std::string& text) {
     case 21:
       finite(measuring::parse_working_plane(text).height);
       break;
+    case last_options:
+      check_occupancy(text, "mon-fri");
+      break;
+    case last_options + 1:
+      check_occupancy("8-18", text);
+      break;
+    case last_options + 2:
+      check_blinds(text);
+      break;
     default:
       finite(glm::determinant(scene_io::turn_upright(text)));
       break;
@@ -241,6 +276,7 @@ const std::map<std::string_view, FuzzTarget>& fuzz_targets() {
                                                               {"relight", fuzz_relight},
                                                               {"results", fuzz_results},
                                                               {"saved_maps", fuzz_saved_maps},
+                                                              {"schedules", fuzz_schedules},
                                                               {"texture", fuzz_texture},
                                                               {"weather", fuzz_weather}};
   return targets;

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "daylight/occupancy.hpp"
 #include "daylight/sky_patches.hpp"
 #include "fuzz_files.hpp"
 #include "import/luminaires.hpp"
@@ -73,7 +75,10 @@ bool fuzz_luminaires(Bytes bytes) {
   return accepts([&] {
     Scene scene = room();
     scene_io::Warnings warnings;
-    scene_io::add_luminaires(scene_io::read_luminaires(file), file, 683, scene, warnings);
+    const scene_io::LuminaireList list = scene_io::read_luminaires(file);
+    const auto written = scene_io::LuminaireList::parse(list.text(), "written");
+    require(written == list, "written they are others");
+    scene_io::add_luminaires(list, file, 683, scene, warnings);
     scene_io::make_light_names_unique(scene.lights);
     try {
       check_scene(scene);
@@ -92,6 +97,15 @@ bool fuzz_weather(Bytes bytes) {
     for (std::size_t i = 0; i < std::min(most_checked, year.hours.size()); ++i) {
       check_hour(year.site, year.hours[i]);
     }
+  });
+}
+
+bool fuzz_schedules(Bytes bytes) {
+  daylight::Occupancy occupancy;
+  occupancy.schedule = file_of("schedule.csv", bytes);
+  static const std::vector<daylight::SkyHour> hours(24);
+  return accepts([&] {
+    require(daylight::occupied_hours(hours, occupancy).size() == hours.size(), "hours that lack");
   });
 }
 

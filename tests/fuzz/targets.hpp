@@ -28,6 +28,7 @@ bool fuzz_radiance(Bytes bytes);  ///< surroundings
 bool fuzz_camera_path(Bytes bytes);
 bool fuzz_luminaires(Bytes bytes);  ///< and a photometric file behind the first zero byte
 bool fuzz_weather(Bytes bytes);
+bool fuzz_schedules(Bytes bytes);  ///< occupied hours
 
 // Pictures
 bool fuzz_relight(Bytes bytes);  ///< an EXR with layers

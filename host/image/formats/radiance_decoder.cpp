@@ -7,11 +7,16 @@
 #include <string_view>
 
 #include "image/formats/formats.hpp"
+#include "image/unchecked_bytes.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::image {
 namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
+
+/// Runs hold zeros at 15.9 pixels a byte, and so less than in an EXR has to be refused.
+constexpr std::uint64_t max_pixels_per_byte = limits::max_exr_pixels_per_byte / 2;
 
 class RadianceDecoder : public Decoder {
  public:
@@ -24,6 +29,13 @@ class RadianceDecoder : public Decoder {
     const std::string_view size = line();
     shape_ = {number(size, "+X "), number(size, "-Y "), 3, Sample::real};
     if (!size.starts_with("-Y ")) throw DecodeError("only rows from the top are read");
+    const std::uint64_t pixels = shape_.values() / 3;
+    if (shape_.bytes() > unchecked_bytes && pixels >= rest_.size() * max_pixels_per_byte) {
+      throw DecodeError(fmt::format(
+          "is damaged or empty: {} bytes for {} x {} pixels; the limit is {} pixels a byte; scale "
+          "it down",
+          rest_.size(), shape_.width, shape_.height, max_pixels_per_byte));
+    }
   }
 
   Pixels decode() override {

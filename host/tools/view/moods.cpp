@@ -9,6 +9,7 @@
 
 #include "common/ascii_text.hpp"
 #include "common/input_file.hpp"
+#include "common/json_object.hpp"
 #include "common/output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -66,7 +67,9 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
     throw InputError(
         one_line(fmt::format("{}: {}: {}; mend or remove it", file_.string(), place, reason)));
   };
-  const json document = json::parse(read_own_text(file_), nullptr, /*allow_exceptions=*/false);
+  const std::string text = read_own_text(file_);
+  check_json_depth(text, file_.string());
+  const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (document.is_discarded()) refuse("is no JSON");
   try {
     if (document.at("photile_moods") != version) {
