@@ -56,6 +56,17 @@ TEST_CASE("Red turns the normal towards u, green towards -v", "[normal_map]") {
   }
 }
 
+TEST_CASE("A triangle of which any one corner has no normal is flat") {
+  const glm::vec3 down(0, 0, -1), tilted = glm::normalize(glm::vec3(0.3f, 0.1f, 1.0f));
+  for (std::size_t missing = 0; missing < 3; ++missing) {
+    Scene scene = plate(diffuse(glm::vec3(0.5f)), 2);
+    scene.corner_normal.assign(scene.triangle_count(), {tilted, tilted, tilted});
+    CHECK(shading_normals(scene, at(scene, down), down).smooth != glm::vec3(0, 0, 1));
+    for (auto& corner : scene.corner_normal) corner[missing] = glm::vec3(0.0f);
+    CHECK(shading_normals(scene, at(scene, down), down).smooth == glm::vec3(0, 0, 1));
+  }
+}
+
 TEST_CASE("The winding and the mirroring of coordinates do not turn the map", "[normal_map]") {
   const glm::vec3 down(0, 0, -1), normal = glm::normalize(glm::vec3(0.3f, 0.2f, 1));
   Scene scene = mapped_plate(diffuse(glm::vec3(0.5f)), normal);
