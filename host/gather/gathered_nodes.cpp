@@ -75,14 +75,10 @@ PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> 
   return links;
 }
 
-/// Standard errors in the colour of the light, in its form.
-Estimates errors_of(const GatheredIrradiance& light) {
-  Estimates errors = light.mean;
-  for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
-    const double mean = luminance(glm::dvec3(light.mean.irradiance[i]));
-    errors.irradiance[i] *= mean > 0 ? static_cast<float>(light.error(i) / mean) : 0.0f;
-  }
-  return errors;
+void append(const GatheredParts& from, std::size_t point, std::size_t lights, GatheredParts& to) {
+  to.indirect.append(from.indirect, point, lights);
+  to.direct.append(from.direct, point, lights);
+  to.distance.push_back(from.distance[point]);
 }
 
 }  // namespace
@@ -106,14 +102,15 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double ins
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
 
 std::uint64_t GatheredNodes::bytes() const {
-  return raw_.bytes() + errors_.irradiance.size() * sizeof(glm::vec3) + gather_.bytes() +
-         raw_of_.size() * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
+  return raw_.bytes() + nodes_.bytes() + gather_.bytes() +
+         (raw_of_.size() + row_of_.size()) * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
 }
 
 void GatheredNodes::forget() {
   raw_of_.clear();
+  row_of_.clear();
   raw_ = {};
-  errors_ = {};
+  nodes_ = {};
   gather_.forget();
 }
 
@@ -127,28 +124,48 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   gather_new(batch, fine, parameters_.fine, progress);
   const GatheredParts smooth = smoothed(batch, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
-  const GatheredIrradiance coarse_light = sum_of(smooth.indirect, smooth.direct, lights);
-  const GatheredIrradiance fine_light =
-      sum_of(with_neighbours(raw_.indirect, batch, fine, of_indirect),
-             with_neighbours(raw_.direct, batch, fine, of_direct), lights);
+  const auto averaged_fine = [&](const GatheredIrradiance& raw, const GatheredIrradiance& known,
+                                 const NoiseTolerance& tolerated) {
+    return corrected(known, with_neighbours(raw, batch, fine, tolerated), batch, fine, tolerated);
+  };
+  const GatheredIrradiance indirect = averaged_fine(raw_.indirect, nodes_.indirect, of_indirect);
+  const GatheredIrradiance direct = averaged_fine(raw_.direct, nodes_.direct, of_direct);
 
-  GatheredIrradiance all;
-  NodeValues values;
+  const std::size_t before = nodes_.distance.size();
   std::size_t next_coarse = 0, next_fine = 0;
   for (std::uint32_t node = 0; node < batch.nodes; ++node) {
-    if (batch.coarse[node]) {
-      all.append(coarse_light, next_coarse++, lights);
+    row_of_.insert_or_assign(batch.number[node],
+                             static_cast<std::uint32_t>(nodes_.distance.size()));
+    if (batch.parents[node][0] == NodeBatch::no_parent) {
+      append(smooth, next_coarse++, lights, nodes_);
     } else {
-      all.append(fine_light, next_fine++, lights);
+      nodes_.indirect.append(indirect, next_fine, lights);
+      nodes_.direct.append(direct, next_fine++, lights);
+      nodes_.distance.push_back(raw_.distance[raw_of_.at(batch.number[node])]);
     }
-    values.distance.push_back(raw_.distance[raw_of_.at(batch.number[node])]);
   }
+  GatheredParts own;
+  for (std::size_t row = before; row < nodes_.distance.size(); ++row) {
+    append(nodes_, row, lights, own);
+  }
+  GatheredIrradiance all = sum_of(own.indirect, own.direct, lights);
+  NodeValues values;
   for (std::size_t node = 0; node < batch.nodes; ++node) {
     values.error.push_back(static_cast<float>(all.total(node, layer_powers_).error));
+    values.distance.push_back(nodes_.distance[before + node]);
   }
-  errors_.append(errors_of(all));
   values.irradiance = std::move(all.mean);
   return values;
+}
+
+Estimates GatheredNodes::errors() const {
+  const GatheredIrradiance all = sum_of(nodes_.indirect, nodes_.direct, layer_powers_.size());
+  Estimates errors = all.mean;
+  for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
+    const double light = luminance(glm::dvec3(all.mean.irradiance[i]));
+    errors.irradiance[i] *= light > 0 ? static_cast<float>(all.error(i) / light) : 0.0f;
+  }
+  return errors;
 }
 
 PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
@@ -184,9 +201,7 @@ GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
   const std::size_t lights = layer_powers_.size();
   GatheredParts parts;
   for (const std::uint32_t point : coarse) {
-    const std::uint32_t row = raw_of_.at(batch.number[point]);
-    parts.indirect.append(raw_.indirect, row, lights);
-    parts.direct.append(raw_.direct, row, lights);
+    append(raw_, raw_of_.at(batch.number[point]), lights, parts);
   }
   if (coarse.empty()) return parts;
   const PointLinks links = links_between(batch, coarse);
@@ -208,6 +223,25 @@ GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
     for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
       mean.add_other(raw, raw_of_.at(batch.number[batch.neighbour[j]]), tolerated);
     }
+  });
+}
+
+/// Finer nodes averaged with what lies around them at coarser levels.
+///   known   of nodes valued before
+///   found   of the fine nodes
+GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
+                                            const GatheredIrradiance& found, const NodeBatch& batch,
+                                            std::span<const std::uint32_t> fine,
+                                            const NoiseTolerance& tolerated) const {
+  const GatheredIrradiance expected =
+      gathering::means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+        for (const std::uint64_t parent : batch.parents[fine[i]]) {
+          mean.add_own(known, row_of_.at(parent));
+        }
+      });
+  return gathering::means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+    mean.add_own(found, i);
+    mean.add_other(expected, i, tolerated, defaults::weight_of_parents);
   });
 }
 

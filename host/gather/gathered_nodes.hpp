@@ -31,9 +31,10 @@ struct GatheredNodesParameters {
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset);
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
-/// itself (docs/light-maps.md): nodes are averaged with those around them, finer ones with fewer,
-/// as far as differences may be noise. Light straight from lamps and light of other surfaces are
-/// treated apart. Each layer has weights by its own noise, whatever the powers are.
+/// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
+/// finer ones with those next to them and with what coarser ones say of their place, as far as
+/// differences may be noise. Light straight from lamps and light of other surfaces are treated
+/// apart.
 class GatheredNodes : public NodeSource {
  public:
   /// References are kept. It serves one LightMaps.
@@ -43,12 +44,13 @@ class GatheredNodes : public NodeSource {
 
   Surroundings surroundings() const override;
   NodeValues value(const NodeBatch& batch, const Progress& progress) override;
+  bool knows(std::uint64_t number) const override { return row_of_.contains(number); }
   std::uint64_t bytes() const override;
   void forget() override;
 
   /// Standard errors of all nodes that were valued, in their order, in the form of estimates: of
   /// each light at power 1, in the colour of its light.
-  const Estimates& errors() const { return errors_; }
+  Estimates errors() const;
 
  private:
   void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> places,
@@ -57,6 +59,10 @@ class GatheredNodes : public NodeSource {
   GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const NodeBatch& batch,
                                      std::span<const std::uint32_t> fine,
                                      const NoiseTolerance& tolerated) const;
+  GatheredIrradiance corrected(const GatheredIrradiance& known, const GatheredIrradiance& found,
+                               const NodeBatch& batch, std::span<const std::uint32_t> fine,
+                               const NoiseTolerance& tolerated) const;
+
   PrimaryHits points_at(const NodeBatch& batch, std::span<const std::uint32_t> chosen) const;
 
   const Scene& scene_;
@@ -65,7 +71,8 @@ class GatheredNodes : public NodeSource {
   GatheredNodesParameters parameters_;
   tsl::robin_map<std::uint64_t, std::uint32_t> raw_of_;  ///< by number of the point
   GatheredParts raw_;                                    ///< of places, as gathered
-  Estimates errors_;                                     ///< of nodes, in their order
+  tsl::robin_map<std::uint64_t, std::uint32_t> row_of_;  ///< by number of a node, in `nodes_`
+  GatheredParts nodes_;
 };
 
 }  // namespace photile

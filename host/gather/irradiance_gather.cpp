@@ -115,8 +115,7 @@ struct RunLight {
       const int again = std::min(defaults::looks_again * looks_per_batch,
                                  defaults::most_looks_again / parameters.batches);
       std::span<const trace::LampLooks::Found> found = found_by(looks_per_batch);
-      if (again > looks_per_batch && is_uncertain(found, indirect))
-        found = found_by(again);
+      if (again > looks_per_batch && is_uncertain(found, indirect)) found = found_by(again);
       for (const auto& light : found) sums.add(light.layer, light.tag, light.irradiance);
       return;
     }

@@ -122,13 +122,13 @@ class MeanOfPlaces {
     own_.read(from, point);
     sums_.add(from, point, 1.0, [](std::size_t) { return 1.0; });
   }
-  /// Of those that may have the same light.
-  void add_other(const GatheredIrradiance& from, std::size_t point,
-                 const NoiseTolerance& tolerated) {
+  /// One that may have the same light; as heavy as so many.
+  void add_other(const GatheredIrradiance& from, std::size_t point, const NoiseTolerance& tolerated,
+                 double weight = 1) {
     other_.read(from, point);
     likeness_.compare(own_, other_, tolerated);
-    sums_.add(from, point, likeness_.of_others(),
-              [&](std::size_t layer) { return likeness_.of_layer(layer); });
+    sums_.add(from, point, weight * likeness_.of_others(),
+              [&](std::size_t layer) { return weight * likeness_.of_layer(layer); });
   }
   void end_place() { sums_.end_point(); }
 

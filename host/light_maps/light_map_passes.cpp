@@ -8,9 +8,9 @@
 namespace photile {
 namespace {
 
-/// What a pass gives to nodes [first, first + count).
+/// A batch of nodes that a pass values.
 struct Valued {
-  std::size_t first, count;
+  std::vector<std::uint32_t> nodes;
   Estimates light;
 };
 
@@ -21,25 +21,35 @@ glm::vec3 with(const glm::vec3& mean, const glm::vec3& light, std::uint32_t pass
 
 /// Of nodes that hold every light.
 void add_dense(std::uint32_t passes, const Valued& valued, std::size_t lights, Estimates& means) {
-  for (std::size_t i = 0; i < valued.count * lights; ++i) {
-    glm::vec3& mean = means.irradiance[valued.first * lights + i];
-    mean = with(mean, valued.light.irradiance[i], passes);
+  for (std::size_t i = 0; i < valued.nodes.size(); ++i) {
+    for (std::size_t light = 0; light < lights; ++light) {
+      glm::vec3& mean = means.irradiance[valued.nodes[i] * lights + light];
+      mean = with(mean, valued.light.irradiance[i * lights + light], passes);
+    }
   }
 }
 
 /// Of nodes that hold those lights alone that reach them: all rows are written anew.
-void add_rows(std::uint32_t passes, const Valued& valued, std::size_t lights, Estimates& means) {
+void add_rows(std::uint32_t passes, std::span<const Valued> all, std::size_t lights,
+              Estimates& means) {
+  struct Row {
+    const Valued* valued = nullptr;
+    std::size_t place = 0;
+  };
+  std::vector<Row> row_of(means.first.size() - 1);
+  for (const Valued& valued : all) {
+    for (std::size_t i = 0; i < valued.nodes.size(); ++i) row_of[valued.nodes[i]] = {&valued, i};
+  }
   Estimates written;
   written.first.push_back(0);
   std::vector<glm::vec3> found(lights, glm::vec3(0.0f));  // by the pass
   std::vector<std::uint8_t> held(lights, 0);
-  for (std::size_t node = 0; node + 1 < means.first.size(); ++node) {
-    const std::size_t place = node - valued.first;  // beyond all for those before
-    const bool is_valued = place < valued.count;
-    const std::size_t first = is_valued ? valued.light.first[place] : 0;
-    const std::size_t last = is_valued ? valued.light.first[place + 1] : 0;
+  for (std::size_t node = 0; node < row_of.size(); ++node) {
+    const auto [valued, place] = row_of[node];
+    const std::size_t first = valued ? valued->light.first[place] : 0;
+    const std::size_t last = valued ? valued->light.first[place + 1] : 0;
     for (std::size_t i = first; i < last; ++i) {
-      found[valued.light.light[i]] += valued.light.irradiance[i];
+      found[valued->light.light[i]] += valued->light.irradiance[i];
     }
     const auto write = [&](std::uint16_t light, const glm::vec3& irradiance) {
       written.light.push_back(light);
@@ -47,12 +57,11 @@ void add_rows(std::uint32_t passes, const Valued& valued, std::size_t lights, Es
     };
     for (std::size_t i = means.first[node]; i < means.first[node + 1]; ++i) {
       const std::uint16_t light = means.light[i];
-      write(light,
-            is_valued ? with(means.irradiance[i], found[light], passes) : means.irradiance[i]);
+      write(light, valued ? with(means.irradiance[i], found[light], passes) : means.irradiance[i]);
       held[light] = 1;
     }
     for (std::size_t i = first; i < last; ++i) {
-      const std::uint16_t light = valued.light.light[i];
+      const std::uint16_t light = valued->light.light[i];
       if (std::exchange(held[light], 1) == 0) write(light, with({}, found[light], passes));
       found[light] = glm::vec3(0.0f);
     }
@@ -68,15 +77,22 @@ void add_rows(std::uint32_t passes, const Valued& valued, std::size_t lights, Es
 
 void LightMaps::Impl::add_pass(std::uint32_t passes, NodeSource& source, std::size_t first,
                                std::size_t last, const Progress& progress) {
-  progress.throw_if_cancelled();
-  const std::span<const light_maps::NodePlace> nodes =
-      std::span(places).subspan(first, last - first);
-  const Valued valued{first, last - first, values_of(nodes, source, progress).first.irradiance};
-  const std::size_t lights = parameters.powers.size();
+  // The coarsest first: finer ones may depend on them.
+  std::vector<Valued> by_level(static_cast<std::size_t>(levels));
+  for (std::size_t node = first; node < last; ++node) {
+    by_level[static_cast<std::size_t>(light_maps::level_of(places[node], levels))].nodes.push_back(
+        static_cast<std::uint32_t>(node));
+  }
+  for (Valued& level : by_level) {
+    progress.throw_if_cancelled();
+    std::vector<light_maps::NodePlace> at;
+    for (const std::uint32_t node : level.nodes) at.push_back(places[node]);
+    if (!at.empty()) level.light = values_of(at, source, progress).first.irradiance;
+  }
   if (needs.many_lights()) {
-    add_rows(passes, valued, lights, values);
+    add_rows(passes, by_level, parameters.powers.size(), values);
   } else {
-    add_dense(passes, valued, lights, values);
+    for (const Valued& level : by_level) add_dense(passes, level, parameters.powers.size(), values);
   }
 }
 

@@ -186,8 +186,15 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
 std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(std::span<const NodePlace> nodes,
                                                               NodeSource& source,
                                                               const Progress& progress) {
-  NodeBatch batch =
-      light_maps::node_batch(scene, charts, nodes, levels, needs.glossy, source.surroundings());
+  const auto batch_of = [&](std::span<const NodePlace> places) {
+    return light_maps::node_batch(scene, charts, places, levels, needs.glossy,
+                                  source.surroundings());
+  };
+  for (const auto& places : light_maps::unknown_parents(nodes, levels, source)) {
+    // For the source: they have their values here.
+    if (!places.empty()) source.value(batch_of(places), progress);
+  }
+  NodeBatch batch = batch_of(nodes);
   NodeValues values = source.value(batch, progress);
   return {std::move(values), std::move(batch.points)};
 }

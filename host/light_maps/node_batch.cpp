@@ -3,6 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
 #include <vector>
 
 #include "trace/surface.hpp"
@@ -61,6 +64,27 @@ std::uint32_t step_of(const NodePlace& node, int levels) {
   std::uint32_t step = 1;
   while (step < coarsest && (node.x | node.y) % (2 * step) == 0) step *= 2;
   return step;
+}
+
+/// The places next to a node in the lattice of the next coarser level, or none at the coarsest.
+std::optional<std::array<NodePlace, 4>> parents_of(const NodePlace& node, int levels) {
+  const std::uint32_t step = step_of(node, levels);
+  if (step == 1u << (levels - 1)) return std::nullopt;
+  const std::uint32_t dx = node.x % (2 * step), dy = node.y % (2 * step);
+  std::array<NodePlace, 4> parents;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    parents[i] = {node.chart, i & 1 ? node.x + dx : node.x - dx, i & 2 ? node.y + dy : node.y - dy};
+  }
+  return parents;
+}
+
+std::array<std::uint64_t, 4> parent_numbers(const NodePlace& node, int levels) {
+  std::array<std::uint64_t, 4> numbers;
+  numbers.fill(NodeBatch::no_parent);
+  if (const auto parents = parents_of(node, levels)) {
+    std::transform(parents->begin(), parents->end(), numbers.begin(), number_of);
+  }
+  return numbers;
 }
 
 /// The places around nodes, each in the coarsest lattice that has the node.
@@ -154,10 +178,33 @@ std::size_t NodePlaceHash::operator()(const NodePlace& node) const {
   return static_cast<std::size_t>(hash_of(node));
 }
 
+int level_of(const NodePlace& node, int levels) {
+  return levels - 1 - std::countr_zero(step_of(node, levels));
+}
+
+std::vector<std::vector<NodePlace>> unknown_parents(std::span<const NodePlace> nodes, int levels,
+                                                    const NodeSource& source) {
+  std::vector<std::vector<NodePlace>> by_level(static_cast<std::size_t>(levels));
+  NodeIndex found;
+  std::vector<NodePlace> open(nodes.begin(), nodes.end());
+  while (!open.empty()) {
+    const auto parents = parents_of(open.back(), levels);
+    open.pop_back();
+    if (!parents) continue;
+    for (const NodePlace& parent : *parents) {
+      if (source.knows(number_of(parent)) || !found.insert({parent, 0}).second) continue;
+      by_level[static_cast<std::size_t>(level_of(parent, levels))].push_back(parent);
+      open.push_back(parent);
+    }
+  }
+  return by_level;
+}
+
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
                      int levels, bool glossy, const NodeSource::Surroundings& surroundings) {
   NodeBatch batch;
   batch.nodes = nodes.size();
+  for (const NodePlace& node : nodes) batch.parents.push_back(parent_numbers(node, levels));
   std::vector<NodePlace> places(nodes.begin(), nodes.end());
   const Lattices lattices(charts, levels);
   NodeIndex index;

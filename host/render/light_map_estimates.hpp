@@ -108,6 +108,7 @@ class LightMapEstimates {
       return first_->value(batch, progress);
     }
     std::span<NodeSource* const> further() const override { return further_; }
+    bool knows(std::uint64_t number) const override { return first_->knows(number); }
     std::uint64_t bytes() const override;
     void forget() override;
 

@@ -66,6 +66,9 @@ inline constexpr double tolerated_errors = 3, tolerated_error_ratio = 2;
 inline constexpr double parting_difference = 2;
 /// Errors above this share of the light that they are of are not known: few rays found any.
 inline constexpr double known_error = 0.5;
+/// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
+/// mean over many.
+inline constexpr double weight_of_parents = 3;
 /// Lines of sight between places of one surface run above it by this part of their length:
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
 /// on the foot of a wall.

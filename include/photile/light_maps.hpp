@@ -44,6 +44,10 @@ struct NodeBatch {
   std::size_t nodes = 0;
   std::vector<std::uint64_t> number;  ///< of each point: by its place alone, below 2^48
   std::vector<std::uint8_t> coarse;   ///< of each point: whether the coarsest lattice has it
+  /// Of each node: the numbers of those of coarser levels between which it lies, two or four, one
+  /// of two twice. All `no_parent` at the coarsest level.
+  std::vector<std::array<std::uint64_t, 4>> parents;
+  static constexpr std::uint64_t no_parent = ~std::uint64_t{0};
   /// Point i of the coarsest lattice, or node i, is linked to neighbour[first_neighbour[i] ..
   /// first_neighbour[i + 1]), others to none. Empty without surroundings.
   std::vector<std::uint32_t> first_neighbour, neighbour;
@@ -79,6 +83,9 @@ class NodeSource {
   /// all. There may be more of them from call to call.
   virtual std::span<NodeSource* const> further() const { return {}; }
 
+  /// Whether it has all that it needs of the node of this number to value those that lie between it
+  /// and others. Those that it does not know are given to `value` once more, the coarsest first.
+  virtual bool knows(std::uint64_t /*number*/) const { return true; }
   /// What it keeps of nodes; `forget` lets go of that.
   virtual std::uint64_t bytes() const { return 0; }
   virtual void forget() {}
