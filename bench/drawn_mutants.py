@@ -79,7 +79,7 @@ FURTHER_TESTS = {
                 ("estimate", "clipped_surfaces")),
     "trace": (("reference", "form_factors"), ("reference", "path_direct_light"),
               ("reference", "path_materials"), ("reference", "path_interreflection"),
-              ("render", "direct_rays"), ("gather", "irradiance_gather"), ("measuring", "gather"),
+              ("render", "direct_rays"), ("gather", "irradiance_gather"), ("gather", "gathered_nodes"), ("measuring", "gather"),
               ("light_maps", "light_map_sensors"), ("light_maps", "light_map_frames"),
               ("scene", "textured_lights"), ("daylight", "daylight_matrix"),
               ("render", "final_gather"))}
