@@ -11,11 +11,10 @@ of the build at hand. Tests that noticed most in the least time come first, and 
 ends a mutant; one that does not compile does not count. With --quick N only steps that together take N
 seconds are run for each, and what these do not notice is left for a run without it.
 
-Results are added to docs/testing/drawn_mutants.json (--results), which holds the text of each line, so that
-its mutants are found again where code has moved; --seed and --count are for a file that is not there yet.
-Those decided there are not run again. Survivors
-need a look: "equivalent" with a reason there if no result can change, a test otherwise. --page writes the
-share into docs/testing.md.
+Results are added to docs/testing/drawn_mutants.json (--results), which holds the text of each line, so
+that its mutants are found again where code has moved; --seed and --count are for a file that is not there
+yet. Those decided there are not run again. Survivors need a look: "equivalent" with a reason there if no
+result can change, a test otherwise. --page writes the share into docs/testing.md.
 """
 
 import argparse
@@ -79,7 +78,8 @@ FURTHER_TESTS = {
                 ("estimate", "clipped_surfaces")),
     "trace": (("reference", "form_factors"), ("reference", "path_direct_light"),
               ("reference", "path_materials"), ("reference", "path_interreflection"),
-              ("render", "direct_rays"), ("gather", "irradiance_gather"), ("gather", "gathered_nodes"), ("measuring", "gather"),
+              ("render", "direct_rays"), ("gather", "irradiance_gather"),
+              ("gather", "gathered_nodes"), ("measuring", "gather"),
               ("light_maps", "light_map_sensors"), ("light_maps", "light_map_frames"),
               ("scene", "textured_lights"), ("daylight", "daylight_matrix"),
               ("render", "final_gather"))}
@@ -298,8 +298,8 @@ def run_all(options, drawn):
             break
         in_host = site.file.startswith("host/")
         if in_host and host is None:
-            host = Host(options.build, work, [site for site in drawn.values() if site and site.file.startswith("host/")],
-                        order)
+            sites = [site for site in drawn.values() if site and site.file.startswith("host/")]
+            host = Host(options.build, work, sites, order)
         runner = host if in_host else kernels
         steps = host.steps(site.file.split("/")[1]) if in_host else kernels.steps
         before = os.times()

@@ -1,15 +1,16 @@
-// Many faults in one build, of which an environment variable chooses one ("mutant schemata": Untch, Offutt
-// and Harrold 1993). bench/mutant_schemata.py puts these names into copies of source files.
+// Many faults in one build, of which an environment variable chooses one ("mutant schemata": Untch,
+// Offutt and Harrold 1993). bench/mutant_schemata.py puts these names into copies of source files.
 //
 // `a < b` becomes `a < PHOTILE_INFIX(Less, 17) < b`: the object between has the operator's own
 // precedence on both sides, so that no operand has to be found. PHOTILE_CHOSEN(17) chooses between
 // two expressions.
 #pragma once
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <type_traits>
-#include <unistd.h>
 #include <utility>
 
 namespace photile::mutants {
@@ -25,8 +26,8 @@ inline int chosen() {
   return number;
 }
 
-/// Numbers of the mutants that would have given another value, in the file that PHOTILE_MUTANT_RECORD
-/// names, once the process ends: no test can notice others.
+/// Numbers of the mutants that would have given another value, in the file that
+/// PHOTILE_MUTANT_RECORD names, once the process ends: no test can notice others.
 class Record {
  public:
   static constexpr int most = 100'000;
@@ -87,63 +88,63 @@ bool differ(const Value& a, const Value& b) {
 #define PHOTILE_CHOSEN(number) ::photile::mutants::is_chosen(number)
 
 // Operators by value: `left` is kept by reference within the full expression.
-#define PHOTILE_INFIX_OPERATOR(name, op, other)                                                   \
-  namespace photile::mutants {                                                                    \
-  template <int number>                                                                           \
-  struct name {};                                                                                 \
-  template <int number, class Left>                                                               \
-  struct name##_left {                                                                            \
-    const Left& left;                                                                             \
-  };                                                                                              \
-  template <int number, class Left>                                                               \
-  name##_left<number, Left> operator op(const Left& left, name<number>) {                         \
-    return {left};                                                                                \
-  }                                                                                               \
-  template <int number, class Left, class Right>                                                  \
-  auto operator op(name##_left<number, Left> bound, const Right& right) {                         \
-    using Result = std::decay_t<decltype(bound.left op right)>;                                   \
-    if constexpr (requires { static_cast<Result>(bound.left other right); }) {                    \
-      if (record().runs()) {                                                                      \
-        if (is_zero(right) || differ(static_cast<Result>(bound.left op right),                    \
-                                     static_cast<Result>(bound.left other right))) {              \
-          record().matters(number);                                                               \
-        }                                                                                         \
-      } else if (chosen() == number) {                                                            \
-        return static_cast<Result>(bound.left other right);                                       \
-      }                                                                                           \
-    } else if (is_chosen(number)) {                                                               \
-      refuse();                                                                                   \
-    }                                                                                             \
-    return static_cast<Result>(bound.left op right);                                              \
-  }                                                                                               \
+#define PHOTILE_INFIX_OPERATOR(name, op, other)                                      \
+  namespace photile::mutants {                                                       \
+  template <int number>                                                              \
+  struct name {};                                                                    \
+  template <int number, class Left>                                                  \
+  struct name##_left {                                                               \
+    const Left& left;                                                                \
+  };                                                                                 \
+  template <int number, class Left>                                                  \
+  name##_left<number, Left> operator op(const Left& left, name<number>) {            \
+    return {left};                                                                   \
+  }                                                                                  \
+  template <int number, class Left, class Right>                                     \
+  auto operator op(name##_left<number, Left> bound, const Right& right) {            \
+    using Result = std::decay_t<decltype(bound.left op right)>;                      \
+    if constexpr (requires { static_cast<Result>(bound.left other right); }) {       \
+      if (record().runs()) {                                                         \
+        if (is_zero(right) || differ(static_cast<Result>(bound.left op right),       \
+                                     static_cast<Result>(bound.left other right))) { \
+          record().matters(number);                                                  \
+        }                                                                            \
+      } else if (chosen() == number) {                                               \
+        return static_cast<Result>(bound.left other right);                          \
+      }                                                                              \
+    } else if (is_chosen(number)) {                                                  \
+      refuse();                                                                      \
+    }                                                                                \
+    return static_cast<Result>(bound.left op right);                                 \
+  }                                                                                  \
   }
 
 // Assignments bind from the right: `a += (name += b)`.
-#define PHOTILE_INFIX_ASSIGNMENT(name, op, other)                                                 \
-  namespace photile::mutants {                                                                    \
-  template <int number>                                                                           \
-  struct name {};                                                                                 \
-  template <int number, class Right>                                                              \
-  struct name##_right {                                                                           \
-    const Right& right;                                                                           \
-  };                                                                                              \
-  template <int number, class Right>                                                              \
-  name##_right<number, Right> operator op(name<number>, const Right& right) {                     \
-    return {right};                                                                               \
-  }                                                                                               \
-  template <int number, class Left, class Right>                                                  \
-  Left& operator op(Left& left, name##_right<number, Right> bound) {                              \
-    if (is_chosen(number)) {                                                                      \
-      if constexpr (requires { left other bound.right; }) {                                       \
-        left other bound.right;                                                                   \
-      } else {                                                                                    \
-        refuse();                                                                                 \
-      }                                                                                           \
-    } else {                                                                                      \
-      left op bound.right;                                                                        \
-    }                                                                                             \
-    return left;                                                                                  \
-  }                                                                                               \
+#define PHOTILE_INFIX_ASSIGNMENT(name, op, other)                             \
+  namespace photile::mutants {                                                \
+  template <int number>                                                       \
+  struct name {};                                                             \
+  template <int number, class Right>                                          \
+  struct name##_right {                                                       \
+    const Right& right;                                                       \
+  };                                                                          \
+  template <int number, class Right>                                          \
+  name##_right<number, Right> operator op(name<number>, const Right& right) { \
+    return {right};                                                           \
+  }                                                                           \
+  template <int number, class Left, class Right>                              \
+  Left& operator op(Left& left, name##_right<number, Right> bound) {          \
+    if (is_chosen(number)) {                                                  \
+      if constexpr (requires { left other bound.right; }) {                   \
+        left other bound.right;                                               \
+      } else {                                                                \
+        refuse();                                                             \
+      }                                                                       \
+    } else {                                                                  \
+      left op bound.right;                                                    \
+    }                                                                         \
+    return left;                                                              \
+  }                                                                           \
   }
 
 PHOTILE_INFIX_OPERATOR(Less, <, <=)
@@ -166,14 +167,15 @@ PHOTILE_INFIX_ASSIGNMENT(Subtract, -=, +=)
 PHOTILE_INFIX_ASSIGNMENT(Multiply, *=, /=)
 PHOTILE_INFIX_ASSIGNMENT(Divide, /=, *=)
 
-#define PHOTILE_INFIX(name, number) ::photile::mutants::name<number>{}
+#define PHOTILE_INFIX(name, number) \
+  ::photile::mutants::name<number> {}
 
-#define PHOTILE_EXTREME(number, function, other)                                                \
-  ([](const auto&... values) {                                                                  \
-    const auto own = function(values...), changed = other(values...);                           \
-    if (::photile::mutants::record().runs()) {                                                  \
+#define PHOTILE_EXTREME(number, function, other)                                                  \
+  ([](const auto&... values) {                                                                    \
+    const auto own = function(values...), changed = other(values...);                             \
+    if (::photile::mutants::record().runs()) {                                                    \
       if (::photile::mutants::differ(own, changed)) ::photile::mutants::record().matters(number); \
-      return own;                                                                               \
-    }                                                                                           \
-    return ::photile::mutants::chosen() == number ? changed : own;                              \
+      return own;                                                                                 \
+    }                                                                                             \
+    return ::photile::mutants::chosen() == number ? changed : own;                                \
   })

@@ -88,10 +88,10 @@ ExrInput::Part part_of(const Imf::Header& header) {
   std::uint64_t block =
       static_cast<std::uint64_t>(part.width) * rows_of_block(header.compression());
   if (header.hasTileDescription()) {
-    // OpenEXR keeps a row of them.
+    // OpenEXR keeps a row of tiles.
     const Imf::TileDescription& tile = header.tileDescription();
     const auto width = static_cast<std::uint64_t>(std::max(part.width, 1));
-    block = std::max<std::uint64_t>(tile.xSize, width) * tile.ySize;  // a row of tiles is kept
+    block = std::max<std::uint64_t>(tile.xSize, width) * tile.ySize;
   }
   if (block * pixel_bytes > limits::max_image_block_bytes) {
     throw DecodeError(fmt::format("has blocks of {} bytes, more than the limit of {}",
@@ -151,8 +151,7 @@ void ExrInput::find_parts(std::uint64_t bytes) {
   }
   throw DecodeError(
       fmt::format("is damaged or empty: {} bytes for the {} channels of {} x {} pixels; the limit "
-                  "is {} pixels a "
-                  "byte, and a factor of {}; scale it down",
+                  "is {} pixels a byte, and a factor of {}; scale it down",
                   encoded, channels, parts_.front().width, parts_.front().height,
                   limits::max_exr_pixels_per_byte, limits::max_image_expansion));
 }
