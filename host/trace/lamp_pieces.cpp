@@ -134,7 +134,7 @@ void LampPieces::enclose(const Scene& scene, Piece& piece) const {
     cosine = std::min(cosine, glm::dot(axis, normal));
   });
   piece.axis = glm::vec3(axis);
-  piece.cone_cosine = static_cast<float>(std::max(-1.0, cosine));
+  piece.cone_cosine = static_cast<float>(cosine);
   piece.cone_sine = sine_of(piece.cone_cosine);
 }
 
@@ -172,7 +172,7 @@ bool LampPieces::cut(const Scene& scene, std::size_t index) {
   sum_areas(scene, piece);
   Piece rest = piece;
   piece.last = rest.first = static_cast<std::uint32_t>(second - triangles_.begin());
-  if (piece.first == piece.last || rest.first == rest.last) return false;
+  if (piece.first == piece.last) return false;  // what lies farthest is in the rest
   const double part = triangles_[piece.last - 1].area_up_to - area_before(piece);
   if (!(part > 0) || !(part < whole_area)) return false;
   piece.share *= static_cast<float>(part / whole_area);

@@ -57,7 +57,7 @@ void OpaqueBsdf::keep_lobe() {
   surface_.albedo = glm::vec3(0.0f);
   if (!lobe_) return;
   lobe_->diffuse = {};
-  lobe_->share = lobe_->albedo > 0.0f ? 1.0f : 0.0f;
+  lobe_->share = 1.0f;
 }
 
 void OpaqueBsdf::drop_lobe() {

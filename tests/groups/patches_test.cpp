@@ -122,6 +122,31 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a patch whose normals cancel has the groups of its triangles' boxes") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  test::add_plate(scene, {0, 0, 0.01f}, {0, 1, 0}, {1, 0, 0}, 1);
+  test::add_plate(scene, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  Patches patches;
+  patches.first_of = {0, 4, 6};
+  for (std::uint32_t t = 0; t < 6; ++t) {
+    patches.members.push_back(sided(t, 0));
+    const std::uint32_t front = t < 4 ? 0 : 2;
+    patches.map_of.insert(patches.map_of.end(), {front, front + 1});
+  }
+  check_groups(scene, find_patch_groups(scene, patches, {0.1, 60}));
+}
+
+TEST_CASE("patches nearer than the radius by little more than rounding are neighbours") {
+  const float gap = 0.0999999f;
+  Scene scene = test::empty_scene();
+  test::add_triangle(scene, {-1, 0, 0}, {0, 0, 0}, {0, 1, 0});
+  test::add_triangle(scene, {gap, 0, 0}, {1, 0, 0}, {gap, 1, 0});
+  const NeighbourGroups groups =
+      find_patch_groups(scene, {{0, 1, 2, 3}, {0, 1, 2}, {0, 2}}, {0.1, 60});
+  CHECK(groups.of(0).size() == 2);
+}
+
 TEST_CASE("sided triangles without photons have empty groups, and the others theirs") {
   const Scene scene = room_corner();
   std::vector<std::uint8_t> landed(2 * scene.triangle_count());

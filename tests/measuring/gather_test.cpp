@@ -192,6 +192,30 @@ TEST_CASE("under an even sky a sensor reads pi L, a deviation of 1% would be see
   CHECK_VERDICT(paths_give(scene, {{0.2, 0.1, 0.5}, up}, {.rays = 4096}, truth, 0.01 * truth));
 }
 
+TEST_CASE("under half a sky cylinders read half of pi L, half cylinders by where they face") {
+  // Bright where z > 0: the columns whose azimuths point there. The plate is too small to hide any.
+  std::vector<glm::vec3> texels;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 8; ++column)
+      texels.emplace_back(column < 2 || column > 5 ? 1.0f : 0.0f);
+  Scene scene = test::plate(test::diffuse(glm::vec3(0)), 0.01f);
+  add_environment(scene, EnvironmentMap("half", 8, 4, texels));
+  const double power = scene.lights.back().power;
+  const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const auto check = [&](SensorResponse response, const glm::dvec3& normal,
+                         const glm::dvec3& facing, double irradiance) {
+    const Sensor sensor{.position = {0.3, 0.4, 0.5}, .normal = normal, .facing = facing};
+    CHECK_VERDICT(
+        paths_give(scene, sensor, {response, 2048}, irradiance / power, 0.07 * irradiance / power));
+  };
+  check(SensorResponse::cylindrical, z, x, pi / 2);
+  check(SensorResponse::semi_cylindrical, z, x, pi / 2);
+  check(SensorResponse::semi_cylindrical, y, x, pi / 2);
+  // The integral of (1 + cos alpha) sine^2 over pi, where cos alpha is above 0, or below.
+  check(SensorResponse::semi_cylindrical, y, z, (pi + 2) / 2);
+  check(SensorResponse::semi_cylindrical, y, -z, (pi - 2) / 2);
+}
+
 TEST_CASE("sensors far outside the scene lie in its shadow") {
   Scene scene = test::plate(test::diffuse(glm::vec3(0)), 2);
   Light sun = test::point_light("sun", {0, 0, 0});

@@ -14,7 +14,8 @@ struct RoomWithWindow {
   static constexpr double window_area = 1.2 * 1.0;
 
   /// Walls of one material, and a camera in the room.
-  static SceneBuilder builder(const Material& walls) {
+  ///   two_windows   the wall at z = 5 m has the same hole
+  static SceneBuilder builder(const Material& walls, bool two_windows = false) {
     SceneBuilder builder("room with a window");
     const std::uint32_t wall = builder.add(walls);
     const glm::vec3 x(width, 0, 0), y(0, height, 0), z(0, 0, depth), zero(0.0f);
@@ -22,14 +23,21 @@ struct RoomWithWindow {
     builder.grid(y, x, z, 1, wall);     // ceiling
     builder.grid(zero, y, z, 1, wall);
     builder.grid(x, z, y, 1, wall);
-    builder.grid(z, y, x, 1, wall);
-    const auto pane = [&](float x0, float x1, float y0, float y1) {
-      builder.quad({x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0}, wall);
+    const auto wall_around_window = [&](float at) {
+      const auto part = [&](float x0, float x1, float y0, float y1) {
+        builder.quad({x0, y0, at}, {x1, y0, at}, {x1, y1, at}, {x0, y1, at}, wall);
+      };
+      part(0, left, 0, height);
+      part(right, width, 0, height);
+      part(left, right, 0, sill);
+      part(left, right, head, height);
     };
-    pane(0, left, 0, height);
-    pane(right, width, 0, height);
-    pane(left, right, 0, sill);
-    pane(left, right, head, height);
+    wall_around_window(0);
+    if (two_windows) {
+      wall_around_window(depth);
+    } else {
+      builder.grid(z, y, x, 1, wall);
+    }
     builder.add(Camera::look_at({2.0, 1.5, 4.0}, {2.0, 1.2, 0.0}, {0.0, 1.0, 0.0}, 1.0));
     return builder;
   }

@@ -60,6 +60,24 @@ TEST_CASE("triangles of other planes are all found, and none of the own") {
   }
 }
 
+TEST_CASE("of two triangles at an angle each finds the other") {
+  Scene scene = test::empty_scene();
+  test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
+  const surface::SurfaceMesh mesh(scene);
+  const surface::Facets facets = surface::find_facets(mesh, 0.1);
+  const surface::PlaneTree planes(mesh, facets);
+  for (const std::uint32_t triangle : {0u, 1u}) {
+    std::vector<std::uint32_t> found;
+    planes.visit_others(triangle, geometry::triangle_box(scene, triangle), 0.1,
+                        [&](std::uint32_t other) {
+                          found.push_back(other);
+                          return false;
+                        });
+    CHECK(found == std::vector<std::uint32_t>{1 - triangle});
+  }
+}
+
 TEST_CASE("a search for triangles of other planes ends where it is told to") {
   test::SceneBuilder builder;
   builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(test::diffuse(glm::vec3(0.5f))), true,

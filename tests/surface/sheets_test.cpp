@@ -67,6 +67,21 @@ TEST_CASE("coplanar pieces that touch make one sheet without a common corner") {
   CHECK(sheets_facing_up(builder.build()).size() == 2);
 }
 
+TEST_CASE("wherever they lie, pieces connect along a longer edge, and not beyond its end") {
+  for (const float shift : {-3.0f, 0.0f, 3.0f}) {
+    const auto sheets_beside = [&](float from, float to) {
+      test::SceneBuilder builder;
+      const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+      builder.grid({0, shift, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
+      builder.grid({1, shift + from, 0}, {1, 0, 0}, {0, to - from, 0}, 1, white);
+      return sheets_facing_up(builder.build()).size();
+    };
+    CAPTURE(shift);
+    CHECK(sheets_beside(-0.5f, 1.5f) == 1);
+    CHECK(sheets_beside(1.5f, 2.5f) == 2);
+  }
+}
+
 TEST_CASE("pieces that overlap in a plane stay apart") {
   test::SceneBuilder builder;
   const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));

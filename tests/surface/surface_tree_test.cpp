@@ -71,4 +71,20 @@ TEST_CASE("pieces in one point, or ever farther apart, do not make the tree deep
   CHECK(check_tree(surface::build_surface_tree(apart), apart) <= PHOTILE_SURFACE_STACK);
 }
 
+TEST_CASE(
+    "no tree is deeper than ten levels and the logarithm of its pieces to the base of eight") {
+  // Clusters within clusters, each a 32nd as large as the one around it: what splits by area part
+  // in a level of the tree leaves all of the last one, whose centres coincide, together.
+  std::vector<surface::SurfacePiece> pieces;
+  float size = 1;
+  for (int level = 0; level < 10; ++level, size /= 32) {
+    for (int i = 1; i <= 128; ++i) {
+      const float place = 0.1f + static_cast<float>(i) / 128;
+      pieces.push_back(piece_at(glm::vec3(size * place), glm::vec3(1e-3f * size)));
+    }
+  }
+  pieces.resize(32'768, piece_at(glm::vec3(0.0f), glm::vec3(size)));  // 8^5
+  CHECK(check_tree(surface::build_surface_tree(pieces), pieces) <= 7 * (10 + 5) + 1);
+}
+
 }  // namespace photile::test

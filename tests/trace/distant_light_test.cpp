@@ -150,6 +150,35 @@ TEST_CASE("directions towards a sun are even over its disc", "[sun]") {
   CHECK_VERDICT(counts_agree(counts, std::vector<double>(20, trials / 20.0)));
 }
 
+TEST_CASE("of many suns all that shine from a direction are found, at the poles of the sphere, too",
+          "[sun]") {
+  Scene scene = plate(diffuse({}), 1);
+  for (const glm::vec3& towards : std::initializer_list<glm::vec3>{{0, 1, 0},
+                                                                   {0, -1, 0},
+                                                                   {0.02f, 1, 0.01f},
+                                                                   {1, 0, 0},
+                                                                   {-1, 0, 0},
+                                                                   {0, 0, 1},
+                                                                   {0, 0, -1}}) {
+    scene = with_sun(scene, towards, 0.03f);
+    scene.lights.back().name += std::to_string(scene.lights.size());
+  }
+  const DistantLights lights(scene);
+  for (const Light& sun : scene.lights) {
+    const DistantSampler sampler(scene, sun);
+    for (std::uint64_t i = 0; i < 100; ++i) {
+      const glm::vec3 direction =
+          sampler.sample(RandomStream(8, i, 0).block(Purpose::emission, 0)).direction;
+      const auto found = lights.towards(direction);
+      for (std::uint32_t index = 0; index < scene.lights.size(); ++index) {
+        if (lights[index].radiance(direction) == glm::vec3(0.0f)) continue;
+        CAPTURE(sun.name, index);
+        REQUIRE(std::count(found.begin(), found.end(), index) == 1);
+      }
+    }
+  }
+}
+
 TEST_CASE("photons of an even environment land evenly on both sides of a plate, pi L on each",
           "[environment]") {
   const Scene scene = with_environment(plate(diffuse({}), 2), even_map(glm::vec3(5.0f)));

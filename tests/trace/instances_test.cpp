@@ -7,6 +7,7 @@
 #include "instanced_scenes.hpp"
 #include "photile/photon_tracer.hpp"
 #include "photile/ray_scene.hpp"
+#include "photon_sets.hpp"
 #include "trace/ray_scene_impl.hpp"
 #include "trace/sampling.hpp"
 #include "trace/surface.hpp"
@@ -64,6 +65,25 @@ TEST_CASE("rays meet turned, scaled and mirrored instances where the world's tri
     CHECK(glm::dot(point.normal, direction) <= 0);
   }
   CHECK(on_instances > 200);  // the balls cover a few hundredths of all directions
+}
+
+TEST_CASE("triangles before, between and after instances are met where they are") {
+  Scene scene = empty_scene();
+  const SharedMesh ball = dented_ball(4);
+  const auto add_plate_and_ball = [&](float x) {
+    add_plate(scene, {x - 1, -1, -1}, {2, 0, 0}, {0, 2, 0}, 1);
+    add_instances(scene, ball, {glm::mat4x3(glm::translate(glm::mat4(1.0f), {x, 0, 0}))}, 0);
+  };
+  add_plate_and_ball(0);
+  add_plate_and_ball(5);
+  add_plate(scene, {9, -1, -1}, {2, 0, 0}, {0, 2, 0}, 1);
+  const RayScene rays(scene);
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    const SurfacePoint point = surface_point(scene, {t, 0.3f, 0.3f}, 0);
+    const auto hit = impl_of(rays).intersect(point.position + 1e-3f * point.normal, -point.normal);
+    REQUIRE(hit);
+    CHECK(hit->triangle == t);
+  }
 }
 
 TEST_CASE("a hit on an instance has the weights of the corners as the scene orders them") {

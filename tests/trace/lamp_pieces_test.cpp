@@ -3,9 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <set>
 
 #include "test_scenes.hpp"
 #include "tools/validation/form_factors.hpp"
+#include "trace/direct_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "uniform.hpp"
 
@@ -158,6 +160,64 @@ TEST_CASE("lamp pieces: densities of directions towards lamps integrate to one")
     }
   }
   CHECK(sum == Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("lamp pieces: looks from one point choose other triangles of a piece each") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 32, black, builder.add(area_light("panel")));
+  const Scene scene = builder.build();
+  const LampPieces pieces(scene, std::vector<double>{1.0}, bounding_sphere(scene));
+  LampChances chances;
+  pieces.weigh({0.5f, 0.5f, 3}, {0, 0, -1}, chances);
+  REQUIRE(chances.up_to.size() <= 64);
+  const LookSamples looks(RandomStream(1, 2, 0), 0);
+  constexpr std::uint32_t count = 256;
+  std::set<std::uint32_t> triangles;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const LampNumbers numbers = looks.lamp(i);
+    triangles.insert(pieces.choose(chances, numbers.lamp, numbers.place).triangle);
+  }
+  // Of 2048; were they drawn at random, 15 would be drawn again.
+  CHECK(triangles.size() > count - 40);
+}
+
+TEST_CASE("lamp pieces: the largest number below one chooses the last of all lamps") {
+  SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+  constexpr std::size_t count = 29;  // so many equal shares sum to less than one
+  for (std::size_t lamp = 0; lamp < count; ++lamp) builder.add(point_light("bulb", {0, 0, 1}));
+  const Scene scene = builder.build();
+  const RandomBlock largest = RandomBlock::of(1 - 0x1p-53);
+  const auto by_shares = LightSampler(scene).sample(glm::vec3(0.0f), largest, largest);
+  REQUIRE(by_shares);
+  CHECK(by_shares->layer == count - 1);
+  const LampPieces pieces(scene, std::vector<double>(count, 1.0 / count), bounding_sphere(scene));
+  LampChances chances;
+  pieces.weigh(glm::vec3(0.0f), {0, 0, -1}, chances);  // away from the lamps: by their shares
+  REQUIRE(chances.up_to.back() < 1);
+  CHECK(pieces.choose(chances, largest, largest).piece == count - 1);
+}
+
+TEST_CASE("lamp pieces: triangles with the same middle are not parted") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
+  builder.triangle({3, 0, 0}, {0, 3, 0}, {0, 0, 0}, black, lamp);
+  builder.triangle({2, 1, 0}, {1, 2, 0}, {0, 0, 0}, black, lamp);
+  const Scene scene = builder.build();
+  const LampPieces pieces(scene, std::vector<double>{1.0}, bounding_sphere(scene));
+  LampChances chances;
+  pieces.weigh({1, 1, 2}, {0, 0, -1}, chances);
+  CHECK(chances.up_to.size() == 1);
+  CHECK(pieces.area(0) == Approx(4.5 + 1.5));
+  // Each as often as its area says.
+  const auto chosen = [&](double place) {
+    const RandomBlock first = RandomBlock::of(0);
+    return pieces.choose(chances, first, RandomBlock::of(place)).triangle;
+  };
+  CHECK(chosen(0.74) == chosen(0));
+  CHECK(chosen(0.76) != chosen(0));
 }
 
 }  // namespace photile::test

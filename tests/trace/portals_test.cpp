@@ -12,6 +12,7 @@
 #include "room_with_window.hpp"
 #include "statistical_tests.hpp"
 #include "tools/validation/form_factors.hpp"
+#include "trace/light_emitter.hpp"
 #include "trace/portal_search.hpp"
 
 namespace photile::test {
@@ -157,6 +158,31 @@ TEST_CASE("an opening is found from the camera's room, and faces inwards", "[por
   CHECK(across.z > 0.99f * glm::length(across));
   const glm::vec3 middle = portals[0].corner + 0.5f * (portals[0].u + portals[0].v);
   CHECK(glm::distance(middle, glm::vec3(1.8f, 1.4f, 0.0f)) < 0.2f);
+}
+
+TEST_CASE("each of two windows is found once", "[portals]") {
+  auto portals = find_portals(Room::builder(diffuse(glm::vec3(0.5f)), true).build());
+  REQUIRE(portals.size() == 2);
+  if (portals[0].corner.z > portals[1].corner.z) std::swap(portals[0], portals[1]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const glm::vec3 middle = portals[i].corner + 0.5f * (portals[i].u + portals[i].v);
+    CHECK(glm::distance(middle, glm::vec3(1.8f, 1.4f, i == 0 ? 0.0f : Room::depth)) < 0.2f);
+  }
+}
+
+TEST_CASE("photons through portals start before all of the scene, wherever it lies", "[portals]") {
+  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
+  const glm::vec3 moved = GENERATE(glm::vec3(0.0f), glm::vec3(30.0f, -40.0f, 120.0f));
+  for (glm::vec3& vertex : scene.vertices) vertex += moved;
+  scene.portals = {Room::window()};
+  scene.portals[0].corner += moved;
+  const LightEmitter emitter(scene, 0, bounding_sphere(scene));
+  for (std::uint64_t path = 0; path < 200; ++path) {
+    const EmittedRay ray = emitter.emit(RandomStream(3, path, 0));
+    for (const glm::vec3& vertex : scene.vertices) {
+      REQUIRE(glm::dot(vertex - ray.origin, ray.direction) > -1e-3f);
+    }
+  }
 }
 
 TEST_CASE("panes of a named material are portals that face inwards", "[portals]") {

@@ -1,9 +1,13 @@
 // Intersections and the points they give.
 #include "photile/ray_scene.hpp"
 
+#include <malloc.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "photon_sets.hpp"
 #include "test_scenes.hpp"
 #include "trace/ray_scene_impl.hpp"
 #include "trace/sampling.hpp"
@@ -30,6 +34,27 @@ TEST_CASE("A ray hits the point of the plate below it, on the side that it comes
       CHECK(glm::dvec3(point.normal) == sided_normal(scene, point.sided_triangle()));
       CHECK(on_front(scene, point) == (z > 0));
     }
+  }
+}
+
+TEST_CASE("The weights of a place on a triangle are found, and beside it those of a point within") {
+  Uniform uniform(2);
+  for (int i = 0; i < 1000; ++i) {
+    Scene scene = empty_scene();
+    add_triangle(scene, uniform.direction(), uniform.direction(), uniform.direction());
+    if (triangle_area(scene, 0) < 0.1) continue;
+    const float u = uniform();
+    const glm::vec2 uv = sample_triangle(u, uniform());
+    const auto [a, b, c] = scene.corners(0);
+    const TriangleHit found = nearest_on_triangle(
+        scene, 0,
+        glm::dvec3(a) + double{uv.x} * glm::dvec3(b - a) + double{uv.y} * glm::dvec3(c - a));
+    CHECK(found.u == Approx(uv.x).margin(1e-5));
+    CHECK(found.v == Approx(uv.y).margin(1e-5));
+    const TriangleHit within = nearest_on_triangle(scene, 0, 2.0 * glm::dvec3(uniform.direction()));
+    CHECK(within.u >= 0);
+    CHECK(within.v >= 0);
+    CHECK(within.u + within.v < 1 + 1e-6);
   }
 }
 
@@ -100,6 +125,31 @@ TEST_CASE("No ray from inside a closed room of many triangles escapes through it
   }
 }
 
+TEST_CASE("Any number of lines of sight at once are hidden as each is alone") {
+  const Scene scene = furnished_room();
+  const RayScene rays(scene);
+  Uniform uniform(5);
+  const auto point = [&] {
+    const float x = uniform(), y = uniform();
+    return glm::vec3(4.0f * x, 3.0f * y, 2.5f * uniform());
+  };
+  std::size_t hidden_of_all = 0, all = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (const std::size_t count : {1u, 15u, 16u, 17u, 33u}) {
+      std::vector<LineOfSight> lines(count);
+      for (LineOfSight& line : lines) line = {point(), point()};
+      std::vector<std::uint8_t> hidden(count, 2), expected;
+      occluded(rays, lines, hidden);
+      for (const LineOfSight& line : lines) expected.push_back(occluded(rays, line.from, line.to));
+      CHECK(hidden == expected);
+      hidden_of_all += static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), 1));
+      all += count;
+    }
+  }
+  CHECK(hidden_of_all > all / 20);
+  CHECK(hidden_of_all < all / 2);
+}
+
 TEST_CASE("Embree's memory is counted and grows with the scene") {
   const Scene small = closed_box(diffuse(glm::vec3(0.5f)));
   const Scene large = closed_box(diffuse(glm::vec3(0.5f)), 60);
@@ -107,6 +157,18 @@ TEST_CASE("Embree's memory is counted and grows with the scene") {
   // 43,200 triangles and their vertices cannot take less than the vertices alone.
   CHECK(large_rays.bytes() > large.vertices.size() * sizeof(glm::vec3));
   CHECK(large_rays.bytes() > small_rays.bytes());
+}
+
+TEST_CASE("A ray scene gives its memory back") {
+  const auto in_use = [] {  // bytes of the heap
+    const auto info = ::mallinfo2();
+    return info.uordblks + info.hblkhd;
+  };
+  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)), 40);
+  const std::uint64_t of_one = RayScene(scene).bytes();
+  const std::size_t before = in_use();
+  for (int i = 0; i < 10; ++i) RayScene{scene};
+  CHECK(in_use() < before + of_one);
 }
 
 }  // namespace photile::test
