@@ -72,6 +72,12 @@ TEST_CASE("numbers that would wrap into others are refused") {
     CAPTURE(place, value);
     CHECK_THAT(refusal_with(place, value), Contains(value) && Contains("to " + most));
   }
+  // Added to an address, they would wrap.
+  for (const char* place : {"/bufferViews/0/byteOffset", "/accessors/0/count"}) {
+    const std::string value = GENERATE("9007199254740993", "18446744073709551615");
+    CAPTURE(place, value);
+    CHECK_THAT(refusal_with(place, value), Contains(value) && Contains("to 9007199254740992"));
+  }
 }
 
 TEST_CASE("a sparse accessor replaces one element at least, and no more than there are") {

@@ -19,7 +19,8 @@ namespace {
 constexpr std::array<std::string_view, 3> of_bytes{"accessors", "bufferViews", "buffers"};
 /// Members of those that number parts of the file or constants of the format: 32 bits.
 constexpr std::array<std::string_view, 3> numbers{"buffer", "bufferView", "componentType"};
-/// Members of those that count bytes or elements: of 64 bits, unless of a sparse accessor.
+/// Members of those that count bytes or elements: whole as JSON keeps numbers, 32 bits where an
+/// accessor is sparse.
 constexpr std::array<std::string_view, 4> sizes{"byteLength", "byteOffset", "byteStride", "count"};
 /// Members anywhere that number parts of the file. tinygltf cuts them off at 32 bits; others that
 /// are wrong name nothing, and nothing may ask for it.
@@ -29,6 +30,7 @@ constexpr std::array<std::string_view, 11> indices{"camera",   "index",  "indice
 constexpr std::array<std::string_view, 3> lists{"children", "joints", "nodes"};
 
 constexpr std::int64_t most_int = std::numeric_limits<int>::max();
+constexpr std::uint64_t most_exact = std::uint64_t{1} << std::numeric_limits<double>::digits;
 constexpr std::uint64_t most_size = std::numeric_limits<std::uint64_t>::max();
 
 template <std::size_t count>
@@ -104,7 +106,7 @@ class JsonCheck {
     const bool sparse = member(1) == "sparse" || member(2) == "sparse";
     level.whole = number || size;
     const bool index = is_one_of(indices, level.key) || member(1) == "attributes";
-    level.most = number || (size && sparse) || index ? most_int : most_size;
+    level.most = number || (size && sparse) || index ? most_int : size ? most_exact : most_size;
   }
 
   void begin_value() {
@@ -116,9 +118,8 @@ class JsonCheck {
   bool value(bool is_sound, const Shown& shown) {
     begin_value();
     if (is_sound) return true;
-    const std::uint64_t most = levels_.back().most;
-    problem = fmt::format("malformed glTF: {} is {}, not a whole number from 0{}", place(), shown,
-                          most == most_size ? " on" : fmt::format(" to {}", most));
+    problem = fmt::format("malformed glTF: {} is {}, not a whole number from 0 to {}", place(),
+                          shown, levels_.back().most);
     return false;
   }
 
