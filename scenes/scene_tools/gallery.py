@@ -53,7 +53,7 @@ def metal_ring(path):
     document = GltfDocument("caustic of a metal ring")
     _corner(document, document.matte("floor", WHITE), document.matte("wall", GREY))
     ring = lathe([(0.3, 0.0), (0.3, 0.16), (0.29, 0.16), (0.29, 0.0)], 96)
-    document.thing("ring", (document.metal("gold", (0.95, 0.72, 0.35), 0.0), ring.moved(0, 1e-3, 0)))
+    document.thing("ring", (document.metal("gold", (0.95, 0.72, 0.35), 0.0), ring.moved(0, -1e-3, 0)))
     document.thing("band", (document.metal("steel", (0.6, 0.6, 0.62), 0.35),
                             _torus(0.12, 0.025).moved(0.55, 1e-3, 0.15)))
     _lamp(document, "lamp", 2000, _disc((-0.7, 1.0, -0.1), 0.06), COOL)
