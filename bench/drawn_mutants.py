@@ -67,9 +67,25 @@ KERNEL_CASES = {
         "extremes: photons within the radius by less than rounding moves them across cells",
         "extremes: surfaces less than a float's rounding apart count as one",
         "extremes: photons and hits on corners, edges and cell borders, and on the radius",
-        "neighbours equal the oracle's among 2^20 + 1 photons"),
+        "neighbours equal the oracle's among 2^20 + 1 photons",
+        "extremes: the second photon at a distance that selection compares with",
+        "hits a rounding beyond an edge or a corner count as on it, far off along any axis",
+        "a panel all under a plate counts whole for hits on it, and as nothing for those above",
+        "of two photons in one place at the border of the neighbourhood one counts",
+        "hits that no photon comes near read nothing, next to hits that photons do",
+        "tiles tell photons apart at distances of ten orders of magnitude",
+        "each light's estimates are those of its photons alone",
+        "lanes clip discs as the oracle does",
+        "lanes estimate the oracle's irradiance of several lights and of many",
+        "lanes estimate the oracle's glossy radiance"),
     "maps": ("[#grid_contents_test]~[slow]~[long]", "[#prefix_sum_test]~[slow]"),
-    "surface": ("[#arctangent_test]", "[#logarithm_test]")}
+    "surface": ("[#arctangent_test]", "[#logarithm_test]"),
+    "render": ("maps that keep normals give the same bits within an eighth of the memory",),
+    "bench": ("a search for all photons computes the distance of each once",)}
+# The same with a layer around OpenCL: what GPUs run, and what is read or written beyond a buffer.
+LAYER_CASES = (
+    ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"), ("gpu", "maps", "[#prefix_sum_test]~[slow]"),
+    ("fence", "estimate", "estimates by tiles that leave out parts of rows have the bits of the whole map's"))
 # Beyond the tests of the folder itself.
 FURTHER_TESTS = {
     "groups": (("maps", "grid_contents"), ("estimate", "patches_vs_oracle"),
@@ -110,6 +126,7 @@ class Kernels:
     def __init__(self, build, work):
         self.build, self.work = build, work
         self.steps = [Step(folder, (case,)) for folder, cases in KERNEL_CASES.items() for case in cases]
+        self.steps += [Step(folder, (case,), layer=layer) for layer, folder, case in LAYER_CASES]
         # Kernels that do not include the mutant's file are compiled once for all.
         self.environment = {**os.environ, "XDG_CACHE_HOME": str(work / "cache"),
                             "POCL_CACHE_DIR": str(work / "cache/pocl")}
@@ -135,6 +152,9 @@ class Kernels:
         environment = dict(self.environment)
         if mutated:
             environment["PHOTILE_KERNEL_DIR"] = str(self.work / "kernels")
+        if step.layer:
+            environment["OPENCL_LAYERS"] = str(
+                self.build / f"tests/device/layers/libphotile_{step.layer}_layer.so")
         return run_step(self.program(step.folder), step, environment, limit)
 
 
@@ -234,7 +254,8 @@ def try_mutant(site, runner, steps, order, seconds):
         noticed = bool(outcome.failed or outcome.crashed)
         order.count(step, area, noticed)
         if noticed:
-            return f"{step.folder}/{outcome.failed[0]}" if outcome.failed else f"{step.folder}: crash"
+            what = f"/{outcome.failed[0]}" if outcome.failed else ": crash"
+            return f"{step.folder}{what}{step.under_layer}"
         order.note(step, outcome.seconds)
     return None
 

@@ -39,11 +39,16 @@ class Step:
     folder: str
     cases: tuple  # names of test cases, or one specification that begins with [ or ~
     file: str = ""  # of the tests, where all cases are of one
+    layer: str = ""  # around OpenCL, of tests/device/layers
 
     @property
     def key(self):
         more = f" and {len(self.cases) - 1}" if len(self.cases) > 1 else ""
-        return f"{self.folder}/{self.file}: {self.cases[0]}{more}"
+        return f"{self.folder}/{self.file}: {self.cases[0]}{more}{self.under_layer}"
+
+    @property
+    def under_layer(self):
+        return f" ({self.layer} layer)" if self.layer else ""
 
 
 def wait_while_it_works(started):

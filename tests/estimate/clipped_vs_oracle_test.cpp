@@ -177,11 +177,25 @@ TEST_CASE("clipped irradiance where surfaces bend out of the slab equals the ora
   Scene scene = test::empty_scene();
   const glm::vec3 along(1, 0, 0);
   test::add_plate(scene, {0, 0, 0}, along, {0, 1, 0}, 4);
-  test::add_plate(scene, {0, 1, 0}, along, {0, 0.9f, 0.4f}, 4);          // 24 degrees up
+  // 24 degrees up, in triangles of which a disc holds many whole.
+  test::add_plate(scene, {0, 1, 0}, along, {0, 0.9f, 0.4f}, 20);
   test::add_plate(scene, {0, -0.6f, -0.8f}, along, {0, 0.6f, 0.8f}, 4);  // 53 degrees down
   const Photons photons = test::uniform_photons(scene, 6'000, 57);
-  const DensityKernel kernel = GENERATE(DensityKernel::constant, DensityKernel::cone);
+  const DensityKernel kernel = GENERATE(from_range(all_density_kernels));
   check_clipped(scene, photons, test::uniform_hits(scene, 150, 58), 0.3, 50, kernel);
+}
+
+TEST_CASE("a panel all under a plate counts whole for hits on it, and as nothing for those above") {
+  Scene scene = test::empty_scene();
+  // No wider than two radii: looked at triangle by triangle, by its own hits, too.
+  test::add_plate(scene, {0, 0, 0}, {0.25f, 0, 0}, {0, 0.25f, 0}, 1);
+  test::add_plate(scene, {-0.1f, -0.1f, 0.01f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 1);
+  const Photons photons = test::uniform_photons(scene, 1500, 61, false);
+  const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), 0.2, 60);
+  REQUIRE(surface.facet[0] == PHOTILE_NO_FACET);
+  REQUIRE(surface.exposure[sided(0, 0)] == 0.0f);
+  check_clipped(scene, photons, test::uniform_hits(scene, 100, 62, false), 0.2, 50,
+                DensityKernel::constant);
 }
 
 TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode",

@@ -101,10 +101,11 @@ std::vector<Place> places_of(const Scene& scene, std::span<const std::uint32_t> 
 
 class Shares {
  public:
-  Shares(Scene scene, std::size_t photons)
+  ///   radius   0 = automatic
+  Shares(Scene scene, std::size_t photons, double radius = 0)
       : scene_(plain(std::move(scene))),
         photons_(test::uniform_photons(scene_, photons, 161)),
-        radius_(automatic_radius(photons_, k)) {
+        radius_(radius > 0 ? radius : automatic_radius(photons_, k)) {
     photons_.flux.assign(photons_.size(), glm::vec3(1.0f));
     surface_ = std::make_shared<const SurfaceIndex>(
         index_surface(scene_, landed_on(scene_, photons_), radius_, 60));
@@ -254,6 +255,42 @@ TEST_CASE("areas at corners, edges and T-junctions of the bundled rooms are the 
   CAPTURE(file);
   check_told(
       check_some_shares(load_scene(test::source_folder() / "scenes" / file), 20'000, 40, 40));
+}
+
+TEST_CASE("hits a rounding beyond an edge or a corner count as on it, far off along any axis") {
+  // At 100 m single precision rounds to 8 um, a ten-thousandth of the radius.
+  const int axis = GENERATE(0, 1, 2);
+  constexpr float near = 100, far = 101;
+  glm::vec3 corner(0.0f), along(0.0f), across(0.0f);
+  corner[axis] = near;
+  along[axis] = 1;
+  across[(axis + 1) % 3] = 1;
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, corner, along, across, 1);
+  PrimaryHits hits;
+  std::vector<double> expected;
+  const auto add_hit = [&](float at, float beside, std::uint32_t triangle, double share) {
+    hits.position.push_back(beside * across);
+    hits.position.back()[axis] = at;
+    hits.sided_triangle.push_back(sided(triangle, 0));
+    hits.diffuse_albedo.emplace_back(0.5f);
+    expected.push_back(share);
+  };
+  for (const float at : {near, std::nextafter(near, 0.0f), std::nextafter(near, far)}) {
+    add_hit(at, 0, 0, 0.25);
+    add_hit(at, 0, 1, 0.25);
+    add_hit(at, 0.5f, 1, 0.5);
+  }
+  for (const float at : {far, std::nextafter(far, near), std::nextafter(far, 2 * far)}) {
+    add_hit(at, 0.5f, 0, 0.5);
+    add_hit(at, 1, 1, 0.25);
+  }
+  hits.pixel.resize(hits.size());
+  const auto shares = Shares(std::move(scene), 4000, 0.4).of(hits);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CAPTURE(axis, i, hits.position[i][axis]);
+    CHECK(shares[i].share == Approx(expected[i]).margin(2e-3));
+  }
 }
 
 TEST_CASE("areas at corners, edges and T-junctions of every bundled scene are the oracle's",

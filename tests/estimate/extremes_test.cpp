@@ -1,4 +1,5 @@
 // Extremes of size, shape, number and power against the double-precision oracle (docs/extremes.md).
+#include <bit>
 #include <cmath>
 
 #include "maps/map_store.hpp"
@@ -171,6 +172,36 @@ TEST_CASE("extremes: no photon and one photon") {
     const Photons photons = test::uniform_photons(scene, count, 117);
     test::check_against_oracle(scene, photons, hits, 0.5, {1, 50}, true);
   }
+}
+
+TEST_CASE("extremes: the second photon at a distance that selection compares with") {
+  Scene scene = test::empty_scene();
+  test::add_triangle(scene, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+  const float radius = 0.5f;
+  // Selection tells eighths of octaves below the radius apart: kernels/estimate/histogram.clh.
+  const int octave_eighth = GENERATE(1, 3, 6);
+  const int bits = std::bit_cast<int>(radius * radius) + 1 - (octave_eighth << 20);
+  const float first = std::sqrt(std::bit_cast<float>(bits - (1 << 18)));
+  const auto second = std::bit_cast<float>(bits);
+  // Coordinates whose squares, each rounded, add up to just that.
+  float x = 0, y = 0x1p-8f;
+  for (int i = 0; i < 1000 && x * x + y * y != second; ++i) {
+    y *= 1.001f;
+    x = std::sqrt(second - y * y);
+  }
+  REQUIRE(x * x + y * y == second);
+  const Photons photons = photons_at(scene, {{0, -first, 0}, {x, y, 0}}, 129);
+  PrimaryHits hits;
+  hits.position.emplace_back(0.0f);
+  hits.sided_triangle.push_back(0);
+  hits.pixel.resize(1);
+  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+                        {radius});
+  const Estimates estimates =
+      Estimator(maps, scene, {.neighbours = 1, .area = AreaMode::disc}).estimate(hits);
+  // That of the nearer one, over the disc through it.
+  const double area = glm::pi<double>() * first * first;
+  CHECK(estimates.irradiance.at(0).g == Approx(photons.flux[0].g / area).epsilon(1e-6));
 }
 
 TEST_CASE("extremes: k of 1, of all photons and of more, in a radius as large as the scene") {

@@ -1,5 +1,7 @@
 // Every tuning gives the oracle's estimates.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "estimate/specialisation.hpp"
 #include "estimate/tuning.hpp"
@@ -61,6 +63,16 @@ Case one_light() {
   test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
   data.photons = test::uniform_photons(data.scene, 6000, 71);
   data.hits = test::uniform_hits(data.scene, 700, 72);
+  return data;
+}
+
+/// So few photons around the hits of a triangle that tiles hold them.
+Case small_tiles(bool both_sides = true) {
+  Case data{.scene = test::empty_scene()};
+  test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  data.photons = test::uniform_photons(data.scene, both_sides ? 2000 : 1000, 84, both_sides);
+  data.hits = test::uniform_hits(data.scene, 700, 85);
+  data.k = 20;
   return data;
 }
 
@@ -126,6 +138,44 @@ TEST_CASE("k beyond a heap in private memory and beyond a tile gives the oracle'
     data.radius = 0.5;
     data.check({{EstimateStrategy::heap, 1, 1, 64}, {EstimateStrategy::tile, 8, 1, 64}});
   }
+}
+
+TEST_CASE("of two photons in one place at the border of the neighbourhood one counts") {
+  Case data = small_tiles();
+  Photons twice;
+  std::mt19937_64 random(80);
+  for (std::size_t i = 0; i < data.photons.size() / 2; ++i) {
+    for (int n = 0; n < 2; ++n) {
+      test::add_photon(twice, data.scene, data.photons.position[i], data.photons.sided_triangle[i],
+                       random);
+    }
+  }
+  data.photons = sort_by_sided_triangle(std::move(twice), 2 * data.scene.triangle_count());
+  // The flux of the 19 nearest counts: of 9 pairs and one of the tenth.
+  data.check({{EstimateStrategy::select, 8, 8, 16}, {EstimateStrategy::tile, 8, 1, 16}});
+}
+
+TEST_CASE("hits that no photon comes near read nothing, next to hits that photons do") {
+  const Case data = small_tiles(false);
+  REQUIRE(std::any_of(data.hits.sided_triangle.begin(), data.hits.sided_triangle.end(),
+                      [](std::uint32_t s) { return side_of(s) == 1; }));
+  data.check({{EstimateStrategy::select, 8, 8, 16}, {EstimateStrategy::tile, 8, 1, 16}});
+}
+
+// Interpolated counts come nearer to the k-th of them too slowly: bits of floats are bisected.
+TEST_CASE("tiles tell photons apart at distances of ten orders of magnitude") {
+  Case data{.scene = test::empty_scene()};
+  test::add_triangle(data.scene, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+  std::mt19937_64 random(82);
+  for (int i = 0; i < 200; ++i) {
+    const double distance = std::pow(10, -1 - i / 20.0), turn = i;
+    const glm::vec3 place(distance * std::cos(turn), distance * std::sin(turn), 0);
+    test::add_photon(data.photons, data.scene, place, 0, random);
+  }
+  data.photons = sort_by_sided_triangle(std::move(data.photons), 2);
+  data.hits = test::uniform_hits(data.scene, 8, 83, false);
+  std::fill(data.hits.position.begin(), data.hits.position.end(), glm::vec3(0.0f));
+  data.check({{EstimateStrategy::select, 8, 8, 16}, {EstimateStrategy::tile, 8, 1, 16}});
 }
 
 TEST_CASE("a tuning that no kernel exists for is refused") {
