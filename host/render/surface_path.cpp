@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "photile/defaults.hpp"
 #include "trace/holes.hpp"
 #include "trace/largest.hpp"
 #include "trace/opaque_bsdf.hpp"
@@ -21,9 +22,6 @@ using trace::Purpose;
 using trace::RandomBlock;
 using trace::RandomStream;
 using trace::SurfacePoint;
-
-/// Paths between perfect mirrors end as well.
-constexpr float largest_survival = 0.99f;
 
 class SurfacePath {
  public:
@@ -127,7 +125,7 @@ class SurfacePath {
   bool survives(const glm::vec3& weight, const RandomBlock& numbers) {
     const float before = largest(left_);
     left_ *= weight;
-    const float survival = std::min(largest_survival, largest(left_) / before);
+    const float survival = std::min(defaults::largest_survival, largest(left_) / before);
     if (!(numbers.uniform(trace::roulette_word) < survival)) return false;
     left_ /= survival;
     weights_ = weights_ * (weight / survival);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "photile/defaults.hpp"
 #include "trace/holes.hpp"
 #include "trace/largest.hpp"
 #include "trace/scatter.hpp"
@@ -24,10 +25,13 @@ void store(const PathSetup& setup, const SurfacePoint& point, const glm::vec3& d
 
 /// Flux after the interaction, black where the path ends. From `roulette_start` on, a path survives
 /// with the share of its largest channel that is left, and keeps that channel's flux: photons of a
-/// light all weigh the same, which is what keeps the noise of the estimate low.
-glm::vec3 play_roulette(const glm::vec3& before, const glm::vec3& after, bool may_end, float u) {
-  if (!may_end) return after;
-  const float survival = std::min(1.0f, largest(after) / largest(before));
+/// light all weigh the same, which is what keeps the noise of the estimate low. Those of long paths
+/// weigh more.
+glm::vec3 play_roulette(const PathSetup& setup, int bounce, const glm::vec3& before,
+                        const glm::vec3& after, float u) {
+  if (bounce < setup.parameters->roulette_start) return after;
+  const float most = bounce < defaults::long_path ? 1.0f : defaults::largest_survival;
+  const float survival = std::min(most, largest(after) / largest(before));
   return u < survival ? after / survival : glm::vec3(0.0f);
 }
 
@@ -71,9 +75,8 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
         opaque ? scatter_opaque(scene, point, direction, numbers)
                : scatter_specular(scene, point, direction, numbers.uniform(choice_word));
     if (!scattered) break;
-    const glm::vec3 left =
-        play_roulette(flux, flux * scattered->weight, bounce >= setup.parameters->roulette_start,
-                      numbers.uniform(roulette_word));
+    const glm::vec3 left = play_roulette(setup, bounce, flux, flux * scattered->weight,
+                                         numbers.uniform(roulette_word));
     if (!(largest(left) > 0.0f)) break;
     record.absorbed += luminance_of(flux) - luminance_of(left);
     straight =

@@ -54,9 +54,22 @@ TEST_CASE("In a closed diffuse box the stored flux is 1 + rho + rho^2 + ... = 1 
       mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.5f))), 60'000), 2.0, 0.02));
   CHECK_VERDICT(
       mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.8f))), 60'000), 5.0, 0.08));
+  // Long paths: in the second case most of the light is that of more than a hundred bounces.
+  CHECK_VERDICT(
+      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.95f))), 20'000), 20.0, 0.4));
+  CHECK_VERDICT(
+      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.99f))), 5'000), 100.0, 3.0));
   // Without roulette for three bounces the flux shrinks instead of the number of photons.
   CHECK_VERDICT(
       mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.5f))), 60'000, 4), 2.0, 0.02));
+}
+
+TEST_CASE("In a box that reflects all light paths end") {
+  // Where the chance to go on is 0.99, a hundred more surfaces are expected.
+  const Scene scene = closed_box(diffuse(glm::vec3(1.0f)));
+  const PhotonTracerResult result = trace_photons(RayScene(scene), {.emitted_photons = 2'000});
+  CHECK(static_cast<double>(result.photons.size()) / 2'000 ==
+        Approx(defaults::long_path + 99).epsilon(0.1));
 }
 
 TEST_CASE("Each colour channel has its own sum: roulette by one of them biases none") {
