@@ -58,7 +58,7 @@ TEST_CASE("In a closed diffuse box the stored flux is 1 + rho + rho^2 + ... = 1 
   CHECK_VERDICT(
       mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.95f))), 20'000), 20.0, 0.4));
   CHECK_VERDICT(
-      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.99f))), 5'000), 100.0, 3.0));
+      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.99f))), 8'000), 100.0, 4.0));
   // Without roulette for three bounces the flux shrinks instead of the number of photons.
   CHECK_VERDICT(
       mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.5f))), 60'000, 4), 2.0, 0.02));
