@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text);
 /// Lines without their ends (LF, CR LF or CR) and without a byte-order mark.
 std::vector<std::string_view> lines_of(std::string_view text);
 
-/// A text in one line: line ends are blanks.
+/// A text in one line: control characters are blanks, but for line ends at its end, which go.
 std::string one_line(std::string text);
 
 /// The number that all of a text spells, with a decimal point, in digits of `base` where it is a

@@ -20,13 +20,13 @@ std::string read_input_text(const std::filesystem::path& file);
 /// The same for a file that the run may write again: it is not noted as an input.
 std::string read_own_text(const std::filesystem::path& file);
 
-/// What `work` finds wrong with what a file holds, or with what is asked of it, by the file's name
-/// and in a line; without a file, as it is.
+/// What `work` finds wrong with what a file holds, or with what is asked of it, by the file's name;
+/// without a file, as it is.
 template <class Work>
 auto about_file(const std::filesystem::path& file, const Work& work) {
   const auto named = [&](const std::string& what) {
-    const std::string name = file.string() + ": ";
-    return one_line(file.empty() || what.starts_with(name) ? what : name + what);
+    const std::string name = one_line(file.string()) + ": ";
+    return file.empty() || what.starts_with(name) ? what : name + what;
   };
   try {
     return work();

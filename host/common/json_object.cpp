@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/ascii_text.hpp"
 #include "common/input_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -109,7 +108,7 @@ std::string JsonObject::text(const char* key, const std::string& otherwise) cons
 }
 
 void JsonObject::refuse(const std::string& reason) const {
-  throw InputError(one_line(fmt::format("{}: {}", where_, reason)));
+  throw InputError(fmt::format("{}: {}", where_, reason));
 }
 
 }  // namespace photile

@@ -274,8 +274,7 @@ void PictureFile::decode(int part, int first, int end) {
   block_.part = part;
 }
 
-void PictureFile::refuse(std::string reason) const {
-  std::replace(reason.begin(), reason.end(), '\n', ' ');
+void PictureFile::refuse(const std::string& reason) const {
   throw InputError(fmt::format("{}: {}", file_.string(), reason));
 }
 

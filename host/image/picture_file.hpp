@@ -51,7 +51,7 @@ class PictureFile : public ChannelRows {
   /// Against files of a few kilobytes that would fill the memory.
   void check_expansion(std::uint64_t decoded) const;
   void decode(int part, int first, int end);
-  [[noreturn]] void refuse(std::string reason) const;
+  [[noreturn]] void refuse(const std::string& reason) const;
 
   std::filesystem::path file_;
   std::unique_ptr<ExrInput> exr_;  ///< null for other formats

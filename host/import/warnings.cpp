@@ -2,19 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace photile::scene_io {
 namespace {
 
 constexpr std::size_t names_listed = 5;
-
-/// A warning is one line, whatever the file's names hold.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
-  return text;
-}
 
 }  // namespace
 

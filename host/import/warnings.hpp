@@ -9,12 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "common/ascii_text.hpp"
+
 namespace photile::scene_io {
 
 /// A texture, buffer or material library cannot be used. `what()` names the file and the reason;
 /// the importer decides whether to go on with a warning or to fail.
 struct ResourceError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit ResourceError(const std::string& message) : std::runtime_error(one_line(message)) {}
 };
 
 /// Gathered so that a hundred materials with one trouble give one line.

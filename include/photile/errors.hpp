@@ -9,7 +9,9 @@ namespace photile {
 /// Base of every error photile throws on purpose. `what()` is one line: the file or object, what
 /// was found, and the remedy.
 struct Error : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  /// Line ends and other control characters of the message, which names in files may hold, become
+  /// blanks.
+  explicit Error(const std::string& message);
 };
 
 /// A parameter is out of its range, or names something that does not exist.

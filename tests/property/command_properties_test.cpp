@@ -367,8 +367,9 @@ TEST_CASE("maps and paths see the same light in rooms at random", "[slow]") {
     Dice dice(seed);
     const TemporaryFolder folder;
     const RandomScene scene = write_random_scene(folder.path, dice);
-    // Lamps without size throw no caustics by paths: rooms of lamps that have one.
-    if (!scene.sound || scene.file.extension() != ".obj") continue;
+    // Lamps without size throw no caustics by paths: rooms of lamps that have one. And in a room of
+    // glass caustics are all there is, of which the scatter of few paths does not tell the error.
+    if (!scene.sound || scene.file.extension() != ".obj" || !scene.opaque_room) continue;
     CAPTURE(seed, scene.file);
     std::map<std::string, std::vector<double>> maps, paths;
     for (int i = 0; i < seeds; ++i) {

@@ -101,6 +101,8 @@ RandomScene write_obj(const std::filesystem::path& folder, Dice& dice) {
   std::string obj = "mtllib scene.mtl\n" + room(scene.size), mtl;
   int vertices = 8;
   mtl += material(dice, "wall", false);
+  scene.opaque_room =
+      mtl.find("illum 7") == std::string::npos && mtl.find("illum 3") == std::string::npos;
   for (int lamp = 0; lamp < lamps; ++lamp) {
     const std::string name = fmt::format("lamp {}", lamp);
     mtl += fmt::format("newmtl glow{}\nKd 0 0 0\nKe {:g} {:g} {:g}\n", lamp, power(scene, dice),

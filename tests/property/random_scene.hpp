@@ -15,6 +15,7 @@ struct RandomScene {
   std::vector<std::string> lights;            ///< names that are likely to be there
   double size = 1;                            ///< metres, about
   bool sound = true;                          ///< lit, of usual size and powers, and not damaged
+  bool opaque_room = true;                    ///< its walls are neither glass nor mirrors
 };
 
 /// Writes a scene into the folder: a room with up to four lamps and a few things in it, as OBJ or

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <functional>
 
-#include "common/ascii_text.hpp"
 #include "image/formats/formats.hpp"
 #include "photile/limits.hpp"
 
@@ -47,7 +46,7 @@ struct TiffSource {
     std::string& error = static_cast<TiffSource*>(self)->error;
     char text[256];
     std::vsnprintf(text, sizeof text, format, arguments);
-    if (error.empty()) error = one_line(text);  // libtiff's may have line ends
+    if (error.empty()) error = text;
     return 1;
   }
   static int ignore(TIFF*, void*, const char*, const char*, va_list) { return 1; }

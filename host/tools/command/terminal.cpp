@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "common/ascii_text.hpp"
+
 namespace photile::app {
 namespace {
 
@@ -27,20 +29,11 @@ int terminal_width() {
   return known ? size.ws_col : 80;
 }
 
-std::string single_line(std::string line) {
-  while (!line.empty() && line.back() == '\n') line.pop_back();
-  for (char& character : line) {
-    const auto code = static_cast<unsigned char>(character);
-    if (code < 0x20 || code == 0x7f) character = ' ';
-  }
-  return line;
-}
-
 void print_line(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 
 void print_error(const std::string& message) {
   const char* prefix = use_color() ? "photile: \033[1;31merror:\033[0m " : "photile: error: ";
-  print_line(prefix + single_line(message));
+  print_line(prefix + one_line(message));
 }
 
 }  // namespace photile::app

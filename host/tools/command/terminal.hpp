@@ -10,9 +10,6 @@ bool stderr_is_terminal();
 /// Columns of the terminal on standard error; 80 where it does not say.
 int terminal_width();
 
-/// `line` with control characters (a file name may hold them) replaced, so that it stays one line.
-std::string single_line(std::string line);
-
 /// Writes `line` and a line feed to standard error.
 void print_line(const std::string& line);
 

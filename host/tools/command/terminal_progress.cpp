@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "common/ascii_text.hpp"
 #include "tools/command/processes.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal.hpp"
@@ -54,7 +55,7 @@ void TerminalProgress::note(const std::string& line) {
   if (style_ == Style::quiet) return;
   const std::scoped_lock lock(mutex_);
   erase();
-  print_line(single_line(line));
+  print_line(one_line(line));
   if (active_ && style_ == Style::bar) draw();
 }
 

@@ -64,8 +64,7 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
   if (!std::filesystem::exists(file_)) return;
   std::string place = "the file";
   const auto refuse = [&](const std::string& reason) {
-    throw InputError(
-        one_line(fmt::format("{}: {}: {}; mend or remove it", file_.string(), place, reason)));
+    throw InputError(fmt::format("{}: {}: {}; mend or remove it", file_.string(), place, reason));
   };
   const std::string text = read_own_text(file_);
   check_json_depth(text, file_.string());
@@ -125,8 +124,8 @@ const Moods::Mood& Moods::named(const std::string& name) const {
   if (found != moods_.end()) return found->second;
   std::string known;
   for (const auto& [other, mood] : moods_) known += (known.empty() ? "'" : ", '") + other + "'";
-  throw UsageError(one_line(fmt::format("{}: there is no mood '{}'; there {}", file_.string(), name,
-                                        known.empty() ? "are none" : "is " + known)));
+  throw UsageError(fmt::format("{}: there is no mood '{}'; there {}", file_.string(), name,
+                               known.empty() ? "are none" : "is " + known));
 }
 
 std::vector<LightChange> Moods::changes(const std::string& name, const LightMix& mix) const {
