@@ -116,13 +116,13 @@ class Window:
         time.sleep(0.3)
         self.hand("mouseup", button)
 
-    def press(self, key):
+    def press(self, key, seconds=0.2):
         """Longer than a slow machine takes to draw the window: shorter presses go unseen. Modifiers
         are released last: S without Ctrl walks."""
         keys = key.split("+")
         for each in keys:
             self.hand("keydown", each)
-        time.sleep(0.2)
+        time.sleep(seconds)
         for each in reversed(keys):
             self.hand("keyup", each)
             time.sleep(0.2)

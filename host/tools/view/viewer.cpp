@@ -84,6 +84,7 @@ class Viewer {
       follow_input();
       take_maps();
       const bool new_frame = take_frame();
+      if (keep_wanted_) keep_frame();
       take_errors();
       picked_ = pick_triangle();
       take_click();
@@ -180,7 +181,8 @@ class Viewer {
     screenshot_wanted_ = ImGui::IsKeyPressed(GLFW_KEY_F12, false);
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_S, false)) {
-      keep_frame();
+      keep_wanted_ = true;
+      message_ = "The picture is kept as soon as it is whole.";
       if (luminaires_ && luminaires_->editor().unsaved()) luminaires_->save(message_);
     }
     const bool undo = io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Z, true);
@@ -341,6 +343,7 @@ class Viewer {
 
   void keep_frame() {
     if (!frame_ || !frame_->mixed.empty()) return;
+    keep_wanted_ = false;
     message_ = keep_as(parameters_.outputs, "view", ".exr", [&](const auto& file) {
       write_frame(file, *scene_, *frame_, lights_.shown_mix());
     });
@@ -376,6 +379,7 @@ class Viewer {
   bool relit_ = false, exposed_ = false, lights_restored_ = false, lights_keyed_ = false;
   bool seen_ = false;  ///< any frame
   bool panels_shown_ = true, screenshot_wanted_ = false;
+  bool keep_wanted_ = false;  ///< a frame that has layers, which a quick one has not
   FrameWorker frames_;
   PhotonFeed photons_;
 };
