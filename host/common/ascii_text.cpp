@@ -37,7 +37,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 }
 
 std::string one_line(std::string text) {
-  while (text.ends_with('\n')) text.pop_back();
+  while (text.ends_with('\n') || text.ends_with('\r')) text.pop_back();
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
   return text;

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <system_error>
 
+#include "common/ascii_text.hpp"
+
 namespace photile::device {
 
 namespace {
@@ -78,7 +80,7 @@ std::vector<fs::path> installed_kernel_folders() {
 
 void warn(const std::string& line) {
   // One call, so that the lines of several processes do not mix.
-  const std::string text = "photile: warning: " + line + "\n";
+  const std::string text = "photile: warning: " + one_line(line) + "\n";
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 

@@ -169,23 +169,24 @@ std::uint64_t check_exr_headers(Imf::IStream& stream, std::uint64_t bytes) {
 
 // OpenEXR, "File Layout": the tables of all parts, of 8 bytes a block, lie before the first block.
 std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::uint64_t bytes,
-                              const std::vector<bool>& tiled) {
+                              std::uint64_t entries, const std::vector<bool>& tiled) {
   constexpr std::uint64_t several_parts = 0x1000;
   const std::uint64_t before = stream.tellg();
   stream.seekg(4);
   const bool several = (little_endian(stream, 4) & several_parts) != 0;
-  std::uint64_t first = bytes, sum = 0;
   constexpr std::uint64_t entry_bytes = 8;
-  for (std::uint64_t entry = table; entry + entry_bytes <= first; entry += entry_bytes) {
+  std::uint64_t end = table + std::min(entries, (bytes - table) / entry_bytes) * entry_bytes, sum = 0;
+  for (std::uint64_t entry = table; entry + entry_bytes <= end; entry += entry_bytes) {
     stream.seekg(entry);
     const std::uint64_t place = little_endian(stream, entry_bytes);
-    if (place == 0) continue;  // a file that was not finished
+    if (place == 0) continue;
     if (place >= bytes) throw DecodeError("a block of pixels is not within the file");
-    first = std::min(first, place);
+    end = std::min(end, place);
     sum += entry_bytes + std::min(block_bytes(stream, place, several, tiled), bytes - place);
   }
   stream.seekg(before);
-  return sum;
+  // A file whose writer was ended before it wrote the table: OpenEXR looks for the blocks.
+  return sum == 0 ? bytes - end : sum;
 }
 
 }  // namespace photile::image

@@ -19,11 +19,12 @@ std::uint64_t check_exr_headers(Imf::IStream& stream, std::uint64_t bytes);
 /// Bytes of the tables of a file and of the blocks of pixels that they point at, compressed as they
 /// are: without attributes, and without what lies between and behind the blocks. Leaves the stream
 /// where it was.
-///   table   where the tables begin, as check_exr_headers returns it
-///   bytes   those of the file
-///   tiled   whether a part has tiles in place of rows, per part
+///   table     where the tables begin, as check_exr_headers returns it
+///   bytes     those of the file
+///   entries   of the tables: one a block, of all parts
+///   tiled     whether a part has tiles in place of rows, per part
 /// Errors: DecodeError where a block is not within the file.
 std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::uint64_t bytes,
-                              const std::vector<bool>& tiled);
+                              std::uint64_t entries, const std::vector<bool>& tiled);
 
 }  // namespace photile::image

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "image/decoder.hpp"
 #include "image/exr_headers.hpp"
@@ -66,6 +67,45 @@ std::uint64_t rows_of_block(Imf::Compression compression) {
   }
 }
 
+/// Tiles along one axis, of each of its levels: each has half the pixels of the one before.
+std::vector<std::uint64_t> tiles_of_levels(std::uint64_t pixels, std::uint64_t tile, bool rounds_up) {
+  std::vector<std::uint64_t> tiles;
+  for (;;) {
+    tiles.push_back((pixels + tile - 1) / tile);
+    if (pixels <= 1) return tiles;
+    pixels = (pixels + (rounds_up ? 1 : 0)) / 2;
+  }
+}
+
+/// Blocks of pixels that are compressed on their own: what the table of a part has entries for.
+std::uint64_t blocks_of(const Imf::Header& header) {
+  const Imath::Box2i& window = header.dataWindow();
+  const auto side = [](int from, int to) {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(std::int64_t{to} - from + 1, 0));
+  };
+  const std::uint64_t width = side(window.min.x, window.max.x),
+                      height = side(window.min.y, window.max.y);
+  if (!header.hasTileDescription()) {
+    const std::uint64_t rows = rows_of_block(header.compression());
+    return (height + rows - 1) / rows;
+  }
+  const Imf::TileDescription& tile = header.tileDescription();
+  const bool rounds_up = tile.roundingMode == Imf::ROUND_UP;
+  const std::vector<std::uint64_t>
+      across = tiles_of_levels(width, std::max(tile.xSize, 1u), rounds_up),
+      down = tiles_of_levels(height, std::max(tile.ySize, 1u), rounds_up);
+  if (tile.mode == Imf::ONE_LEVEL) return across.front() * down.front();
+  if (tile.mode == Imf::RIPMAP_LEVELS) {
+    return std::accumulate(across.begin(), across.end(), std::uint64_t{0}) *
+           std::accumulate(down.begin(), down.end(), std::uint64_t{0});
+  }
+  std::uint64_t sum = 0;
+  for (std::size_t level = 0; level < std::max(across.size(), down.size()); ++level) {
+    sum += across[std::min(level, across.size() - 1)] * down[std::min(level, down.size() - 1)];
+  }
+  return sum;
+}
+
 ExrInput::Part part_of(const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type())) {
     throw DecodeError("holds deep pixels; flatten it, e.g. with oiiotool --flatten");
@@ -85,6 +125,7 @@ ExrInput::Part part_of(const Imf::Header& header) {
   }
   std::stable_sort(part.channels.begin(), part.channels.end(),
                    [](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  const std::uint64_t pixels = static_cast<std::uint64_t>(part.width) * part.height;
   std::uint64_t block =
       static_cast<std::uint64_t>(part.width) * rows_of_block(header.compression());
   if (header.hasTileDescription()) {
@@ -93,9 +134,13 @@ ExrInput::Part part_of(const Imf::Header& header) {
     const auto width = static_cast<std::uint64_t>(std::max(part.width, 1));
     block = std::max<std::uint64_t>(tile.xSize, width) * tile.ySize;
   }
-  if (block * pixel_bytes > limits::max_image_block_bytes) {
-    throw DecodeError(fmt::format("has blocks of {} bytes, more than the limit of {}",
-                                  block * pixel_bytes, limits::max_image_block_bytes));
+  if (pixel_bytes == 0) return part;
+  const bool beyond_picture = block > pixels && block > unchecked_bytes / pixel_bytes;
+  if (beyond_picture || block > limits::max_image_block_bytes / pixel_bytes) {
+    throw DecodeError(fmt::format(
+        "has blocks of {} pixels of {} bytes; the limit is {} bytes, or {} where the picture has {} "
+        "pixels; scale its tiles down",
+        block, pixel_bytes, limits::max_image_block_bytes, unchecked_bytes, pixels));
   }
   return part;
 }
@@ -133,6 +178,7 @@ void ExrInput::find_parts(std::uint64_t bytes) {
   const std::uint64_t table = check_exr_headers(*stream_, bytes);
   file_ = std::make_unique<File>(*stream_);
   std::uint64_t decoded = 0, pixels = 0, channels = 0;
+  std::uint64_t blocks = 0;
   std::vector<bool> tiled;
   for (int i = 0; i < file_->parts(); ++i) {
     const Part& part = parts_.emplace_back(part_of(file_->header(i)));
@@ -140,11 +186,12 @@ void ExrInput::find_parts(std::uint64_t bytes) {
     pixels = std::max(pixels, own);
     channels += part.channels.size();
     decoded += own * part.channels.size() * sizeof(float);
+    blocks += blocks_of(file_->header(i));
     tiled.push_back(file_->header(i).hasTileDescription());
   }
   if (decoded <= unchecked_bytes) return;
   constexpr std::uint64_t bytes_of_channel = 128;  // its name, what the header says of its light
-  const std::uint64_t encoded = exr_pixel_bytes(*stream_, table, bytes, tiled);
+  const std::uint64_t encoded = exr_pixel_bytes(*stream_, table, bytes, blocks, tiled);
   if (pixels < encoded * limits::max_exr_pixels_per_byte &&
       decoded / limits::max_image_expansion <= encoded + bytes_of_channel * channels) {
     return;

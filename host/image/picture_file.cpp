@@ -206,12 +206,12 @@ void PictureFile::add_part(const ExrInput::Part& part) {
 /// (parts "left" and "right" with R, G, B each).
 void PictureFile::add_channel(const ExrInput::Part& part, std::size_t index) {
   const std::string& own = part.channels[index];
-  // Control characters, which would leave the line of a list or a message.
-  if (std::any_of(own.begin(), own.end(), [](unsigned char c) { return c < ' ' || c == 127; })) {
-    refuse("has a channel whose name is no text; rename it");
-  }
   std::string name = own;
   if (names_.contains(name)) name = part.name + "." + own;
+  // Control characters, which would leave the line of a list or a message.
+  if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 127; })) {
+    refuse("has a channel whose name is no text; rename it");
+  }
   if (!names_.insert(name).second) {
     refuse(fmt::format("has two channels named '{}'; rename one", own));
   }

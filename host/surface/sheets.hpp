@@ -19,7 +19,7 @@ struct Connection {
   std::uint32_t a, b, flip;
 };
 
-/// Calls visit(a, b) for the sided triangles that connect, each pair once.
+/// Calls visit(a, b) for the sided triangles that connect, each pair of a connection once.
 template <class Visit>
 void for_each_pair_of_sides(std::span<const Connection> connections, const Visit& visit) {
   for (const auto& [a, b, flip] : connections) {
@@ -28,7 +28,7 @@ void for_each_pair_of_sides(std::span<const Connection> connections, const Visit
 }
 
 /// Triangles connect where they share both corners of an edge, or where their edges run along each
-/// other, however unlike their ends (as tiles do).
+/// other, however unlike their ends (as tiles do); each pair once or more.
 ///   radius   metres: edges at most a thousandth of it apart run along each other
 std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
                                          double angle_degrees);

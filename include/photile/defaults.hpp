@@ -19,10 +19,10 @@ inline constexpr double orthographic_height = 4;      ///< metres that parallel 
 // Photons
 inline constexpr std::uint64_t emitted_photons = 1'000'000;  ///< over all lights
 inline constexpr std::uint64_t seed = 1;
-inline constexpr int max_path_length = 1'000'000;  ///< a bound that roulette never reaches
+inline constexpr int max_path_length = 1'000'000;  ///< surfaces; roulette ends paths before
 inline constexpr int roulette_start = 1;           ///< first bounce at which a path may end
-/// Paths of photons that meet more surfaces, and all paths from the eye, go on with this chance at
-/// most: between perfect mirrors they end as well, and in white rooms their number stays bounded.
+/// Paths of photons from this surface on, and all of the integrator "path", go on with this chance
+/// at most: between perfect mirrors they end as well, and in white rooms their number stays bounded.
 inline constexpr int long_path = 64;
 inline constexpr float largest_survival = 0.99f;
 

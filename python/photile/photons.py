@@ -129,7 +129,7 @@ def trace(
     *,
     quota: str = "balanced",
     store_direct: bool = True,
-    max_path_length: int = 64,
+    max_path_length: int = 1_000_000,
     progress: _photile.Callback = None,
 ) -> Photons:
     """Follow photon paths from the lights, and store a photon at each opaque surface they meet.
@@ -146,7 +146,7 @@ def trace(
     store_direct : bool
         Whether photons that come straight from a lamp are stored.
     max_path_length : int
-        Surfaces that a path meets at most.
+        Surfaces that a path meets at most; chance ends all but a few paths long before.
     progress : callable, optional
         See `render`.
 

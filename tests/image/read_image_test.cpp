@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "photile/limits.hpp"
 #include "picture_support.hpp"
@@ -72,6 +73,62 @@ TEST_CASE("a picture beyond a limit is refused before it is decoded") {
   // 13,000 x 13,000 x 7 floats are 4.7 GB.
   write_black(folder / "bomb.exr", {13'000}, 13'000, 7);
   CHECK(refusal(folder / "bomb.exr").find("limit") != std::string::npos);
+}
+
+TEST_CASE("tiles that are larger than a small picture are refused before they take memory") {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec(7, 5, 3, OIIO::TypeDesc::FLOAT);
+  spec.tile_width = spec.tile_height = 4;
+  const auto output = OIIO::ImageOutput::create("exr");
+  REQUIRE(output->open((folder / "tiles.exr").string(), spec));
+  REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, std::vector<float>(7 * 5 * 3).data()));
+  REQUIRE(output->close());
+  CHECK(read_image(folder / "tiles.exr").pixels() == 7 * 5);
+  std::string bytes = bytes_of(folder / "tiles.exr");
+  const std::string before("tiledesc\0\x09\0\0\0", 13);
+  const std::uint32_t sides[2] = {21'764, 1'024};  // 255 MiB, beside OpenEXR's own buffers
+  std::memcpy(&bytes[bytes.find(before) + before.size()], sides, sizeof sides);
+  write_bytes(folder / "tiles.exr", bytes);
+  CHECK(refusal(folder / "tiles.exr").find("scale its tiles down") != std::string::npos);
+}
+
+TEST_CASE("an EXR whose writer ended before it wrote the table of its blocks is read") {
+  const TemporaryFolder folder;
+  // Of such a size that bytes and pixels are compared.
+  constexpr int width = 4'200, height = 4'100;
+  static_assert(std::uint64_t{width} * height * sizeof(float) > limits::unchecked_image_bytes);
+  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::HALF);
+  spec.channelnames = {"R"};
+  spec.attribute("compression", "none");
+  std::vector<float> pixels(std::size_t{width} * height);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<float>(1 + i % 100);
+  const auto output = OIIO::ImageOutput::create("exr");
+  REQUIRE(output->open((folder / "a.exr").string(), spec));
+  REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+  REQUIRE(output->close());
+  std::string bytes = bytes_of(folder / "a.exr");
+  // The table is where a number says that what lies behind as many numbers as rows is a block.
+  constexpr std::size_t table_bytes = std::size_t{height} * 8;
+  std::size_t table = 0;
+  const auto entry = [&] {
+    std::uint64_t place = 0;
+    std::memcpy(&place, &bytes[table], sizeof place);
+    return place;
+  };
+  while (entry() != table + table_bytes) ++table;
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(table), table_bytes, '\0');
+  write_bytes(folder / "a.exr", bytes);
+  CHECK(same_bits(read_image(folder / "a.exr").channels.at(0), pixels));
+}
+
+TEST_CASE("a line end in the name of a part does not get into names of channels") {
+  const TemporaryFolder folder;
+  write_black(folder / "two.exr", {8, 8}, 8, 1);
+  CHECK(read_image(folder / "two.exr").channel_names.back() == "part1.c0");
+  std::string bytes = bytes_of(folder / "two.exr");
+  bytes[bytes.find("part1") + 3] = '\n';
+  write_bytes(folder / "two.exr", bytes);
+  CHECK(refusal(folder / "two.exr").find("no text") != std::string::npos);
 }
 
 TEST_CASE("parts of different sizes are refused") {

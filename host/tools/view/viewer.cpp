@@ -126,6 +126,7 @@ class Viewer {
       }
     }
     if (luminaires_) luminaires_->tell_unsaved(*parameters_.notes);
+    if (keep_wanted_) parameters_.notes->note("the picture was not yet whole, and is not kept");
     photons_.stop();
     const std::shared_ptr<MapGeneration> maps = frames_.stop();
     if (!parameters_.keep_light_maps || !maps || maps->scene != first_scene_) return;
@@ -182,8 +183,9 @@ class Viewer {
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_S, false)) {
       keep_wanted_ = true;
-      message_ = "The picture is kept as soon as it is whole.";
-      if (luminaires_ && luminaires_->editor().unsaved()) luminaires_->save(message_);
+      told_of_luminaires_.clear();
+      if (luminaires_ && luminaires_->editor().unsaved()) luminaires_->save(told_of_luminaires_);
+      message_ = beside_luminaires("the picture is kept as soon as it is whole");
     }
     const bool undo = io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Z, true);
     const bool redo = io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Y, true);
@@ -344,9 +346,14 @@ class Viewer {
   void keep_frame() {
     if (!frame_ || !frame_->mixed.empty()) return;
     keep_wanted_ = false;
-    message_ = keep_as(parameters_.outputs, "view", ".exr", [&](const auto& file) {
+    message_ = beside_luminaires(keep_as(parameters_.outputs, "view", ".exr", [&](const auto& file) {
       write_frame(file, *scene_, *frame_, lights_.shown_mix());
-    });
+    }));
+  }
+
+  /// What Ctrl+S did, after what it did about luminaires.
+  std::string beside_luminaires(const std::string& what) const {
+    return told_of_luminaires_.empty() ? what : told_of_luminaires_ + "; " + what;
   }
 
   std::shared_ptr<const Scene> scene_;         ///< that is shown
@@ -367,6 +374,7 @@ class Viewer {
   std::optional<image::LivePreview> preview_;
   std::optional<Probe> probe_;
   std::string message_, new_mood_;
+  std::string told_of_luminaires_;  ///< by the last Ctrl+S
   std::shared_ptr<const Frame> frame_;
   std::deque<float> milliseconds_;
   std::optional<double> last_motion_;  ///< GLFW's clock, seconds
