@@ -175,7 +175,8 @@ std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::ui
   stream.seekg(4);
   const bool several = (little_endian(stream, 4) & several_parts) != 0;
   constexpr std::uint64_t entry_bytes = 8;
-  std::uint64_t end = table + std::min(entries, (bytes - table) / entry_bytes) * entry_bytes, sum = 0;
+  std::uint64_t end = table + std::min(entries, (bytes - table) / entry_bytes) * entry_bytes,
+                sum = 0;
   for (std::uint64_t entry = table; entry + entry_bytes <= end; entry += entry_bytes) {
     stream.seekg(entry);
     const std::uint64_t place = little_endian(stream, entry_bytes);

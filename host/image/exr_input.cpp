@@ -68,7 +68,8 @@ std::uint64_t rows_of_block(Imf::Compression compression) {
 }
 
 /// Tiles along one axis, of each of its levels: each has half the pixels of the one before.
-std::vector<std::uint64_t> tiles_of_levels(std::uint64_t pixels, std::uint64_t tile, bool rounds_up) {
+std::vector<std::uint64_t> tiles_of_levels(std::uint64_t pixels, std::uint64_t tile,
+                                           bool rounds_up) {
   std::vector<std::uint64_t> tiles;
   for (;;) {
     tiles.push_back((pixels + tile - 1) / tile);
@@ -91,9 +92,8 @@ std::uint64_t blocks_of(const Imf::Header& header) {
   }
   const Imf::TileDescription& tile = header.tileDescription();
   const bool rounds_up = tile.roundingMode == Imf::ROUND_UP;
-  const std::vector<std::uint64_t>
-      across = tiles_of_levels(width, std::max(tile.xSize, 1u), rounds_up),
-      down = tiles_of_levels(height, std::max(tile.ySize, 1u), rounds_up);
+  const auto across = tiles_of_levels(width, std::max(tile.xSize, 1u), rounds_up);
+  const auto down = tiles_of_levels(height, std::max(tile.ySize, 1u), rounds_up);
   if (tile.mode == Imf::ONE_LEVEL) return across.front() * down.front();
   if (tile.mode == Imf::RIPMAP_LEVELS) {
     return std::accumulate(across.begin(), across.end(), std::uint64_t{0}) *
@@ -137,10 +137,10 @@ ExrInput::Part part_of(const Imf::Header& header) {
   if (pixel_bytes == 0) return part;
   const bool beyond_picture = block > pixels && block > unchecked_bytes / pixel_bytes;
   if (beyond_picture || block > limits::max_image_block_bytes / pixel_bytes) {
-    throw DecodeError(fmt::format(
-        "has blocks of {} pixels of {} bytes; the limit is {} bytes, or {} where the picture has {} "
-        "pixels; scale its tiles down",
-        block, pixel_bytes, limits::max_image_block_bytes, unchecked_bytes, pixels));
+    throw DecodeError(
+        fmt::format("has blocks of {} pixels of {} bytes; the limit is {} bytes, or {} where the "
+                    "picture has {} pixels; scale its tiles down",
+                    block, pixel_bytes, limits::max_image_block_bytes, unchecked_bytes, pixels));
   }
   return part;
 }

@@ -22,7 +22,8 @@ inline constexpr std::uint64_t seed = 1;
 inline constexpr int max_path_length = 1'000'000;  ///< surfaces; roulette ends paths before
 inline constexpr int roulette_start = 1;           ///< first bounce at which a path may end
 /// Paths of photons from this surface on, and all of the integrator "path", go on with this chance
-/// at most: between perfect mirrors they end as well, and in white rooms their number stays bounded.
+/// at most: between perfect mirrors they end as well, and in white rooms their number stays
+/// bounded.
 inline constexpr int long_path = 64;
 inline constexpr float largest_survival = 0.99f;
 

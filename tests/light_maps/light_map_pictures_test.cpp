@@ -117,7 +117,8 @@ TEST_CASE("Pictures that read light maps are the same bits on one, two and three
 TEST_CASE("What was looked at before changes no bit of a picture", "[light_map_pictures]") {
   const Scene scene = test::furnished_room(2);
   RenderParameters parameters = with_light_maps();
-  // Tiles and hits in turn make sums depend on the hits beside: not at nodes, whatever is asked for.
+  // Tiles and hits in turn make sums depend on the hits beside: not at nodes, whatever is asked
+  // for.
   parameters.tuning.emplace().strategy = EstimateStrategy::tile;
   parameters.tuning->hits_per_item = 16;
   SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters);

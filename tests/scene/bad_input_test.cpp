@@ -92,13 +92,10 @@ TEST_CASE("glTF indices, accessors and views that leave their bounds are refused
       },
       {"index 3 of 3"});
   refused([](json& d) { d["accessors"][0]["count"] = 5; }, {"POSITION", "beyond"});
-  refused([](json& d) { d["accessors"][0]["count"] = 1ull << 53; },
-          {"POSITION", "beyond"});
-  refused([](json& d) { d["accessors"][0]["byteOffset"] = 1ull << 53; },
-          {"POSITION", "beyond"});
+  refused([](json& d) { d["accessors"][0]["count"] = 1ull << 53; }, {"POSITION", "beyond"});
+  refused([](json& d) { d["accessors"][0]["byteOffset"] = 1ull << 53; }, {"POSITION", "beyond"});
   refused([](json& d) { d["bufferViews"][0]["byteLength"] = 200; }, {"beyond its buffer"});
-  refused([](json& d) { d["bufferViews"][0]["byteOffset"] = 1ull << 53; },
-          {"beyond its buffer"});
+  refused([](json& d) { d["bufferViews"][0]["byteOffset"] = 1ull << 53; }, {"beyond its buffer"});
   refused([](json& d) { d["bufferViews"][0]["buffer"] = 7; }, {"no buffer 7"});
   refused([](json& d) { d["accessors"][0]["bufferView"] = 9; }, {"no buffer view 9"});
   refused([](json& d) { d["accessors"][0]["type"] = "VEC2"; }, {"POSITION", "wrong type"});

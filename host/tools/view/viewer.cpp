@@ -346,9 +346,10 @@ class Viewer {
   void keep_frame() {
     if (!frame_ || !frame_->mixed.empty()) return;
     keep_wanted_ = false;
-    message_ = beside_luminaires(keep_as(parameters_.outputs, "view", ".exr", [&](const auto& file) {
-      write_frame(file, *scene_, *frame_, lights_.shown_mix());
-    }));
+    message_ =
+        beside_luminaires(keep_as(parameters_.outputs, "view", ".exr", [&](const auto& file) {
+          write_frame(file, *scene_, *frame_, lights_.shown_mix());
+        }));
   }
 
   /// What Ctrl+S did, after what it did about luminaires.
