@@ -125,22 +125,22 @@ ExrInput::Part part_of(const Imf::Header& header) {
   }
   std::stable_sort(part.channels.begin(), part.channels.end(),
                    [](const auto& a, const auto& b) { return rank(a) < rank(b); });
-  const std::uint64_t pixels = static_cast<std::uint64_t>(part.width) * part.height;
   std::uint64_t block =
       static_cast<std::uint64_t>(part.width) * rows_of_block(header.compression());
+  std::uint64_t most_bytes = limits::max_image_block_bytes;
   if (header.hasTileDescription()) {
     // OpenEXR keeps a row of tiles.
     const Imf::TileDescription& tile = header.tileDescription();
     const auto width = static_cast<std::uint64_t>(std::max(part.width, 1));
     block = std::max<std::uint64_t>(tile.xSize, width) * tile.ySize;
+    // Tiles have no need to be far larger than the picture.
+    if (block / 4 > width * part.height) most_bytes = std::min(most_bytes, unchecked_bytes);
   }
-  if (pixel_bytes == 0) return part;
-  const bool beyond_picture = block > pixels && block > unchecked_bytes / pixel_bytes;
-  if (beyond_picture || block > limits::max_image_block_bytes / pixel_bytes) {
-    throw DecodeError(
-        fmt::format("has blocks of {} pixels of {} bytes; the limit is {} bytes, or {} where the "
-                    "picture has {} pixels; scale its tiles down",
-                    block, pixel_bytes, limits::max_image_block_bytes, unchecked_bytes, pixels));
+  if (pixel_bytes > 0 && block > most_bytes / pixel_bytes) {
+    throw DecodeError(fmt::format(
+        "has blocks of {} pixels of {} bytes, more than the limit of {} bytes; write it "
+        "in smaller ones",
+        block, pixel_bytes, most_bytes));
   }
   return part;
 }

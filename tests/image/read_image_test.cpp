@@ -89,7 +89,21 @@ TEST_CASE("tiles that are larger than a small picture are refused before they ta
   const std::uint32_t sides[2] = {21'764, 1'024};  // 255 MiB, beside OpenEXR's own buffers
   std::memcpy(&bytes[bytes.find(before) + before.size()], sides, sizeof sides);
   write_bytes(folder / "tiles.exr", bytes);
-  CHECK(refusal(folder / "tiles.exr").find("scale its tiles down") != std::string::npos);
+  CHECK(refusal(folder / "tiles.exr").find("smaller ones") != std::string::npos);
+}
+
+TEST_CASE("few rows are read, however many their compression takes at a time") {
+  const TemporaryFolder folder;
+  // 256 rows of DWAB would be 80 MiB.
+  OIIO::ImageSpec spec(4'096, 16, 40, OIIO::TypeDesc::HALF);
+  for (std::size_t c = 0; c < 40; ++c) spec.channelnames[c] = fmt::format("c{}", c);
+  spec.attribute("compression", "dwab");
+  const auto output = OIIO::ImageOutput::create("exr");
+  REQUIRE(output->open((folder / "strip.exr").string(), spec));
+  const std::vector<float> ones(std::size_t{4'096} * 16 * 40, 1.0f);
+  REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data()));
+  REQUIRE(output->close());
+  CHECK(read_image(folder / "strip.exr").channels.size() == 40);
 }
 
 TEST_CASE("an EXR whose writer ended before it wrote the table of its blocks is read") {
