@@ -73,6 +73,9 @@ TEST_CASE("photons of other settings or scenes, and broken files, are refused by
                             folder, "b.exr", {"--load-maps", folder.write("x.maps", "photons")})),
                         3),
              Contains("x.maps") && Contains("no photon maps"));
+  CHECK_THAT(
+      only_error(run_photile(arguments_of(folder, "b.exr", {"--load-maps", "/dev/null"})), 3),
+      Contains("/dev/null: is not a regular file"));
   CHECK_THAT(only_error(run_photile(arguments_of(folder, "b.exr",
                                                  {"--save-maps", maps, "--integrator", "path"})),
                         2),
