@@ -2,6 +2,7 @@
 // library. What users see, with its documentation, is in python/photile/*.py.
 #include <pybind11/pybind11.h>
 
+#include "arrays.hpp"
 #include "parts.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
@@ -45,6 +46,7 @@ PYBIND11_MODULE(_photile, module) {
   module.attr("version") = PHOTILE_VERSION;
   module.attr("none") = 0xFFFF'FFFFu;
   module.attr("lumen_per_watt") = photile::defaults::lumen_per_watt;
+  photile::python::define_array_memory(module);
   photile::python::define_devices(module);
   photile::python::define_scenes(module);
   photile::python::define_photons(module);

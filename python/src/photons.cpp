@@ -40,7 +40,7 @@ std::shared_ptr<PhotonTracerResult> trace(const std::shared_ptr<Scene>& scene, s
 }
 
 /// The unit normal of the side that each photon lies on.
-py::array normals_of(const PhotonTracerResult& traced, const Scene& scene) {
+py::object normals_of(const PhotonTracerResult& traced, const Scene& scene) {
   const Photons& photons = traced.photons;
   std::vector<glm::vec3> normals(photons.size());
   {
@@ -134,8 +134,8 @@ class Maps {
   }
 
   /// Shape (points, lights, 3).
-  py::array irradiance(const Array<float>& points, const std::optional<Array<float>>& normals,
-                       int k, double radius, const std::string& kernel) {
+  py::object irradiance(const Array<float>& points, const std::optional<Array<float>>& normals,
+                        int k, double radius, const std::string& kernel) {
     const auto where = rows_of<glm::vec3>(points, "points");
     const auto facing = rows_or_none<glm::vec3>(normals, "normals");
     const CloudEstimateParameters parameters{

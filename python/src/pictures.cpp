@@ -134,20 +134,20 @@ std::shared_ptr<Picture> read_picture(const std::filesystem::path& file) {
   return picture;
 }
 
-py::array unit_layer(const py::object& owner, const std::string& light) {
+py::object unit_layer(const py::object& owner, const std::string& light) {
   const auto& picture = owner.cast<const Picture&>();
   const auto& layer = picture.layers.layers[picture.index_of(light)];
   return view<float>(owner, picture.shape(3), layer.radiance.data());
 }
 
-py::array unit_illuminance(const py::object& owner, const std::string& light) {
+py::object unit_illuminance(const py::object& owner, const std::string& light) {
   const auto& picture = owner.cast<const Picture&>();
   const auto& layer = picture.layers.layers[picture.index_of(light)];
   return view<float>(owner, picture.shape(1), layer.illuminance.data());
 }
 
 /// The sum of the layers, shape (height, width, 3).
-py::array mixed_layers(const Picture& picture, const Changes& changes) {
+py::object mixed_layers(const Picture& picture, const Changes& changes) {
   std::vector<glm::vec3> sum(static_cast<std::size_t>(picture.layers.width) *
                              static_cast<std::size_t>(picture.layers.height));
   {
@@ -172,9 +172,9 @@ ToneMapping tone_mapping(const std::optional<double>& exposure, bool automatic,
 }
 
 /// Display-referred and linear, shape (height, width, 3).
-py::array displayed(const Picture& picture, const Changes& changes,
-                    const std::optional<double>& exposure, bool automatic,
-                    const std::string& display) {
+py::object displayed(const Picture& picture, const Changes& changes,
+                     const std::optional<double>& exposure, bool automatic,
+                     const std::string& display) {
   const ToneMapping parameters = tone_mapping(exposure, automatic, display);
   std::vector<glm::vec3> pixels;
   {

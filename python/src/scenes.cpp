@@ -227,7 +227,7 @@ py::list layers_of(const Scene& scene) {
 }
 
 /// Unit normals of the fronts of all triangles.
-py::array triangle_normals(const Scene& scene) {
+py::object triangle_normals(const Scene& scene) {
   std::vector<glm::vec3> normals(scene.triangle_count());
   {
     const py::gil_scoped_release release;
@@ -239,7 +239,7 @@ py::array triangle_normals(const Scene& scene) {
   return taken<float>(std::move(normals), {count, 3});
 }
 
-py::array triangle_areas(const Scene& scene) {
+py::object triangle_areas(const Scene& scene) {
   std::vector<double> areas(scene.triangle_count());
   for (std::uint32_t t = 0; t < areas.size(); ++t) areas[t] = triangle_area(scene, t);
   const auto count = static_cast<py::ssize_t>(areas.size());

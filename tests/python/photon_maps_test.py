@@ -156,3 +156,28 @@ def test_what_is_wrong_with_photons(wrong):
     with pytest.raises(photile.Error) as error:
         photile.PhotonMaps(positions, **{"radius": RADIUS, **wrong})
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("layout", [
+    np.asfortranarray,
+    lambda points: np.repeat(points, 2, axis=0)[::2],
+    lambda points: points.astype(">f4"),
+    lambda points: np.frombuffer(b"0" + points.tobytes(), np.float32, offset=1).reshape(-1, 3),
+    lambda points: points.astype(float),
+    lambda points: points.tolist(),
+    lambda points: np.ma.masked_array(points),
+], ids=["columns", "every other row", "big-endian", "unaligned", "double", "list", "masked"])
+def test_points_are_the_same_in_every_layout(layout):
+    positions, _, _, _ = cloud()
+    points, _ = queries(normals=False)
+    maps = photile.PhotonMaps(layout(positions), radius=RADIUS)
+    found = maps.nearest(layout(points), k=K)
+    expected = np.sort(squared_distances(points, positions, True), axis=1)[:, :K]
+    assert np.allclose(found.squared_distance, expected, rtol=1e-4, atol=1e-9)
+
+
+def test_no_points_have_no_neighbours():
+    positions, _, _, _ = cloud()
+    maps = photile.PhotonMaps(positions, radius=RADIUS)
+    found = maps.nearest(np.empty((0, 3)), k=K)
+    assert found.photons.shape == (0, K) and found.squared_distance.dtype == np.float32
