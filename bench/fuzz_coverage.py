@@ -66,8 +66,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--more", type=pathlib.Path)
     options = parser.parse_args()
-    for corpus in sorted((ROOT / "tests/fuzz/corpus").iterdir()):
-        folders = [corpus]
+    for corpus in sorted(path for path in (ROOT / "tests/fuzz/corpus").iterdir() if path.is_dir()):
+        folders = [corpus, FUZZER.parent / "corpus" / corpus.name]
         if options.more and (options.more / corpus.name).is_dir():
             folders.append(options.more / corpus.name)
         run(corpus.name, folders)

@@ -5,10 +5,11 @@
 #   bench/soak.sh HOURS [TARGET...]
 #
 # TARGET: a folder of tests/fuzz/corpus, or "commands"; without one all, in turn. Needs the builds of
-# the presets "fuzzers" (target photile_fuzz) and "release" (target photile_tests_property).
+# the presets "fuzzers" (target photile_fuzz, which unpacks the corpus) and "release" (target
+# photile_tests_property).
 # What is found stays in build/soak: inputs as crash-*, timeout-*, oom-*; failed commands in
 # commands.log. The corpora grow there and are kept from run to run; tests/fuzz/minimise.sh brings what
-# is new in them into the repository.
+# is new in them into the archives of the repository.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 if [[ $# -lt 1 || ! $1 =~ ^[0-9]+([.][0-9]+)?$ ]]; then
@@ -54,7 +55,8 @@ for target in "${targets[@]}"; do
   [[ -f tests/fuzz/$target.dict ]] && options+=("-dict=tests/fuzz/$target.dict")
   PHOTILE_FUZZ_TARGET=$target nice -n 19 build/fuzzers/tests/fuzz/photile_fuzz "${options[@]}" \
     -max_total_time="$seconds" -print_final_stats=1 -artifact_prefix="build/soak/$target-" \
-    "$corpus" "tests/fuzz/corpus/$target" > "build/soak/$target.log" 2>&1 || failed=1
+    "$corpus" "tests/fuzz/corpus/$target" "build/fuzzers/tests/fuzz/corpus/$target" \
+    > "build/soak/$target.log" 2>&1 || failed=1
   echo "$target: $(awk '/number_of_executed_units/ { print $2 }' "build/soak/$target.log") executions"
 done
 find build/soak -maxdepth 1 \( -name '*crash-*' -o -name '*timeout-*' -o -name '*oom-*' \) -print

@@ -14,7 +14,7 @@ using Bytes = std::span<const unsigned char>;
 /// that is no number, a crash.
 using FuzzTarget = bool (*)(Bytes bytes);
 
-/// By name: "gltf", "obj", ... A name is a folder of the corpus, too.
+/// By name: "gltf", "obj", ... A name is a folder and an archive of the corpus, too.
 const std::map<std::string_view, FuzzTarget>& fuzz_targets();
 
 // Scenes: text or binary glTF; OBJ, and its MTL behind the first zero byte.
