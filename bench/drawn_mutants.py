@@ -97,8 +97,7 @@ FURTHER_TESTS = {
               ("render", "direct_rays"), ("gather", "irradiance_gather"),
               ("gather", "gathered_nodes"), ("measuring", "gather"),
               ("light_maps", "light_map_sensors"), ("light_maps", "light_map_frames"),
-              ("scene", "textured_lights"), ("daylight", "daylight_matrix"),
-              ("render", "final_gather"))}
+              ("scene", "textured_lights"), ("daylight", "daylight_matrix"))}
 
 
 def host_files():

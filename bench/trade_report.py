@@ -55,9 +55,7 @@ def settings(point):
               "area": f" --area {point.get('area')}",
               "kernel": f" --kernel {point.get('kernel')}",
               "direct rays": f" --direct rays --direct-rays {point.get('direct_rays')}",
-              "node rays": f" --light-map-rays {point.get('light_map_rays')}",
-              "final gather": f" --final-gather {point.get('final_gather_rays')}"
-                              f" --direct-rays {point.get('direct_rays')}"}
+              "node rays": f" --light-map-rays {point.get('light_map_rays')}"}
     return text + varied.get(point["varied"], "") + "`"
 
 
@@ -84,11 +82,11 @@ def table(record):
 
 
 def ways_of_light(record):
-    """What photons, rays to lamps, final gathering and nodes that gather give."""
+    """What photons, rays to lamps and nodes that gather give."""
     lines = ["| settings | error | worst region | mean ratio | first picture | each frame |",
              "|---|--:|--:|--:|--:|--:|"]
     for point in record["renderings"]:
-        if point["varied"] in ("nothing", "direct rays", "final gather", "node rays"):
+        if point["varied"] in ("nothing", "direct rays", "node rays"):
             lines.append(f"| {settings(point)} | {100 * point['relative_error']:.1f}% "
                          f"| {100 * point['worst_region']:.1f}% | {point['mean_ratio']:.3f} "
                          f"| {point['first_picture_seconds']:.2f} s "
@@ -109,7 +107,7 @@ def section(name, record, measured_on):
         noise = (f" The reference has {record['reference_samples']} paths a pixel and itself an "
                  f"error of {100 * own:.1f}%, which is in all figures.")
     return (f"### {name}\n\n{size} pixels.{noise}\n\n![Error against time](trade/{name}.svg)\n\n"
-            f"{table(record)}\n\nLight by photons alone, lamps by rays, final gathering, and gathering at nodes:\n\n"
+            f"{table(record)}\n\nLight by photons alone, lamps by rays, and gathering at nodes:\n\n"
             f"{ways_of_light(record)}\n\n{measured_on}\n\n")
 
 

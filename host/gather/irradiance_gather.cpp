@@ -234,7 +234,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, MapEstimators& photons,
       emitted_(emitted_radiance_at_unit_power(rays.scene())),
       layer_powers_(layer_powers(rays.scene())),
       ends_(rays, photons, ends) {
-  check_range("gathering rays of a point", parameters.rays, 0, limits::max_final_gather_rays);
+  check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
   check_range("looks at lamps from a point", parameters.looks, 0, limits::max_direct_rays);
   check_range("batches of rays", parameters.batches, 2, 64);
 }

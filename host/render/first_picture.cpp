@@ -20,7 +20,7 @@ RenderParameters first_picture_parameters(const RenderParameters& asked) {
   first.passes = 1;
   first.radius = 0;
   first.least_neighbours = 0;
-  first.direct_rays = first.final_gather_rays = first.light_map_rays = 0;
+  first.direct_rays = first.light_map_rays = 0;
   first.light_maps = LightMapMode::on;
   first.light_map_detail = no_detail;
   if (asked.maps == MapMode::naive) first.maps = MapMode::automatic;

@@ -49,7 +49,6 @@ PrimaryHitBatch GatherHits::trace(const RayScene& rays, const PrimaryHitParamete
 RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress) {
-  refuse_final_gather(parameters);
   RenderResult result = render_hits(scene, GatherHits(scene, sensors, gathering.response),
                                     film_of(sensors, gathering), devices, parameters, progress);
   result.layers = with_own_illuminance(std::move(result.layers));

@@ -69,15 +69,8 @@ PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParamete
   return batch;
 }
 
-void refuse_final_gather(const RenderParameters& parameters) {
-  if (parameters.final_gather_rays > 0) {
-    throw UsageError("final gathering is for pictures; leave it out where sensors measure");
-  }
-}
-
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress) {
-  refuse_final_gather(parameters);
   return render_hits(scene, SensorHits(sensors), one_row(sensors, 1), devices, parameters,
                      progress);
 }

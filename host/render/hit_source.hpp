@@ -125,9 +125,6 @@ class GatherHits : public HitSource {
   trace::LightSampler lamps_;
 };
 
-/// Errors: UsageError where final gathering is asked for: sensors leave no direct light to rays.
-void refuse_final_gather(const RenderParameters& parameters);
-
 /// `render` and `trace_paths` for any hits.
 ///   film   that they fill, in place of the parameters'
 RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& film,

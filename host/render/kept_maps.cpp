@@ -21,7 +21,7 @@ KeptMaps::KeptMaps(std::shared_ptr<const PreparedScene> scene, std::span<Device>
   }
   if (prepared && !prepared->caustics && plan.keeps_caustics()) {
     throw SettingError(
-        setting_named(plan.gathers() ? "final_gather_rays" : "light_map_rays"),
+        setting_named("light_map_rays"),
         "rays that gather take caustics from photons of their own, which these saved maps lack; "
         "save them again with rays that gather");
   }

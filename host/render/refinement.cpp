@@ -55,7 +55,7 @@ RenderParameters scaled(RenderParameters parameters, double factor) {
       static_cast<double>(parameters.photons.emitted_photons),
       static_cast<double>(limits::min_photons), static_cast<double>(limits::max_emitted_photons)));
   parameters.light_map_rays = static_cast<int>(
-      times(parameters.light_map_rays, 1, static_cast<double>(limits::max_final_gather_rays)));
+      times(parameters.light_map_rays, 1, static_cast<double>(limits::max_gathering_rays)));
   return parameters;
 }
 

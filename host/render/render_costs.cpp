@@ -80,9 +80,9 @@ void RenderCosts::add_pass(const RenderCosts& further) {
 }
 
 void RenderCosts::start_picture() {
-  hits = gather = light_maps = estimate = film = {};
+  hits = light_maps = estimate = film = {};
   hits_sent = hit_bytes_sent = 0;
-  rays = gather_rays = light_map_nodes = hit_count = 0;
+  rays = light_map_nodes = hit_count = 0;
   estimate_compile_seconds = 0;
 }
 
@@ -96,7 +96,6 @@ void RenderCosts::add_processes(Communicator& all) {
                        mixed_maps,
                        largest_map,
                        rays,
-                       gather_rays,
                        hit_count,
                        photons_sent,
                        photon_bytes_sent,
@@ -122,22 +121,22 @@ void RenderCosts::add_processes(Communicator& all) {
     return largest;
   };
   references = sum(0), maps = sum(1), mixed_maps = sum(2), largest_map = most(3);
-  rays = sum(4), gather_rays = sum(5), hit_count = sum(6);
-  light_map_errors = {0, sum(15)};
-  for (const auto& rank : of_ranks) light_map_errors.squares += std::bit_cast<double>(rank[14]);
+  rays = sum(4), hit_count = sum(5);
+  light_map_errors = {0, sum(14)};
+  for (const auto& rank : of_ranks) light_map_errors.squares += std::bit_cast<double>(rank[13]);
   const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
   processes = {{"processes", number(all.size())},
-               {"photons sent", number(sum(7))},
-               {"bytes sent per stored photon", ratio(sum(8), stored_photons)},
-               {"photons held, largest over mean", ratio(most(9) * all.size(), sum(9))},
-               {"photons held over stored", ratio(sum(9), stored_photons + caustic_photons)},
-               {"hits sent", number(sum(10))},
-               {"bytes per hit sent", ratio(sum(11), sum(10))},
-               {"bytes sent", number(sum(12))},
+               {"photons sent", number(sum(6))},
+               {"bytes sent per stored photon", ratio(sum(7), stored_photons)},
+               {"photons held, largest over mean", ratio(most(8) * all.size(), sum(8))},
+               {"photons held over stored", ratio(sum(8), stored_photons + caustic_photons)},
+               {"hits sent", number(sum(9))},
+               {"bytes per hit sent", ratio(sum(10), sum(9))},
+               {"bytes sent", number(sum(11))},
                {"calls", number(traffic.calls)},
                {"seconds waited", traffic.seconds},
-               {"host bytes of a process, most", number(most(13))},
-               {"host bytes of a process, mean", ratio(sum(13), all.size())}};
+               {"host bytes of a process, most", number(most(12))},
+               {"host bytes of a process, mean", ratio(sum(12), all.size())}};
 }
 
 RunStatistics RenderCosts::statistics() const {
@@ -167,12 +166,6 @@ RunStatistics RenderCosts::statistics() const {
       stage("prepare estimates", estimators),
       stage("primary hits", hits,
             {{"rays", number(rays)}, {"rays per second", number(rays) / hits.time.seconds}})};
-  if (gather_rays > 0) {
-    stages.push_back(stage("final gather", gather,
-                           {{"rays", number(gather_rays)},
-                            {"rays per second", number(gather_rays) / gather.time.seconds},
-                            {"caustic photons", number(caustic_photons)}}));
-  }
   if (light_maps.time.seconds > 0) {
     std::vector<std::pair<std::string, double>> figures{{"new nodes", number(light_map_nodes)}};
     const double error = light_map_errors.mean();

@@ -38,7 +38,7 @@ struct ErrorSum {
 
 /// Counts add up over passes.
 struct RenderCosts {
-  StageCost structure, trace, exchange, radius, group, surface, build, estimators, hits, gather,
+  StageCost structure, trace, exchange, radius, group, surface, build, estimators, hits,
       light_maps, estimate, film, release;
   std::uint64_t emitted_photons = 0, stored_photons = 0, caustic_photons = 0;
   std::uint64_t group_members = 0, groups = 0, patches = 0;
@@ -48,7 +48,7 @@ struct RenderCosts {
   std::uint64_t maps = 0, mixed_maps = 0;  ///< of the last pass
   std::vector<std::uint32_t> map_sizes;    ///< of the last pass, as PhotonMapStatistics
   std::uint64_t references = 0, largest_map = 0;
-  std::uint64_t rays = 0, gather_rays = 0, hit_count = 0;
+  std::uint64_t rays = 0, hit_count = 0;
   double compile_seconds = 0;                          ///< of all kernels
   double estimate_compile_seconds = 0;                 ///< of them, within `estimate`
   std::vector<std::pair<std::string, double>> shares;  ///< of several devices

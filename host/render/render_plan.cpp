@@ -17,16 +17,15 @@
 namespace photile {
 namespace {
 
-/// Without those whose light rays bring; where rays gather, those see direct light, too.
+/// Without those whose light rays bring.
 PhotonTracerParameters all_photons(const RenderParameters& used) {
-  const bool gathers = used.final_gather_rays > 0;
   return {.emitted_photons = used.photons.emitted_photons,
           .quota = used.photons.quota,
           .seed = used.seed,
           .max_path_length = used.photons.max_path_length,
           .roulette_start = used.photons.roulette_start,
-          .store_direct = used.direct_rays == 0 || gathers,
-          .keep_caustics = gathers || used.light_map_rays > 0};
+          .store_direct = used.direct_rays == 0,
+          .keep_caustics = used.light_map_rays > 0};
 }
 
 /// Says so where most photons have no other within the radius: most places then read nothing.
@@ -45,11 +44,6 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
 
 /// Errors: SettingError for what one process alone can do.
 void check_for_several(const RenderParameters& asked) {
-  if (asked.final_gather_rays > 0) {
-    throw SettingError(setting_named("final_gather_rays"),
-                       "rays that gather from each hit are of one process; leave them out where "
-                       "several share a rendering");
-  }
   if (is_global(asked.structure)) {
     throw SettingError(
         setting_named("structure"),
@@ -73,7 +67,7 @@ std::string_view name_of(GlossMode mode) {
 }
 
 bool nodes_gather(const RenderParameters& asked) {
-  const bool shows_other_light = asked.final_gather_rays > 0 || asked.maps == MapMode::naive;
+  const bool shows_other_light = asked.maps == MapMode::naive;
   const bool read = asked.light_maps == LightMapMode::on ||
                     (asked.light_maps == LightMapMode::automatic && !shows_other_light);
   return asked.light_map_rays > 0 && asked.direct_rays == 0 && read;
@@ -95,7 +89,6 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
       scene_(rays.scene().source.filename().string()) {
   check(asked);
   if (asked.processes) check_for_several(asked);
-  if (gathers() && asked.direct_rays == 0) used_.direct_rays = defaults::direct_rays;
   if (!nodes_gather(asked)) used_.light_map_rays = 0;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
   if (asked.passes == 0) {
@@ -103,11 +96,11 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
   }
   if (asked.light_maps == LightMapMode::automatic) {
     const bool at_hits =
-        gathers() || asked.maps == MapMode::naive || (passes() > 1 && !gathers_at_nodes());
+        asked.maps == MapMode::naive || (passes() > 1 && !gathers_at_nodes());
     used_.light_maps = at_hits ? LightMapMode::off : LightMapMode::on;
   }
   if (asked.gloss == GlossMode::automatic) {
-    used_.gloss = reads_light_maps() && !gathers() ? GlossMode::rays : GlossMode::photons;
+    used_.gloss = reads_light_maps() ? GlossMode::rays : GlossMode::photons;
   }
   // Beyond the scene there is nothing to find.
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
@@ -221,12 +214,8 @@ PrimaryHitParameters RenderPlan::hits(const Film& film, int passes) const {
   hits.passes = passes;
   hits.direct_rays = used_.direct_rays;  // as the photons are traced
   hits.lobe_rays = used_.gloss == GlossMode::rays;
-  hits.part_at_glass = !gathers();  // which has a number for one hit of each sample
+  hits.part_at_glass = true;
   return hits;
-}
-
-trace::FinalGatherParameters RenderPlan::gathering() const {
-  return {used_.final_gather_rays, used_.seed, used_.max_specular_depth};
 }
 
 }  // namespace photile

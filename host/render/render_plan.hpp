@@ -14,7 +14,6 @@
 #include "photile/photon_tracer.hpp"
 #include "photile/primary_hits.hpp"
 #include "photile/renderer.hpp"
-#include "trace/final_gather_rays.hpp"
 
 namespace photile {
 
@@ -36,14 +35,13 @@ class RenderPlan {
   /// Whether the photons of all passes may be kept at once: their number was asked for, and does
   /// not follow from the memory.
   bool may_keep_passes() const { return passes() == 1 || asked_passes_ > 0; }
-  bool gathers() const { return used_.final_gather_rays > 0; }
   bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
   /// Whether light maps are to be read by any hits, even if few share nodes.
   bool asks_for_light_maps() const {
     return asked_light_maps_ == LightMapMode::on || gathers_at_nodes();
   }
   bool gathers_at_nodes() const { return used_.light_map_rays > 0; }
-  bool keeps_caustics() const { return gathers() || gathers_at_nodes(); }
+  bool keeps_caustics() const { return gathers_at_nodes(); }
   bool clips_areas() const { return used_.area == AreaMode::clipped; }
 
   /// Of this pass, whose paths follow those of the passes before.
@@ -79,8 +77,6 @@ class RenderPlan {
   /// of neighbouring samples alike, those of another do not.
   ///   passes   at least 1
   PrimaryHitParameters hits(const Film& film, int passes) const;
-
-  trace::FinalGatherParameters gathering() const;
 
  private:
   RenderParameters used_;

@@ -8,9 +8,7 @@
 
 #include "photile/errors.hpp"
 #include "render/film.hpp"
-#include "render/final_gather.hpp"
 #include "render/neighbour_choice.hpp"
-#include "render/path_numbers.hpp"
 #include "render/pooled_estimates.hpp"
 #include "render/row_exchange.hpp"
 #include "render/sample_errors.hpp"
@@ -268,8 +266,7 @@ RenderResult Rendering::finish() {
 
 int Rendering::rows_per_batch(const HitSource& source) const {
   const std::int64_t hits_per_row = std::int64_t{film_.width} *
-                                    (film_.samples_per_pixel / film_.passes) *
-                                    std::max(1, plan_.used().final_gather_rays);
+                                    (film_.samples_per_pixel / film_.passes);
   const int least = (film_.height - 1) / watched_batches + 1;
   const int most = source.watched() || pooling_ ? least : film_.height;
   // Where light maps are read, only their nodes take long.
@@ -294,7 +291,7 @@ void Rendering::add_rows(const HitSource& source, PrimaryHitBatch batch, int fir
   const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight,
                        std::span<const std::uint8_t> by_photons) {
     Estimates estimates = reads_light_maps(source) ? read_light_maps(seen.hits, by_photons)
-                                                   : estimate(seen.hits, first, last);
+                                                   : estimate(seen.hits);
     const Stopwatch film_watch;
     if (pooling_) {
       estimates = pooled(*pooling_, estimates, seen.hits.size());
@@ -323,28 +320,15 @@ void Rendering::add_rows(const HitSource& source, PrimaryHitBatch batch, int fir
   add(reflected, 0.0f, by_photons);  // the pixel's illuminance is not theirs
 }
 
-/// Of the hits of rows [first_row, last_row).
-Estimates Rendering::estimate(const PrimaryHits& hits, int first_row, int last_row) {
+Estimates Rendering::estimate(const PrimaryHits& hits) {
   const Stopwatch stopwatch;
   const double compiled = compile_seconds();
   const TimeTaken built_before = costs_.build.time;
   Rendering& pass = at_hand();
-  if (!plan_.gathers()) {
-    Estimates estimates = pass.photons_->estimate(hits);
-    costs_.estimate.add(stopwatch.taken() - (costs_.build.time - built_before));
-    costs_.estimate_compile_seconds += compile_seconds() - compiled;
-    costs_.hit_count += hits.size();
-    return estimates;
-  }
-  FinalGather gather(rays_, *pass.photons_, pass.caustics_ ? &*pass.caustics_ : nullptr,
-                     plan_.gathering());
-  Estimates estimates = gather.estimate(hits, path_numbers(hits, film_, first_row, last_row),
-                                        hits_per_batch(plan_.used().neighbours), *progress_);
-  costs_.gather.add(gather.costs().rays_time);
-  costs_.estimate.add(stopwatch.taken() - gather.costs().rays_time);
+  Estimates estimates = pass.photons_->estimate(hits);
+  costs_.estimate.add(stopwatch.taken() - (costs_.build.time - built_before));
   costs_.estimate_compile_seconds += compile_seconds() - compiled;
-  costs_.gather_rays += gather.costs().rays;
-  costs_.hit_count += gather.costs().estimated;
+  costs_.hit_count += hits.size();
   return estimates;
 }
 

@@ -130,7 +130,7 @@ class Rendering {
   int rows_per_batch(const HitSource& source) const;
   PrimaryHitBatch trace_rows(const HitSource& source, int first, int last);
   void add_rows(const HitSource& source, PrimaryHitBatch batch, int first, int last);
-  Estimates estimate(const PrimaryHits& hits, int first_row, int last_row);
+  Estimates estimate(const PrimaryHits& hits);
   bool reads_light_maps(const HitSource& source) const {
     return plan_.reads_light_maps() && (source.dense() || plan_.asks_for_light_maps());
   }

@@ -114,10 +114,9 @@ std::string kept_for_structure(const Setting& setting, const RenderParameters& p
   return is_global(parameters.structure) ? kept_as_it_is(setting, parameters) : std::string();
 }
 
-/// Rays leave no direct light to photons, however many there are; but rays that gather see it.
+/// Rays leave no direct light to photons, however many there are.
 std::string kept_for_direct_light(const Setting& setting, const RenderParameters& parameters) {
-  const bool by_rays = setting.is_given(parameters) && parameters.final_gather_rays == 0;
-  return by_rays ? "direct light by rays" : std::string();
+  return setting.is_given(parameters) ? "direct light by rays" : std::string();
 }
 
 constexpr std::uint64_t most_int = std::numeric_limits<int>::max();
@@ -199,24 +198,19 @@ std::vector<Setting> estimate_rows() {
       row<&P::direct_rays>("direct_rays", "direct-rays", "primary hits",
                            WholeNumbers{1, limits::max_direct_rays},
                            "looks at lamps from a hit, which replace photons straight from lamps",
-                           kept_for_direct_light, "photons bring it; one look where rays gather"),
-      row<&P::final_gather_rays>(
-          "final_gather_rays", "final-gather", "final gather",
-          WholeNumbers{0, limits::max_final_gather_rays},
-          "rays from each hit that gather the light of other surfaces; direct light by rays",
-          not_kept),
+                           kept_for_direct_light, "photons bring it"),
       row<&P::gloss>("gloss", "gloss", "primary hits", words_of(all_gloss_modes),
                      "what finds the light that lobes reflect; auto: rays where light maps are "
                      "read, else photons",
                      not_kept),
       row<&P::light_maps>("light_maps", "light-maps", "light maps", words_of(all_light_map_modes),
-                          "matt surfaces are read between nodes; auto: not with final gathering, "
+                          "matt surfaces are read between nodes; auto: not with "
                           "naive maps or, unless nodes gather, several passes; off: an estimate "
                           "at each hit",
                           not_kept),
       by_quality(row<&P::light_map_rays>(
                      "light_map_rays", "light-map-rays", "light maps",
-                     WholeNumbers{1, limits::max_final_gather_rays},
+                     WholeNumbers{1, limits::max_gathering_rays},
                      "rays, and looks at lamps, by which nodes of light maps gather light",
                      not_kept, "the photon estimate values nodes"),
                  64, 256),
@@ -290,15 +284,6 @@ void check(const RenderParameters& parameters) {
     if (setting.name == "least_neighbours" && parameters.least_neighbours > parameters.neighbours) {
       throw SettingError(setting, fmt::format("{} is more than the {} neighbours",
                                               parameters.least_neighbours, parameters.neighbours));
-    }
-    if (setting.name == "light_maps" && parameters.light_maps == LightMapMode::on &&
-        parameters.final_gather_rays > 0) {
-      throw SettingError(setting,
-                         "light maps hold the photon estimate, which rays that gather replace");
-    }
-    if (setting.name == "gloss" && parameters.gloss == GlossMode::rays &&
-        parameters.final_gather_rays > 0) {
-      throw SettingError(setting, "rays that gather follow lobes, too");
     }
     if (setting.name == "structure" && is_global(parameters.structure) &&
         parameters.maps == MapMode::naive) {

@@ -76,12 +76,8 @@ struct RenderParameters {
   AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
   /// > 0: light straight from lamps is found by so many looks at them from each hit. 0 = photons
-  /// bring it; where rays gather, as many looks as defaults::direct_rays do.
+  /// bring it.
   int direct_rays = 0;
-  /// > 0: light from other surfaces is gathered by so many rays from each hit, which look photons
-  /// up where they end; at the hit itself only caustics are (docs/final-gathering.md). 0 = all
-  /// light is looked up at the hit.
-  int final_gather_rays = 0;
   GlossMode gloss = GlossMode::automatic;
   LightMapMode light_maps = LightMapMode::automatic;  ///< see docs/light-maps.md
   /// > 0: nodes of light maps gather light by so many rays each, and as many looks at lamps, fewer

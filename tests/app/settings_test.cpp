@@ -41,7 +41,7 @@ TEST_CASE("every setting is an option of render, and in its help") {
     CAPTURE(setting.name);
     CHECK_THAT(help.output, Contains(app::option_of(setting) + " "));
     const bool of_pictures = setting.name == "samples_per_pixel" || setting.name == "direct_rays" ||
-                             setting.name == "final_gather_rays" || setting.name == "gloss";
+                             setting.name == "gloss";
     CHECK((measure.output.find(app::option_of(setting) + " ") == std::string::npos) == of_pictures);
   }
 }
@@ -102,8 +102,7 @@ TEST_CASE("--quality sets settings that go together, and those given beside it c
 TEST_CASE("nodes gather in pictures unless another method is asked for") {
   const FileFolder folder;
   const auto [option, value, gather] =
-      GENERATE(table<std::string, std::string, bool>({{"--final-gather", "2", false},
-                                                      {"--direct", "rays", false},
+      GENERATE(table<std::string, std::string, bool>({{"--direct", "rays", false},
                                                       {"--maps", "naive", false},
                                                       {"--light-maps", "off", false},
                                                       {"--passes", "2", true}}));

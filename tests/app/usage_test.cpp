@@ -41,27 +41,6 @@ TEST_CASE("an output is required") {
   CHECK_THAT(only_error(outcome, usage), Contains("-o"));
 }
 
-TEST_CASE("final gathering names the options that it cannot go with") {
-  const auto [option, value] =
-      GENERATE(table<std::string, std::string>({{"--direct", "photons"},
-                                                {"--target-error", "5%"},
-                                                {"--time-budget", "1s"},
-                                                {"--integrator", "path"}}));
-  INFO(option << "=" << value);
-  const FileFolder folder;
-  const std::string line =
-      only_error(run_photile({"render", write_box(folder), "-o", folder / "out.exr",
-                              "--final-gather", "4", option + "=" + value}),
-                 usage);
-  CHECK_THAT(line, Contains("--final-gather"));
-  CHECK_THAT(line, Contains(option));
-}
-
-TEST_CASE("a window does without final gathering, and says so") {
-  CHECK_THAT(only_error(run_photile({"view", "a.obj", "--final-gather", "4"}), usage),
-             Contains("--final-gather"));
-}
-
 TEST_CASE("values out of range are usage errors that name the option and the value") {
   const auto [option, value] = GENERATE(table<std::string, std::string>({
       {"--neighbours", "0"},

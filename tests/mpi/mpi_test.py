@@ -145,7 +145,6 @@ def errors():
         render = ["render", BOX, "-o", picture, *SMALL]
         for arguments, code, words in [
                 ([*render, "--light", "nobody=off"], 2, "nobody"),
-                ([*render, "--final-gather", "4"], 2, "--final-gather"),
                 ([*render, "--integrator", "path"], 2, "--integrator path"),
                 ([*render, "--save-maps", folder / "maps"], 2, "--save-maps"),
                 ([*render, "--target-error", "5"], 2, "--target-error"),

@@ -18,12 +18,12 @@ const std::map<std::string_view, std::uint64_t>& cheap_counts() {
   static const std::map<std::string_view, std::uint64_t> most{
       {"samples_per_pixel", 4}, {"photons_emitted", 2'000}, {"passes", 2},
       {"neighbours", 60},       {"least_neighbours", 40},   {"direct_rays", 3},
-      {"final_gather_rays", 4}, {"light_map_rays", 4},      {"seed", 1'000'000}};
+      {"light_map_rays", 4},      {"seed", 1'000'000}};
   return most;
 }
 
-constexpr std::array<std::string_view, 7> compiled{
-    "neighbours", "least_neighbours", "area", "kernel", "maps", "structure", "final_gather_rays"};
+constexpr std::array<std::string_view, 6> compiled{
+    "neighbours", "least_neighbours", "area", "kernel", "maps", "structure"};
 
 bool changes_kernels(std::string_view setting) {
   return std::find(compiled.begin(), compiled.end(), setting) != compiled.end();

@@ -14,9 +14,9 @@ namespace photile::test {
 namespace {
 
 /// Settings that photons depend on.
-constexpr std::array<std::string_view, 8> traced{
+constexpr std::array<std::string_view, 7> traced{
     "photons_emitted",   "quota",      "seed",          "maps", "direct_rays",
-    "final_gather_rays", "light_maps", "light_map_rays"};
+    "light_maps", "light_map_rays"};
 
 class Generator : CommandBuilder {
  public:
@@ -125,7 +125,7 @@ class Generator : CommandBuilder {
     if (dice_.chance(0.3)) {
       add({"--integrator", "path"});
     } else {
-      settings({"samples_per_pixel", "final_gather_rays", "gloss", "direct_rays"});
+      settings({"samples_per_pixel", "gloss", "direct_rays"});
     }
   }
 
@@ -202,7 +202,7 @@ class Generator : CommandBuilder {
     add({"-o", (place_.folder / "baked.gltf").string(), "--most-texels", "64", "--texel",
          fmt::format("{:g}", 0.2 * place_.scene.size)});
     light_changes(0.2);
-    settings({"samples_per_pixel", "passes", "direct_rays", "final_gather_rays", "light_maps"});
+    settings({"samples_per_pixel", "passes", "direct_rays", "light_maps"});
     if (dice_.chance(0.1)) output("--save-maps", "photons.maps");
   }
 
@@ -229,7 +229,7 @@ class Generator : CommandBuilder {
     if (dice_.chance(0.3)) {
       add({"--integrator", "path"});
     } else {
-      settings({"samples_per_pixel", "final_gather_rays", "gloss", "direct_rays"});
+      settings({"samples_per_pixel", "gloss", "direct_rays"});
     }
   }
 
@@ -246,7 +246,7 @@ class Generator : CommandBuilder {
     maybe(0.2, {"--occupied", dice_.one_of({"8-18", "0-24", "18-8", "x"})});
     maybe(0.2, {"--lamps-to", dice_.one_of({"500", "0"})});
     maybe(0.1, {"--lux", dice_.one_of({"300", "-1", "1e30"})});
-    settings({"samples_per_pixel", "final_gather_rays", "gloss", "direct_rays", "quota"});
+    settings({"samples_per_pixel", "gloss", "direct_rays", "quota"});
   }
 
   void ies() {

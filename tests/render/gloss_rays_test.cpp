@@ -272,7 +272,7 @@ TEST_CASE("gloss by rays: where nothing is glossy, not a bit changes") {
   CHECK(same_bits(by_rays, render(scene, room_camera(), device(), parameters).layers));
 }
 
-TEST_CASE("gloss by rays: rays are for light maps unless asked for, and not where rays gather") {
+TEST_CASE("gloss by rays: rays are for light maps unless asked for") {
   const Scene scene = glossy_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f));
   RenderParameters parameters = with_rays();
   parameters.gloss = GlossMode::automatic;
@@ -280,10 +280,8 @@ TEST_CASE("gloss by rays: rays are for light maps unless asked for, and not wher
   CHECK(used() == GlossMode::rays);
   parameters.light_maps = LightMapMode::off;
   CHECK(used() == GlossMode::photons);
-  parameters.final_gather_rays = 1;
-  CHECK(used() == GlossMode::photons);
   parameters.gloss = GlossMode::rays;
-  CHECK_THROWS_AS(used(), UsageError);
+  CHECK(used() == GlossMode::rays);
 }
 
 }  // namespace photile::test

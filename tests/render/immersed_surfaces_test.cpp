@@ -186,12 +186,10 @@ TEST_CASE("a white pool is a furnace: nobody sees it", "[immersed]") {
   for (const double angle : {0.1, 0.7, 1.5}) CHECK(PoolTruth(1).radiance(angle) == Approx(1));
 }
 
-TEST_CASE("a pool by rays to lamps and by final gathering is the same pool", "[immersed][slow]") {
-  const int gathering_rays = GENERATE(0, 4);
+TEST_CASE("a pool by rays to lamps is the same pool", "[immersed][slow]") {
   check_pool(0.5, 0.05, [&](const Scene& scene, const auto& cameras, std::uint64_t seed) {
     RenderParameters parameters = parameters_of(80'000, 144, seed);
     parameters.direct_rays = 1;
-    parameters.final_gather_rays = gathering_rays;
     return by_maps(scene, cameras, parameters);
   });
 }

@@ -132,7 +132,7 @@ TEST_CASE("refinement: ends where rays and photons cannot grow") {
   Studio studio;
   studio.seconds_of_good = 1e-9;
   const RenderResult result = refine({.error = 1e-9}, good(), studio.steps(), Progress::none());
-  CHECK(result.used.light_map_rays == limits::max_final_gather_rays);
+  CHECK(result.used.light_map_rays == limits::max_gathering_rays);
   CHECK(result.used.photons.emitted_photons == limits::max_emitted_photons);
 }
 

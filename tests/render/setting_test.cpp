@@ -141,10 +141,6 @@ TEST_CASE("a plan draws from what is asked what follows from it") {
   CHECK_FALSE(plan().tracing(0, {}).store_direct);
   CHECK(plan().hits({16, 12, 2}, 1).direct_rays == 3);
   asked.direct_rays = 0;
-  asked.final_gather_rays = 2;  // which see direct light where they end
-  CHECK(plan().tracing(0, {}).store_direct);
-  CHECK(plan().tracing(0, {}).keep_caustics);
-  CHECK(plan().hits({16, 12, 2}, 1).direct_rays == defaults::direct_rays);
 
   asked.maps = MapMode::naive;
   CHECK_FALSE(plan().clips_areas());
@@ -173,7 +169,7 @@ TEST_CASE("asked for what a picture was made with, render gives it again, bit fo
     asked.passes = 3;
     asked.least_neighbours = 10;
   }
-  SECTION("rays that gather") { asked.final_gather_rays = 2; }
+  SECTION("rays that gather") { asked.light_map_rays = 2; }
   SECTION("naive maps") { asked.maps = MapMode::naive; }
   const RenderResult first = render(scene, room_camera(), device(), asked);
   const RenderResult again = render(scene, room_camera(), device(), first.used);
@@ -182,8 +178,7 @@ TEST_CASE("asked for what a picture was made with, render gives it again, bit fo
     CAPTURE(setting.name);
     CHECK(setting.value(first.used) == setting.value(again.used));
     CHECK(setting.is_given(first.used) ==
-          (setting.is_given(asked) || setting.name == "radius" || setting.name == "passes" ||
-           (setting.name == "direct_rays" && asked.final_gather_rays > 0)));
+          (setting.is_given(asked) || setting.name == "radius" || setting.name == "passes"));
   }
 }
 

@@ -45,7 +45,7 @@ TEST_CASE("two sub-devices gather the bits of one device") {
   Scene scene = room(true);
   scene.materials[1] = test::mirror(glm::vec3(0.9f));  // caustics have maps of their own
   RenderParameters gathering = parameters();
-  gathering.final_gather_rays = 2;
+  gathering.light_map_rays = 16;
   gathering.photons.emitted_photons = 100'000;
   const auto expected = render(scene, test::room_camera(), test::device(), gathering);
   std::vector<Device> devices = halves();

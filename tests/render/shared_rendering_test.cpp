@@ -122,9 +122,6 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
 
 TEST_CASE("what several processes cannot share is refused") {
   const Scene scene = glossy_room();
-  RenderParameters gathers = small_picture(1000, 8, 6);
-  gathers.final_gather_rays = 2;
-  CHECK_THROWS_AS(shared_picture(scene, 2, gathers), UsageError);
   RenderParameters tree = small_picture(1000, 8, 6);
   tree.structure = MapStructure::kdtree_global;
   CHECK_THROWS_AS(shared_picture(scene, 2, tree), UsageError);

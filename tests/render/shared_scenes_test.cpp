@@ -11,13 +11,13 @@
 namespace photile::test {
 namespace {
 
-/// Values that no picture may have, and those that are not black.
-struct Values {
+/// PixelCounts that no picture may have, and those that are not black.
+struct PixelCounts {
   std::size_t bad = 0, lit = 0;
 };
 
-Values values_of(const LightLayers& layers) {
-  Values values;
+PixelCounts values_of(const LightLayers& layers) {
+  PixelCounts values;
   for (const LightLayers::Layer& layer : layers.dense().layers) {
     for (const glm::vec3& pixel : layer.radiance) {
       for (int c = 0; c < 3; ++c) {
@@ -44,7 +44,7 @@ TEST_CASE("every shared scene that loads renders to finite light under a sky", "
     if (!shared.refusal.empty()) continue;
     CAPTURE(shared.file);
     const Scene scene = test::load_shared_scene(shared);
-    const Values values =
+    const PixelCounts values =
         values_of(render(scene, scene.cameras.front(), device, parameters).layers);
     CHECK(values.bad == 0);
     ++pictures;

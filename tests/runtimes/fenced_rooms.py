@@ -17,8 +17,8 @@ import tempfile
 BUNDLED = ("living-room/living-room.gltf", "cornell-box/cornell-box-specular.gltf",
            "gallery/glass-sphere.gltf")
 SHARED = ("classroom/classroom.gltf", "kitchen/kitchen.gltf")
-# Light maps; an estimate at each hit; rays from hits; a map for each triangle; a tree; groups by area.
-WAYS = ((), ("--light-maps", "off"), ("--light-maps", "off", "--final-gather", "2"),
+# Light maps; an estimate at each hit; a map for each triangle; a tree; groups by area.
+WAYS = ((), ("--light-maps", "off"),
         ("--light-maps", "off", "--maps", "triangle", "--direct", "rays"),
         ("--light-maps", "off", "--structure", "kdtree-3d", "--least-neighbours", "20"),
         ("--light-maps", "off", "--maps", "naive", "--passes", "3"))

@@ -82,7 +82,7 @@ void add_bake_command(CLI::App& photile) {
       ->group("Output");
   add_setting_options(
       *command, options->render,
-      {"samples_per_pixel", "passes", "direct_rays", "final_gather_rays", "light_maps"});
+      {"samples_per_pixel", "passes", "direct_rays", "light_maps"});
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_bake(*options); });
 }

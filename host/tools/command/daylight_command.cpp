@@ -275,7 +275,7 @@ void add_daylight_command(CLI::App& photile) {
   add_maintenance_option(*command, options->parameters, "Measuring");
   add_sensor_options(*command, options->parameters, "Measuring");
   add_setting_options(*command, options->render,
-                      {"samples_per_pixel", "direct_rays", "final_gather_rays", "gloss", "quota"});
+                      {"samples_per_pixel", "direct_rays", "gloss", "quota"});
   command->callback([options] { run_daylight(*options); });
 }
 

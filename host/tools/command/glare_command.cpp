@@ -287,7 +287,7 @@ void add_glare_command(CLI::App& photile) {
       ->group("Output");
   add_places(*command, *options);
   add_rating(*command, *options);
-  add_setting_options(*command, options->render, {"direct_rays", "final_gather_rays", "gloss"});
+  add_setting_options(*command, options->render, {"direct_rays", "gloss"});
   add_integrator_option(*command, options->render);
   command->callback([command, options] { run_glare(*command, *options); });
 }

@@ -223,7 +223,7 @@ void add_measure_command(CLI::App& photile) {
   add_places(*command, *options);
   add_measuring(*command, *options);
   add_setting_options(*command, options->render,
-                      {"samples_per_pixel", "direct_rays", "final_gather_rays", "gloss"});
+                      {"samples_per_pixel", "direct_rays", "gloss"});
   add_integrator_option(*command, options->render);
   command->callback([command, options] { run_measure(*command, *options); });
 }

@@ -113,8 +113,7 @@ void add_quality_wishes(CLI::App& command, const QualityOptions& options) {
 void exclude_chosen(CLI::App& command) {
   CLI::Option* error = command.get_option("--target-error");
   CLI::Option* time = command.get_option("--time-budget");
-  // The model of error and time knows nothing of --final-gather.
-  for (const char* chosen : {"--neighbours", "--samples", "--radius", "--final-gather"}) {
+  for (const char* chosen : {"--neighbours", "--samples", "--radius"}) {
     error->excludes(chosen);
     time->excludes(chosen);
   }

@@ -261,12 +261,10 @@ void share_rendering(RenderOptions& options) {
 void check_settings(RenderOptions& options) {
   RenderParameters& parameters = options.parameters;
   if (options.direct == "photons") {
-    for (const char* by_rays : {"final_gather_rays", "direct_rays"}) {
-      const Setting& setting = setting_named(by_rays);
-      if (setting.value(parameters) == SettingValue{std::uint64_t{0}}) continue;
+    if (parameters.direct_rays > 0) {
       throw UsageError(
           fmt::format("{} finds the light straight from lamps by rays; leave out --direct photons",
-                      option_of(setting)));
+                      option_of(setting_named("direct_rays"))));
     }
   }
   if (options.direct == "rays" && parameters.direct_rays == 0) {

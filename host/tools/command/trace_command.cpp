@@ -90,7 +90,7 @@ void add_trace_command(CLI::App& photile) {
   set_quality(render.quality_options(), Quality::good);
   add_quality_preset(*command, render.quality_options());
   for (const char* name : {"photons_emitted", "quota", "seed", "maps", "direct_rays",
-                           "final_gather_rays", "light_maps", "light_map_rays"}) {
+                           "light_maps", "light_map_rays"}) {
     add_setting(*command, render.parameters, name);
   }
   add_direct_option(*command, render);

@@ -116,7 +116,7 @@ void add_view_command(CLI::App& photile) {
       ->group("Window");
   add_view_option(*command, options->view, "Window");
   add_preview_option(*command, options->render, "Window");
-  add_picture_settings(*command, options->render, {"final_gather_rays"});
+  add_picture_settings(*command, options->render, {});
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_view(*options); });
 }

@@ -90,7 +90,7 @@ class Pilot {
       if (!first) continue;
       seen.fixed_seconds = seconds_of(result, {"neighbour groups", "surface index"});
       seen.photon_seconds = seconds_of(result, {"trace photons", "build photon maps"});
-      seen.hit_seconds = seconds_of(result, {"primary hits", "final gather"});
+      seen.hit_seconds = seconds_of(result, {"primary hits"});
       seen.film_seconds = seconds_of(result, {"film"});
     }
     return seen;

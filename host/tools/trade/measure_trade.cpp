@@ -13,7 +13,7 @@ namespace {
 
 /// Stages of render() that a further frame repeats.
 bool is_of_frame(const std::string& stage) {
-  return stage == "primary hits" || stage == "final gather" || stage == "radiance estimate" ||
+  return stage == "primary hits" || stage == "radiance estimate" ||
          stage == "film";
 }
 
@@ -93,10 +93,6 @@ class Trade {
     vary("cell", axes_.photons_per_cell, [](auto& p, float count) { p.photons_per_cell = count; });
     vary("area", axes_.areas, [](auto& p, AreaMode area) { p.area = area; });
     vary("direct rays", axes_.direct_rays, [](auto& p, int looks) { p.direct_rays = looks; });
-    vary("final gather", axes_.final_gather_rays, [](auto& p, int rays) {
-      p.final_gather_rays = rays;
-      p.direct_rays = rays;  // cheaper ones; with fewer, their noise is all that is seen
-    });
     vary("node rays", axes_.node_rays, [](auto& p, int rays) {
       set_quality(p, Quality::good);
       p.photons.emitted_photons = p.photons.emitted_photons * static_cast<std::uint64_t>(rays) /

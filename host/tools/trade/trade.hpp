@@ -29,7 +29,6 @@ struct TradeAxes {
   std::vector<AreaMode> areas;           ///< disc has dark borders
   std::vector<DensityKernel> kernels;    ///< other noise and blur at the same k
   std::vector<int> direct_rays;          ///< light straight from lamps not by photons
-  std::vector<int> final_gather_rays;    ///< and looks at lamps; photons where those rays end
   std::vector<int> node_rays;            ///< of nodes that gather, photons in proportion
   std::vector<MapMode> maps;             ///< naive has dark edges
   std::vector<MapStructure> structures;  ///< same picture, other time

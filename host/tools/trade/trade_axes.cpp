@@ -38,7 +38,6 @@ TradeAxes TradeAxes::around(const RenderParameters& parameters) {
     if (kernel != parameters.kernel) axes.kernels.push_back(kernel);
   }
   if (parameters.direct_rays == 0) axes.direct_rays = {1, 4};
-  if (parameters.final_gather_rays == 0) axes.final_gather_rays = {4, 16};
   axes.node_rays = {16, 64, 256};
   axes.maps = {MapMode::naive, MapMode::triangle, MapMode::patch};
   for (const MapStructure structure : all_map_structures) {
