@@ -123,8 +123,7 @@ class KnnBench {
         device_({.selector = settings.common.device}) {
     for (const EstimateStrategy strategy : all_estimate_strategies) {
       if (name_of(strategy) != settings.strategy) continue;
-      tuning_ = shipped_tuning(device_.info());
-      tuning_->strategy = strategy;
+      tuning_ = shipped_tuning(device_.info(), strategy);
     }
     record_.set("photons per cell", photons_per_cell_);
     record_.set("strategy", settings.strategy.empty() ? "of the device" : settings.strategy);

@@ -36,8 +36,8 @@ MUTANTS = (
     Mutant("weights of neighbouring nodes swapped", "host/light_maps/tiles.hpp",
            "within.x * (1 - within.y),", "(1 - within.x) * within.y,",
            (("light_maps", "Light maps give back light that varies linearly*"),)),
-    Mutant("estimates at nodes depend on those before", "host/render/map_estimators.cpp",
-           "tuning.strategy = EstimateStrategy::select;", "",
+    Mutant("estimates at nodes depend on those before", "host/estimate/estimator.cpp",
+           "tuning.hits_per_item = 1;", "",
            (("light_maps", "What was looked at before changes no bit of a picture"),)),
 
     # Physics of photons

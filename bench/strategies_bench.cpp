@@ -64,8 +64,7 @@ class StrategiesBench {
     };
     std::vector<Case> cases;
     const auto add = [&](EstimateStrategy strategy, int width) {
-      parameters.tuning = shipped_tuning(device_.info());
-      parameters.tuning->strategy = strategy;
+      parameters.tuning = shipped_tuning(device_.info(), strategy);
       if (width != 0) parameters.tuning->vector_width = width;
       cases.push_back({fmt::format("{} {}", name_of(strategy), parameters.tuning->vector_width),
                        Estimator(maps, scene, parameters)});

@@ -164,6 +164,20 @@ std::vector<ListedDevice> make_sub_devices(const ListedDevice& whole,
 
 namespace photile {
 
+std::string_view name_of(DeviceType type) {
+  switch (type) {
+    case DeviceType::cpu:
+      return "cpu";
+    case DeviceType::gpu:
+      return "gpu";
+    case DeviceType::accelerator:
+      return "accelerator";
+    case DeviceType::other:
+      return "other";
+  }
+  return "unknown";
+}
+
 std::vector<DeviceInfo> list_devices() {
   std::vector<DeviceInfo> devices;
   for (auto& listed : device::enumerate_devices().usable) {

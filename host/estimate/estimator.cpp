@@ -30,6 +30,16 @@ namespace {
 /// that of the search or, where it is less, the size of the scene.
 constexpr double least_disc_over_radius = 1e-5;
 
+/// The tuning that a caller asks for, or the device's own.
+EstimateTuning tuning_of(const EstimateParameters& parameters, const DeviceInfo& device) {
+  EstimateTuning tuning = parameters.tuning.value_or(shipped_tuning(device));
+  if (parameters.each_alone) {
+    if (tuning.strategy == EstimateStrategy::tile) tuning.strategy = EstimateStrategy::select;
+    tuning.hits_per_item = 1;
+  }
+  return tuning;
+}
+
 /// Hits of a batch where transfers run beside kernels: while one is computed another is on its way,
 /// and its kernels take many times what a launch does.
 constexpr std::size_t overlapped_hits = std::size_t{1} << 17;
@@ -78,7 +88,7 @@ struct Estimator::Impl {
                 .radius = radius,
                 .least_radius = static_cast<float>(least_disc_over_radius *
                                                    std::min<double>(radius, scene_diagonal(scene))),
-                .tuning = parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
+                .tuning = tuning_of(parameters, photon_maps.device().info()),
                 .surface = clipped_to(),
                 .kernel = kernel_used(parameters.kernel, parameters.neighbours)});
     for (Batch& batch : in_flight) batch.estimates.emplace(context, query->sums());

@@ -23,24 +23,32 @@ std::string_view name_of(EstimateStrategy strategy) {
 }
 
 EstimateTuning shipped_tuning(const DeviceInfo& device) {
+  const bool lanes =
+      device.type != DeviceType::cpu && device.max_work_group_size >= estimate::lane_widths.front();
+  return shipped_tuning(device, lanes ? EstimateStrategy::lanes : EstimateStrategy::select);
+}
+
+EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strategy) {
   EstimateTuning tuning;
-  if (device.type == DeviceType::cpu) {
+  tuning.strategy = strategy;
+  if (strategy == EstimateStrategy::lanes) {
+    // docs/kernels.md says by what arithmetic; no card has run them.
+    constexpr int usual_width = 32;
+    const auto& widths = estimate::lane_widths;
+    const auto in_step = static_cast<int>(device.lanes);
+    const bool is_width = std::find(widths.begin(), widths.end(), in_step) != widths.end();
+    int width = is_width ? in_step : usual_width;
+    while (width > widths.front() && static_cast<unsigned>(width) > device.max_work_group_size) {
+      width /= 2;
+    }
+    tuning.vector_width = tuning.work_group_size = width;
+    tuning.hits_per_item = 4;
+  } else if (device.type == DeviceType::cpu) {
     tuning.vector_width = 16;
     tuning.hits_per_item = 16;
-    return tuning;
+  } else if (strategy == EstimateStrategy::tile) {
+    tuning.vector_width = 8;
   }
-  // docs/kernels.md says by what arithmetic; no card has run them.
-  constexpr int usual_width = 32;
-  const auto& widths = estimate::lane_widths;
-  const auto in_step = static_cast<int>(device.lanes);
-  const bool is_width = std::find(widths.begin(), widths.end(), in_step) != widths.end();
-  int width = is_width ? in_step : usual_width;
-  const auto fits = [&] { return static_cast<std::uint64_t>(width) <= device.max_work_group_size; };
-  while (width > widths.front() && !fits()) width /= 2;
-  if (!fits()) return tuning;  // groups of fewer work-items are no lanes
-  tuning.strategy = EstimateStrategy::lanes;
-  tuning.vector_width = tuning.work_group_size = width;
-  tuning.hits_per_item = 4;
   return tuning;
 }
 

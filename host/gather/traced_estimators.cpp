@@ -37,7 +37,7 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
                            : nullptr;
   const auto estimators_of = [&](Photons photons, std::shared_ptr<const SeenPhotons> seen) {
     std::vector<EstimateParameters> levels = plan.estimates(0, surface);
-    estimate_each_alone(levels, devices.front());
+    for (EstimateParameters& level : levels) level.each_alone = true;
     return MapEstimators(devices, scene,
                          {build_maps_on_each(devices, scene, std::move(photons), groups,
                                              plan.maps(0, radius), progress),

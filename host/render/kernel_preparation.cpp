@@ -69,13 +69,12 @@ void prepare(Device& device, const estimate::TuningSample& sample,
                                                    {sample.radius, parameters.angle_degrees});
     const PhotonMaps maps(device, sample.scene, sample.photons, groups,
                           {sample.radius, parameters.photons_per_cell, parameters.structure});
-    EstimateParameters estimate{.neighbours = parameters.neighbours,
-                                .tuning = parameters.tuning,
-                                .area = parameters.area,
-                                .kernel = parameters.kernel};
-    if (parameters.light_maps != LightMapMode::off || parameters.processes) {
-      estimate_each_alone({&estimate, 1}, device);
-    }
+    const EstimateParameters estimate{.neighbours = parameters.neighbours,
+                                      .tuning = parameters.tuning,
+                                      .each_alone = parameters.light_maps != LightMapMode::off ||
+                                                    parameters.processes != nullptr,
+                                      .area = parameters.area,
+                                      .kernel = parameters.kernel};
     Estimator estimator(maps, sample.scene, estimate);
     estimator.estimate(sample.hits);
     if (specular && parameters.light_map_rays > 0) estimator.nearest(sample.hits);

@@ -17,15 +17,6 @@ constexpr std::size_t hits_looked_at_together = std::size_t{1} << 16;
 
 }  // namespace
 
-void estimate_each_alone(std::span<EstimateParameters> levels, const Device& device) {
-  for (EstimateParameters& level : levels) {
-    EstimateTuning tuning = level.tuning.value_or(shipped_tuning(device.info()));
-    tuning.strategy = EstimateStrategy::select;
-    tuning.hits_per_item = 1;
-    level.tuning = tuning;
-  }
-}
-
 MapEstimators::MapEstimators(std::span<Device> devices, const Scene& scene, Parts parts,
                              std::span<const double> layer_powers)
     : MapEstimators(devices, scene, nullptr, layer_powers) {

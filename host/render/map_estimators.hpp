@@ -16,10 +16,6 @@
 
 namespace photile {
 
-/// Makes estimates of hits not depend on the hits beside them: work-items that estimate several
-/// make use of one for the next, whose sums then have another order.
-void estimate_each_alone(std::span<EstimateParameters> levels, const Device& device);
-
 class MapEstimators {
  public:
   struct Parts {

@@ -17,11 +17,7 @@ constexpr int look_step = 4;
 
 MapEstimators::Parts Rendering::parts_of(std::vector<PhotonMaps> maps,
                                          std::shared_ptr<const SeenPhotons> seen) const {
-  MapEstimators::Parts parts{std::move(maps), plan_.estimates(pass_, surface_), std::move(seen)};
-  if (plan_.reads_light_maps() || plan_.used().processes) {
-    estimate_each_alone(parts.levels, devices_.front());
-  }
-  return parts;
+  return {std::move(maps), plan_.estimates(pass_, surface_), std::move(seen)};
 }
 
 PhotonTracerResult Rendering::trace(int pass, PreparedPhotons* prepared, const KeepPhotons* keep) {

@@ -4,11 +4,15 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace photile {
 
 enum class DeviceType { cpu, gpu, accelerator, other };
+
+/// "cpu", "gpu", "accelerator", "other".
+std::string_view name_of(DeviceType type);
 
 struct DeviceInfo {
   std::string id;      ///< "platform:device", e.g. "0:0"; of a sub-device "0:0.0", "0:0.1", ...

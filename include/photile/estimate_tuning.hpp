@@ -53,6 +53,9 @@ struct EstimateTuning {
 /// work-items as the device runs in step, or of 32 where it does not say.
 EstimateTuning shipped_tuning(const DeviceInfo& device);
 
+/// With this strategy, as wide as suits it on the device.
+EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strategy);
+
 /// One measurement of the tuner.
 struct TuningTrial {
   EstimateTuning tuning;

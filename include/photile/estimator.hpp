@@ -34,6 +34,10 @@ struct EstimateParameters {
   double radius = 0;
   /// How uniform grids are queried; none = shipped_tuning of the device.
   std::optional<EstimateTuning> tuning = std::nullopt;
+  /// Whether no estimate depends on the hits beside it, in any bit. Else the search for one hit's
+  /// neighbours begins at the radius of the hit before, which is quicker, and the order in which
+  /// photons are summed follows from where it began.
+  bool each_alone = false;
   /// Kernels are compiled for k up to this; 0 = `neighbours`. Estimators with different k share
   /// them; what they compute does not depend on it.
   int compiled_neighbours = 0;

@@ -21,6 +21,13 @@ std::string box_obj() {
          "o right\nusemtl blue_lamp\nf 13 14 15 16\n";
 }
 
+std::string open_box_obj() {
+  std::string obj = box_obj();
+  const std::string wall = "f 1 4 8 5\n";
+  obj.erase(obj.find(wall), wall.size());
+  return obj;
+}
+
 std::string write_box(const FileFolder& folder) {
   folder.write("box.mtl", box_mtl());
   return folder.write("box.obj", box_obj());

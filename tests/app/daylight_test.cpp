@@ -22,11 +22,8 @@ std::string write_weather(const FileFolder& folder) {
 
 /// The box with a wall left out.
 std::string write_open_box(const FileFolder& folder) {
-  std::string obj = box_obj();
-  const std::string wall = "f 1 4 8 5\n";
-  obj.erase(obj.find(wall), wall.size());
   folder.write("box.mtl", box_mtl());
-  return folder.write("open.obj", obj);
+  return folder.write("open.obj", open_box_obj());
 }
 
 std::vector<std::string> quick(const std::string& command, const std::string& scene,

@@ -11,16 +11,10 @@ namespace photile::test {
 /// lanes for minutes: they run them where they pose as GPUs, and in tests of lanes alone.
 inline std::vector<EstimateTuning> tunings_of(const DeviceInfo& device) {
   std::vector<EstimateTuning> tunings;
-  const EstimateTuning shipped = shipped_tuning(device);
+  const EstimateStrategy shipped = shipped_tuning(device).strategy;
   for (const EstimateStrategy strategy : all_estimate_strategies) {
-    if (strategy == EstimateStrategy::lanes && shipped.strategy != strategy) continue;
-    EstimateTuning tuning = shipped;
-    if (strategy != EstimateStrategy::lanes && shipped.strategy == EstimateStrategy::lanes) {
-      tuning = {};
-      if (strategy == EstimateStrategy::tile) tuning.vector_width = 8;
-    }
-    tuning.strategy = strategy;
-    tunings.push_back(tuning);
+    if (strategy == EstimateStrategy::lanes && shipped != strategy) continue;
+    tunings.push_back(shipped_tuning(device, strategy));
   }
   return tunings;
 }

@@ -35,26 +35,12 @@ struct DevicesOptions {
   int neighbours = defaults::neighbours;
 };
 
-const char* type_name(DeviceType type) {
-  switch (type) {
-    case DeviceType::cpu:
-      return "cpu";
-    case DeviceType::gpu:
-      return "gpu";
-    case DeviceType::accelerator:
-      return "accelerator";
-    case DeviceType::other:
-      return "other";
-  }
-  return "";
-}
-
 json device_json(const DeviceInfo& device, bool selected) {
   return {{"id", device.id},
           {"name", device.name},
           {"platform", device.platform},
           {"vendor", device.vendor},
-          {"type", type_name(device.type)},
+          {"type", name_of(device.type)},
           {"version", device.version},
           {"driver_version", device.driver_version},
           {"platform_version", device.platform_version},
@@ -73,7 +59,7 @@ json device_json(const DeviceInfo& device, bool selected) {
 
 std::string device_line(const DeviceInfo& device, bool selected) {
   return fmt::format("{} {:<5} {:<4} {} ({}), {}, {} compute units, {}, largest buffer {}",
-                     selected ? '*' : ' ', device.id, type_name(device.type), device.name,
+                     selected ? '*' : ' ', device.id, name_of(device.type), device.name,
                      device.platform, device.version, device.compute_units,
                      format_bytes(device.global_memory_bytes),
                      format_bytes(device.max_allocation_bytes));

@@ -45,6 +45,7 @@ json devices_json(const RunRecord& record) {
     list.push_back({{"id", device.id},
                     {"name", device.name},
                     {"platform", device.platform},
+                    {"type", name_of(device.type)},
                     {"driver_version", device.driver_version},
                     {"share", record.device_shares[i]}});
   }
