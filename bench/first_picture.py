@@ -15,11 +15,9 @@ import importlib.util
 import json
 import os
 import pathlib
-import socket
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 
 import scene_arguments
@@ -121,33 +119,6 @@ def measure(photile, scene, paths, with_default, installed, repeats):
     return {state: median_of(of_state) for state, of_state in runs.items() if of_state}
 
 
-def first_shown(photile, scene, installed, repeats):
-    """What --preview takes from the scene being read to its first picture: medians of processor and
-    wall-clock seconds."""
-    costs = []
-    for _ in range(repeats):
-        with socket.create_server(("127.0.0.1", 0)) as server, \
-                tempfile.TemporaryDirectory() as folder:
-            threading.Thread(target=read_all, args=[server], daemon=True).start()
-            run = measured([photile, "render", scene, "--preview",
-                            f"127.0.0.1:{server.getsockname()[1]}", "--size", SIZE, "--quality",
-                            "draft", "--photons", "62500", "-o",
-                            pathlib.Path(folder) / "picture.exr"], folder, installed)
-        own = [stage for stage in run["stages"]
-               if stage["stage"] in ("ray tracing structure", "first picture")]
-        costs.append((sum(stage["processor_seconds"] for stage in own),
-                      sum(stage["seconds"] for stage in own)))
-    processor, seconds = sorted(costs)[len(costs) // 2]
-    return {"processor": processor, "seconds": seconds}
-
-
-def read_all(server):
-    """Stands in for tev."""
-    with server.accept()[0] as connection:
-        while connection.recv(1 << 20):
-            pass
-
-
 def missing_packages():
     return [name for name in RIVAL_PACKAGES if importlib.util.find_spec(name) is None]
 
@@ -239,15 +210,12 @@ def page(results):
                      [[case, *(f"{100 * share:.0f}%" for share in
                                states["full cache"]["of_all"].values())]
                       for case, states in cases.items()]),
-        shown=table(["scene", "processor seconds", "seconds"],
-                    [[scene, f"{run['processor']:.2f}", f"{run['seconds']:.2f}"]
-                     for scene, run in results["first shown"].items()]),
         load=f"{results['load']:.0f}")
 
 
 def measurements(options, installed):
     """The results so far, after each case."""
-    results = {"photile": {}, "first shown": {}, "rivals": rivals(options)}
+    results = {"photile": {}, "rivals": rivals(options)}
     for case, scene, paths, with_default in CASES:
         path = options.scenes / scene if scene else ROOT / "scenes/living-room/living-room.gltf"
         if not path.exists():
@@ -255,9 +223,6 @@ def measurements(options, installed):
             continue
         results["photile"][case] = measure(options.photile, path, paths, with_default, installed,
                                            options.repeats)
-        if with_default:
-            results["first shown"][case.partition(",")[0]] = first_shown(
-                options.photile, path, installed, options.repeats)
         results["load"] = os.getloadavg()[2]
         yield results
 

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "photile/errors.hpp"
-#include "photile/quiet_progress.hpp"
+#include "photile/defaults.hpp"
 
 namespace photile {
 namespace {
@@ -25,26 +24,6 @@ RenderParameters first_picture_parameters(const RenderParameters& asked) {
   first.light_map_detail = no_detail;
   if (asked.maps == MapMode::naive) first.maps = MapMode::automatic;
   return first;
-}
-
-TimeTaken draw_first_picture(const PreparedScene& scene, const HitSource& hits, const Film& film,
-                             std::span<Device> devices, const RenderParameters& asked,
-                             Progress& progress) {
-  if (!hits.awaits_first()) return {};
-  const Stopwatch stopwatch;
-  QuietProgress quiet(progress);
-  progress.begin("first picture", 0, "");
-  try {
-    Rendering rendering(scene, devices, first_picture_parameters(asked), quiet);
-    rendering.expect_one_picture();
-    rendering.prepare(0, nullptr, nullptr);
-    hits.draw_first(rendering.frames(), film, quiet);
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const Error&) {
-  }
-  progress.end();
-  return stopwatch.taken();
 }
 
 }  // namespace photile

@@ -1,11 +1,9 @@
 #include "render/hit_source.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "photile/errors.hpp"
-#include "render/light_map_frames.hpp"
 #include "trace/reflected_hits.hpp"
 #include "trace/sensor_hits.hpp"
 
@@ -22,16 +20,6 @@ PrimaryHitBatch CameraHits::trace(const RayScene& rays, const PrimaryHitParamete
                                   int first_row, int last_row,
                                   std::span<const std::uint32_t> map_of) const {
   return trace_primary_hits(rays, camera_, film, first_row, last_row, map_of);
-}
-
-void WatchedHits::draw_first(LightMapFrames& frames, const Film& film,
-                             const Progress& progress) const {
-  shown_ = true;
-  std::vector<glm::vec3> picture(static_cast<std::size_t>(film.width) *
-                                 static_cast<std::size_t>(film.height));
-  frames.draw(camera(), {film.width, film.height, 1}, first_.powers,
-              std::numeric_limits<double>::infinity(), picture, progress);
-  first_.watch(film.width, film.height, picture);
 }
 
 PrimaryHitBatch ReflectedHits::trace(const RayScene& rays, const PrimaryHitParameters& film,

@@ -50,7 +50,6 @@ PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source
       film_cost.add(film_watch.taken());
       rays_seen += static_cast<double>(batch.rays);
       path_count += static_cast<double>(batch.hits.size());
-      source.show(layers, first, last, (film.pass + 1.0) / film.passes);
       progress.advance(static_cast<std::uint64_t>(last - first));
     }
   }

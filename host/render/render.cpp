@@ -1,6 +1,5 @@
 #include <memory>
 
-#include "render/first_picture.hpp"
 #include "render/hit_source.hpp"
 #include "render/kept_maps.hpp"
 #include "render/rendering.hpp"
@@ -11,17 +10,12 @@ RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& 
                          std::span<Device> devices, const RenderParameters& parameters,
                          Progress& progress) {
   const auto prepared = std::make_shared<const PreparedScene>(scene);
-  const TimeTaken first = draw_first_picture(*prepared, hits, film, devices, parameters, progress);
-  const auto with_first = [&](RenderResult result) {
-    if (first.seconds > 0) add_time(result.statistics, "first picture", first);
-    return result;
-  };
   const bool reads_nodes = parameters.light_maps == LightMapMode::on || nodes_gather(parameters);
   if (parameters.passes > 1 && reads_nodes) {
     KeptMaps maps(prepared, devices, parameters, nullptr, {},
                   progress);  // nodes hold the mean of all passes
     maps.add_passes(progress);
-    return with_first(maps.render(hits, film, progress));
+    return maps.render(hits, film, progress);
   }
   Rendering rendering(*prepared, devices, parameters, progress);
   rendering.expect_one_picture();
@@ -31,7 +25,7 @@ RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& 
     rendering.add_pass(hits);
   }
   rendering.release();
-  return with_first(rendering.finish());
+  return rendering.finish();
 }
 
 RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> devices,

@@ -43,8 +43,8 @@ void join_runs(PrimaryHitBatch& batch, int runs) {
   for (SeenEmission& seen : batch.emission) seen.pixel /= count;
 }
 
-/// Least number of batches of a picture that somebody watches.
-constexpr int watched_batches = 16;
+/// Least number of batches of a pooled picture: estimates of many lights wait for their pooling.
+constexpr int pooled_batches = 16;
 
 }  // namespace
 
@@ -209,7 +209,6 @@ void Rendering::add_pass(const HitSource& source, std::size_t after) {
     const int first = std::min(begin + done, end), last = std::min(first + rows, end);
     if (done > 0) batch = trace_rows(source, first, last);
     add_rows(source, std::move(batch), first, last);
-    source.show(layers_, first, last, (film_.pass + 1.0) / film_.passes);
     progress_->advance(static_cast<std::uint64_t>(last - first));
   }
   progress_->end();
@@ -267,8 +266,8 @@ RenderResult Rendering::finish() {
 int Rendering::rows_per_batch(const HitSource& source) const {
   const std::int64_t hits_per_row = std::int64_t{film_.width} *
                                     (film_.samples_per_pixel / film_.passes);
-  const int least = (film_.height - 1) / watched_batches + 1;
-  const int most = source.watched() || pooling_ ? least : film_.height;
+  const int least = (film_.height - 1) / pooled_batches + 1;
+  const int most = pooling_ ? least : film_.height;
   // Where light maps are read, only their nodes take long.
   const int neighbours = reads_light_maps(source) ? defaults::neighbours : plan_.used().neighbours;
   return static_cast<int>(

@@ -1,4 +1,4 @@
-// `photile render --glare` and `--preview`.
+// `photile render --glare`.
 #include <catch2/catch.hpp>
 
 #include "box_scene.hpp"
@@ -35,23 +35,6 @@ TEST_CASE("glare needs a PNG to be written to") {
   const FileFolder folder;
   CHECK_THAT(only_error(run_photile(render(write_box(folder), {"-q", "--glare", "marks.exr"})), 2),
              Contains("marks.exr") && Contains(".png"));
-}
-
-TEST_CASE("a preview without a tev is a warning, the picture is the same") {
-  const FileFolder folder;
-  const std::string scene = write_box(folder);
-  // Port 1 is reserved: nothing listens there.
-  const Outcome outcome =
-      run_photile(render(scene, {"--preview", "127.0.0.1:1", "-o", folder / "a.exr"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.errors, Contains("warning: no tev at 127.0.0.1:1"));
-  REQUIRE(run_photile(render(scene, {"-o", folder / "b.exr"})).exit_code == 0);
-  CHECK(read_image(folder / "a.exr").channels == read_image(folder / "b.exr").channels);
-  CHECK_THAT(
-      only_error(run_photile(render(scene, {"-q", "-o", folder / "c.exr", "--preview", "nowhere"})),
-                 2),
-      Contains("nowhere") && Contains("HOST:PORT"));
 }
 
 }  // namespace photile::test

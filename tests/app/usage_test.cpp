@@ -85,14 +85,6 @@ TEST_CASE("values out of range are usage errors that name the option and the val
   CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
 }
 
-TEST_CASE("a preview at no port is a usage error") {
-  const FileFolder folder;
-  for (const char* port : {"99999", "0", "-1", "x", ""}) {
-    const std::string address = std::string("localhost:") + port;
-    CHECK_THAT(last_error(render_with(folder, "--preview", address), usage), Contains(address));
-  }
-}
-
 TEST_CASE("arguments too many are told as they were given") {
   const std::string line =
       only_error(run_photile({"render", "a.obj", "--turn", "20", "--frames", "2"}), usage);

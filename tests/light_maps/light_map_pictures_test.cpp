@@ -13,9 +13,10 @@
 #include "photile/renderer.hpp"
 #include "photile/scene_needs.hpp"
 #include "photile/scene_renderer.hpp"
-#include "render/hit_source.hpp"
+#include "render/first_picture.hpp"
 #include "render/light_map_estimates.hpp"
 #include "render/neighbour_choice.hpp"
+#include "render/picture_in_parts.hpp"
 #include "render/pictures.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -137,37 +138,7 @@ TEST_CASE("Rows traced in several batches change no bit of a picture", "[light_m
   const Scene scene = test::furnished_room(2);
   const RenderParameters parameters = with_light_maps();
   const RenderResult whole = render(scene, room_camera(), test::device(), parameters);
-  int batches = 0;
-  const Camera camera = room_camera();
-  const WatchedHits watched(camera, nullptr,
-                            [&](const LightLayers&, int, int, double) { ++batches; });
-  const RenderResult parts = render_hits(
-      scene, watched, parameters.film, std::span(&test::device(), 1), parameters, Progress::none());
-  CHECK(batches > 1);
-  CHECK(same_bits(whole.layers, parts.layers));
-}
-
-TEST_CASE("A first picture comes before all rows, once, and changes no bit of the last",
-          "[light_map_pictures]") {
-  const Scene scene = test::furnished_room(2);
-  const RenderParameters parameters = with_light_maps();
-  const RenderResult whole = render(scene, room_camera(), test::device(), parameters);
-  int rows = 0, first = 0;
-  const Camera camera = room_camera();
-  const WatchedHits watched(camera, nullptr, [&](const LightLayers&, int, int, double) { ++rows; },
-                            {std::vector<glm::vec3>(needs_of(scene).light_count, glm::vec3(1.0f)),
-                             [&](int width, int height, std::span<const glm::vec3> picture) {
-                               CHECK(rows == 0);
-                               CHECK(picture.size() == static_cast<std::size_t>(width * height));
-                               ++first;
-                             }});
-  for (int again = 0; again < 2; ++again) {
-    const RenderResult parts =
-        render_hits(scene, watched, parameters.film, std::span(&test::device(), 1), parameters,
-                    Progress::none());
-    CHECK(same_bits(whole.layers, parts.layers));
-  }
-  CHECK(first == 1);
+  CHECK(same_bits(whole.layers, test::picture_in_parts(scene, room_camera(), parameters)));
 }
 
 TEST_CASE("A first picture shows a lamp's closed form, whatever brings that light later",
@@ -182,24 +153,24 @@ TEST_CASE("A first picture shows a lamp's closed form, whatever brings that ligh
   parameters.maps = GENERATE(MapMode::automatic, MapMode::naive);
   parameters.light_maps = LightMapMode::automatic;
   parameters.direct_rays = GENERATE(0, 1);
-  double mean = 0, expected = 0;
   constexpr double power = 3;
-  const WatchedHits watched(
-      camera, nullptr, [](const LightLayers&, int, int, double) {},
-      {{glm::vec3(power)}, [&](int width, int height, std::span<const glm::vec3> picture) {
-         for (int y = 0; y < height; ++y) {
-           for (int x = 0; x < width; ++x) {
-             const double px = ((x + 0.5) / width - 0.5) * side * width / height;
-             const double py = ((y + 0.5) / height - 0.5) * side;
-             const double irradiance =
-                 power / (4 * glm::pi<double>() * std::pow(px * px + py * py + 1, 1.5));
-             expected += irradiance / glm::pi<double>();
-             mean += picture[static_cast<std::size_t>(y * width + x)].y;
-           }
-         }
-       }});
-  render_hits(scene, watched, parameters.film, std::span(&test::device(), 1), parameters,
-              Progress::none());
+  const int width = parameters.film.width, height = parameters.film.height;
+  std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));
+  SceneRenderer renderer(scene, std::span(&test::device(), 1),
+                         first_picture_parameters(parameters));
+  renderer.draw(camera, {width, height, 1}, std::vector{glm::vec3(power)},
+                std::numeric_limits<double>::infinity(), picture);
+  double mean = 0, expected = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double px = ((x + 0.5) / width - 0.5) * side * width / height;
+      const double py = ((y + 0.5) / height - 0.5) * side;
+      const double irradiance =
+          power / (4 * glm::pi<double>() * std::pow(px * px + py * py + 1, 1.5));
+      expected += irradiance / glm::pi<double>();
+      mean += picture[static_cast<std::size_t>(y * width + x)].y;
+    }
+  }
   CHECK(mean / expected == Approx(1).margin(0.1));
 }
 

@@ -77,7 +77,6 @@ class Generator : CommandBuilder {
       }
     }
     maybe(0.02, {"--load-maps", "/dev/null"});
-    maybe(0.02, {"--preview", dice_.one_of({"localhost:1", "localhost:99999", ":", "x"})});
     run();
   }
 

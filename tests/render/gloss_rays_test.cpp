@@ -9,8 +9,8 @@
 #include "photile/errors.hpp"
 #include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
+#include "picture_in_parts.hpp"
 #include "pictures.hpp"
-#include "render/hit_source.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -249,10 +249,7 @@ TEST_CASE("gloss by rays: the same bits on any number of threads and in any rows
   }
   CHECK(same_bits(pictures[0], pictures[1]));
   CHECK(same_bits(pictures[0], pictures[2]));
-  const WatchedHits watched(camera, nullptr, [](const LightLayers&, int, int, double) {});
-  const RenderResult in_rows = render_hits(scene, watched, parameters.film, std::span(&device(), 1),
-                                           parameters, Progress::none());
-  CHECK(same_bits(pictures[0], in_rows.layers));
+  CHECK(same_bits(pictures[0], picture_in_parts(scene, camera, parameters)));
 }
 
 TEST_CASE("gloss by rays: layers are the same whatever the powers") {

@@ -7,6 +7,7 @@
 #include "photile/ray_scene.hpp"
 #include "photile/scene_renderer.hpp"
 #include "photon_sets.hpp"
+#include "picture_in_parts.hpp"
 #include "pictures.hpp"
 #include "render/hit_source.hpp"
 #include "render/map_estimators.hpp"
@@ -107,10 +108,7 @@ TEST_CASE("a picture in many parts, whose maps are made on the way, is that by a
   const Camera camera = Camera::look_at({2, 0.2, 0.4}, {2, 2.5, 1.2}, {0, 0, 1}, 1.6);
   const RenderResult all =
       SceneRenderer(scene, devices, parameters).render(camera, parameters.film);
-  const WatchedHits watched(camera, nullptr, [](const LightLayers&, int, int, double) {});
-  const RenderResult on_the_way =
-      render_hits(scene, watched, parameters.film, devices, parameters, Progress::none());
-  CHECK(same_bits(on_the_way.layers, all.layers));
+  CHECK(same_bits(picture_in_parts(scene, camera, parameters), all.layers));
 }
 
 TEST_CASE("a second picture finds what the first did not look at") {

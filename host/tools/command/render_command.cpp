@@ -36,8 +36,6 @@
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
 #include "tools/command/tuning_report.hpp"
-#include "tools/preview/live_preview.hpp"
-#include "tools/view/display.hpp"
 #include "tools/view/snapshots.hpp"
 
 namespace photile::app {
@@ -116,31 +114,6 @@ struct Views {
   const HitSource& picture;
   LightLayers* reflections;  ///< is filled; may be null
 };
-
-/// What the camera sees; with --preview its picture is shown while it grows.
-///   errors   where they are wanted, else null
-std::unique_ptr<HitSource> hits_of(const Camera& camera, LightLayers* errors,
-                                   const RenderOptions& options, const RunRecord& record,
-                                   Progress& progress) {
-  if (options.preview.empty()) return std::make_unique<CameraHits>(camera, errors);
-  auto preview =
-      std::make_shared<image::LivePreview>(options.preview, record.scene, record.mix, progress);
-  if (!preview->connected()) return std::make_unique<CameraHits>(camera, errors);
-  // A first picture is drawn by a pinhole's packets of rays.
-  const bool pinhole = camera.projection == Projection::perspective;
-  return std::make_unique<WatchedHits>(
-      camera, errors,
-      [preview](const LightLayers& layers, int first, int last, double share) {
-        preview->rows(layers, first, last, share);
-      },
-      WatchedHits::FirstWatcher{
-          view::scales_of(record.mix),
-          pinhole
-              ? std::function([preview](int width, int height, std::span<const glm::vec3> picture) {
-                  preview->picture(width, height, picture);
-                })
-              : nullptr});
-}
 
 /// Takes what was found on the way to a picture.
 void note_result(const RenderResult& result, std::span<const Device> devices, RunRecord& record) {
@@ -314,10 +287,9 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   }
   const bool wants_errors = !options.errors.empty() || (denoising && knows_errors);
   LightLayers errors;
-  const std::unique_ptr<HitSource> hits =
-      hits_of(camera, wants_errors ? &errors : nullptr, options, record, progress);
+  const CameraHits hits(camera, wants_errors ? &errors : nullptr);
   LightLayers reflections;
-  const Views views{*hits, options.glare.empty() ? nullptr : &reflections};
+  const Views views{hits, options.glare.empty() ? nullptr : &reflections};
   const auto write = [&](const LightLayers& rendered) {
     if (!leads()) return;
     std::optional<LightLayers> denoised;
@@ -340,7 +312,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
     }));
   };
   if (refined) {
-    render_until_good(scene, devices, options, *hits, record, write, elapsed, progress);
+    render_until_good(scene, devices, options, hits, record, write, elapsed, progress);
   } else if (options.integrator == Integrator::path) {
     write(render_by_paths(scene, camera, views, record, progress));
   } else {

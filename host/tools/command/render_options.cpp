@@ -15,7 +15,6 @@
 #include "tools/command/scene_options.hpp"
 #include "tools/command/setting_options.hpp"
 #include "tools/command/validators.hpp"
-#include "tools/preview/tev_connection.hpp"
 
 namespace photile::app {
 namespace {
@@ -172,7 +171,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->group("Run");
   add_saved_maps_options(command, options);
   exclude_chosen(command);
-  add_preview_option(command, options, "Output");
   command
       .add_option(
           "--errors", options.errors,
@@ -201,16 +199,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->transform(positive_number())
       ->capture_default_str()
       ->group("Output");
-}
-
-void add_preview_option(CLI::App& command, RenderOptions& options, const std::string& group) {
-  command
-      .add_option("--preview", options.preview,
-                  fmt::format("show the picture in a running tev; default: {}", image::tev_address))
-      ->type_name("[HOST:PORT]")
-      ->expected(0, 1)
-      ->default_str(image::tev_address)
-      ->group(group);
 }
 
 void add_shard_option(CLI::App& command, Shard& shard, const std::string& of_what,
@@ -250,7 +238,6 @@ void share_rendering(RenderOptions& options) {
   refuse(options.integrator == Integrator::path, "--integrator path");
   refuse(!options.save_maps.empty(), "--save-maps");
   refuse(!options.load_maps.empty(), "--load-maps");
-  refuse(!options.preview.empty(), "--preview");
   for (const QualityWish& wish : quality_wishes()) {
     if (options.target.*wish.value > 0) {
       refuse_several(fmt::format("--{}", wish.option), "leave it out, or start one process");

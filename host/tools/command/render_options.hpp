@@ -50,7 +50,6 @@ struct RenderOptions {
   int threads = 0;
   std::string statistics;            ///< file, "" = none
   std::string save_maps, load_maps;  ///< files, "" = none
-  std::string preview;               ///< HOST:PORT of a tev; "" = none
   std::string errors;                ///< EXR of standard errors, "" = none
   std::string denoiser;              ///< library of Open Image Denoise, "" = not denoised
   std::string glare;                 ///< PNG of marked reflections, "" = none
@@ -84,9 +83,6 @@ void add_shard_option(CLI::App& command, Shard& shard, const std::string& of_wha
 
 /// Adds --save-maps and --load-maps.
 void add_saved_maps_options(CLI::App& command, RenderOptions& options);
-
-/// Adds --preview.
-void add_preview_option(CLI::App& command, RenderOptions& options, const std::string& group);
 
 /// Adds --integrator.
 void add_integrator_option(CLI::App& command, RenderOptions& options);

@@ -89,7 +89,6 @@ void run_view(ViewOptions& options) {
   parameters.mix_of = [&](const Scene& edited) { return mix_again(edited, render); };
   parameters.luminaire_file = luminaires;
   parameters.luminaires = sourced.luminaires;
-  parameters.preview = render.preview;
   parameters.notes = &progress;
   parameters.interrupted = [&progress] { return progress.cancelled(); };
   view::run_viewer(
@@ -115,7 +114,6 @@ void add_view_command(CLI::App& photile) {
       ->capture_default_str()
       ->group("Window");
   add_view_option(*command, options->view, "Window");
-  add_preview_option(*command, options->render, "Window");
   add_picture_settings(*command, options->render, {});
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_view(*options); });

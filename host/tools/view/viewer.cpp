@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "photile/errors.hpp"
-#include "tools/preview/live_preview.hpp"
 #include "tools/view/display.hpp"
 #include "tools/view/frame_worker.hpp"
 #include "tools/view/light_board.hpp"
@@ -56,10 +55,6 @@ class Viewer {
         points_(scene_),
         frames_(parameters_.render.film.samples_per_pixel, parameters_.frames_per_second),
         photons_(std::move(open_devices), parameters_.light_map_bytes) {
-    if (!parameters_.preview.empty()) {
-      preview_.emplace(parameters_.preview, scene.source.filename().string(), lights_.shown_mix(),
-                       *parameters_.notes);
-    }
     inspector_.emplace(scene);
     display_.view = parameters_.view;
     if (!parameters_.luminaire_file.empty()) {
@@ -105,7 +100,6 @@ class Viewer {
       relit_ = events.lights_changed && frame_ && !frame_->mixed.empty();
       exposed_ =
           exposed_ || events.display_changed || (frame_ && events.lights_changed && !sky_moved);
-      if (preview_ && frame_ && (new_frame || events.lights_changed)) show_preview();
       if (events.maps_changed) trace();
       if (!events.mood_to_scene.empty()) {
         message_ = write_mood(*scene_, parameters_.load, lights_, moods_, events.mood_to_scene);
@@ -272,17 +266,6 @@ class Viewer {
     }
   }
 
-  /// Frames of a moving viewer are too many to be of use elsewhere, or too small.
-  void show_preview() {
-    const int width = frame_->layers.width, height = frame_->layers.height;
-    if (was_moving_ || width != window_.width() || height != window_.height()) return;
-    if (frame_->mixed.empty()) {
-      preview_->picture(frame_->layers, lights_.shown_mix());
-    } else {
-      preview_->picture(width, height, frame_->mixed);
-    }
-  }
-
   /// Whether there is a new frame.
   bool take_frame() {
     std::shared_ptr<const Frame> latest = frames_.latest();
@@ -372,7 +355,6 @@ class Viewer {
   PointSettings point_settings_;
   std::optional<LuminaireSession> luminaires_;  ///< where a file of them is edited
   std::optional<SettingsHistory> history_;
-  std::optional<image::LivePreview> preview_;
   std::optional<Probe> probe_;
   std::string message_, new_mood_;
   std::string told_of_luminaires_;  ///< by the last Ctrl+S

@@ -37,7 +37,6 @@ struct ViewerParameters {
   std::filesystem::path luminaire_file;                ///< that is edited; "" = none
   std::vector<scene_io::PlacedLuminaires> luminaires;  ///< as the scene has its entries
   DisplayView view = ToneMapping{}.view;
-  std::string preview;                  ///< HOST:PORT of a tev that gets the pictures; "" = none
   Progress* notes = &Progress::none();  ///< is told what has no place in the window
   KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
   /// Is given the light maps of all photons at the end, where there are any; may be empty.
