@@ -9,8 +9,12 @@ set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 find_package(OpenEXR 3.1 REQUIRED)
 unset(CMAKE_MESSAGE_LOG_LEVEL)
 find_package(PNG REQUIRED)
-find_package(JPEG REQUIRED)
-find_package(TIFF REQUIRED)
+find_package(OpenImageIO 2.4 REQUIRED)
+# Debian's target names OpenCV's headers, which its package does not depend on; CMake refuses a folder
+# that does not exist.
+get_target_property(_include OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+list(FILTER _include EXCLUDE REGEX "opencv")
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${_include}")
 find_package(glm REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
@@ -19,7 +23,6 @@ if(PHOTILE_BUILD_COMMAND)
   find_package(CLI11 REQUIRED)
   find_package(Freetype REQUIRED)
 endif()
-pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 
 # The Debian headers and loader, not another toolkit's that may be on the path.

@@ -19,14 +19,11 @@ libembree-dev          | ray tracing
 libtbb-dev             | threads
 libglm-dev             | vectors
 libopenexr-dev         | pictures: EXR
-libpng-dev             | PNG
-libjpeg-dev            | JPEG
-libtiff-dev            | TIFF
-libwebp-dev            | WebP
+libpng-dev             | PNG, written
+libopenimageio-dev     | all other pictures
 libfreetype-dev        | the letters of legends
 libtinygltf-dev        | reads glTF
 libtinyobjloader-dev   | reads OBJ
-libstb-dev             | BMP, GIF, Targa; tinygltf's header names it
 nlohmann-json3-dev     | JSON
 libfmt-dev             | text output
 libcli11-dev           | command line
@@ -49,7 +46,7 @@ xauth                  | the same
 xdotool                | tests: keys and mouse for the window
 libgl1-mesa-dri        | tests: OpenGL in software
 oclgrind               | tests: checks every memory access of the kernels
-libopenimageio-dev     | tests: another reader and writer of pictures
+python3-pil            | tests: another reader and writer of pictures
 openimageio-tools      | tests: reads the pictures as other tools do
 python3                | scripts of the docs and the tests
 python3-dev            | the Python module

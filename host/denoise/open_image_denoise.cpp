@@ -1,10 +1,10 @@
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "common/module.hpp"
 #include "photile/defaults.hpp"
 #include "photile/denoiser.hpp"
 #include "photile/errors.hpp"
@@ -23,13 +23,12 @@ constexpr int format_float3 = 3;
 }  // namespace
 
 struct Denoiser::Library {
-  Library(const std::filesystem::path& file, int threads)
-      : handle(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL), &dlclose) {
-    if (!handle) {
+  Library(const std::filesystem::path& file, int threads) : module(file) {
+    if (!module.error().empty()) {
       throw UsageError(fmt::format(
           "--denoise: {}; give the library's path, as --denoise FOLDER/libOpenImageDenoise.so.2 "
           "(PyPI's package pyoidn has one)",
-          dlerror()));
+          module.error()));
     }
     find(new_device, "oidnNewDevice", file);
     find(release_device, "oidnReleaseDevice", file);
@@ -52,7 +51,7 @@ struct Denoiser::Library {
 
   template <class Function>
   void find(Function*& function, const char* name, const std::filesystem::path& file) {
-    function = reinterpret_cast<Function*>(dlsym(handle.get(), name));
+    function = module.find<Function>(name);
     if (!function) {
       throw UsageError(
           fmt::format("--denoise: {} has no {}: it is no library of Open Image Denoise 2",
@@ -74,7 +73,7 @@ struct Denoiser::Library {
                        get_device_int(device.get(), "versionPatch"));
   }
 
-  std::unique_ptr<void, int (*)(void*)> handle;
+  Module module;
   OidnDevice* (*new_device)(int) = nullptr;
   void (*release_device)(OidnDevice*) = nullptr;
   void (*set_device_int)(OidnDevice*, const char*, int) = nullptr;

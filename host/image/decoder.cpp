@@ -1,14 +1,36 @@
 #include "image/decoder.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string_view>
 
 #include "common/ascii_text.hpp"
-#include "image/formats/formats.hpp"
+#include "common/module.hpp"
+#include "image/exr_decoder.hpp"
+#include "image/picture_checks.hpp"
+#include "openimageio/decoder.hpp"
+#include "photile/errors.hpp"
 
 namespace photile::image {
+namespace {
 
-PictureFormat format_of(const std::string& name, std::span<const unsigned char> bytes) {
+std::unique_ptr<Decoder> open_by_openimageio(PictureFormat format, Encoded bytes) {
+  // It stays loaded: OpenImageIO and what it is made of are not made to be unloaded.
+  static const Module& module = *new Module("photile_openimageio.so");
+  static auto* const open =
+      module.find<decltype(photile_openimageio_decoder)>("photile_openimageio_decoder");
+  if (open == nullptr) {
+    throw UsageError(fmt::format(
+        "pictures other than EXR cannot be read: {}; install the package photile-openimageio",
+        module.error()));
+  }
+  return std::unique_ptr<Decoder>(open(format, bytes));
+}
+
+}  // namespace
+
+PictureFormat format_of(const std::string& name, Encoded bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   using namespace std::string_view_literals;
   if (text.starts_with("\x89PNG"sv)) return PictureFormat::png;
@@ -29,29 +51,17 @@ PictureFormat format_of(const std::string& name, std::span<const unsigned char> 
   throw DecodeError("not a picture format that is read (EXR, PNG, JPEG, ...)");
 }
 
-std::unique_ptr<Decoder> open_picture(const std::string& name,
-                                      std::span<const unsigned char> bytes) {
-  switch (format_of(name, bytes)) {
-    case PictureFormat::exr:
-      return open_exr(bytes);
-    case PictureFormat::png:
-      return open_png(bytes);
-    case PictureFormat::jpeg:
-      return open_jpeg(bytes);
-    case PictureFormat::radiance:
-      return open_radiance(bytes);
-    case PictureFormat::tiff:
-      return open_tiff(bytes);
-    case PictureFormat::webp:
-      return open_webp(bytes);
-    case PictureFormat::bmp:
-    case PictureFormat::gif:
-    case PictureFormat::targa:
-      return open_simple(bytes);
-    case PictureFormat::pnm:
-      return open_pnm(bytes);
+std::unique_ptr<Decoder> open_picture(const std::string& name, Encoded bytes) {
+  const PictureFormat format = format_of(name, bytes);
+  std::unique_ptr<Decoder> decoder;
+  if (format == PictureFormat::exr) {
+    decoder = open_exr(bytes);
+  } else {
+    check_encoded(format, bytes);
+    decoder = open_by_openimageio(format, bytes);
   }
-  throw DecodeError("not a picture format that is read");
+  check_shape(decoder->shape(), bytes.size());
+  return decoder;
 }
 
 }  // namespace photile::image

@@ -16,11 +16,13 @@ struct DecodeError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+using Encoded = std::span<const unsigned char>;
+
 enum class PictureFormat { exr, png, jpeg, radiance, tiff, webp, bmp, gif, targa, pnm };
 
 /// By signature, or else by the extension of the few formats without one.
 /// Errors: DecodeError where it is none of them.
-PictureFormat format_of(const std::string& name, std::span<const unsigned char> bytes);
+PictureFormat format_of(const std::string& name, Encoded bytes);
 
 /// How the values of a picture are stored.
 enum class Sample { byte, word, real };
@@ -48,8 +50,7 @@ class Decoder {
  public:
   virtual ~Decoder() = default;
 
-  /// As the header has it, positive but otherwise unchecked: compare it with limits.hpp before
-  /// decoding.
+  /// As the header has it.
   const PictureShape& shape() const { return shape_; }
 
   /// Once. Errors: DecodeError, std::bad_alloc.
@@ -59,10 +60,10 @@ class Decoder {
   PictureShape shape_;
 };
 
-/// Opens a picture of which only the header is read. `bytes` must outlive the decoder; `name`
-/// tells, by its extension, formats that have no signature.
-/// Errors: DecodeError.
-std::unique_ptr<Decoder> open_picture(const std::string& name,
-                                      std::span<const unsigned char> bytes);
+/// Opens a picture: an EXR by photile's own reader, all else by OpenImageIO, which is loaded for
+/// the first of them. Only headers are read, and what they announce is within limits.hpp. `bytes`
+/// must outlive the decoder; `name` tells, by its extension, formats that have no signature.
+/// Errors: DecodeError; UsageError where OpenImageIO's module is not installed.
+std::unique_ptr<Decoder> open_picture(const std::string& name, Encoded bytes);
 
 }  // namespace photile::image

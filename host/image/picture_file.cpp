@@ -13,7 +13,7 @@
 
 #include "common/input_file.hpp"
 #include "image/decoder.hpp"
-#include "image/unchecked_bytes.hpp"
+#include "image/picture_checks.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -77,31 +77,9 @@ std::string unreadable(const fs::path& file) {
   return {};
 }
 
-/// Why a part cannot be read whatever is done with it, or "".
-std::string beyond_limits(int width, int height, std::size_t channels) {
-  if (width < 1 || height < 1 || channels < 1) {
-    return fmt::format("is {} x {} pixels with {} channels; pixels are needed", width, height,
-                       channels);
-  }
-  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * height;
-  if (width > limits::max_image_side || height > limits::max_image_side ||
-      pixels > limits::max_image_pixels) {
-    return fmt::format(
-        "is {} x {} pixels, more than the limit of {} a side or {} in all; scale it down", width,
-        height, limits::max_image_side, limits::max_image_pixels);
-  }
-  return {};
-}
-
-/// Why so many channels are too many to be held at once, or "". Decoded size is bounded before a
-/// pixel is decoded: a few bytes can announce terabytes.
-std::string too_large(std::uint64_t pixels, std::size_t channels) {
-  const std::uint64_t bytes = pixels * channels * sizeof(float);
-  if (channels <= limits::max_image_channels && bytes <= limits::max_image_bytes) return {};
-  return fmt::format(
-      "has {} channels ({} bytes decoded), more than the limit of {} ({}); "
-      "leave channels out or scale it down",
-      channels, bytes, limits::max_image_channels, limits::max_image_bytes);
+/// Of pixels in memory.
+std::uint64_t decoded_bytes(int width, int height, std::size_t channels) {
+  return static_cast<std::uint64_t>(width) * height * channels * sizeof(float);
 }
 
 std::vector<unsigned char> bytes_of(const fs::path& file) {
@@ -173,21 +151,13 @@ void PictureFile::open_other() {
   }
   names.resize(static_cast<std::size_t>(shape.channels));
   add_part({shape.width, shape.height, "", names});
-  check_expansion(shape.bytes());
-}
-
-void PictureFile::check_expansion(std::uint64_t decoded) const {
-  const std::uintmax_t encoded = fs::file_size(file_);
-  if (decoded > unchecked_bytes && decoded / encoded > limits::max_image_expansion) {
-    refuse(fmt::format("is damaged or empty: {} bytes decode to {}; the limit is a factor of {}",
-                       encoded, decoded, limits::max_image_expansion));
-  }
 }
 
 void PictureFile::add_part(const ExrInput::Part& part) {
   std::string reason = beyond_limits(part.width, part.height, part.channels.size());
   if (reason.empty()) {
-    reason = too_large(static_cast<std::uint64_t>(part.width) * part.height, part.channels.size());
+    reason = too_large(part.channels.size(),
+                       decoded_bytes(part.width, part.height, part.channels.size()));
   }
   if (!reason.empty()) refuse(reason);
   if (header_.channel_names.empty()) {
@@ -231,7 +201,9 @@ std::vector<std::size_t> PictureFile::first_channels() const {
 }
 
 void PictureFile::check_total() const {
-  const std::string reason = too_large(header_.pixels(), header_.channel_names.size());
+  const std::string reason =
+      too_large(header_.channel_names.size(),
+                decoded_bytes(header_.width, header_.height, header_.channel_names.size()));
   if (!reason.empty()) refuse(reason);
   const std::uintmax_t bytes = fs::file_size(file_);
   if (bytes > limits::max_image_bytes) {

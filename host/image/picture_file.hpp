@@ -48,8 +48,6 @@ class PictureFile : public ChannelRows {
   void open_other();
   void add_part(const ExrInput::Part& part);
   void add_channel(const ExrInput::Part& part, std::size_t index);
-  /// Against files of a few kilobytes that would fill the memory.
-  void check_expansion(std::uint64_t decoded) const;
   void decode(int part, int first, int end);
   [[noreturn]] void refuse(const std::string& reason) const;
 

@@ -11,46 +11,19 @@
 #include <vector>
 
 #include "image/decoder.hpp"
-#include "image/unchecked_bytes.hpp"
 #include "import/warnings.hpp"
-#include "photile/limits.hpp"
+#include "photile/errors.hpp"
 
 namespace photile::scene_io {
 namespace {
 
 using image::PictureShape;
 
-void check_limits(const PictureShape& shape, std::size_t encoded_bytes) {
-  const auto pixels =
-      static_cast<std::uint64_t>(shape.width) * static_cast<std::uint64_t>(shape.height);
-  if (shape.width > limits::max_image_side || shape.height > limits::max_image_side ||
-      pixels > limits::max_image_pixels) {
-    throw ResourceError(fmt::format("{} x {} pixels; the limit is {} a side and {} in all",
-                                    shape.width, shape.height, limits::max_image_side,
-                                    limits::max_image_pixels));
-  }
-  if (shape.channels > limits::max_image_channels) {
-    throw ResourceError(
-        fmt::format("{} channels; the limit is {}", shape.channels, limits::max_image_channels));
-  }
-  const std::uint64_t decoded = shape.bytes();
-  if (decoded > limits::max_image_bytes) {
-    throw ResourceError(
-        fmt::format("{} bytes decoded; the limit is {}", decoded, limits::max_image_bytes));
-  }
-  if (decoded > image::unchecked_bytes &&
-      decoded / std::max<std::size_t>(encoded_bytes, 1) > limits::max_image_expansion) {
-    throw ResourceError(fmt::format("{} bytes decode to {}; the limit is a factor of {}",
-                                    encoded_bytes, decoded, limits::max_image_expansion));
-  }
-}
-
 /// An encoded picture, opened and within the limits. What a decoder throws becomes a ResourceError.
 class OpenPicture {
  public:
   OpenPicture(const std::string& name, std::span<const unsigned char> bytes) {
     guarded([&] { decoder_ = image::open_picture(name, bytes); });
-    check_limits(shape(), bytes.size());
   }
 
   const PictureShape& shape() const { return decoder_->shape(); }
@@ -65,6 +38,8 @@ class OpenPicture {
   static void guarded(const Work& work) {
     try {
       work();
+    } catch (const Error&) {  // no picture can be read
+      throw;
     } catch (const std::exception& error) {  // a decoder's own, or no memory
       throw ResourceError(error.what());
     }

@@ -23,7 +23,7 @@ rm -rf "$scratch/packages"
 mkdir -p "$scratch"
 (cd "$build" && cpack --config CPackConfig.cmake -B "$scratch/packages") > "$scratch/cpack.log" ||
   { cat "$scratch/cpack.log"; fail "cpack failed"; }
-for name in photile libphotile-dev python3-photile; do
+for name in photile photile-openimageio libphotile-dev python3-photile; do
   ls "$scratch"/packages/${name}_*.deb > /dev/null || fail "there is no package $name"
 done
 
@@ -53,6 +53,14 @@ inside "photile --version" | grep -q '^photile [0-9.]* (commit ' || fail "no ver
 inside "photile render cornell-box/cornell-box.obj -o box.exr --png box.png --size 64x48 \
   --quality draft --photons 20000 --quiet; photile relight box.exr" | grep -q '^light: lamp' ||
   fail "no picture is rendered and relit"
+inside "printf 'P6 1 1 255\\n\\377\\377\\377' > white.ppm
+  ! photile compare white.ppm white.ppm 2> error
+  grep -q 'install the package photile-openimageio' error && [ \$(wc -l < error) = 1 ]" ||
+  fail "a PPM without photile-openimageio is no error of a line that names it"
+inside "apt-get install --yes --no-install-recommends ./photile-openimageio_*.deb" \
+  >> "$scratch/install.log" 2>&1 ||
+  { tail -n 20 "$scratch/install.log"; fail "photile-openimageio does not install"; }
+inside "photile compare white.ppm white.ppm" > /dev/null || fail "photile-openimageio reads no PPM"
 # With the numpy that the package depends on, and with others: PYTHONPATH.
 use_module() {
   inside "PYTHONPATH=$1 python3 -c '
@@ -90,7 +98,7 @@ inside "cmake -S examples -B built -DCMAKE_BUILD_TYPE=Release && cmake --build b
   --target own_photons && built/own_photons" > "$scratch/example.log" 2>&1 ||
   { tail -n 20 "$scratch/example.log"; fail "a program does not link libphotile-dev"; }
 grep -q '^point 0: nearest photon' "$scratch/example.log" || fail "the program prints no photon"
-inside "apt-get purge --yes photile python3-photile libphotile-dev" > /dev/null 2>&1 ||
+inside "apt-get purge --yes photile photile-openimageio python3-photile libphotile-dev" > /dev/null 2>&1 ||
   fail "the packages cannot be removed"
 umount "$root/proc" "$root/sys"
 rm -rf "$root"

@@ -53,3 +53,20 @@ within 60 160 "$(sed -n 's/^x = 2.5 m: \([0-9]*\) lx$/\1/p' <<< "$room")" "lux b
   fail "a missing scene is no error"
 grep -q "missing.obj" "$scratch/out/error.log" || fail "the error does not name the file"
 [ "$(wc -l < "$scratch/out/error.log")" = 1 ] || fail "the error is not one line"
+
+# Textures are read by a module that the command and the programs find where it is installed.
+(cd "$scratch/out" && printf 'P6 1 1 255\n\377\377\377' > white.ppm &&
+  printf 'newmtl floor\nmap_Kd white.ppm\nnewmtl lamp\nKe 1 1 1\n' > floor.mtl &&
+  printf '%s\n' 'mtllib floor.mtl' 'v 0 0 0' 'v 0 0 1' 'v 1 0 0' 'v 0 1 0' 'v 1 1 0' 'v 0 1 1' 'vt 0 0' \
+    'vt 0 1' 'vt 1 0' 'usemtl floor' 'f 1/1 2/2 3/3' 'usemtl lamp' 'f 4 5 6' > floor.obj &&
+  build/relit_picture floor.obj floor.exr floor.png > /dev/null) || fail "a program reads no texture"
+photile=$scratch/installed/bin/photile white=$scratch/out/white.ppm
+if [ -x "$photile" ]; then
+  "$photile" compare "$white" "$white" > /dev/null || fail "the installed command reads no PPM"
+  find "$scratch/installed" -name photile_openimageio.so -delete
+  ! "$photile" compare "$white" "$white" 2> "$scratch/out/error.log" ||
+    fail "a picture that cannot be read is no error"
+  grep -q "install the package photile-openimageio" "$scratch/out/error.log" ||
+    fail "the error does not name the package"
+  [ "$(wc -l < "$scratch/out/error.log")" = 1 ] || fail "the error is not one line"
+fi

@@ -1,13 +1,12 @@
 #include "tools/command/processes.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <string_view>
 
+#include "common/module.hpp"
 #include "mpi/communicator.hpp"
 #include "photile/errors.hpp"
 
@@ -29,18 +28,6 @@ int launched_with_mpi() {
     if (const int count = number_in(variable); count > 0) return count;
   }
   return std::getenv("PMIX_RANK") != nullptr ? 1 : 0;
-}
-
-/// The module beside the command, or where it is installed; empty where there is none.
-std::filesystem::path module_file() {
-  std::error_code error;
-  const std::filesystem::path folder =
-      std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const auto& file : {folder / "photile_mpi.so",
-                           folder / ".." / PHOTILE_LIBRARY_FOLDER / "photile" / "photile_mpi.so"}) {
-    if (std::filesystem::exists(file, error)) return file;
-  }
-  return {};
 }
 
 /// Whether each process has a part of its own, so that several do not write the same file.
@@ -68,21 +55,19 @@ void join_processes(std::span<const char* const> arguments) {
     }
     return;
   }
-  const std::filesystem::path file = module_file();
-  if (file.empty()) {
+  // Global: MPI libraries load parts of their own, which look for the rest. It is never unloaded.
+  static const Module& module = *new Module("photile_mpi.so", Module::Symbols::global);
+  auto* const found = module.find<decltype(photile_mpi_communicator)>("photile_mpi_communicator");
+  if (!found) {
     if (launched == 1) return;
     throw UsageError(fmt::format(
-        "mpirun has started {} processes, and this photile was built without MPI; install "
-        "libopenmpi-dev and build it again, or start one process",
-        launched));
+        "mpirun has started {} processes, and photile's part for MPI is not here: {}; install the "
+        "package photile-mpi, or start one process",
+        launched, module.error()));
   }
-  // Global: MPI libraries load parts of their own, which look for the rest.
-  void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
-  void* const found = module ? dlsym(module, "photile_mpi_communicator") : nullptr;
-  void* const failed = module ? dlsym(module, "photile_mpi_other_failed") : nullptr;
-  if (!found || !failed) throw UsageError(fmt::format("{}: {}", file.string(), dlerror()));
-  other_failed_of_module = reinterpret_cast<decltype(&photile_mpi_other_failed)>(failed);
-  joined = reinterpret_cast<decltype(&photile_mpi_communicator)>(found)();
+  other_failed_of_module =
+      module.find<decltype(photile_mpi_other_failed)>("photile_mpi_other_failed");
+  joined = found();
   if (!joined) throw UsageError("MPI cannot be initialised; see what mpirun says");
 }
 

@@ -1,5 +1,6 @@
+#include "image/exr_decoder.hpp"
+
 #include "image/exr_input.hpp"
-#include "image/formats/formats.hpp"
 
 namespace photile::image {
 namespace {
@@ -13,7 +14,6 @@ std::size_t picture_channels(const ExrInput::Part& part) {
   return names.size() > 3 && names[3] == "A" ? 4 : 3;
 }
 
-/// The first part.
 class ExrDecoder : public Decoder {
  public:
   explicit ExrDecoder(Encoded bytes) : input_(bytes) {

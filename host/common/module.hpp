@@ -1,0 +1,36 @@
+// Shared objects that a process loads when it first needs them: those that need none start sooner
+// and take less memory.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace photile {
+
+class Module {
+ public:
+  /// Who sees what the module brings: itself, or also what it loads in its turn.
+  enum class Symbols { own, global };
+
+  /// `file`: a path, or the name of one of photile's modules, which the run paths of the command,
+  /// of the Python module and of programs that link the library lead to.
+  explicit Module(const std::filesystem::path& file, Symbols symbols = Symbols::own);
+
+  /// Why it is not loaded, in a line, or "".
+  const std::string& error() const { return error_; }
+
+  /// Null where it has no such function, or is not loaded.
+  template <class Function>
+  Function* find(const char* name) const {
+    return reinterpret_cast<Function*>(address_of(name));
+  }
+
+ private:
+  void* address_of(const char* name) const;
+
+  std::unique_ptr<void, int (*)(void*)> handle_;
+  std::string error_;
+};
+
+}  // namespace photile
