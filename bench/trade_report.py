@@ -43,26 +43,10 @@ def subjects(scenes):
     return views
 
 
-def settings(point):
-    text = f"`--photons {point['photons_emitted']} -k {point['neighbours']} --samples {point['samples_per_pixel']}"
-    if point["least_neighbours"]:
-        text += f" --least-neighbours {point['least_neighbours']}"
-    varied = {"radius": f" --radius {point['radius']:.3g}",
-              "angle": f" --angle {point['angle_degrees']:g}",
-              "maps": f" --maps {point['maps']}",
-              "structure": f" --structure {point['structure']}",
-              "cell": f" --photons-per-cell {point['photons_per_cell']:g}",
-              "area": f" --area {point.get('area')}",
-              "kernel": f" --kernel {point.get('kernel')}",
-              "direct rays": f" --direct rays --direct-rays {point.get('direct_rays')}",
-              "node rays": f" --light-map-rays {point.get('light_map_rays')}"}
-    return text + varied.get(point["varied"], "") + "`"
-
-
 def row(label, point):
     memory = (point["host_bytes"] + point["device_bytes"]) / 1e6
     return (f"| {label} | {point['first_picture_seconds']:.2f} s "
-            f"| {1e3 * point['frame_seconds']:.0f} ms | {memory:.0f} MB | {settings(point)} |")
+            f"| {1e3 * point['frame_seconds']:.0f} ms | {memory:.0f} MB | `{point['options']}` |")
 
 
 def table(record):
@@ -86,8 +70,8 @@ def ways_of_light(record):
     lines = ["| settings | error | worst region | mean ratio | first picture | each frame |",
              "|---|--:|--:|--:|--:|--:|"]
     for point in record["renderings"]:
-        if point["varied"] in ("nothing", "direct rays", "node rays"):
-            lines.append(f"| {settings(point)} | {100 * point['relative_error']:.1f}% "
+        if point["varied"] in ("nothing", "direct_rays", "work of good"):
+            lines.append(f"| `{point['options']}` | {100 * point['relative_error']:.1f}% "
                          f"| {100 * point['worst_region']:.1f}% | {point['mean_ratio']:.3f} "
                          f"| {point['first_picture_seconds']:.2f} s "
                          f"| {1e3 * point['frame_seconds']:.0f} ms |")

@@ -157,17 +157,14 @@ RelativeErrorWeights::RelativeErrorWeights(const Image& reference) {
   }
 }
 
-double RelativeErrorWeights::mean_product(const Image& minuend_x, const Image& subtrahend_x,
-                                          const Image& minuend_y, const Image& subtrahend_y) const {
-  const Planes a = planes_of(minuend_x), b = planes_of(subtrahend_x), c = planes_of(minuend_y),
-               d = planes_of(subtrahend_y);
+double RelativeErrorWeights::relative_mse(const Image& picture, const Image& reference) const {
+  const Planes a = planes_of(picture), b = planes_of(reference);
   double sum = 0;
   for (std::size_t pixel = 0; pixel < counts_.size(); ++pixel) {
     if (!counts_[pixel]) continue;
     for (std::size_t channel = 0; channel < 3; ++channel) {
-      const double x = double{(*a[channel])[pixel]} - double{(*b[channel])[pixel]};
-      const double y = double{(*c[channel])[pixel]} - double{(*d[channel])[pixel]};
-      sum += x * y / divisor_[3 * pixel + channel];
+      const double difference = double{(*a[channel])[pixel]} - double{(*b[channel])[pixel]};
+      sum += difference * difference / divisor_[3 * pixel + channel];
     }
   }
   return sum / (3.0 * static_cast<double>(counted_));
@@ -185,7 +182,7 @@ PictureError picture_error(const Image& picture, const Image& reference) {
     for (const auto* plane : a) sum += (*plane)[pixel];
   }
   PictureError error;
-  error.relative_mse = weights.mean_product(picture, reference, picture, reference);
+  error.relative_mse = weights.relative_mse(picture, reference);
   error.mean_ratio = sum / (3.0 * static_cast<double>(weights.counted())) / weights.mean();
   find_worst_region(picture, reference, weights, error);
   error.psnr = psnr(picture, reference, weights);

@@ -1,5 +1,5 @@
-// Pictures made again, each with more photons and rays than the one before, until one is good
-// enough or the time is over.
+// Pictures made again, each with twice the work of the one before, until one states a small enough
+// error or the time is over.
 #pragma once
 
 #include <functional>
@@ -11,28 +11,35 @@ namespace photile {
 
 /// What ends the making of pictures whose nodes gather; at least one of them is given.
 struct RefinementGoal {
-  double error = 0;    ///< relative standard error of a picture, at most; 0 = none
+  double error = 0;    ///< relative standard error that a picture states, at most; 0 = none
   double seconds = 0;  ///< that all pictures may take, wall clock; 0 = none
+
+  bool is_given() const { return error > 0 || seconds > 0; }
 };
 
 /// What refine asks for and tells.
 struct RefinementSteps {
   /// Makes a picture. Errors: Interrupted, when `progress` says so.
   std::function<RenderResult(const RenderParameters&, Progress& progress)> make;
-  /// A picture is there, better than those before.
-  std::function<void(const RenderResult&)> finished;
+  /// A picture of these parameters is there, no worse than those before.
+  std::function<void(const RenderParameters&, const RenderResult&)> finished;
   /// Since the time began to count, seconds.
   std::function<double()> elapsed;
 };
 
-/// Makes pictures until the goal is met, and returns the last that was finished: each has photons
-/// and rays of nodes in one proportion, as many more as the error asks for and the time allows.
-/// With a time the first has a quarter of what is asked, so that there is one soon; it is finished
-/// however long it takes, and one that the end of the time finds unfinished is given up. Then the
-/// picture depends on how quick the machine is. Without a time it does not.
+/// Makes pictures until the goal is met, each with twice the work of the one before, and returns
+/// the one that states the least error. Without a time the first has the settings given; with one
+/// it has a quarter of their work, so that there is one soon. The first is finished however long it
+/// takes; a later one is begun while there is as much time left as its predecessor took, and given
+/// up when the time is over. So with a time the picture depends on how quick the machine is, but
+/// each is what render() makes of its own settings.
 /// Errors: those of `make`; Interrupted, when `progress` says so.
 RenderResult refine(const RefinementGoal& goal, const RenderParameters& parameters,
                     const RefinementSteps& steps, Progress& progress);
+
+/// The settings that the quality `final` has more of than `good` (photons, samples of a pixel, rays
+/// of nodes) times `factor`, each within its range.
+RenderParameters with_work(RenderParameters parameters, double factor);
 
 /// Relative standard error that the statistics of a picture state; 0 where none is known.
 double standard_error_of(const RenderResult& picture);

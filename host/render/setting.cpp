@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <limits>
 #include <string>
@@ -256,6 +257,15 @@ std::span<const Setting> settings() {
 const Setting& setting_named(std::string_view name) {
   return *std::find_if(settings().begin(), settings().end(),
                        [&](const Setting& setting) { return setting.name == name; });
+}
+
+SettingValue scaled(const Setting& setting, const RenderParameters& parameters, double factor) {
+  const SettingValue value = setting.value(parameters);
+  if (const auto* number = std::get_if<double>(&value)) return factor * *number;
+  const auto& range = std::get<WholeNumbers>(setting.range);
+  const double product = factor * static_cast<double>(std::get<std::uint64_t>(value));
+  return static_cast<std::uint64_t>(std::clamp(
+      std::round(product), static_cast<double>(range.least), static_cast<double>(range.most)));
 }
 
 std::string text_with_unit(const Setting& setting, const RenderParameters& parameters) {

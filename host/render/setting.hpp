@@ -46,6 +46,9 @@ const Setting& setting_named(std::string_view name);
 /// Of the group Picture: what paths have, too.
 inline bool is_of_any_integrator(const Setting& setting) { return setting.group == "Picture"; }
 
+/// The number times `factor`, within its range.
+SettingValue scaled(const Setting& setting, const RenderParameters& parameters, double factor);
+
 /// "45 degrees".
 std::string text_with_unit(const Setting& setting, const RenderParameters& parameters);
 

@@ -113,13 +113,6 @@ inline constexpr int trade_width = 256;         ///< pixels
 inline constexpr int trade_height = 192;        ///< pixels
 inline constexpr int reference_samples = 1024;  ///< paths per pixel
 
-// Settings chosen for a wanted error or time, and the quick renderings that they are chosen from
-inline constexpr double least_chosen_photons = 1e4, most_chosen_photons = 1e8;
-inline constexpr double least_chosen_neighbours = 8, most_chosen_neighbours = 8192;
-inline constexpr double most_chosen_samples = 64;  ///< per pixel
-inline constexpr std::uint64_t pilot_photons = 200'000;
-inline constexpr int pilot_height = 96;  ///< pixels
-
 // The walkthrough: what is aimed at while moving, and how far a picture is refined at rest
 inline constexpr double view_frames_per_second = 30;
 inline constexpr int view_samples_per_pixel = 16;

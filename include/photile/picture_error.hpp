@@ -44,10 +44,8 @@ class RelativeErrorWeights {
   bool counts(std::size_t pixel) const { return counts_[pixel]; }
   std::size_t counted() const { return counted_; }  ///< pixels
   double mean() const { return mean_; }             ///< of the reference over them and channels
-  /// Mean over channels and pixels that count of x y / (b^2 + 0.01 m^2), where x and y are
-  /// differences of pictures: relative_mse where both are picture - reference.
-  double mean_product(const Image& minuend_x, const Image& subtrahend_x, const Image& minuend_y,
-                      const Image& subtrahend_y) const;
+  /// Mean over channels and pixels that count of (a - b)^2 / (b^2 + 0.01 m^2).
+  double relative_mse(const Image& picture, const Image& reference) const;
 
  private:
   std::vector<bool> counts_;

@@ -15,8 +15,7 @@ namespace {
 
 /// Settings that photons depend on.
 constexpr std::array<std::string_view, 7> traced{
-    "photons_emitted",   "quota",      "seed",          "maps", "direct_rays",
-    "light_maps", "light_map_rays"};
+    "photons_emitted", "quota", "seed", "maps", "direct_rays", "light_maps", "light_map_rays"};
 
 class Generator : CommandBuilder {
  public:
@@ -68,13 +67,7 @@ class Generator : CommandBuilder {
     if (dice_.chance(0.04)) {  // as many passes as there is time for
       command_.timed = true;
       add({"--for", dice_.one_of({"300ms", "0.5s", "0", "-1s", "1ns"})});
-      if (dice_.chance(0.3)) {  // which chooses photons and rays itself
-        std::erase_if(command_.arguments, [](const std::string& argument) {
-          return argument.starts_with("--photons") || argument == "draft" || argument == "good" ||
-                 argument == "--quality";
-        });
-        add({"--target-error", dice_.one_of({"30%", "5%", "0.1", "0%", "nan", "1e30"})});
-      }
+      maybe(0.3, {"--target-error", dice_.one_of({"30%", "5%", "0.1", "0%", "nan", "1e30"})});
     }
     maybe(0.02, {"--load-maps", "/dev/null"});
     run();

@@ -7,6 +7,8 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/settings.hpp"
+#include "render/setting.hpp"
 
 namespace photile::test {
 namespace {
@@ -44,7 +46,8 @@ struct Studio {
                   result.statistics.push_back(maps);
                   return result;
                 },
-            .finished = [this](const RenderResult&) { finished_at.push_back(clock); },
+            .finished = [this](const RenderParameters&,
+                               const RenderResult&) { finished_at.push_back(clock); },
             .elapsed = [this] { return clock; }};
   }
 };
@@ -77,28 +80,66 @@ TEST_CASE("refinement: a picture that is good enough is the only one") {
   CHECK(standard_error_of(result) == Approx(0.02));
 }
 
-TEST_CASE("refinement: an error is reached, by not much more than it takes") {
+TEST_CASE("refinement: each picture has twice the work, until one states the error") {
   Studio studio;
   const double wanted = GENERATE(0.015, 0.01, 0.004);
   const RenderResult result = refine({.error = wanted}, good(), studio.steps(), Progress::none());
   CHECK(standard_error_of(result) <= wanted);
-  CHECK(standard_error_of(result) > 0.75 * wanted);
+  CHECK(standard_error_of(result) > wanted / std::sqrt(2.0));  // half the work does not do
   CHECK(studio.finished_at.size() == studio.made.size());
   for (std::size_t i = 1; i < studio.made.size(); ++i) {
-    CHECK(studio.made[i].light_map_rays > studio.made[i - 1].light_map_rays);
-    CHECK(studio.made[i].photons.emitted_photons > studio.made[i - 1].photons.emitted_photons);
+    const RenderParameters &now = studio.made[i], &before = studio.made[i - 1];
+    CHECK(now.light_map_rays == 2 * before.light_map_rays);
+    CHECK(now.photons.emitted_photons == 2 * before.photons.emitted_photons);
+    CHECK(now.film.samples_per_pixel == 2 * before.film.samples_per_pixel);
+    CHECK(now.neighbours == before.neighbours);
   }
 }
 
-TEST_CASE("refinement: a time is kept, and most of it used") {
+TEST_CASE("refinement: the quality final is good with four times the work") {
+  RenderParameters good, final;
+  set_quality(good, Quality::good);
+  set_quality(final, Quality::best);
+  const RenderParameters more = with_work(good, 4);
+  for (const Setting& setting : settings()) {
+    CAPTURE(setting.name);
+    CHECK(setting.value(more) == setting.value(final));
+  }
+}
+
+TEST_CASE("refinement: a time is kept, and the picture took a good part of it") {
   Studio studio;
   const double seconds = GENERATE(10.0, 30.0, 100.0, 1000.0);
   const RenderResult result =
       refine({.seconds = seconds}, good(), studio.steps(), Progress::none());
   CHECK(studio.clock <= 1.001 * seconds);
-  CHECK(studio.clock > 0.5 * seconds);
-  CHECK(result.used.light_map_rays == studio.made.back().light_map_rays);
+  // One of twice the work takes 3.2 times as long, and so does not fit in what is left.
+  const double least = seconds / (3.25 + 3.25 / 2.25);
+  CHECK(studio.seconds(result.used) > 0.99 * least);
   CHECK(studio.made.front().light_map_rays == 16);
+}
+
+TEST_CASE("refinement: a picture is not begun when less time is left than the last one took") {
+  Studio studio;
+  refine({.seconds = 1.2}, good(), studio.steps(), Progress::none());
+  CHECK(studio.made.size() == 1);  // took 0.95
+  CHECK(studio.clock < 1);
+}
+
+TEST_CASE("refinement: a picture that states more error than one before is not kept") {
+  Studio studio;
+  RefinementSteps steps = studio.steps();
+  const auto make = steps.make;
+  steps.make = [&](const RenderParameters& p, Progress& progress) {
+    if (p.light_map_rays == 32) studio.error_of_one *= 4;
+    RenderResult result = make(p, progress);
+    if (p.light_map_rays == 32) studio.error_of_one /= 4;
+    return result;
+  };
+  const RenderResult result = refine({.seconds = 6}, good(), steps, Progress::none());
+  CHECK(studio.made.size() == 2);
+  CHECK(studio.finished_at.size() == 1);
+  CHECK(result.used.light_map_rays == 16);
 }
 
 TEST_CASE("refinement: a picture that takes too long is given up, the one before is kept") {
@@ -124,7 +165,7 @@ TEST_CASE("refinement: a user who stops is heard, and has the pictures so far") 
   Studio studio;
   Stopped progress(studio, 5);
   CHECK_THROWS_AS(refine({.seconds = 1000}, good(), studio.steps(), progress), Interrupted);
-  CHECK(studio.finished_at.size() == 1);
+  CHECK(studio.finished_at.size() == 2);  // at 10 x 0.25^1.7 = 0.95, and 3.08 later
   CHECK(studio.clock < 5.2);
 }
 

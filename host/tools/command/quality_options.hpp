@@ -1,5 +1,5 @@
-// `--quality`, `--target-error`, `--time-budget` and `--for`: settings by name, or chosen for a
-// wanted error or time.
+// `--quality`, which sets several settings by one name, and `--target-error` and `--for`, which
+// make pictures until one is good enough or the time is over.
 #pragma once
 
 #include <functional>
@@ -8,8 +8,7 @@
 
 #include "photile/renderer.hpp"
 #include "photile/settings.hpp"
-#include "photile/statistics.hpp"
-#include "tools/trade/quality_target.hpp"
+#include "render/refinement.hpp"
 
 namespace CLI {
 class App;
@@ -17,23 +16,21 @@ class App;
 
 namespace photile::app {
 
-/// What is asked for of quality, and the settings that follow.
+/// A quality, and the settings that it sets.
 struct QualityOptions {
   Quality& quality;
-  QualityTarget& target;
   RenderParameters& parameters;
 };
 
-/// A row of what can be asked for beside the settings: an option that is no setting, because
-/// settings are chosen for it.
-struct QualityWish {
+/// An option that ends the making of pictures. It is no setting: each picture has its own settings.
+struct GoalOption {
   std::string_view name;    ///< in records, "target_error"
   std::string_view option;  ///< "target-error"
   std::string_view type;    ///< "PERCENT" or "TIME"
   std::string_view help;
-  double QualityTarget::*value;  ///< a share, or seconds; 0 = not asked for
+  double RefinementGoal::*value;  ///< a share, or seconds; 0 = not asked for
 };
-std::span<const QualityWish> quality_wishes();
+std::span<const GoalOption> goal_options();
 
 inline constexpr std::string_view quality_help =
     "photons, k, samples and rays of nodes together; options given beside it count";
@@ -45,33 +42,19 @@ void set_quality(const QualityOptions& options, Quality quality);
 /// given override it, wherever they stand.
 void add_quality_preset(CLI::App& command, const QualityOptions& options);
 
-/// Adds the wishes. To be added before the settings, too: --time-budget stands for the quality
-/// draft, which its model knows alone.
-void add_quality_wishes(CLI::App& command, const QualityOptions& options);
+/// Adds --target-error and --for.
+void add_goal_options(CLI::App& command, RefinementGoal& goal);
 
-/// Has the wishes exclude the options whose values they choose, which must be there.
-void exclude_chosen(CLI::App& command);
+/// Errors: UsageError for a goal where nodes of light maps do not gather, whose noise is what
+/// pictures state.
+void check_goal(const RefinementGoal& goal, const RenderParameters& parameters);
 
-/// Whether settings are to be chosen by the models.
-bool is_wanted(const QualityTarget& target);
-
-/// Whether pictures are made until one is good enough, or the time is over. Errors: UsageError for
-/// a time where nodes of light maps do not gather.
-bool refines(const QualityTarget& target, const RenderParameters& parameters);
-
-/// `refine` by these functions, with a note about each picture.
+/// `refine` by these functions, with a note about each picture and what was reached.
 ///   elapsed   since the process began, seconds
 RenderResult render_refined(
-    const QualityTarget& target, const RenderParameters& parameters,
+    const RefinementGoal& goal, const RenderParameters& parameters,
     const std::function<RenderResult(const RenderParameters&, Progress&)>& make,
     const std::function<void(const RenderResult&)>& finished,
     const std::function<double()>& elapsed, Progress& progress);
-
-/// Measures the models on a view, sets what they choose in `parameters`, and tells the choice and
-/// its reasons. Returns the cost of the measurement, with the expectations as figures.
-/// Errors: those of measure_models.
-StageStatistics choose_quality(const QualityTarget& target, const Scene& scene,
-                               const Camera& camera, Device& device, const LightMix& mix,
-                               RenderParameters& parameters, Progress& progress);
 
 }  // namespace photile::app

@@ -138,7 +138,7 @@ void render_until_good(const Scene& scene, std::span<Device> devices, const Rend
                        const std::function<double()>& elapsed, Progress& progress) {
   const RunStatistics before = record.stages;
   render_refined(
-      options.target, options.parameters,
+      options.goal, options.parameters,
       [&](const RenderParameters& parameters, Progress& deadline) {
         return render_hits(scene, hits, parameters.film, devices, parameters, deadline);
       },
@@ -152,12 +152,8 @@ void render_until_good(const Scene& scene, std::span<Device> devices, const Rend
 
 /// The layers by photon maps. Fills in what `record` tells of them.
 LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
-                              RenderOptions& options, const Views& views, RunRecord& record,
+                              const RenderOptions& options, const Views& views, RunRecord& record,
                               Progress& progress) {
-  if (is_wanted(options.target)) {
-    record.stages.push_back(choose_quality(options.target, scene, camera, devices.front(),
-                                           record.mix, options.parameters, progress));
-  }
   RenderResult result = keeps_maps(options)
                             ? render_with_kept_maps(scene, camera, views.picture, devices, options,
                                                     views.reflections, progress)
@@ -249,11 +245,11 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
         "--denoise needs the noise of nodes, which is not known with --save-maps, --load-maps and "
         "--glare; leave those out");
   }
-  const bool refined = refines(options.target, options.parameters);
-  if (refined && keeps_maps(options)) {
+  check_goal(options.goal, options.parameters);
+  if (options.goal.is_given() && keeps_maps(options)) {
     throw UsageError(
-        "--target-error and --for make pictures of photons of their own where nodes gather; leave "
-        "out --save-maps, --load-maps and --glare");
+        "--target-error and --for make pictures of photons of their own; leave out --save-maps, "
+        "--load-maps and --glare");
   }
   const PictureOutputs outputs = check_outputs_of(options);
 
@@ -273,7 +269,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   record.camera = camera.name;
   record.integrator = name_of(options.integrator);
   record.quality = options.quality;
-  record.target = options.target;
+  record.goal = options.goal;
   record.used = options.parameters;
 
   if (options.tuned) {
@@ -311,7 +307,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
       if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
     }));
   };
-  if (refined) {
+  if (options.goal.is_given()) {
     render_until_good(scene, devices, options, hits, record, write, elapsed, progress);
   } else if (options.integrator == Integrator::path) {
     write(render_by_paths(scene, camera, views, record, progress));

@@ -156,7 +156,7 @@ void add_projection_options(CLI::App& command, RenderOptions& options) {
 void add_render_options(CLI::App& command, RenderOptions& options) {
   add_picture_options(command, options.pictures);
   set_quality(options.quality_options(), Quality::good);
-  add_quality_wishes(command, options.quality_options());
+  add_goal_options(command, options.goal);
   add_picture_settings(command, options);
   add_projection_options(command, options);
   add_integrator_option(command, options);
@@ -170,7 +170,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE")
       ->group("Run");
   add_saved_maps_options(command, options);
-  exclude_chosen(command);
   command
       .add_option(
           "--errors", options.errors,
@@ -238,9 +237,9 @@ void share_rendering(RenderOptions& options) {
   refuse(options.integrator == Integrator::path, "--integrator path");
   refuse(!options.save_maps.empty(), "--save-maps");
   refuse(!options.load_maps.empty(), "--load-maps");
-  for (const QualityWish& wish : quality_wishes()) {
-    if (options.target.*wish.value > 0) {
-      refuse_several(fmt::format("--{}", wish.option), "leave it out, or start one process");
+  for (const GoalOption& goal : goal_options()) {
+    if (options.goal.*goal.value > 0) {
+      refuse_several(fmt::format("--{}", goal.option), "leave it out, or start one process");
     }
   }
 }

@@ -16,7 +16,6 @@
 #include "tools/command/mood_options.hpp"
 #include "tools/command/picture_outputs.hpp"
 #include "tools/command/quality_options.hpp"
-#include "tools/trade/quality_target.hpp"
 
 namespace CLI {
 class App;
@@ -29,7 +28,7 @@ enum class Integrator { photon_map, path };
 
 /// As typed; each value is within its range.
 struct RenderOptions {
-  QualityOptions quality_options() { return {quality, target, parameters}; }
+  QualityOptions quality_options() { return {quality, parameters}; }
 
   std::string scene;
   PictureOptions pictures;
@@ -37,7 +36,7 @@ struct RenderOptions {
   Integrator integrator = Integrator::photon_map;
   std::string direct;  ///< "photons" or "rays" bring the light straight from lamps; "" = any
   Quality quality = Quality::draft;  ///< the settings are its own but for those given
-  QualityTarget target;              ///< settings are chosen to meet it
+  RefinementGoal goal;               ///< pictures are made until it is met
   bool tuned = false;                ///< use the tuning that `photile devices --tune` stored
   std::string camera;
   std::string size;  ///< "" = by the camera

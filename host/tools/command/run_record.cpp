@@ -64,8 +64,8 @@ std::string devices_text(std::span<const DeviceInfo> devices) {
 /// What was asked for by name; the parameters are what followed.
 json asked_json(const RunRecord& record) {
   json asked{{"quality", name_of(record.quality)}};
-  for (const QualityWish& wish : quality_wishes()) {
-    if (record.target.*wish.value > 0) asked[std::string(wish.name)] = record.target.*wish.value;
+  for (const GoalOption& goal : goal_options()) {
+    if (record.goal.*goal.value > 0) asked[std::string(goal.name)] = record.goal.*goal.value;
   }
   return asked;
 }
@@ -111,10 +111,10 @@ void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
   attributes["photile.camera"] = record.camera;
   attributes["photile.integrator"] = record.integrator;
   attributes["photile.quality"] = name_of(record.quality);
-  for (const QualityWish& wish : quality_wishes()) {
-    if (record.target.*wish.value == 0) continue;
-    attributes["photile." + std::string(wish.name)] =
-        fmt::format("{}{}", record.target.*wish.value, wish.type == "TIME" ? " seconds" : "");
+  for (const GoalOption& goal : goal_options()) {
+    if (record.goal.*goal.value == 0) continue;
+    attributes["photile." + std::string(goal.name)] =
+        fmt::format("{}{}", record.goal.*goal.value, goal.type == "TIME" ? " seconds" : "");
   }
   if (!record.denoiser.empty()) attributes["photile.denoiser"] = record.denoiser;
   attributes["photile.times"] = times_text(record.stages);

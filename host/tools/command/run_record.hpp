@@ -14,7 +14,7 @@
 #include "photile/renderer.hpp"
 #include "photile/settings.hpp"
 #include "photile/statistics.hpp"
-#include "tools/trade/quality_target.hpp"
+#include "render/refinement.hpp"
 
 namespace photile::app {
 
@@ -33,7 +33,7 @@ struct RunRecord {
   std::string camera;
   std::string integrator;  ///< "photon-map" or "path", which has no devices, maps and photons
   Quality quality = Quality::draft;  ///< whose settings are used but for those given
-  QualityTarget target;              ///< that settings were chosen for
+  RefinementGoal goal;               ///< until which pictures were made
   RenderParameters used;             ///< RenderResult::used, or what paths were asked for
   std::vector<DeviceInfo> devices;
   std::vector<double> device_shares;  ///< of the hits, per device

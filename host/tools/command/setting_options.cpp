@@ -152,9 +152,9 @@ std::string settings_table() {
   }
   text += fmt::format("| **Quality** | | | | |\n| `--quality` | {} | one of {} | good | all |\n",
                       quality_help, fmt::join(quality_names(), ", "));
-  for (const QualityWish& wish : quality_wishes()) {
-    text += fmt::format("| `--{}` | {} | {} | | all |\n", wish.option, wish.help,
-                        wish.type == "TIME" ? "such as `33ms`, `10s`, `2min`" : "such as `1.5%`");
+  for (const GoalOption& goal : goal_options()) {
+    text += fmt::format("| `--{}` | {} | {} | | all |\n", goal.option, goal.help,
+                        goal.type == "TIME" ? "such as `33ms`, `10s`, `2min`" : "such as `1.5%`");
   }
   return text + "\n### Quality\n\n" + quality_table();
 }
