@@ -6,7 +6,7 @@ namespace photile::estimate {
 
 EstimateWriter::EstimateWriter(const SceneNeeds& needs, Estimates& estimates)
     : sparse_(needs.many_lights()),
-      glossy_(needs.glossy),
+      has_radiance_(needs.glossy || needs.smooth_shading),
       estimates_(estimates),
       irradiance_(needs.light_count, glm::vec3(0.0f)),
       radiance_(needs.light_count, glm::vec3(0.0f)),
@@ -44,7 +44,7 @@ void EstimateWriter::end_hit() {
 
 void EstimateWriter::append(std::uint32_t layer) {
   estimates_.irradiance.push_back(irradiance_[layer]);
-  if (glossy_) estimates_.radiance.push_back(radiance_[layer]);
+  if (has_radiance_) estimates_.radiance.push_back(radiance_[layer]);
 }
 
 }  // namespace photile::estimate

@@ -27,7 +27,7 @@ class EstimateWriter {
  private:
   void append(std::uint32_t layer);
 
-  bool sparse_, glossy_;
+  bool sparse_, has_radiance_;
   Estimates& estimates_;
   std::vector<glm::vec3> irradiance_, radiance_;  ///< per layer, of the hit
   std::vector<std::uint8_t> is_lit_;              ///< per layer

@@ -138,7 +138,7 @@ void SceneBuilder::Impl::finish(Scene& built) const {
   if (built.triangles.empty()) refuse("no triangle has an area; add a mesh");
   const SceneNeeds needs = scene_io::needs_of_materials(built.materials);
   if (!needs.textures) built.corner_uv.clear();
-  if (!needs.glossy && !needs.specular_paths) built.corner_normal.clear();
+  scene_io::drop_flat_normals(built, needs);
   if (!needs.normal_maps) built.corner_tangent.clear();
   const double radius = bounding_sphere(built).radius;
   for (const auto& [light, irradiance] : distant_lights) {

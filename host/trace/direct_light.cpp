@@ -120,6 +120,7 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
                        const glm::vec3& direction, ReflectedPart part, int count,
                        const LookSamples& samples, std::vector<ReceivedLight>& found) {
   OpaqueBsdf bsdf(rays.scene(), point, direction);
+  bsdf.shade_smoothly(rays.scene(), point);
   if (part == ReflectedPart::but_the_base) bsdf.drop_diffuse();
   if (part == ReflectedPart::but_the_lobe) bsdf.drop_lobe();
   const Receiver receiver(point, bsdf);

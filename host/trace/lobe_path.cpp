@@ -43,7 +43,8 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
   glm::vec3 left(1.0f);  // of the light, since the first lobe
   for (int depth = 1; depth <= setup.parameters->max_specular_depth; ++depth) {
     const auto surface = static_cast<std::uint32_t>(2 * depth);
-    const OpaqueBsdf whole(scene, end.point, end.ray.direction);
+    OpaqueBsdf whole(scene, end.point, end.ray.direction);
+    whole.shade_smoothly(scene, end.point);
     OpaqueBsdf lobe = whole;
     lobe.keep_lobe();
     const LookSamples::Look look = LookSamples(sample.of_pixel, sample.index, surface - 1).look(0);

@@ -21,7 +21,10 @@ constexpr float most_lobe_rays = 8, scattering_lobe_alpha = 0.04f;
 
 OpaqueBsdf::OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
                        PathStart start)
-    : surface_(reflectance(scene, point)), normal_(point.normal), start_(start) {
+    : surface_(reflectance(scene, point)),
+      normal_(point.normal),
+      base_normal_(point.normal),
+      start_(start) {
   const bool mapped = material_of(scene, point).normal_texture != none;
   if (surface_.f90 > 0.0f || mapped) lobe_ = lobe_of(scene, point, direction);
 }
@@ -46,6 +49,11 @@ OpaqueBsdf::Lobe OpaqueBsdf::lobe_of(const Scene& scene, const SurfacePoint& poi
   lobe.albedo = in_front ? specular_albedo : 0.0f;
   lobe.share = sum > 0.0f && in_front ? specular_albedo / sum : 0.0f;
   return lobe;
+}
+
+void OpaqueBsdf::shade_smoothly(const Scene& scene, const SurfacePoint& point) {
+  if (material_of(scene, point).normal_texture != none) return;
+  base_normal_ = shading_normal(scene, point);
 }
 
 void OpaqueBsdf::drop_diffuse() {
@@ -89,20 +97,21 @@ std::optional<glm::vec3> OpaqueBsdf::sample(const RandomBlock& random) const {
     const glm::vec3 half = sample_ggx_visible_normal(view, surface_.alpha, u1, u2);
     direction = glm::normalize(lobe_->frame.to_world(2.0f * glm::dot(view, half) * half - view));
   } else {
-    direction = Frame(normal_).to_world(sample_cosine_hemisphere(u1, u2));
+    direction = Frame(base_normal_).to_world(sample_cosine_hemisphere(u1, u2));
   }
   // A Lambertian direction along the surface differs from it by rounding alone.
-  if (lobe_ && !(glm::dot(direction, normal_) > 0.0f)) return std::nullopt;
+  if (!lambertian() && !(glm::dot(direction, normal_) > 0.0f)) return std::nullopt;
   return direction;
 }
 
 float OpaqueBsdf::density(const glm::vec3& direction) const {
   const float cosine = glm::dot(direction, normal_);
   if (!(cosine > 0.0f)) return 0.0f;
-  if (!lobe_) return cosine / PHOTILE_PI;
+  const float of_base = std::max(0.0f, glm::dot(direction, base_normal_)) / PHOTILE_PI;
+  if (!lobe_) return of_base;
   const glm::vec3 half = glm::normalize(lobe_->view + lobe_->frame.to_local(direction));
   return lobe_->share * ggx_reflection_density(lobe_->n_dot_view, half.z, surface_.alpha) +
-         (1.0f - lobe_->share) * cosine / PHOTILE_PI;
+         (1.0f - lobe_->share) * of_base;
 }
 
 float OpaqueBsdf::bump_at(const glm::vec3& out) const {
@@ -113,8 +122,8 @@ float OpaqueBsdf::bump_at(const glm::vec3& out) const {
 }
 
 glm::vec3 OpaqueBsdf::base_deviation(const glm::vec3& direction) const {
-  const float cosine = glm::dot(direction, normal_);
-  if (!lobe_ || !(cosine > 0.0f)) return glm::vec3(0.0f);
+  if (!lobe_ || !(glm::dot(direction, normal_) > 0.0f)) return glm::vec3(0.0f);
+  const float cosine = std::max(0.0f, glm::dot(direction, base_normal_));
   const glm::vec3 out = lobe_->frame.to_local(direction), mean = base_reflectance() / PHOTILE_PI;
   float f0_weight = 0, f90_weight = 0;
   photile_lobe_albedo(&lobe_->fit, out.z, &f0_weight, &f90_weight);
@@ -130,7 +139,8 @@ glm::vec3 OpaqueBsdf::base_deviation(const glm::vec3& direction) const {
 glm::vec3 OpaqueBsdf::reflected(const glm::vec3& direction) const {
   const float cosine = glm::dot(direction, normal_);
   if (!(cosine > 0.0f)) return glm::vec3(0.0f);
-  if (!lobe_) return surface_.albedo * (cosine / PHOTILE_PI);
+  const float base_cosine = std::max(0.0f, glm::dot(direction, base_normal_));
+  if (!lobe_) return surface_.albedo * (base_cosine / PHOTILE_PI);
   const glm::vec3 out = lobe_->frame.to_local(direction);
   const glm::vec3 half = glm::normalize(lobe_->view + out);
   const bool behind = lobe_->mapped && !(lobe_->view.z > 0.0f);
@@ -146,6 +156,7 @@ glm::vec3 OpaqueBsdf::reflected(const glm::vec3& direction) const {
                                           lobe_->diffuse[2][c], f0_weight, f90_weight);
     result[c] =
         bump * cosine * photile_opaque_bsdf(diffuse, surface_.f0[c], surface_.f90, schlick, lobe);
+    if (base_cosine != cosine) result[c] += (base_cosine - cosine) * diffuse;
   }
   return result;
 }

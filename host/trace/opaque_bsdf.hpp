@@ -19,12 +19,18 @@ enum class PathStart : std::uint8_t { eye, light };
 
 /// Directions are unit and point away from the surface. Cosines are those to the geometric normal,
 /// as in the radiance estimate; the lobe turns with the shading normal, and a normal map weighs
-/// light by its cosine to the mapped one.
+/// light by its cosine to the mapped one. The base of a surface without a normal map may be made to
+/// weigh light by its cosine to the interpolated normal.
 class OpaqueBsdf {
  public:
   /// `direction`: of the ray that arrives at the point, unit.
   OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
              PathStart start = PathStart::eye);
+
+  /// Lets the base weigh light by its cosine to the shading normal, as an eye is to see it: light
+  /// between surfaces goes by the geometric one, so that none is lost or made. Light from below the
+  /// geometric surface is not seen in either case. Does nothing where there is a normal map.
+  void shade_smoothly(const Scene& scene, const SurfacePoint& point);
 
   /// Leaves the reflection of the base out; directions are drawn as before.
   void drop_diffuse();
@@ -53,6 +59,9 @@ class OpaqueBsdf {
   /// What reflection but for one facet's is at a direction, f x cosine per steradian, less what it
   /// is in the mean over all of them: a coat lets less through at grazing angles.
   glm::vec3 base_deviation(const glm::vec3& direction) const;
+
+  /// Whether it is a Lambertian lobe about the geometric normal, and nothing else.
+  bool lambertian() const { return !lobe_ && base_normal_ == normal_; }
 
   /// Whether it is more than a Lambertian lobe.
   bool glossy() const { return lobe_.has_value(); }
@@ -87,6 +96,7 @@ class OpaqueBsdf {
 
   scene_io::Reflectance surface_;
   glm::vec3 normal_;
+  glm::vec3 base_normal_;  ///< that the base weighs light by
   PathStart start_;
   std::optional<Lobe> lobe_;  ///< none where the surface is Lambertian
 };

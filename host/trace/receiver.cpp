@@ -10,14 +10,14 @@ namespace photile::trace {
 
 std::optional<glm::vec3> Receiver::sample(const RandomBlock& choice,
                                           const RandomBlock& random) const {
-  if (!bsdf_.glossy() || choice.bit(0)) return bsdf_.sample(random);
+  if (bsdf_.lambertian() || choice.bit(0)) return bsdf_.sample(random);
   return Frame(point_.normal)
       .to_world(sample_cosine_hemisphere(random.uniform(direction_word),
                                          random.uniform(direction_word + 1)));
 }
 
 float Receiver::density(const glm::vec3& direction) const {
-  if (!bsdf_.glossy()) return bsdf_.density(direction);
+  if (bsdf_.lambertian()) return bsdf_.density(direction);
   return 0.5f * (bsdf_.density(direction) + cosine(direction) / PHOTILE_PI);
 }
 

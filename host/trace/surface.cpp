@@ -68,7 +68,8 @@ SurfacePoint on_side(const TriangleHit& where, const Interpolated& at, std::uint
   return point;
 }
 
-glm::vec3 smooth_normal(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) {
+/// The normal of the corners, on the side of the point; the geometric one where the file has none.
+glm::vec3 interpolated_normal(const Scene& scene, const SurfacePoint& point) {
   if (scene.corner_normal.empty()) return point.normal;
   const auto& corner = scene.corner_normal[point.where.triangle];
   if (corner[0] == glm::vec3(0.0f) || corner[1] == glm::vec3(0.0f) || corner[2] == glm::vec3(0.0f))
@@ -77,8 +78,11 @@ glm::vec3 smooth_normal(const Scene& scene, const SurfacePoint& point, const glm
   glm::vec3 normal = (1.0f - u - v) * corner[0] + u * corner[1] + v * corner[2];
   if (!on_front(scene, point)) normal = -normal;
   const float length = glm::length(normal);
-  if (!(length > 0.0f)) return point.normal;
-  normal /= length;
+  return length > 0.0f ? normal / length : point.normal;
+}
+
+glm::vec3 smooth_normal(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) {
+  const glm::vec3 normal = interpolated_normal(scene, point);
   return glm::dot(normal, direction) < 0.0f ? normal : point.normal;
 }
 
@@ -156,6 +160,11 @@ float opacity(const Scene& scene, const SurfacePoint& point) {
   }
   if (material.opacity_cutoff > 0.0f) return share >= material.opacity_cutoff ? 1.0f : 0.0f;
   return std::clamp(share, 0.0f, 1.0f);
+}
+
+glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point) {
+  const glm::vec3 normal = interpolated_normal(scene, point);
+  return glm::dot(normal, point.normal) > 0.0f ? normal : point.normal;
 }
 
 ShadingNormals shading_normals(const Scene& scene, const SurfacePoint& point,

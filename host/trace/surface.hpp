@@ -74,6 +74,11 @@ scene_io::Reflectance reflectance(const Scene& scene, const SurfacePoint& point)
 /// Share of the surface that is there, in [0, 1]; 1 where its material has no holes.
 float opacity(const Scene& scene, const SurfacePoint& point);
 
+/// The unit interpolated normal of a point's corners, on its side: the same from wherever it is
+/// seen. The geometric one where the file has none, or where the two are more than a right angle
+/// apart.
+glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point);
+
 /// Unit shading normals at a point where a ray arrives, on its side.
 struct ShadingNormals {
   /// Of the corners; the geometric one where the file has none, or where the ray would arrive at

@@ -54,8 +54,8 @@ struct EstimateParameters {
 /// max_dense_lights lights only of those whose photons a hit found, at most min(k, lights).
 struct Estimates {
   std::vector<glm::vec3> irradiance;  ///< W/m2 or lm/m2, linear RGB
-  /// Reflected radiance towards the eye. Empty unless the scene is glossy: elsewhere radiance is
-  /// albedo / pi x irradiance.
+  /// Reflected radiance towards the eye. Where it is empty, as photon maps leave it unless the scene
+  /// is glossy, radiance is albedo / pi x irradiance.
   std::vector<glm::vec3> radiance;
 
   // With many lights, else empty:

@@ -17,6 +17,8 @@ inline constexpr std::uint32_t max_dense_lights = 8;
 struct SceneNeeds {
   bool glossy = false;          ///< some opaque material has a specular lobe or a normal map
   bool normal_maps = false;     ///< some opaque material has a normal map
+  /// Some opaque surface without a normal map has vertex normals that differ from its triangles'.
+  bool smooth_shading = false;
   bool textures = false;        ///< some material has a texture
   bool specular_paths = false;  ///< some material is a mirror or glass
   bool see_through = false;  ///< some material is thin glass or has holes, which shadow rays pass

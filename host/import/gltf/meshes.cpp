@@ -44,7 +44,7 @@ class MeshImporter {
         needs_(needs_of_materials(context.scene.materials)),
         builder_(context.scene,
                  {needs_.textures, has_emission_texture(context),
-                  needs_.glossy || needs_.specular_paths, has_normal_map(context.scene)}),
+                  true, has_normal_map(context.scene)}),
         instances_(context.scene),
         plain_materials_(context.scene) {
     for (const NodeVisit& visit : visits) ++uses_[mesh_of(visit)];
@@ -54,6 +54,7 @@ class MeshImporter {
   void add_panel(const NodeVisit& visit, std::uint64_t visit_number);
   void finish() {
     builder_.finish();
+    drop_flat_normals(context_.scene, needs_);
     instances_.finish();
   }
 
@@ -209,8 +210,7 @@ PlacedVertices MeshImporter::read_vertices(const tinygltf::Primitive& primitive,
   const MaterialCoordinates& coordinates = coordinates_[surface.material];
   const Material& material = context_.scene.materials[surface.material];
   const std::string name = material.name;
-  if (needs_.glossy || needs_.specular_paths)
-    normals = read_attribute(primitive, "NORMAL", 3, mesh_name);
+  normals = read_attribute(primitive, "NORMAL", 3, mesh_name);
   if (normals.size() != 3 * count) normals.clear();
   if (material.normal_texture != none && !normals.empty()) {
     tangents = read_attribute(primitive, "TANGENT", 4, mesh_name);

@@ -174,14 +174,14 @@ void import_obj(ImportContext& context) {
   const std::vector<std::uint32_t> material_index =
       add_materials(file, read_obj_libraries(findings.libraries, context), context);
   const SceneNeeds needs = needs_of_materials(context.scene.materials);
-  MeshBuilder builder(context.scene, {needs.textures, has_emission_texture(context),
-                                      needs.glossy || needs.specular_paths});
+  MeshBuilder builder(context.scene, {needs.textures, has_emission_texture(context), true});
   PlainMaterials plain_materials(context.scene);
   for (const ObjFace& face : file.faces) {
     const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;
     add_face(file, face, material_index[name], builder, plain_materials, context);
   }
   builder.finish();
+  drop_flat_normals(context.scene, needs);
 }
 
 }  // namespace photile::scene_io
