@@ -76,6 +76,7 @@ void Estimates::append(Estimates part) {
   const std::uint64_t before = irradiance.size();
   irradiance.insert(irradiance.end(), part.irradiance.begin(), part.irradiance.end());
   radiance.insert(radiance.end(), part.radiance.begin(), part.radiance.end());
+  by_normal.insert(by_normal.end(), part.by_normal.begin(), part.by_normal.end());
   light.insert(light.end(), part.light.begin(), part.light.end());
   for (std::size_t hit = 1; hit < part.first.size(); ++hit) {
     first.push_back(before + part.first[hit]);

@@ -82,13 +82,15 @@ void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uin
   for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
     const trace::EyeHit& hit = light.rays.ends.hits[end];
     const std::uint32_t batch = hit.pixel / rays_per_batch % batches;
+    const glm::vec3 direction = light.rays.direction_of(hit.pixel);
     if (light.own_of[end] != none) {
       const EndEstimates& own = light.own;
       for_each_estimate(
           own.estimates, light.own_of[end], lights, [&](std::size_t layer, std::size_t i) {
-            sums.add(static_cast<std::uint32_t>(layer), batch,
-                     light.weight[end] *
-                         reflected_radiance(own.hits, light.own_of[end], own.estimates, i));
+            sums.add_surface(static_cast<std::uint32_t>(layer), batch,
+                             light.weight[end] *
+                                 reflected_radiance(own.hits, light.own_of[end], own.estimates, i),
+                             direction);
           });
       continue;
     }
@@ -97,7 +99,8 @@ void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uin
       if (blend.weight[corner] == 0.0f) continue;
       const glm::vec3 weight = blend.weight[corner] * light.weight[end];
       for_each_estimate(values, blend.node[corner], lights, [&](std::size_t layer, std::size_t i) {
-        sums.add(static_cast<std::uint32_t>(layer), batch, weight * values.irradiance[i]);
+        sums.add_surface(static_cast<std::uint32_t>(layer), batch, weight * values.irradiance[i],
+                         direction);
       });
     }
   }

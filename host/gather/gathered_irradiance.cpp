@@ -37,7 +37,7 @@ void append_rows(std::vector<T>& to, const std::vector<T>& from, std::size_t fir
 
 std::uint64_t GatheredIrradiance::bytes() const {
   return mean.irradiance.size() * sizeof(glm::vec3) + mean.first.size() * sizeof(std::uint64_t) +
-         mean.light.size() * sizeof(std::uint16_t) +
+         mean.light.size() * sizeof(std::uint16_t) + mean.by_normal.size() * sizeof(glm::vec4) +
          (batch.size() + shared_variance.size()) * sizeof(float);
 }
 
@@ -72,6 +72,7 @@ void GatheredIrradiance::append(const GatheredIrradiance& other, std::size_t poi
   const auto in_row = static_cast<std::size_t>(other.batches);
   batches = other.batches;
   append_rows(mean.irradiance, other.mean.irradiance, first, count);
+  append_rows(mean.by_normal, other.mean.by_normal, first, count);
   append_rows(batch, other.batch, first * in_row, count * in_row);
   append_rows(shared_variance, other.shared_variance, first, count);
   if (!sparse) return;
@@ -94,6 +95,7 @@ GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance&
   sum.batches = a.batches;
   const bool sparse = !a.mean.first.empty();
   const bool shared = !a.shared_variance.empty() || !b.shared_variance.empty();
+  const bool smooth = !a.mean.by_normal.empty() || !b.mean.by_normal.empty();
   const auto count = static_cast<std::size_t>(a.batches);
   if (sparse) sum.mean.first.push_back(0);
   std::vector<std::size_t> place(lights);
@@ -106,12 +108,14 @@ GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance&
         if (place[layer] == first + lights) {
           place[layer] = sum.mean.irradiance.size();
           sum.mean.irradiance.emplace_back(0.0f);
+          if (smooth) sum.mean.by_normal.emplace_back(0.0f);
           sum.batch.resize(sum.batch.size() + count, 0.0f);
           if (sparse) sum.mean.light.push_back(static_cast<std::uint16_t>(layer));
           if (shared) sum.shared_variance.push_back(0);
         }
         const std::size_t to = place[layer];
         sum.mean.irradiance[to] += part->mean.irradiance[i];
+        if (smooth) sum.mean.by_normal[to] += part->mean.by_normal[i];
         for (std::size_t b = 0; b < count; ++b) {
           sum.batch[to * count + b] += part->batch[i * count + b];
         }

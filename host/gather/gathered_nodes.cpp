@@ -163,7 +163,9 @@ Estimates GatheredNodes::errors() const {
   Estimates errors = all.mean;
   for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
     const double light = luminance(glm::dvec3(all.mean.irradiance[i]));
-    errors.irradiance[i] *= light > 0 ? static_cast<float>(all.error(i) / light) : 0.0f;
+    const float relative = light > 0 ? static_cast<float>(all.error(i) / light) : 0.0f;
+    errors.irradiance[i] *= relative;
+    if (!errors.by_normal.empty()) errors.by_normal[i] *= relative;
   }
   return errors;
 }

@@ -60,7 +60,8 @@ struct RunLight {
     const trace::HemisphereRays& met = traced->rays;
     for (std::size_t e = met.first_direct[i]; e < met.first_direct[i + 1]; ++e) {
       const SeenEmission& light = met.ends.direct[e];
-      sums.add(light.light, batch_of(light.pixel), light.radiance);
+      sums.add_surface(light.light, batch_of(light.pixel), light.radiance,
+                       met.direction_of(light.pixel));
     }
   }
   ///   indirect   luminance of the irradiance of all lights together
@@ -116,7 +117,9 @@ struct RunLight {
                                  defaults::most_looks_again / parameters.batches);
       std::span<const trace::LampLooks::Found> found = found_by(looks_per_batch);
       if (again > looks_per_batch && is_uncertain(found, indirect)) found = found_by(again);
-      for (const auto& light : found) sums.add(light.layer, light.tag, light.irradiance);
+      for (const auto& light : found) {
+        sums.add_lamp(light.layer, light.tag, light.irradiance, light.direction);
+      }
       return;
     }
     thread_local std::vector<trace::ReceivedLight> found;
@@ -125,7 +128,7 @@ struct RunLight {
       trace::find_direct_light(rays, lamps, where, -where.normal, trace::ReflectedPart::all,
                                looks_per_batch, samples_of(batch), found);
       for (const trace::ReceivedLight& light : found) {
-        sums.add(light.layer, batch, light.irradiance);
+        sums.add_even(light.layer, batch, light.irradiance);
       }
     }
   }
@@ -149,7 +152,8 @@ struct RunLight {
     const trace::HemisphereRays& met = traced->rays;
     for (std::size_t e = met.first_emission[i]; e < met.first_emission[i + 1]; ++e) {
       const SeenEmission& lamp = met.ends.emission[e];
-      sums.add(lamps.layer(lamp.light), batch_of(lamp.pixel), lamp.radiance);
+      sums.add_lamp(lamps.layer(lamp.light), batch_of(lamp.pixel), lamp.radiance,
+                    met.direction_of(lamp.pixel));
     }
   }
 };
@@ -166,6 +170,12 @@ void add_run(const RunLight& light, std::size_t first, std::size_t count, Gather
     BatchSums direct(needs, batches, light.caustic_relative_variance > 0, own.direct);
     const std::size_t last = std::min(count, (part + 1) * points_per_task);
     for (std::size_t i = part * points_per_task; i < last; ++i) {
+      if (needs.smooth_shading) {
+        const glm::vec3 normal =
+            trace::point_of(light.rays.scene(), light.points, first + i).normal;
+        indirect.begin_point(normal);
+        direct.begin_point(normal);
+      }
       light.add_indirect(i, indirect);
       indirect.end_point();
       const std::size_t row = i - part * points_per_task;
@@ -183,6 +193,7 @@ void add_run(const RunLight& light, std::size_t first, std::size_t count, Gather
 
 void put(const GatheredIrradiance& part, ByteWriter& bytes) {
   bytes.put(part.mean.irradiance);
+  bytes.put(part.mean.by_normal);
   bytes.put(part.mean.first);
   bytes.put(part.mean.light);
   bytes.put(part.batch);
@@ -201,6 +212,7 @@ void append(ByteReader& reader, GatheredIrradiance& all) {
   GatheredIrradiance part;
   part.batches = all.batches;
   reader.append_to(part.mean.irradiance);
+  reader.append_to(part.mean.by_normal);
   reader.append_to(part.mean.first);
   reader.append_to(part.mean.light);
   reader.append_to(part.batch);

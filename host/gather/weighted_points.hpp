@@ -42,6 +42,7 @@ class WeightedPoints {
            const Weight& weight_of) {
     for_each_estimate(from.mean, point, sums_.size(),
                       [&](std::size_t layer, std::size_t) { light(layer); });
+    smooth_ = smooth_ || !from.mean.by_normal.empty();
     for (const std::uint16_t layer : lit_) {
       sums_[layer].weight = weight_of(layer);
       sums_[layer].weights += sums_[layer].weight;
@@ -49,6 +50,7 @@ class WeightedPoints {
     for_each_estimate(from.mean, point, sums_.size(), [&](std::size_t layer, std::size_t i) {
       Sums& sums = sums_[layer];
       sums.irradiance += sums.weight * glm::dvec3(from.mean.irradiance[i]);
+      if (smooth_) sums.by_normal += sums.weight * glm::dvec4(from.mean.by_normal[i]);
       for (std::size_t b = 0; b < batches_; ++b) {
         batch_[layer * batches_ + b] += sums.weight * double{from.batch[i * batches_ + b]};
       }
@@ -77,6 +79,7 @@ class WeightedPoints {
   /// Of one layer, weighted.
   struct Sums {
     glm::dvec3 irradiance{0.0};
+    glm::dvec4 by_normal{0.0};
     double error = 0;  ///< that all batches share
     double weights = 0;
     double weight = 0;  ///< of the point that is being added
@@ -86,6 +89,7 @@ class WeightedPoints {
   void write(std::uint16_t layer) {
     Sums& sums = sums_[layer];
     to_.mean.irradiance.emplace_back(sums.irradiance / sums.weights);
+    if (smooth_) to_.mean.by_normal.emplace_back(sums.by_normal / sums.weights);
     if (sparse_) to_.mean.light.push_back(layer);
     for (std::size_t b = 0; b < batches_; ++b) {
       double& sum = batch_[layer * batches_ + b];
@@ -101,6 +105,7 @@ class WeightedPoints {
 
   GatheredIrradiance& to_;
   bool sparse_, shared_;
+  bool smooth_ = false;  ///< once a point tells light by the normal, as all do that have light
   std::size_t batches_;
   std::vector<Sums> sums_;     ///< per layer
   std::vector<double> batch_;  ///< [layer][batch], weighted

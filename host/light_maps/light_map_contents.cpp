@@ -32,6 +32,15 @@ bool are_values_of(const Estimates& values, std::size_t nodes, const SceneNeeds&
          maps::all_below(values.light, needs.light_count);
 }
 
+/// Whether the values tell light by the normal, where rays found it and the scene asks for it
+/// alone.
+bool tell_by_normal(const Estimates& values, bool wanted) {
+  return values.by_normal.size() == (wanted ? values.irradiance.size() : 0) &&
+         std::all_of(values.by_normal.begin(), values.by_normal.end(), [](const glm::vec4& light) {
+           return std::isfinite(light.x + light.y + light.z + light.w);
+         });
+}
+
 /// Whether these are errors and distances of so many nodes, or none.
 bool are_errors_of(const std::vector<float>& error, const std::vector<float>& distance,
                    std::size_t nodes) {
@@ -106,6 +115,7 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
     const std::size_t last = many ? all.values.first[node + 1] : first + lights;
     for (std::size_t i = first; i < last; ++i) {
       left.values.irradiance.push_back(all.values.irradiance[i]);
+      if (!all.values.by_normal.empty()) left.values.by_normal.push_back(all.values.by_normal[i]);
       if (many) left.values.light.push_back(all.values.light[i]);
     }
     if (many) left.values.first.push_back(left.values.light.size());
@@ -141,6 +151,7 @@ void LightMaps::restore(LightMapContents contents) {
   Tiles& tiles = impl_->tiles;
   const std::size_t count = contents.nodes.size();
   fit(are_values_of(contents.values, count, impl_->needs));
+  fit(tell_by_normal(contents.values, impl_->needs.smooth_shading && !contents.error.empty()));
   fit(are_errors_of(contents.error, contents.distance, count));
   for (std::uint32_t node = 0; node < count; ++node) {
     const auto& [chart, x, y] = contents.nodes[node];

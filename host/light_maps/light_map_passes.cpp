@@ -15,7 +15,8 @@ struct Valued {
 };
 
 /// The mean of the passes before and one more.
-glm::vec3 with(const glm::vec3& mean, const glm::vec3& light, std::uint32_t passes) {
+template <class Light>
+Light with(const Light& mean, const Light& light, std::uint32_t passes) {
   return mean + (light - mean) / static_cast<float>(passes + 1);
 }
 
@@ -25,6 +26,9 @@ void add_dense(std::uint32_t passes, const Valued& valued, std::size_t lights, E
     for (std::size_t light = 0; light < lights; ++light) {
       glm::vec3& mean = means.irradiance[valued.nodes[i] * lights + light];
       mean = with(mean, valued.light.irradiance[i * lights + light], passes);
+      if (means.by_normal.empty()) continue;
+      glm::vec4& by_normal = means.by_normal[valued.nodes[i] * lights + light];
+      by_normal = with(by_normal, valued.light.by_normal[i * lights + light], passes);
     }
   }
 }
@@ -40,9 +44,14 @@ void add_rows(std::uint32_t passes, std::span<const Valued> all, std::size_t lig
   for (const Valued& valued : all) {
     for (std::size_t i = 0; i < valued.nodes.size(); ++i) row_of[valued.nodes[i]] = {&valued, i};
   }
+  const bool smooth =
+      !means.by_normal.empty() || std::any_of(all.begin(), all.end(), [](const Valued& valued) {
+        return !valued.light.by_normal.empty();
+      });
   Estimates written;
   written.first.push_back(0);
   std::vector<glm::vec3> found(lights, glm::vec3(0.0f));  // by the pass
+  std::vector<glm::vec4> by_normal(lights, glm::vec4(0.0f));
   std::vector<std::uint8_t> held(lights, 0);
   for (std::size_t node = 0; node < row_of.size(); ++node) {
     const auto [valued, place] = row_of[node];
@@ -50,20 +59,31 @@ void add_rows(std::uint32_t passes, std::span<const Valued> all, std::size_t lig
     const std::size_t last = valued ? valued->light.first[place + 1] : 0;
     for (std::size_t i = first; i < last; ++i) {
       found[valued->light.light[i]] += valued->light.irradiance[i];
+      if (smooth) by_normal[valued->light.light[i]] += valued->light.by_normal[i];
     }
-    const auto write = [&](std::uint16_t light, const glm::vec3& irradiance) {
+    const auto write = [&](std::uint16_t light, const glm::vec3& irradiance, const glm::vec4& own) {
       written.light.push_back(light);
       written.irradiance.push_back(irradiance);
+      if (smooth) written.by_normal.push_back(own);
     };
     for (std::size_t i = means.first[node]; i < means.first[node + 1]; ++i) {
       const std::uint16_t light = means.light[i];
-      write(light, valued ? with(means.irradiance[i], found[light], passes) : means.irradiance[i]);
+      const glm::vec4 own = smooth ? means.by_normal[i] : glm::vec4(0.0f);
+      if (valued) {
+        write(light, with(means.irradiance[i], found[light], passes),
+              with(own, by_normal[light], passes));
+      } else {
+        write(light, means.irradiance[i], own);
+      }
       held[light] = 1;
     }
     for (std::size_t i = first; i < last; ++i) {
       const std::uint16_t light = valued->light.light[i];
-      if (std::exchange(held[light], 1) == 0) write(light, with({}, found[light], passes));
+      if (std::exchange(held[light], 1) == 0) {
+        write(light, with({}, found[light], passes), with({}, by_normal[light], passes));
+      }
       found[light] = glm::vec3(0.0f);
+      by_normal[light] = glm::vec4(0.0f);
     }
     for (std::size_t i = written.first.back(); i < written.light.size(); ++i) {
       held[written.light[i]] = 0;

@@ -374,6 +374,7 @@ LightMapStatistics LightMaps::statistics() const {
           .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
                          values.first.size() * sizeof(std::uint64_t) +
                          values.light.size() * sizeof(std::uint16_t) +
+                         values.by_normal.size() * sizeof(glm::vec4) +
                          (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float) +
                          impl_->points.size() * (sizeof(NodePoint) + sizeof(NodePlace)),
           .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +

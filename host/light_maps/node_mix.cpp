@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "photile/scene.hpp"
 #include "photile/scene_needs.hpp"
 
 namespace photile::light_maps {
@@ -82,6 +83,22 @@ constexpr auto dense_mixes(std::index_sequence<less_one...>) {
   return std::array<MixDense, sizeof...(less_one)>{mix_dense<less_one + 1>...};
 }
 
+/// The same of light by the normal, which is in proportion to the luminance of the lights.
+///   layer   of value i
+template <class Layer>
+glm::vec4 summed_by_normal(const Estimates& values, std::size_t first, std::size_t last,
+                           std::span<const glm::vec3> powers, const Layer& layer) {
+  glm::vec4 sum(0.0f);
+  for (std::size_t i = first; i < last; ++i) {
+    const glm::dvec3 light(values.irradiance[i]);
+    const double own = luminance(light);
+    if (!(own > 0)) continue;
+    sum += static_cast<float>(luminance(glm::dvec3(powers[layer(i)]) * light) / own) *
+           values.by_normal[i];
+  }
+  return sum;
+}
+
 /// Whether a node holds light of a lamp, where nodes hold those alone that reach them.
 bool holds(const Estimates& values, std::size_t node, std::uint16_t light) {
   unsigned found = 0;
@@ -96,6 +113,9 @@ bool holds(const Estimates& values, std::size_t node, std::uint16_t light) {
 void NodeMix::keep(std::span<const std::uint32_t> nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) light_[i] = light_[nodes[i]];
   light_.resize(nodes.size());
+  if (by_normal_.empty()) return;
+  for (std::size_t i = 0; i < nodes.size(); ++i) by_normal_[i] = by_normal_[nodes[i]];
+  by_normal_.resize(nodes.size());
 }
 
 void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers) {
@@ -109,7 +129,9 @@ void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const gl
   const std::size_t first = changed.empty() ? known : 0;
   const bool dense = values.first.empty();
   const bool one_of_many = changed.size() == 1 && !dense;
+  const bool smooth = !values.by_normal.empty();
   light_.resize(nodes);
+  by_normal_.resize(smooth ? nodes : 0);
   powers_.assign(powers.begin(), powers.end());
   std::vector<Four> padded;
   for (const glm::vec3& power : powers) {
@@ -120,6 +142,11 @@ void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const gl
     const std::size_t begin = first + task * nodes_per_mix_task;
     const std::size_t end = std::min(nodes, begin + nodes_per_mix_task);
     if (dense) {
+      for (std::size_t node = begin; smooth && node < end; ++node) {
+        const std::size_t own = node * powers.size();
+        by_normal_[node] = summed_by_normal(values, own, own + powers.size(), powers,
+                                            [&](std::size_t i) { return i - own; });
+      }
       constexpr auto mixes = dense_mixes(std::make_index_sequence<max_dense_lights>());
       mixes[powers.size() - 1](values, begin, end, padded, light_);
       return;
@@ -131,6 +158,10 @@ void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const gl
       }
       light_[node] = summed(values, values.first[node], values.first[node + 1],
                             [&](std::size_t i) { return padded[values.light[i]]; });
+      if (!smooth) continue;
+      by_normal_[node] =
+          summed_by_normal(values, values.first[node], values.first[node + 1], powers,
+                           [&](std::size_t i) { return std::size_t{values.light[i]}; });
     }
   });
 }

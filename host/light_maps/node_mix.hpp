@@ -22,18 +22,23 @@ class NodeMix {
   void mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers);
 
   /// What nodes hold is not what it was.
-  void forget() { light_.clear(); }
+  void forget() {
+    light_.clear();
+    by_normal_.clear();
+  }
 
   /// Keeps these nodes alone, in this order.
   void keep(std::span<const std::uint32_t> nodes);
 
   /// Per node; the fourth is nothing.
   std::span<const glm::vec4> light() const { return light_; }
+  /// Likewise, luminance by the normal as Estimates has it; empty where nodes do not tell it.
+  std::span<const glm::vec4> by_normal() const { return by_normal_; }
   std::span<const glm::vec3> powers() const { return powers_; }
 
  private:
   std::vector<glm::vec3> powers_;
-  std::vector<glm::vec4> light_;
+  std::vector<glm::vec4> light_, by_normal_;
 };
 
 }  // namespace photile::light_maps

@@ -12,12 +12,14 @@
 #include "estimate/estimate_writer.hpp"
 #include "estimate/map_order.hpp"
 #include "light_maps/charts.hpp"
+#include "light_maps/turned_light.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/statistics.hpp"
 #include "render/reflected_radiance.hpp"
 #include "trace/flush_denormals.hpp"
+#include "trace/surface.hpp"
 
 namespace photile {
 namespace {
@@ -98,10 +100,11 @@ class Blend {
  public:
   ///   place    per hit: that of its own estimate, or none
   ///   ends     null where no hit reads them
-  Blend(const SceneNeeds& needs, const PrimaryHits& hits, const HitReading& reading,
-        const Estimates& nodes, const Estimates* ends, const Estimates& alone,
-        std::span<const std::uint32_t> place)
-      : needs_(needs),
+  Blend(const Scene& scene, const SceneNeeds& needs, const PrimaryHits& hits,
+        const HitReading& reading, const Estimates& nodes, const Estimates* ends,
+        const Estimates& alone, std::span<const std::uint32_t> place)
+      : scene_(scene),
+        needs_(needs),
         hits_(hits),
         reading_(reading),
         nodes_(nodes),
@@ -113,8 +116,11 @@ class Blend {
   Estimates of(std::size_t first, std::size_t last) const {
     Estimates estimates;
     estimate::EstimateWriter writer(needs_, estimates);
+    std::vector<ByNormal> layers(nodes_.by_normal.empty() ? 0 : needs_.light_count);
     for (std::size_t hit = first; hit < last; ++hit) {
-      if (place_[hit] == none) {
+      if (place_[hit] == none && reading_.levels[hit] != HitReading::ends && !layers.empty()) {
+        add_smoothly(hit, layers, writer);
+      } else if (place_[hit] == none) {
         add_from_maps(hit, reading_.levels[hit] == HitReading::ends ? *ends_ : nodes_, writer);
       } else {
         add_alone(hit, place_[hit], writer);
@@ -136,6 +142,42 @@ class Blend {
   }
 
  private:
+  /// What the nodes around a hit say of a layer.
+  struct ByNormal {
+    glm::vec3 irradiance{0.0f};
+    glm::vec4 by_normal{0.0f};
+  };
+
+  /// Irradiance is that of the surface; what is reflected goes by the shading normal, in the colour
+  /// of the irradiance.
+  ///   layers   of none
+  void add_smoothly(std::size_t hit, std::vector<ByNormal>& layers,
+                    estimate::EstimateWriter& writer) const {
+    const NodeBlend& blend = reading_.blends[hit];
+    const auto for_each_corner = [&](const auto& visit) {
+      for (std::size_t i = 0; i < blend.node.size(); ++i) {
+        if (blend.weight[i] == 0.0f) continue;
+        for_each_estimate(nodes_, blend.node[i], needs_.light_count,
+                          [&](std::size_t layer, std::size_t value) {
+                            visit(layers[layer], layer, value, blend.weight[i]);
+                          });
+      }
+    };
+    for_each_corner([&](ByNormal& light, std::size_t, std::size_t value, float weight) {
+      light.irradiance += weight * nodes_.irradiance[value];
+      light.by_normal += weight * nodes_.by_normal[value];
+    });
+    const glm::vec3 normal =
+        trace::shading_normal(scene_, hits_.sided_triangle[hit], hits_.position[hit]);
+    const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
+    for_each_corner([&](ByNormal& light, std::size_t layer, std::size_t, float) {
+      if (light.irradiance == glm::vec3(0.0f)) return;
+      writer.add(static_cast<std::uint32_t>(layer), light.irradiance,
+                 reflects * light_maps::turned(light.irradiance, light.by_normal, normal));
+      light = {};
+    });
+  }
+
   void add_from_maps(std::size_t hit, const Estimates& nodes,
                      estimate::EstimateWriter& writer) const {
     const NodeBlend& blend = reading_.blends[hit];
@@ -160,6 +202,7 @@ class Blend {
     });
   }
 
+  const Scene& scene_;
   const SceneNeeds& needs_;
   const PrimaryHits& hits_;
   const HitReading& reading_;
@@ -240,7 +283,7 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   const bool reads_ends = std::find(reading.levels.begin(), reading.levels.end(),
                                     int{HitReading::ends}) != reading.levels.end();
   const Estimates* ends = reads_ends ? &ends_[pass]->values() : nullptr;
-  const Blend blend(needs_, hits, reading, maps_.values(), ends, own, place);
+  const Blend blend(scene_, needs_, hits, reading, maps_.values(), ends, own, place);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
   std::vector<double> squared_errors(parts.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
@@ -277,7 +320,7 @@ Estimates LightMapEstimates::errors(const PrimaryHits& hits, const Estimates& es
   const auto relative = static_cast<float>(blotches().noise);
   for (glm::vec3& light : own.irradiance) light *= relative;
   for (glm::vec3& light : own.radiance) light *= relative;
-  const Blend blend(needs_, hits, reading, of_nodes, nullptr, own, place);
+  const Blend blend(scene_, needs_, hits, reading, of_nodes, nullptr, own, place);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::size_t first = part * hits_per_blend_task;

@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "light_maps/charts.hpp"
+#include "light_maps/turned_light.hpp"
 #include "photile/statistics.hpp"
 #include "trace/coherent_rays.hpp"
 #include "trace/eye_path.hpp"
@@ -347,10 +348,14 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_trian
     }
   }
   const std::span<const glm::vec4> light = mixed_.light();
-  const glm::vec4 sum =
-      (blend.weight[0] * light[blend.node[0]] + blend.weight[1] * light[blend.node[1]]) +
-      (blend.weight[2] * light[blend.node[2]] + blend.weight[3] * light[blend.node[3]]);
-  return glm::vec3(sum);
+  const auto blended = [&](std::span<const glm::vec4> of) {
+    return (blend.weight[0] * of[blend.node[0]] + blend.weight[1] * of[blend.node[1]]) +
+           (blend.weight[2] * of[blend.node[2]] + blend.weight[3] * of[blend.node[3]]);
+  };
+  const glm::vec3 sum(blended(light));
+  if (mixed_.by_normal().empty()) return sum;
+  return light_maps::turned(sum, blended(mixed_.by_normal()),
+                            trace::shading_normal(scene_, sided_triangle, position));
 }
 
 /// A ray that goes on: traced anew, with all that it meets.

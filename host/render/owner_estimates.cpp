@@ -40,7 +40,10 @@ Estimates part_of(const Estimates& all, std::size_t first, std::size_t count, st
     return Values(values.begin() + static_cast<std::ptrdiff_t>(begin),
                   values.begin() + static_cast<std::ptrdiff_t>(end));
   };
-  Estimates part{slice(all.irradiance), slice(all.radiance), {}, slice(all.light)};
+  Estimates part;
+  part.irradiance = slice(all.irradiance);
+  part.radiance = slice(all.radiance);
+  part.light = slice(all.light);
   for (std::size_t hit = 0; many && hit <= count; ++hit) {
     part.first.push_back(all.first[first + hit] - begin);
   }

@@ -29,7 +29,7 @@ namespace photile::saved_maps {
 namespace {
 
 constexpr std::array<char, 8> magic{'P', 'H', 'O', 'T', 'M', 'A', 'P', 'S'};
-constexpr std::uint32_t version = 4;
+constexpr std::uint32_t version = 5;
 constexpr std::uint32_t byte_order = 0x0102'0304;
 
 /// A run of arrays. No padding.
@@ -120,6 +120,7 @@ void for_each_light_map_array(Contents& contents, const Visit& visit) {
   visit(contents.settings);
   visit(contents.nodes);
   visit(contents.values.irradiance);
+  visit(contents.values.by_normal);
   visit(contents.values.first);
   visit(contents.values.light);
   visit(contents.error);

@@ -32,9 +32,8 @@ bool is_bent(const Scene& scene, std::uint32_t triangle) {
   const glm::dvec3 cross = glm::cross(glm::dvec3(corners[1]) - glm::dvec3(corners[0]),
                                       glm::dvec3(corners[2]) - glm::dvec3(corners[0]));
   const glm::vec3 own(glm::normalize(scene.front_side[triangle] == 0 ? cross : -cross));
-  return std::any_of(normals.begin(), normals.end(), [&](const glm::vec3& normal) {
-    return glm::dot(own, normal) < same_normal;
-  });
+  return std::any_of(normals.begin(), normals.end(),
+                     [&](const glm::vec3& normal) { return glm::dot(own, normal) < same_normal; });
 }
 
 bool any_smooth_shading(const Scene& scene) {

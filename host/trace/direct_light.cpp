@@ -150,7 +150,7 @@ void LampLooks::add(const LightSampler& lamps, const SurfacePoint& point,
   }
   if (arrives == glm::vec3(0.0f)) return;
   lines_.push_back({point.origin_towards(lamp->direction), lamp->target});
-  found_.push_back({tag, lamp->layer, arrives});
+  found_.push_back({tag, lamp->layer, arrives, lamp->direction});
 }
 
 std::span<const LampLooks::Found> LampLooks::found(const RayScene& rays) {

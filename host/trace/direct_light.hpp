@@ -86,6 +86,7 @@ class LampLooks {
   struct Found {
     std::uint32_t tag, layer;
     glm::vec3 irradiance;  ///< weighed, lm/m2
+    glm::vec3 direction;   ///< towards the lamp, unit
   };
   /// Of all looks, in their order, those that nothing hides.
   std::span<const Found> found(const RayScene& rays);

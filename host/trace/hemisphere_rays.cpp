@@ -24,6 +24,7 @@ struct TaskEnds {
   EyeRecord ends;
   std::vector<std::size_t> count, emission_count, direct_count;  ///< of each point
   std::vector<float> inverse_distances;                          ///< of each point
+  std::vector<glm::vec3> direction;                              ///< of each ray
 };
 
 /// What the rays of a run share.
@@ -86,7 +87,8 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
 /// All rays of a point. Returns the sum of their inverse distances to what they meet first.
 ///   run_point   its place in the run
 float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t number,
-                  std::uint32_t run_point, EyeRecord& ends) {
+                  std::uint32_t run_point, TaskEnds& found) {
+  EyeRecord& ends = found.ends;
   const HemisphereParameters& parameters = run.parameters;
   const auto batches = static_cast<std::uint32_t>(parameters.batches);
   const auto rays = static_cast<std::uint32_t>(parameters.rays);
@@ -104,6 +106,7 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
       const glm::vec2 place(sobol_point(i, scramble));
       const glm::vec3 direction =
           frame.to_world(sample_cosine_hemisphere(std::min(place.x, 0x1.fffffep-1f), place.y));
+      if (run.rays.needs().smooth_shading) found.direction.push_back(direction);
       // A stream for each, apart from the point's own.
       const std::uint32_t stream = batch * rays + i + 1;
       const RandomStream random(parameters.seed, number, stream);
@@ -150,6 +153,7 @@ HemisphereRays join(std::vector<TaskEnds> tasks) {
     append(all.ends.emission, task.ends.emission);
     append(all.ends.direct, task.ends.direct);
     append(all.inverse_distances, task.inverse_distances);
+    append(all.direction, task.direction);
     all.ends.rays += task.ends.rays;
   }
   all.ends.hits.resize(all.first.back());
@@ -206,7 +210,7 @@ HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points
       const std::size_t direct_before = found.ends.direct.size();
       found.inverse_distances.push_back(trace_point(run, point_of(rays.scene(), points, first + i),
                                                     number[first + i],
-                                                    static_cast<std::uint32_t>(i), found.ends));
+                                                    static_cast<std::uint32_t>(i), found));
       found.direct_count.push_back(found.ends.direct.size() - direct_before);
       found.count.push_back(found.ends.hits.size() - before);
       found.emission_count.push_back(found.ends.emission.size() - emission_before);

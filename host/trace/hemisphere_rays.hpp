@@ -41,8 +41,16 @@ struct HemisphereRays {
   /// Of the run's point i are [first[i], first[i + 1]): ends, lamps that its rays saw and light
   /// that reached near surface.
   std::vector<std::size_t> first, first_emission, first_direct;
+  /// Where each ray left its point to, unit, by its number (`pixel`); empty unless the scene has
+  /// smooth shading.
+  std::vector<glm::vec3> direction;
   /// Per point: sum of the inverse distances to the surfaces that rays met first, 1/m.
   std::vector<float> inverse_distances;
+
+  /// Nothing where directions are not kept.
+  glm::vec3 direction_of(std::uint32_t ray) const {
+    return direction.empty() ? glm::vec3(0.0f) : direction[ray];
+  }
 };
 
 /// What the surface of an end reflects towards its ray of light that is the same from everywhere.

@@ -167,6 +167,14 @@ glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point) {
   return glm::dot(normal, point.normal) > 0.0f ? normal : point.normal;
 }
 
+glm::vec3 shading_normal(const Scene& scene, std::uint32_t sided_triangle,
+                         const glm::vec3& position) {
+  return shading_normal(scene, surface_point(scene,
+                                             nearest_on_triangle(scene, triangle_of(sided_triangle),
+                                                                 glm::dvec3(position)),
+                                             side_of(sided_triangle)));
+}
+
 ShadingNormals shading_normals(const Scene& scene, const SurfacePoint& point,
                                const glm::vec3& direction) {
   const glm::vec3 smooth = smooth_normal(scene, point, direction);

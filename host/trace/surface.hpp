@@ -78,6 +78,9 @@ float opacity(const Scene& scene, const SurfacePoint& point);
 /// seen. The geometric one where the file has none, or where the two are more than a right angle
 /// apart.
 glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point);
+/// The same at a place, metres, on a side of a triangle.
+glm::vec3 shading_normal(const Scene& scene, std::uint32_t sided_triangle,
+                         const glm::vec3& position);
 
 /// Unit shading normals at a point where a ray arrives, on its side.
 struct ShadingNormals {

@@ -61,6 +61,10 @@ inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;
 /// so many times as often, but at most `most_looks_again` times: 2% shows as ragged borders.
 inline constexpr double tolerated_look_error = 0.02;
 inline constexpr int looks_again = 4, most_looks_again = 256;
+/// What a ray of a node counts for normals at a right angle to the node's is its light over the
+/// cosine, whose variance has no bound: up to so many times. Surface less than 2 degrees above the
+/// horizon then counts less for them, by 2% of what light of all heights alike does.
+inline constexpr float most_inverse_cosine = 32;
 /// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one place to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;

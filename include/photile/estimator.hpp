@@ -54,9 +54,12 @@ struct EstimateParameters {
 /// max_dense_lights lights only of those whose photons a hit found, at most min(k, lights).
 struct Estimates {
   std::vector<glm::vec3> irradiance;  ///< W/m2 or lm/m2, linear RGB
-  /// Reflected radiance towards the eye. Where it is empty, as photon maps leave it unless the scene
-  /// is glossy, radiance is albedo / pi x irradiance.
+  /// Reflected radiance towards the eye. Where it is empty, as photon maps leave it unless the
+  /// scene is glossy, radiance is albedo / pi x irradiance.
   std::vector<glm::vec3> radiance;
+  /// Luminance of irradiance by the normal, to first order: a plane of unit normal n there gets
+  /// dot(xyz, n) + w. Only of nodes that rays value, in scenes with smooth shading.
+  std::vector<glm::vec4> by_normal;
 
   // With many lights, else empty:
   std::vector<std::uint64_t> first;  ///< hit h's estimates are [first[h], first[h + 1])

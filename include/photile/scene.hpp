@@ -224,8 +224,8 @@ struct Scene {
   /// Coordinates of Light::emission_texture; empty when no light has one.
   std::vector<std::array<glm::vec2, 3>> corner_emission_uv;
   /// Shading normals per corner, on the front side; empty when the file has none, or all are those
-  /// of their triangles and no material is specular, glossy or has a normal map. A zero vector means
-  /// "use the geometric normal".
+  /// of their triangles and no material is specular, glossy or has a normal map. A zero vector
+  /// means "use the geometric normal".
   std::vector<std::array<glm::vec3, 3>> corner_normal;
   /// Tangents per corner, of normal maps: unit, the direction of the map's red; w is 1 or -1, and
   /// green lies along w times normal x tangent, with the normal of the front. Empty when no

@@ -15,8 +15,8 @@ inline constexpr std::uint32_t max_dense_lights = 8;
 /// records of photons and hits, the buffers of maps and estimates, the symbols that kernels are
 /// compiled with, and what shadow rays look at (docs/kernels.md, "Records").
 struct SceneNeeds {
-  bool glossy = false;          ///< some opaque material has a specular lobe or a normal map
-  bool normal_maps = false;     ///< some opaque material has a normal map
+  bool glossy = false;       ///< some opaque material has a specular lobe or a normal map
+  bool normal_maps = false;  ///< some opaque material has a normal map
   /// Some opaque surface without a normal map has vertex normals that differ from its triangles'.
   bool smooth_shading = false;
   bool textures = false;        ///< some material has a texture

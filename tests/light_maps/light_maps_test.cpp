@@ -220,6 +220,7 @@ TEST_CASE("Contents that do not fit the scene are refused", "[light_maps]") {
   refused([](auto& c) { c.values.irradiance.pop_back(); });
   refused([](auto& c) { c.values.irradiance[9].y = std::nanf(""); });
   refused([](auto& c) { c.values.first.push_back(0); });
+  refused([](auto& c) { c.values.by_normal.resize(c.values.irradiance.size()); });  // not smooth
   refused([](auto& c) { c.tiles[0].chart = 99; });
   refused([](auto& c) { c.tiles[0].level = 4; });
   refused([](auto& c) { c.tiles[0].x = 4; });

@@ -60,6 +60,27 @@ TEST_CASE("Light at nodes is the sum over lamps of power times light", "[node_mi
   }
 }
 
+TEST_CASE("Light by the normal is mixed as luminance is", "[node_mix]") {
+  const glm::vec4 part(0.1f, -0.2f, 0.3f, 0.4f);
+  for (const std::size_t lights : {1, 3, 40}) {
+    Estimates values = random_values(lights, lights > 8);
+    for (const glm::vec3& light : values.irradiance) {
+      values.by_normal.push_back(static_cast<float>(luminance(glm::dvec3(light))) * part);
+    }
+    std::vector<glm::vec3> powers;
+    for (std::size_t i = 0; i < lights; ++i) powers.emplace_back(0.5f + i, 2.0f, 1.0f / (1 + i));
+    NodeMix mix;
+    mix.mix(values, mixed_nodes, powers);
+    REQUIRE(mix.by_normal().size() == mixed_nodes);
+    for (std::size_t node = 0; node < mixed_nodes; ++node) {
+      const double light = luminance(glm::dvec3(mix.light()[node]));
+      for (int c = 0; c < 4; ++c) {
+        REQUIRE(mix.by_normal()[node][c] == Approx(light * part[c]).epsilon(1e-4).margin(1e-6));
+      }
+    }
+  }
+}
+
 TEST_CASE("No bit of mixed light depends on powers of before", "[node_mix]") {
   for (const std::size_t lights : {1, 7, 40}) {
     const Estimates values = random_values(lights, lights > 8);

@@ -99,11 +99,22 @@ TEST_CASE("coordinates and normals follow the corners, and only those that mater
       CHECK(scene.corner_uv[t][c] == glm::vec2(p.x + 2 * p.y, p.z));
     }
   }
-  CHECK(scene.corner_normal.empty());
+  CHECK(scene.corner_normal.size() == 5);  // they bend a matt surface
   CHECK(scene.corner_tangent.empty());
+}
 
+TEST_CASE("normals of the triangles stay for materials that ask for a frame alone") {
+  SceneBuilder builder;
+  const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<glm::vec3> up(3, glm::vec3(0, 0, 2));
+  const std::vector<glm::uvec3> triangle{{0, 1, 2}};
+  builder.add({.vertices = corners,
+               .triangles = triangle,
+               .normals = up,
+               .material = builder.add(diffuse(glm::vec3(0.5f)))});
+  CHECK(builder.build().corner_normal.empty());
   builder.add(mirror(glm::vec3(0.9f)));
-  CHECK(builder.build().corner_normal.size() == 5);
+  CHECK(builder.build().corner_normal.size() == 1);
 }
 
 TEST_CASE("lights get the flux that the closed forms say") {

@@ -37,8 +37,8 @@ struct SmoothMesh {
       Place place;
       place.sensor.position = glm::dvec3(0.0);
       for (int i = 0; i < 3; ++i) {
-        place.sensor.position += weights[static_cast<std::size_t>(i)] *
-                                 glm::dvec3(vertices[triangle[i]]);
+        place.sensor.position +=
+            weights[static_cast<std::size_t>(i)] * glm::dvec3(vertices[triangle[i]]);
         place.smooth += weights[static_cast<std::size_t>(i)] * glm::dvec3(normals[triangle[i]]);
       }
       const glm::dvec3 a(vertices[triangle.x]), b(vertices[triangle.y]), c(vertices[triangle.z]);

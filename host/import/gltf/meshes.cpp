@@ -42,9 +42,8 @@ class MeshImporter {
         coordinates_(coordinates),
         context_(context),
         needs_(needs_of_materials(context.scene.materials)),
-        builder_(context.scene,
-                 {needs_.textures, has_emission_texture(context),
-                  true, has_normal_map(context.scene)}),
+        builder_(context.scene, {needs_.textures, has_emission_texture(context), true,
+                                 has_normal_map(context.scene)}),
         instances_(context.scene),
         plain_materials_(context.scene) {
     for (const NodeVisit& visit : visits) ++uses_[mesh_of(visit)];
