@@ -73,7 +73,7 @@ KERNEL_CASES = {
         "a panel all under a plate counts whole for hits on it, and as nothing for those above",
         "of two photons in one place at the border of the neighbourhood one counts",
         "hits that no photon comes near read nothing, next to hits that photons do",
-        "tiles tell photons apart at distances of ten orders of magnitude",
+        "selection tells photons apart at distances of ten orders of magnitude",
         "each light's estimates are those of its photons alone",
         "lanes clip discs as the oracle does",
         "lanes estimate the oracle's irradiance of several lights and of many",

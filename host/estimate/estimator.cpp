@@ -148,12 +148,14 @@ struct Estimator::Impl {
     }
   }
 
-  /// Reads what is left and releases the hits' memory.
+  /// Reads what is left and releases the hits' memory. A call of one batch uses the first of those
+  /// in flight, whose buffer the call before it has made.
   void end(Estimates& result) {
     for (Batch& batch : in_flight) {
       read(batch, result);
       batch.hits = {};
     }
+    turn = 0;
   }
 
   /// The neighbours of hits [first, first + count).

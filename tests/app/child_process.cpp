@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "held_to_permissions.hpp"
+
 namespace photile::test {
 namespace {
 
@@ -48,6 +50,7 @@ Channel open_terminal() {
   setenv("XDG_CACHE_HOME", PHOTILE_TEST_CACHE, 1);
   setenv("TERM", "xterm", 1);
   for (const auto& [name, value] : run.environment) setenv(name.c_str(), value.c_str(), 1);
+  if (run.held_to_permissions) HeldToPermissions::for_good();
   if (run.file_size_limit) {
     const rlimit limit{*run.file_size_limit, *run.file_size_limit};
     setrlimit(RLIMIT_FSIZE, &limit);

@@ -20,6 +20,7 @@ struct Run {
   std::map<std::string, std::string> environment;  ///< on top of the test's own
   bool terminal = false;                           ///< standard error is a terminal, 100 columns
   std::string standard_output;                     ///< a file to write it to; "" = keep it
+  bool held_to_permissions = false;                ///< root, too, reads no file that denies it
   std::optional<std::uint64_t> file_size_limit;    ///< bytes; writes beyond it fail
   std::string signal_when;  ///< once standard error holds this text, `signal` is sent
   int signal = SIGINT;

@@ -11,6 +11,7 @@
 #include "child_process.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
+#include "skipped.hpp"
 
 namespace photile::test {
 namespace {
@@ -98,7 +99,7 @@ TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name a
   write_box(folder);
   std::filesystem::create_directory(folder / "disk");
   if (run_on_small_disk(folder, "--version").exit_code != 0) {
-    WARN("skipped: this process may mount nothing");
+    skip("this process may mount nothing");
     return;
   }
   REQUIRE(run_photile({"render", folder / "box.obj", "-o", folder / "large.exr", "--photons", "5k",

@@ -47,6 +47,7 @@ std::vector<std::string> checked_stages(const nlohmann::json& record) {
     CHECK(stage["seconds"] >= -rounding);
     CHECK(stage["processor_seconds"] >= -rounding);
   }
+  REQUIRE_FALSE(names.empty());
   CHECK(names.back() == "everything else");
   CHECK(std::set<std::string>(names.begin(), names.end()).size() == names.size());
   CHECK(seconds == Approx(record["total_seconds"].get<double>()));

@@ -92,7 +92,9 @@ TEST_CASE("patches have the luminances that gendaymtx gives them") {
     for (const auto& [patch, luminance] : reference.sun)
       sum += luminance * patches[patch - 1].solid_angle();
     CHECK(sky.direct_illuminance() == Approx(sum).epsilon(0.01));
-    for (const auto& [patch, share] : SkyInPatches(patches).sun(sun)) {
+    const auto in_patches = SkyInPatches(patches).sun(sun);
+    REQUIRE_FALSE(in_patches.empty());
+    for (const auto& [patch, share] : in_patches) {
       REQUIRE(reference.sun.count(patch + 1) == 1);
       const double luminance = share * sky.direct_illuminance() / patches[patch].solid_angle();
       CHECK(luminance == Approx(reference.sun.at(patch + 1)).epsilon(0.25).margin(5000));

@@ -12,6 +12,7 @@
 #include "photile/neighbour_groups.hpp"
 #include "photon_sets.hpp"
 #include "shared_scenes.hpp"
+#include "skipped.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"
 
@@ -244,7 +245,7 @@ void check_told(const Coverage& coverage) { CHECK(coverage.told > coverage.point
 /// Whether the shared scenes are there; else a warning.
 bool has_shared_scenes() {
   if (std::filesystem::exists(test::shared_scenes_folder() / "odd")) return true;
-  WARN("skipped: no shared scenes");
+  test::skip("no shared scenes");
   return false;
 }
 

@@ -193,16 +193,19 @@ TEST_CASE("photons at the back and beyond the angle never count") {
                         {0.3, 4});
   Estimator estimator(maps, scene, {50, 0});
   const NeighbourLists lists = estimator.nearest(hits);
+  std::size_t neighbours = 0;
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     const std::uint32_t own = hits.sided_triangle[hit];
     for (std::size_t i = 0; i < 50; ++i) {
       const std::uint32_t photon = lists.photons[hit * 50 + i];
       if (photon == none) continue;
+      ++neighbours;
       const std::uint32_t other = photons.sided_triangle[photon];
       CHECK(side_of(other) == side_of(own));
       CHECK(triangle_of(other) / 2 == triangle_of(own) / 2);  // the same plate
     }
   }
+  CHECK(neighbours > 10 * hits.size());
 }
 
 TEST_CASE("far from the origin, neighbours equal the oracle's on the stored positions") {

@@ -1,10 +1,11 @@
 // Maps of patches find the neighbours that maps of triangles and the oracle find, on real meshes.
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 
 #include "neighbour_comparison.hpp"
 #include "photon_sets.hpp"
+#include "shared_scenes.hpp"
+#include "skipped.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"
 
@@ -95,12 +96,10 @@ TEST_CASE("maps of patches find the oracle's neighbours in the living room", "[l
 TEST_CASE(
     "maps of patches find the oracle's neighbours in scenes of tens of thousands of triangles",
     "[slow]") {
-  const char* set = std::getenv("PHOTILE_SHARED_SCENES");
-  const std::filesystem::path folder =
-      set != nullptr ? set : test::source_folder().parent_path() / "shared/scenes";
+  const std::filesystem::path folder = test::shared_scenes_folder();
   for (const char* file : {"kitchen/kitchen-diffuse.gltf", "classroom/classroom-diffuse.gltf"}) {
     if (!std::filesystem::exists(folder / file)) {
-      WARN("skipped: no " << file << " in the shared scenes");
+      test::skip(std::string("no ") + file + " in the shared scenes");
       continue;
     }
     check_modes(load_scene(folder / file), 200'000, 500, 0.2, {MapStructure::uniform_grid}, {50});

@@ -152,14 +152,17 @@ TEST_CASE("the shared grid struct has the same size on the device as on the host
                                find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
   // A device that laid the struct out otherwise would not return the values it was sized with.
   const auto grids = download(maps::store_of(photon_maps).pages.use(0).grids);
+  int with_photons = 0;
   for (const PhotileGrid& grid : grids) {
     if (grid.columns == 0) continue;
+    ++with_photons;
     CHECK(grid.minimum_u == Approx(-0.1));
     CHECK(grid.inverse_cell_width * grid.cell_width == Approx(1.0));
     CHECK(grid.inverse_cell_height * grid.cell_height == Approx(1.0));
     CHECK(grid.cell_height == Approx(PHOTILE_CELL_ASPECT * grid.cell_width));
     CHECK(grid.u_axis_x * grid.u_axis_x + grid.u_axis_y * grid.u_axis_y == Approx(1.0));
   }
+  CHECK(with_photons == 2);  // the front of either triangle
   context.finish();
 }
 
@@ -204,10 +207,13 @@ TEST_CASE("naive maps hold exactly the photons of their own sided triangle") {
   const PhotonMaps photon_maps(test::device(), scene, photons, naive_groups(scene), {0.2, 4});
   Contents contents = read_contents(photon_maps, photons);
   CHECK(photon_maps.statistics().references == photons.size());
+  std::size_t photons_held = 0;
   for (const auto& [map, held] : contents.photons_of_map) {
+    photons_held += held.size();
     CHECK(held.size() == photons.first_of[map + 1] - photons.first_of[map]);
     for (const std::uint32_t photon : held) CHECK(photons.sided_triangle[photon] == map);
   }
+  CHECK(photons_held == photons.size());
 }
 
 TEST_CASE("maps without any photon are built and empty") {

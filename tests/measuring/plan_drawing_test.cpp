@@ -43,6 +43,13 @@ std::vector<std::string> all(const std::string& text, const std::string& pattern
   return found;
 }
 
+/// Whether a path has all its corners at this x, in pixels.
+void check_runs_at(const std::string& path, double x) {
+  const auto corners = all(path, "[ML]([0-9.]+) ");
+  REQUIRE(corners.size() >= 2);
+  for (const std::string& corner : corners) CHECK(std::stod(corner) == Approx(x).margin(0.01));
+}
+
 }  // namespace
 
 TEST_CASE("each cell has the colour of its value, and its number") {
@@ -74,12 +81,8 @@ TEST_CASE("the isolines of a slope run where the slope has the steps of the stan
   const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
   REQUIRE(lines.size() == 2);
   // The plan is 560 pixels wide and begins at 20.
-  for (const std::string& x : all(lines[0], "[ML]([0-9.]+) ")) {
-    CHECK(std::stod(x) == Approx(20 + 1.0 / 3 * 560).margin(0.01));
-  }
-  for (const std::string& x : all(lines[1], "[ML]([0-9.]+) ")) {
-    CHECK(std::stod(x) == Approx(20 + 1.5 / 3 * 560).margin(0.01));
-  }
+  check_runs_at(lines[0], 20 + 1.0 / 3 * 560);
+  check_runs_at(lines[1], 20 + 1.5 / 3 * 560);
 }
 
 TEST_CASE("isolines alone lie in the middles of the legend's steps") {
@@ -87,9 +90,7 @@ TEST_CASE("isolines alone lie in the middles of the legend's steps") {
   const std::string svg = plan(values, {.scale = 500, .steps = 1, .contours = Contours::lines});
   const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
   REQUIRE(lines.size() == 1);  // 250 lux
-  for (const std::string& x : all(lines[0], "[ML]([0-9.]+) ")) {
-    CHECK(std::stod(x) == Approx(20 + 2.0 / 3 * 560).margin(0.01));
-  }
+  check_runs_at(lines[0], 20 + 2.0 / 3 * 560);
 }
 
 TEST_CASE("steps of illuminance are those of EN 12464-1") {

@@ -199,7 +199,9 @@ TEST_CASE("a clearance looks before a wall, not into it") {
   builder.grid({3.5f, 0, 1}, {0, 2, 0}, {0, 0, 2}, 1, white);  // a screen before the wall at x = 4
   builder.add(point_light("lamp", {2, 2.2f, 3}));
   const Scene scene = builder.build();
-  for (SensorGrid& grid : wall_grids(scene, at_middle("floor"))) {
+  std::vector<SensorGrid> grids = wall_grids(scene, at_middle("floor"));
+  REQUIRE(grids.size() == 4);
+  for (SensorGrid& grid : grids) {
     CAPTURE(grid.name);
     std::size_t behind = 0;
     for (const Sensor& sensor : grid.sensors) {

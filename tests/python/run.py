@@ -1,4 +1,5 @@
-"""Runs a file of tests by pytest. Without pytest or numpy: says so, and ends as CTest's skips do."""
+"""Runs a file of tests by pytest. Without what one of them needs: says so, and ends as CTest's skips do,
+unless a test fails."""
 
 import sys
 from pathlib import Path
@@ -10,7 +11,20 @@ except ImportError as missing:
     print(f"skipped: {missing}; apt-get install python3-pytest python3-numpy")
     sys.exit(77)
 
+
+
+class Skips:
+    """Whether a test was skipped."""
+
+    found = False
+
+    def pytest_runtest_logreport(self, report):
+        self.found = self.found or report.skipped
+
+
 folder = Path(__file__).parent
+skips = Skips()
 options = ["-q", "-p", "no:cacheprovider", "-rs", f"--rootdir={folder}", *sys.argv[2:]]
 sys.dont_write_bytecode = True
-sys.exit(pytest.main([*options, str(folder / sys.argv[1])]))
+failed = pytest.main([*options, str(folder / sys.argv[1])], plugins=[skips])
+sys.exit(failed or (77 if skips.found else 0))

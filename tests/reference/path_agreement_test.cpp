@@ -1,13 +1,14 @@
 // The path tracer beside the photon maps, which share no estimate with it, and beside references of
 // another renderer.
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 
 #include "../render/pictures.hpp"
 #include "photile/image.hpp"
 #include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
+#include "shared_scenes.hpp"
+#include "skipped.hpp"
 #include "source_folder.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
@@ -97,12 +98,11 @@ TEST_CASE("paths and photon maps see the same light in the living room, light by
 }
 
 TEST_CASE("paths agree with the references of another renderer", "[slow]") {
-  const char* folder = std::getenv("PHOTILE_SHARED_SCENES");
   const std::string name = GENERATE("kitchen", "classroom");
-  const std::filesystem::path shared = folder == nullptr ? "" : folder;
+  const std::filesystem::path shared = test::shared_scenes_folder();
   const auto file = shared / name / (name + "-diffuse.gltf");
-  if (folder == nullptr || !std::filesystem::exists(file)) {
-    WARN("PHOTILE_SHARED_SCENES names no folder with " << name << "; skipped");
+  if (!std::filesystem::exists(file)) {
+    test::skip("no " + file.string());
     return;
   }
   const Image reference = read_image(shared / "references" / (name + "-diffuse-256x192.exr"));

@@ -7,6 +7,7 @@
 
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
+#include "skipped.hpp"
 
 namespace photile::test {
 namespace {
@@ -34,7 +35,7 @@ PixelCounts values_of(const LightLayers& layers) {
 /// A hundred files of every kind: half of them are closed boxes, which are dark inside.
 TEST_CASE("every shared scene that loads renders to finite light under a sky", "[slow]") {
   if (!std::filesystem::exists(test::shared_scenes_folder())) {
-    WARN("skipped: no " << test::shared_scenes_folder());
+    test::skip("no " + test::shared_scenes_folder().string());
     return;
   }
   Device device;

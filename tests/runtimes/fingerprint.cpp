@@ -223,6 +223,10 @@ int main(int count, char** arguments) {
     for (const Device& device : devices) {
       fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().platform);
     }
+    const char* const expected_devices = std::getenv("PHOTILE_FINGERPRINT_DEVICES");
+    if (expected_devices != nullptr && std::to_string(devices.size()) != expected_devices) {
+      throw DeviceError(fmt::format("{} devices, not {}", devices.size(), expected_devices));
+    }
     for (const Case& test : set == "--lanes" ? cases_of_lanes() : cases(set == "--every-kernel")) {
       if (test.memory_per_photon == 0) {
         print_fingerprint(devices, test, sizes);

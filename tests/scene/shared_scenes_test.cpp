@@ -7,6 +7,7 @@
 
 #include "scene_files.hpp"
 #include "scene_invariants.hpp"
+#include "skipped.hpp"
 
 namespace photile::test {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 /// Whether the shared scenes are here; says so when they are not.
 bool available(const std::string& name) {
   if (std::filesystem::exists(test::shared_scenes_folder() / name)) return true;
-  WARN("skipped: no " << name << " in " << test::shared_scenes_folder());
+  skip("no " + name + " in " + test::shared_scenes_folder().string());
   return false;
 }
 

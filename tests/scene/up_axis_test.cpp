@@ -107,6 +107,7 @@ TEST_CASE("placed lamps have their place and aim in the file's world", "[up]") {
       options);
   const Light& light = scene.lights.back();
   CHECK(light.direction.y == Approx(-1));
+  REQUIRE(light.triangles.size() == 2);
   for (const std::uint32_t triangle : light.triangles) {
     for (const glm::vec3& corner : scene.corners(triangle)) {
       const glm::dvec3 place = place_in_world(scene, glm::dvec3(corner));

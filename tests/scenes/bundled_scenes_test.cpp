@@ -172,6 +172,7 @@ TEST_CASE("the living room has the lamps, lumens and directions that its descrip
     const Light& light = light_named(scene, lamp.name);
     CHECK(light.power == Approx(lamp.lumen).epsilon(1e-4));
     CHECK_FALSE(light.two_sided);
+    REQUIRE_FALSE(light.triangles.empty());
     for (const std::uint32_t triangle : light.triangles) {
       if (lamp.front == glm::dvec3(0.0)) continue;
       CHECK(glm::dot(front_normal(scene, triangle), lamp.front) == Approx(1.0));

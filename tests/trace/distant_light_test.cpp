@@ -164,6 +164,7 @@ TEST_CASE("of many suns all that shine from a direction are found, at the poles 
     scene.lights.back().name += std::to_string(scene.lights.size());
   }
   const DistantLights lights(scene);
+  int looked_for = 0;
   for (const Light& sun : scene.lights) {
     const DistantSampler sampler(scene, sun);
     for (std::uint64_t i = 0; i < 100; ++i) {
@@ -172,11 +173,13 @@ TEST_CASE("of many suns all that shine from a direction are found, at the poles 
       const auto found = lights.towards(direction);
       for (std::uint32_t index = 0; index < scene.lights.size(); ++index) {
         if (lights[index].radiance(direction) == glm::vec3(0.0f)) continue;
+        ++looked_for;
         CAPTURE(sun.name, index);
         REQUIRE(std::count(found.begin(), found.end(), index) == 1);
       }
     }
   }
+  CHECK(looked_for >= 700);  // each of seven suns where it was sampled
 }
 
 TEST_CASE("photons of an even environment land evenly on both sides of a plate, pi L on each",
