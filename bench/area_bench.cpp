@@ -1,11 +1,14 @@
 // What the area of a density estimate costs: nanoseconds a hit over whole discs and over clipped
 // ones, for each kernel, in the middle of a plate, at its edges, in its corners, and in interiors.
 // Processor time of all threads, which other programs disturb least; on a GPU that of the kernels.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numeric>
 
 #include "photile/estimator.hpp"
 #include "support/bench_record.hpp"
+#include "support/estimate_check.hpp"
 #include "support/hit_sample.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
@@ -65,7 +68,11 @@ class AreaBench {
     record_.set("k", defaults::neighbours);
   }
 
-  void write() const { record_.write(); }
+  /// Whether all estimates were right.
+  bool finish() const {
+    record_.write();
+    return faults_ == 0;
+  }
 
   void run(const Subject& subject) {
     const double radius = automatic_radius(subject.photons, defaults::neighbours);
@@ -74,19 +81,25 @@ class AreaBench {
     const auto surface = std::make_shared<const SurfaceIndex>(
         index_surface(*subject.scene, subject.photons, radius, defaults::group_angle_degrees));
     for (const Place& place : subject.places) {
-      run(place, in_map_order(place.hits, groups), *subject.scene, maps, surface);
+      run(subject, place.name, in_map_order(place.hits, groups), radius, maps, surface);
     }
   }
 
  private:
   /// The estimators in turn, so that all see the same load.
-  void run(const Place& place, const PrimaryHits& hits, const Scene& scene, const PhotonMaps& maps,
-           const std::shared_ptr<const SurfaceIndex>& surface) {
+  void run(const Subject& subject, const std::string& place, const PrimaryHits& hits, double radius,
+           const PhotonMaps& maps, const std::shared_ptr<const SurfaceIndex>& surface) {
+    const Scene& scene = *subject.scene;
+    constexpr double angle = defaults::group_angle_degrees;
+    const reference::DensityOracle oracle(scene, subject.photons, reference::PhotonFilter::grouped,
+                                          angle);
+    const reference::ClippedArea clipped(scene, subject.photons, *surface, angle);
     struct Case {
       AreaMode area;
       DensityKernel kernel;
       Estimator estimator;
       Timing timing;
+      Estimates estimates;
     };
     std::vector<Case> cases;
     for (const AreaMode area : all_area_modes) {
@@ -95,18 +108,26 @@ class AreaBench {
             {area,
              kernel,
              Estimator(maps, scene, {.area = area, .kernel = kernel, .surface = surface}),
+             {},
              {}});
         cases.back().estimator.estimate(hits);  // compiles
       }
     }
     for (int repeat = 0; repeat < repeats_; ++repeat) {
       for (Case& one : cases) {
-        one.timing.seconds.push_back(
-            device_or_processor_seconds_of(device_, [&] { one.estimator.estimate(hits); }));
+        one.timing.seconds.push_back(device_or_processor_seconds_of(
+            device_, [&] { one.estimates = one.estimator.estimate(hits); }));
       }
     }
-    for (const Case& one : cases) {
-      record_.add({{"place", place.name},
+    for (Case& one : cases) {
+      const EstimateCheck check(oracle, subject.photons.size(),
+                                {defaults::neighbours, radius,
+                                 one.area == AreaMode::clipped ? &clipped : nullptr, one.kernel},
+                                hits);
+      faults_ += check.count_faults(
+          fmt::format("{}, {}, {}", place, name_of(one.area), name_of(one.kernel)), one.estimator,
+          one.estimates);
+      record_.add({{"place", place},
                    {"area", name_of(one.area)},
                    {"kernel", name_of(one.kernel)},
                    {"hits", hits.size()},
@@ -118,6 +139,7 @@ class AreaBench {
   int repeats_;
   BenchRecord record_;
   Device device_;
+  std::uint64_t faults_ = 0;
 };
 
 bool run(const BenchOptions& options) {
@@ -127,8 +149,7 @@ bool run(const BenchOptions& options) {
   if (std::optional<Scene> scene = classroom()) {
     bench.run(interior("classroom", std::move(*scene), options));
   }
-  bench.write();
-  return true;
+  return bench.finish();
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 // What kernels take: each of build and estimate beside the limits of the device, and the estimate
 // of each specialisation (one light or several, diffuse or glossy) with its bytes per photon.
+#include <fmt/format.h>
+
 #include "estimate/tuning_sample.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photon_tracer.hpp"
 #include "support/bench_record.hpp"
 #include "support/device_limits.hpp"
+#include "support/estimate_check.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
 
@@ -83,7 +86,11 @@ class KernelsBench {
     record_.set("k", defaults::neighbours);
   }
 
-  void write() const { record_.write(); }
+  /// Whether all estimates were right.
+  bool finish() const {
+    record_.write();
+    return faults_ == 0;
+  }
 
   /// A row for the estimate of a specialisation.
   void specialisation(const Subject& subject) {
@@ -93,9 +100,11 @@ class KernelsBench {
                           default_groups(subject.scene, subject.photons, radius),
                           {.radius = radius});
     Estimator estimator(maps, subject.scene, {.area = AreaMode::disc});
+    Estimates estimates;
     const Timing timing = measure_returned(repeats_, [&] {
-      return kernel_seconds_of(device_, [&] { estimator.estimate(subject.hits); });
+      return kernel_seconds_of(device_, [&] { estimates = estimator.estimate(subject.hits); });
     });
+    check(subject, defaults::neighbours, radius, estimator, estimates);
     record_.add({{"measured", "specialisation"},
                  {"workload", subject.name},
                  {"lights", needs.light_count},
@@ -114,17 +123,18 @@ class KernelsBench {
     };
     const PhotonMaps maps = build();
     Estimator estimator(maps, subject.scene, {.neighbours = k, .area = AreaMode::disc});
-    estimator.estimate(subject.hits);  // compiles, as `build` has done
+    Estimates estimates = estimator.estimate(subject.hits);  // compiles, as `build` has done
     std::map<std::string, Timing> timings;
     for (int i = 0; i < repeats_.most; ++i) {
       const auto seconds = seconds_by_kernel_of(device_, [&] {
         build();
-        estimator.estimate(subject.hits);
+        estimates = estimator.estimate(subject.hits);
       });
       for (const auto& [kernel, taken] : seconds) {
         if (taken > 0) timings[kernel].seconds.push_back(taken);
       }
     }
+    check(subject, k, radius, estimator, estimates);
     const PhotonMapStatistics& statistics = maps.statistics();
     for (const auto& [kernel, timing] : timings) {
       record_.add({{"measured", "kernel"},
@@ -142,9 +152,19 @@ class KernelsBench {
   }
 
  private:
+  void check(const Subject& subject, int k, double radius, Estimator& estimator,
+             const Estimates& estimates) {
+    const reference::DensityOracle oracle(subject.scene, subject.photons,
+                                          reference::PhotonFilter::grouped,
+                                          defaults::group_angle_degrees);
+    const EstimateCheck check(oracle, subject.photons.size(), {k, radius}, subject.hits);
+    faults_ += check.count_faults(fmt::format("{}, k = {}", subject.name, k), estimator, estimates);
+  }
+
   Repeats repeats_;
   BenchRecord record_;
   Device device_;
+  std::uint64_t faults_ = 0;
 };
 
 bool run(BenchOptions& options) {
@@ -170,8 +190,7 @@ bool run(BenchOptions& options) {
   bench.kernels(square, 50);
   bench.kernels(square, 200);
   bench.kernels(restricted(room, diffuse), 50);
-  bench.write();
-  return true;
+  return bench.finish();
 }
 
 }  // namespace

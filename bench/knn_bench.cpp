@@ -1,6 +1,6 @@
 // The estimate from k nearest photons against their number (figure 6 of Graglia et al. 2012): every
 // structure of photile on the OpenCL device, nanoflann and Embree on the host, all hardware
-// threads. Each result is checked against nanoflann's.
+// threads. Each result is checked against a search in double precision.
 //
 // Slow cases answer fewer queries, so that a case keeps to --seconds-per-case.
 //
@@ -14,8 +14,8 @@
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/statistics.hpp"
-#include "support/agreement.hpp"
 #include "support/bench_record.hpp"
+#include "support/estimate_check.hpp"
 #include "support/hit_sample.hpp"
 #include "support/host_search.hpp"
 #include "support/least_work.hpp"
@@ -81,7 +81,7 @@ bool worth_running(MapStructure structure, std::size_t photons, int k) {
   return photons <= most_for_every_k || k == defaults::neighbours;
 }
 
-/// Photons and k of one column of the figure, with the answers that all must give.
+/// Photons and k of one column of the figure.
 struct Case {
   const Workload& workload;
   const Photons& photons;
@@ -90,15 +90,15 @@ struct Case {
   double radius;
   NeighbourGroups groups;
   PrimaryHits hits;  ///< those of the workload, in the order of the maps
-  /// nanoflann's, per hit; where it was not asked, the radius is 0.
-  DensityAnswers reference;
-  HitSample checked;  ///< some of the hits that it was asked
+  EstimateCheck check;
 };
+
+/// A sample of hits contains those of every larger stride up to this.
+constexpr std::size_t most_stride = 64;
 
 /// As many hits as `run` affords: a warm-up and three repeats within the budget.
 HitSample affordable_hits(const PrimaryHits& hits, const Repeats& repeats,
                           const std::function<void(const PrimaryHits&)>& run) {
-  constexpr std::size_t most_stride = 64;
   constexpr double passes = 4;
   const HitSample pilot = block_sample(hits, most_stride);
   run(pilot.hits);  // compiles kernels
@@ -136,6 +136,9 @@ class KnnBench {
     for (const std::uint64_t count : plan.photons) {
       const Photons photons = workload.photons(count);
       const NormalFilter filter(*workload.scene, defaults::group_angle_degrees);
+      const reference::DensityOracle oracle(*workload.scene, photons,
+                                            reference::PhotonFilter::grouped,
+                                            defaults::group_angle_degrees);
       const SearchInput input{photons, filter, workload.scene->lights.size()};
       const auto index = make_nanoflann_index(photons);
       const auto list = make_nanoflann_search(input, index, Candidates::sorted_list);
@@ -146,7 +149,10 @@ class KnnBench {
         const double radius = automatic_radius(photons, k);
         NeighbourGroups groups = default_groups(*workload.scene, photons, radius);
         PrimaryHits hits = in_map_order(workload.hits, groups);
-        Case c{workload, photons, filter, k, radius, std::move(groups), std::move(hits), {}, {}};
+        EstimateCheck check(oracle, photons.size(), {k, radius}, hits,
+                            block_sample(hits, most_stride).index);
+        const Case c{workload, photons,           filter,          k,
+                     radius,   std::move(groups), std::move(hits), std::move(check)};
         run_host(c, "nanoflann", *list, given_order);
         run_host(c, "nanoflann-heap", *heap, given_order);
         // Rivals differ little in how much their order matters: once is enough.
@@ -160,10 +166,10 @@ class KnnBench {
     }
   }
 
-  /// Whether all results agreed.
+  /// Whether all results were right.
   bool finish() {
     record_.write();
-    return disagreements_ == 0;
+    return faults_ == 0;
   }
 
  private:
@@ -193,8 +199,7 @@ class KnnBench {
             {"radius", c.radius},          {"queries", asked.index.size()}};
   }
 
-  /// The first answers of a case become the reference.
-  void run_host(Case& c, const std::string& name, const HostSearch& search, Order order_of) {
+  void run_host(const Case& c, const std::string& name, const HostSearch& search, Order order_of) {
     const SearchParameters parameters{static_cast<std::size_t>(c.k), static_cast<float>(c.radius)};
     DensityAnswers answers;
     std::vector<std::uint32_t> order;
@@ -205,24 +210,10 @@ class KnnBench {
     const HitSample asked = affordable_hits(c.hits, repeats_, estimate);
     order.clear();
     const Timing timing = measure(repeats_, [&] { estimate(asked.hits); });
-    if (c.checked.index.empty()) set_reference(c, asked, answers);
     nlohmann::json row = row_of(c, name, asked);
     set_seconds(row, c, asked, timing);
-    row["radii that differ"] = radii_that_differ(c, asked, answers.squared_radius);
-    add(c, std::move(row), asked, answers.irradiance);
-  }
-
-  static void set_reference(Case& c, const HitSample& asked, const DensityAnswers& answers) {
-    const std::size_t lights = answers.irradiance.size() / asked.index.size();
-    c.reference.irradiance.resize(lights * c.hits.size());
-    c.reference.squared_radius.resize(c.hits.size());
-    for (std::size_t i = 0; i < asked.index.size(); ++i) {
-      const std::uint32_t hit = asked.index[i];
-      c.reference.squared_radius[hit] = answers.squared_radius[i];
-      std::copy_n(&answers.irradiance[i * lights], lights, &c.reference.irradiance[hit * lights]);
-    }
-    constexpr std::size_t most_checked = 4096;
-    c.checked = thinned(asked, most_checked);
+    add(c, std::move(row), answers.irradiance, asked,
+        c.check.radii_that_differ(answers.squared_radius, asked.index));
   }
 
   void run_device(const Case& c, MapStructure structure) {
@@ -240,14 +231,16 @@ class KnnBench {
       nlohmann::json row = row_of(c, name, asked);
       set_seconds(row, c, asked, measure(repeats_, [&] { estimate(asked.hits); }));
       row["references"] = maps.statistics().references;
-      row["radii that differ"] =
-          radii_that_differ(c, c.checked, estimator.nearest(c.checked.hits).squared_radius);
       if (counts_visits(structure)) {
-        const Visits visits = count_visits(maps, c.checked.hits, c.k);
+        constexpr std::size_t most_hits = 4096;
+        const HitSample some = thinned(block_sample(c.hits, most_stride), most_hits);
+        const Visits visits = count_visits(maps, some.hits, c.k);
         row["nodes visited"] = visits.nodes;
         row["photons visited"] = visits.photons;
       }
-      add(c, std::move(row), asked, estimates.irradiance);
+      const PrimaryHits checked = hits_at(c.hits, c.check.index()).hits;
+      add(c, std::move(row), estimates.irradiance, asked,
+          c.check.radii_that_differ(estimator.nearest(checked).squared_radius, c.check.index()));
     } catch (const DeviceError& error) {
       nlohmann::json row = row_of(c, name, {});
       row["failure"] = error.what();  // out of memory: a result too
@@ -255,63 +248,18 @@ class KnnBench {
     }
   }
 
-  /// Off the plane, neighbours that lie at the radius itself may be one more or fewer by rounding,
-  /// which changes the sum but not the disc: there only the radii are held to agree.
-  void add(const Case& c, nlohmann::json row, const HitSample& asked,
-           const std::vector<glm::vec3>& irradiance) {
-    std::uint64_t differences = row["radii that differ"];
-    if (c.workload.name == "plane") {
-      const std::uint64_t different = irradiances_that_differ(c, asked, irradiance);
-      row["irradiances that differ"] = different;
-      differences += different;
+  void add(const Case& c, nlohmann::json row, std::span<const glm::vec3> irradiance,
+           const HitSample& asked, std::uint64_t radii_that_differ) {
+    const std::uint64_t irradiances = c.check.irradiances_that_differ(irradiance, asked.index);
+    row["radii that differ"] = radii_that_differ;
+    row["irradiances that differ"] = irradiances;
+    if (radii_that_differ + irradiances > 0) {
+      print_fault(fmt::format("{}: {} photons, k = {}, {}", c.workload.name, c.photons.size(), c.k,
+                              row["structure"].get<std::string>()),
+                  radii_that_differ + irradiances);
     }
-    if (differences > 0) {
-      std::cerr << fmt::format("{}: {} photons, k = {}: {} differs from nanoflann at {} hits\n",
-                               c.workload.name, c.photons.size(), c.k,
-                               row["structure"].get<std::string>(), differences);
-    }
-    disagreements_ += differences;
+    faults_ += radii_that_differ + irradiances;
     record_.add(std::move(row));
-  }
-
-  /// Places in the sample of the hits that nanoflann was asked too.
-  static std::vector<std::size_t> comparable(const Case& c, const HitSample& asked) {
-    std::vector<std::size_t> places;
-    for (std::size_t i = 0; i < asked.index.size(); ++i) {
-      if (c.reference.squared_radius[asked.index[i]] > 0) places.push_back(i);
-    }
-    return places;
-  }
-
-  static std::uint64_t radii_that_differ(const Case& c, const HitSample& asked,
-                                         const std::vector<float>& squared_radius) {
-    std::vector<float> found, expected;
-    for (const std::size_t i : comparable(c, asked)) {
-      found.push_back(squared_radius[i]);
-      expected.push_back(c.reference.squared_radius[asked.index[i]]);
-    }
-    return count_radius_differences(found, expected, 1e-5);
-  }
-
-  /// Of a scene with one light. Ties left out, unless there are too many to be ties.
-  static std::uint64_t irradiances_that_differ(const Case& c, const HitSample& asked,
-                                               const std::vector<glm::vec3>& irradiance) {
-    const std::vector<std::size_t> places = comparable(c, asked);
-    std::vector<glm::vec3> found, expected;
-    for (const std::size_t i : places) {
-      found.push_back(irradiance[i]);
-      expected.push_back(c.reference.irradiance[asked.index[i]]);
-    }
-    const std::vector<std::size_t> different = irradiance_differences(found, expected, 1e-4);
-    constexpr std::size_t most_ties = 100;
-    if (different.size() > most_ties) return different.size();
-    const PrimaryHits& all = c.hits;
-    return static_cast<std::uint64_t>(
-        std::count_if(different.begin(), different.end(), [&](std::size_t i) {
-          const std::uint32_t hit = asked.index[places[i]];
-          return !has_tied_rim(c.photons, c.filter, all.position[hit], all.sided_triangle[hit],
-                               c.reference.squared_radius[hit]);
-        }));
   }
 
   Repeats repeats_;
@@ -320,7 +268,7 @@ class KnnBench {
   std::optional<EstimateTuning> tuning_;
   BenchRecord record_;
   Device device_;
-  std::uint64_t disagreements_ = 0;
+  std::uint64_t faults_ = 0;
 };
 
 /// None where the scene's folder is missing.

@@ -1,7 +1,10 @@
 // Table 1 of Graglia et al. 2012: 100,000 triangles, 4,000,000 photons, 500 x 500 hits, the classic
 // photon map against one per triangle. The paper leaves out build and groups, and does not state k.
+#include <fmt/format.h>
+
 #include "photile/estimator.hpp"
 #include "support/bench_record.hpp"
+#include "support/estimate_check.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
 
@@ -34,6 +37,9 @@ bool run(BenchOptions& options) {
   record.set("triangles", workload.scene->triangle_count());
   record.set("photons", photons.size());
   record.set("hits", workload.hits.size());
+  const reference::DensityOracle oracle(*workload.scene, photons, reference::PhotonFilter::grouped,
+                                        defaults::group_angle_degrees);
+  std::uint64_t faults = 0;
 
   struct Variant {
     MapStructure structure;
@@ -64,7 +70,11 @@ bool run(BenchOptions& options) {
     const Timing kernels = measure_returned(options.repeats, [&] {
       return kernel_seconds_of(device, [&] { estimator.estimate(hits); });
     });
-    const Timing whole = measure(options.repeats, [&] { estimator.estimate(hits); });
+    Estimates estimates;
+    const Timing whole = measure(options.repeats, [&] { estimates = estimator.estimate(hits); });
+    const EstimateCheck check(oracle, photons.size(), {defaults::neighbours, radius}, hits);
+    faults += check.count_faults(fmt::format("{}, maps of {}", name_of(structure), mode.name),
+                                 estimator, estimates);
     nlohmann::json row{
         {"structure", name_of(structure)},      {"maps of", mode.name},
         {"references", statistics.references},  {"device bytes", statistics.device_bytes},
@@ -75,7 +85,7 @@ bool run(BenchOptions& options) {
     record.add(std::move(row));
   }
   record.write();
-  return true;
+  return faults == 0;
 }
 
 }  // namespace

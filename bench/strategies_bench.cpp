@@ -11,6 +11,7 @@
 
 #include "photile/estimator.hpp"
 #include "support/bench_record.hpp"
+#include "support/estimate_check.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
 
@@ -37,29 +38,40 @@ class StrategiesBench {
       const PrimaryHits hits = in_map_order(workload.hits, groups);
       const auto surface = std::make_shared<const SurfaceIndex>(
           index_surface(scene, photons, radius, defaults::group_angle_degrees));
+      const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped,
+                                            defaults::group_angle_degrees);
+      const reference::ClippedArea clipped(scene, photons, *surface, defaults::group_angle_degrees);
+      const EstimateCheck of_discs(oracle, photons.size(), {k, radius}, hits);
+      const EstimateCheck of_clipped(oracle, photons.size(), {k, radius, &clipped}, hits);
       for (const float cells : {2.0f, 4.0f, 8.0f}) {
         const PhotonMaps maps(device_, scene, photons, groups,
                               {.radius = radius, .photons_per_cell = cells});
         for (const AreaMode area : all_area_modes) {
           nlohmann::json row{
               {"workload", workload.name}, {"k", k}, {"cells", cells}, {"area", name_of(area)}};
-          measure(maps, scene, {.neighbours = k, .area = area, .surface = surface}, hits, row);
+          measure(maps, scene, {.neighbours = k, .area = area, .surface = surface}, hits,
+                  area == AreaMode::disc ? of_discs : of_clipped, row);
           record_.add(std::move(row));
         }
       }
     }
   }
 
-  void write() const { record_.write(); }
+  /// Whether all estimates were right.
+  bool finish() const {
+    record_.write();
+    return faults_ == 0;
+  }
 
  private:
   /// The strategies in turn, so that all see the same load; vectors of 16 as shipped, tiles of 8,
   /// too.
   void measure(const PhotonMaps& maps, const Scene& scene, EstimateParameters parameters,
-               const PrimaryHits& hits, nlohmann::json& row) {
+               const PrimaryHits& hits, const EstimateCheck& check, nlohmann::json& row) {
     struct Case {
       std::string name;
       Estimator estimator;
+      Estimates estimates = {};
       double least = std::numeric_limits<double>::infinity();
     };
     std::vector<Case> cases;
@@ -76,11 +88,14 @@ class StrategiesBench {
     add(EstimateStrategy::heap, 1);
     for (int repeat = 0; repeat < options_.repeats.most; ++repeat) {
       for (Case& one : cases) {
-        one.least = std::min(one.least, device_or_processor_seconds_of(
-                                            device_, [&] { one.estimator.estimate(hits); }));
+        one.least = std::min(one.least, device_or_processor_seconds_of(device_, [&] {
+                               one.estimates = one.estimator.estimate(hits);
+                             }));
       }
     }
-    for (const Case& one : cases) {
+    for (Case& one : cases) {
+      faults_ += check.count_faults(fmt::format("{}, {}", row.dump(), one.name), one.estimator,
+                                    one.estimates);
       row[one.name] = std::round(1e9 * one.least / static_cast<double>(hits.size()));
     }
   }
@@ -88,6 +103,7 @@ class StrategiesBench {
   BenchOptions options_;
   BenchRecord record_;
   Device device_;
+  std::uint64_t faults_ = 0;
 };
 
 bool run(const BenchOptions& options) {
@@ -95,8 +111,7 @@ bool run(const BenchOptions& options) {
   bench.run(plane_workload(options.quick ? 1'000 : 262'144));
   bench.run(interior_workload("living-room", living_room(), options.quick ? 32 : 512,
                               options.quick ? 24 : 384));
-  bench.write();
-  return true;
+  return bench.finish();
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iostream>
 #include <numeric>
+#include <optional>
 
 #include "photile/errors.hpp"
 #include "photile/photon_cloud.hpp"
 #include "photile/statistics.hpp"
-#include "support/agreement.hpp"
+#include "support/estimate_check.hpp"
 #include "support/host_search.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/least_work.hpp"
@@ -32,7 +32,9 @@ class PointBench {
         record_("points", options),
         photons_(read_points(settings.photons)),
         queries_(read_points(settings.queries)),
-        filter_(normals(), defaults::group_angle_degrees) {
+        filter_(normals(), defaults::group_angle_degrees),
+        oracle_({filter_.normals().begin(), filter_.normals().end()}, 1.0, stored_,
+                defaults::group_angle_degrees) {
     if (photons_.normal.empty() != queries_.normal.empty()) {
       throw InputError(fmt::format("{} has {} and {} has {}: give both or neither",
                                    settings.photons.string(), normals_of(photons_),
@@ -56,6 +58,7 @@ class PointBench {
   bool run(std::vector<Device>& devices) {
     for (const int k : settings_.neighbours) {
       const double radius = settings_.radius > 0 ? settings_.radius : automatic_radius(stored_, k);
+      check_.emplace(oracle_, stored_.size(), TimedEstimate{k, radius}, hits_);
       run_host(k, radius);
       for (Device& device : devices) {
         for (const MapStructure structure : all_map_structures) {
@@ -90,13 +93,9 @@ class PointBench {
       DensityAnswers answers;
       const Timing timing =
           measure(repeats_, [&] { search.estimate(hits_, order, parameters, answers); });
-      if (reference_k_ != k) {
-        reference_ = answers.squared_radius;
-        reference_k_ = k;
-      }
       nlohmann::json row = row_of(name, "host", "", k, radius, timing);
       row["build"] = build_seconds;
-      add(std::move(row), answers.squared_radius);
+      add(std::move(row), answers.irradiance, answers.squared_radius);
     };
     const Stopwatch nanoflann_watch;
     const auto index = make_nanoflann_index(stored_);
@@ -120,11 +119,12 @@ class PointBench {
                          .structure = structure,
                          .photons_per_cell = settings_.photons_per_cell});
       const double build_seconds = build_watch.seconds();
+      Estimates estimates;
       std::vector<double> kernel_seconds;
       const Timing timing = measure_returned(repeats_, [&] {
         const Stopwatch watch;
         kernel_seconds.push_back(kernel_seconds_of(device, [&] {
-          cloud.irradiance(queries_.position, queries_.normal, {.neighbours = k});
+          estimates = cloud.irradiance(queries_.position, queries_.normal, {.neighbours = k});
         }));
         return watch.seconds();
       });
@@ -144,7 +144,7 @@ class PointBench {
                                      ? static_cast<float>(radius) * static_cast<float>(radius)
                                      : farthest);
       }
-      add(std::move(row), squared_radius);
+      add(std::move(row), estimates.irradiance, squared_radius);
     } catch (const DeviceError& error) {
       record_.add({{"structure", name_of(structure)},
                    {"device", info.name},
@@ -164,14 +164,18 @@ class PointBench {
     return row;
   }
 
-  void add(nlohmann::json row, const std::vector<float>& squared_radius) {
-    const std::uint64_t different = count_radius_differences(squared_radius, reference_, 1e-5);
-    row["radii that differ"] = different;
-    if (different > 0) {
-      std::cerr << fmt::format("k = {}: {} differs from nanoflann at {} queries\n",
-                               row["k"].get<int>(), row["structure"].get<std::string>(), different);
+  void add(nlohmann::json row, const std::vector<glm::vec3>& irradiance,
+           const std::vector<float>& squared_radius) {
+    const std::uint64_t radii = check_->radii_that_differ(squared_radius);
+    const std::uint64_t irradiances = check_->irradiances_that_differ(irradiance);
+    row["radii that differ"] = radii;
+    row["irradiances that differ"] = irradiances;
+    if (radii + irradiances > 0) {
+      print_fault(
+          fmt::format("k = {}, {}", row["k"].get<int>(), row["structure"].get<std::string>()),
+          radii + irradiances);
     }
-    disagreements_ += different;
+    disagreements_ += radii + irradiances;
     record_.add(std::move(row));
   }
 
@@ -182,8 +186,8 @@ class PointBench {
   NormalFilter filter_;
   Photons stored_;
   PrimaryHits hits_;
-  std::vector<float> reference_;  ///< squared radii of nanoflann, for reference_k_
-  int reference_k_ = 0;
+  reference::DensityOracle oracle_;
+  std::optional<EstimateCheck> check_;  ///< of the k at hand
   std::uint64_t disagreements_ = 0;
 };
 

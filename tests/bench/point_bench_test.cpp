@@ -1,13 +1,17 @@
-// The bench on photons of files: every structure answers as nanoflann does, and rows are as
-// docs/bench-points.md says.
+// The bench on photons of files: every structure answers as a search in double precision does, and
+// rows are as docs/bench-points.md says.
 #include "support/point_bench.hpp"
+
+#include <stdlib.h>
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <set>
 
 #include "photile/photon_maps.hpp"
+#include "source_folder.hpp"
 #include "temporary_folder.hpp"
 
 namespace photile::test {
@@ -50,6 +54,7 @@ TEST_CASE("every structure answers queries of files, and each row says what its 
     CHECK(row["photons"] == 3000);
     CHECK(row["queries"] == 200);
     CHECK(row["radii that differ"] == 0);
+    CHECK(row["irradiances that differ"] == 0);
     CHECK(row["bytes"] == 200 * (24 * 20 + 24));
     CHECK(row["GB/s"].get<double>() ==
           Approx(row["bytes"].get<double>() / row["seconds"]["median"].get<double>() / 1e9));
@@ -57,6 +62,33 @@ TEST_CASE("every structure answers queries of files, and each row says what its 
   std::set<std::string> expected{"nanoflann", "nanoflann-heap", "embree"};
   for (const MapStructure structure : all_map_structures) expected.emplace(name_of(structure));
   CHECK(structures == expected);
+}
+
+TEST_CASE("a bench on photons of files notices 17 times the flux") {
+  const TemporaryFolder folder;
+  const std::string file = "estimate/estimate_hit.clh", right = "1.0f / area";
+  std::ifstream kernel(source_folder() / "kernels" / file);
+  std::string text(std::istreambuf_iterator<char>(kernel), {});
+  REQUIRE(text.find(right) != std::string::npos);
+  text.insert(text.find(right), "17.0f * ");
+  std::filesystem::create_directory(folder.path / "estimate");
+  std::ofstream(folder.path / file) << text;
+  write_saddle(folder.path / "photons.csv", 3000, 1, false);
+  write_saddle(folder.path / "queries.csv", 200, 2, false);
+  bench::BenchOptions options;
+  options.repeats.most = 1;
+  options.device = "cpu";
+  const auto is_right = [&] {
+    return bench::run_point_bench(options, {.photons = folder.path / "photons.csv",
+                                            .queries = folder.path / "queries.csv",
+                                            .neighbours = {20},
+                                            .structures = {"uniform-grid"}});
+  };
+  ::setenv("PHOTILE_KERNEL_DIR", folder.path.c_str(), 1);
+  const bool with_fault = is_right();
+  ::unsetenv("PHOTILE_KERNEL_DIR");
+  CHECK_FALSE(with_fault);
+  CHECK(is_right());
 }
 
 }  // namespace photile::test

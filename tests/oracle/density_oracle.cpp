@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
+#include <utility>
 
 #include "oracle/kernel_weights.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -49,6 +50,15 @@ DensityOracle::DensityOracle(const Scene& scene, const Photons& photons, PhotonF
     normals_.push_back(sided_normal(scene, map));
   }
 }
+
+DensityOracle::DensityOracle(std::vector<glm::dvec3> normals, double size, const Photons& photons,
+                             double angle_degrees)
+    : photons_(photons),
+      filter_(PhotonFilter::grouped),
+      cos_angle_(std::cos(glm::radians(angle_degrees))),
+      light_count_(1),
+      diagonal_(size),
+      normals_(std::move(normals)) {}
 
 bool DensityOracle::counts(std::uint32_t photon_map, std::uint32_t hit_map) const {
   if (filter_ == PhotonFilter::naive) return photon_map == hit_map;

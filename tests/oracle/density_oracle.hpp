@@ -27,6 +27,10 @@ class DensityOracle {
   /// References are kept. `angle_degrees`: largest angle between normals.
   DensityOracle(const Scene& scene, const Photons& photons, PhotonFilter filter,
                 double angle_degrees);
+  /// Of photons of one light on surfaces of these unit normals, by sided triangle; no disc is
+  /// smaller than a hundred-thousandth of `size`, metres.
+  DensityOracle(std::vector<glm::dvec3> normals, double size, const Photons& photons,
+                double angle_degrees);
 
   /// The k nearest photons of a hit, none farther than `radius`.
   OracleNeighbours nearest(const glm::dvec3& hit, std::uint32_t sided_triangle, int k,

@@ -10,13 +10,12 @@
 
 #include "oracle/density_oracle.hpp"
 #include "oracle/kernel_weights.hpp"
+#include "oracle/rounding.hpp"
 #include "photile/estimator.hpp"
 
 namespace photile::test {
 
-/// Largest relative difference over hits and lights. Sums of k positive floats are right to k units
-/// of 2^-24, the area to a few.
-inline double estimate_tolerance(int k) { return (static_cast<double>(k) + 16.0) / (1 << 24); }
+using reference::estimate_tolerance;
 
 /// The lobe's peak amplifies the rounding of the half vector by 1 / alpha^2, alpha = 0.3.
 inline double glossy_tolerance(int k) { return estimate_tolerance(k) * 12.0; }
