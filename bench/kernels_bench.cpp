@@ -2,7 +2,7 @@
 // of each specialisation (one light or several, diffuse or glossy) with its bytes per photon.
 #include <fmt/format.h>
 
-#include "estimate/tuning_sample.hpp"
+#include "estimate/plane_sample.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photon_tracer.hpp"
 #include "support/bench_record.hpp"
@@ -31,8 +31,8 @@ struct Subject {
 };
 
 Subject plane(const SceneNeeds& needs, const Size& size) {
-  estimate::TuningSample sample =
-      estimate::make_tuning_sample(needs, defaults::neighbours, {size.photons, size.picture_side});
+  estimate::PlaneSample sample =
+      estimate::make_plane_sample(needs, defaults::neighbours, {size.photons, size.picture_side});
   return {"plane", std::move(sample.scene), std::move(sample.photons), std::move(sample.hits)};
 }
 

@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "device/context.hpp"
-#include "estimate/tuning_sample.hpp"
+#include "estimate/plane_sample.hpp"
 #include "photile/estimator.hpp"
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"
@@ -67,8 +67,8 @@ void start(const Variant& variant, const std::string& selector, double main_begu
   SceneNeeds needs;
   needs.glossy = variant.glossy;
   needs.light_count = variant.lights;
-  const estimate::TuningSample sample =
-      estimate::make_tuning_sample(needs, defaults::neighbours, {1000, 16});
+  const estimate::PlaneSample sample =
+      estimate::make_plane_sample(needs, defaults::neighbours, {1000, 16});
   const NeighbourGroups groups = default_groups(sample.scene, sample.photons, sample.radius);
   const Stopwatch stopwatch;
   Device device({.selector = selector, .profile = true});

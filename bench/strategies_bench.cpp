@@ -1,5 +1,5 @@
 // What an estimate costs by strategy, k and cells: nanoseconds a hit, over whole discs and clipped
-// ones, on a plane and in the living room. The tuner searches the same settings on a plane alone.
+// ones, on a plane and in the living room.
 #include <fmt/format.h>
 
 #include <algorithm>

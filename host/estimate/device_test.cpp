@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "device/test_results.hpp"
-#include "estimate/tuning_sample.hpp"
+#include "estimate/plane_sample.hpp"
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -20,7 +20,7 @@ namespace photile {
 namespace {
 
 constexpr int neighbours = 50;
-constexpr estimate::TuningSampleSize size{.photons = 20'000, .hits_per_side = 32};
+constexpr estimate::PlaneSampleSize size{.photons = 20'000, .hits_per_side = 32};
 
 /// Distances that agree but for rounding, relative: which of two such photons is the nearer is
 /// open.
@@ -59,7 +59,7 @@ bool are_nearest(std::span<const std::uint32_t> list, const Photons& photons, co
   });
 }
 
-std::string compare(const estimate::TuningSample& sample, const NeighbourLists& lists,
+std::string compare(const estimate::PlaneSample& sample, const NeighbourLists& lists,
                     const Estimates& estimates) {
   constexpr auto k = static_cast<std::size_t>(neighbours);
   const double flux = sample.photons.flux.front().g;
@@ -94,7 +94,7 @@ std::string compare(const estimate::TuningSample& sample, const NeighbourLists& 
 
 std::string test_device(Device& device) {
   const SceneNeeds needs{.light_count = 1};
-  const estimate::TuningSample sample = estimate::make_tuning_sample(needs, neighbours, size);
+  const estimate::PlaneSample sample = estimate::make_plane_sample(needs, neighbours, size);
   try {
     const PhotonMaps maps(device, sample.scene, sample.photons,
                           find_neighbour_groups(sample.scene, {sample.radius}), {sample.radius});

@@ -76,10 +76,6 @@ std::string tuning_problem(const EstimateTuning& tuning) {
     return fmt::format("work-groups of {}: must be between 1 and {}", tuning.work_group_size,
                        max_work_group_size);
   }
-  if (!(tuning.photons_per_cell > 0) || !(tuning.photons_per_cell <= max_photons_per_cell)) {
-    return fmt::format("{} photons per cell: must be positive and at most {}",
-                       tuning.photons_per_cell, max_photons_per_cell);
-  }
   return {};
 }
 

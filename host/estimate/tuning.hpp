@@ -12,7 +12,6 @@ inline constexpr std::array vector_widths = {1, 4, 8, 16};
 inline constexpr std::array lane_widths = {16, 32, 64};  ///< of EstimateStrategy::lanes
 inline constexpr int max_hits_per_item = 64;
 inline constexpr int max_work_group_size = 256;
-inline constexpr float max_photons_per_cell = 64;
 
 /// "" for a tuning that kernels exist for, else what is wrong with it.
 std::string tuning_problem(const EstimateTuning& tuning);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "estimate/tuning_sample.hpp"
+#include "estimate/plane_sample.hpp"
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -46,9 +46,9 @@ glm::vec3 folded(const glm::vec3& point) {
 }
 
 ///   mixed   some map holds photons of different normals that agree
-estimate::TuningSample sample_of(const SceneNeeds& needs, bool mixed, int neighbours) {
-  constexpr estimate::TuningSampleSize size{.photons = 1000, .hits_per_side = 16};
-  estimate::TuningSample sample = estimate::make_tuning_sample(needs, neighbours, size);
+estimate::PlaneSample sample_of(const SceneNeeds& needs, bool mixed, int neighbours) {
+  constexpr estimate::PlaneSampleSize size{.photons = 1000, .hits_per_side = 16};
+  estimate::PlaneSample sample = estimate::make_plane_sample(needs, neighbours, size);
   sample.radius = 2;  // the square is one patch
   if (!mixed) return sample;
   for (auto* points : {&sample.scene.vertices, &sample.photons.position, &sample.hits.position}) {
@@ -62,7 +62,7 @@ bool is_fresh(const Device& device) {
 }
 
 ///   specular   scenes have mirrors or glass: neighbours of caustics are looked at (SeenPhotons)
-void prepare(Device& device, const estimate::TuningSample& sample,
+void prepare(Device& device, const estimate::PlaneSample& sample,
              const RenderParameters& parameters, bool specular) {
   try {
     const NeighbourGroups groups = find_map_groups(sample.scene, sample.photons, parameters.maps,
@@ -70,7 +70,6 @@ void prepare(Device& device, const estimate::TuningSample& sample,
     const PhotonMaps maps(device, sample.scene, sample.photons, groups,
                           {sample.radius, parameters.photons_per_cell, parameters.structure});
     const EstimateParameters estimate{.neighbours = parameters.neighbours,
-                                      .tuning = parameters.tuning,
                                       .each_alone = parameters.light_maps != LightMapMode::off ||
                                                     parameters.processes != nullptr,
                                       .area = parameters.area,
@@ -89,7 +88,7 @@ KernelPreparation::KernelPreparation(const Scene& scene, std::span<Device> devic
   if (std::none_of(devices.begin(), devices.end(), is_fresh)) return;
   done_ = std::async(std::launch::async, [&scene, devices, &parameters] {
     const SceneNeeds needs = needs_of(scene);
-    const estimate::TuningSample sample =
+    const estimate::PlaneSample sample =
         sample_of(needs, may_mix_normals(scene, parameters.angle_degrees), parameters.neighbours);
     for (Device& device : devices) {
       if (is_fresh(device)) prepare(device, sample, parameters, needs.specular_paths);

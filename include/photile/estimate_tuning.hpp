@@ -1,16 +1,11 @@
-// How the estimate runs on a device: which kernel, how wide, how fine the grids. Speed only; but
-// float sums depend on their order, so the last bits of a picture depend on the tuning.
+// How the estimate runs on a device: which kernel, how wide. Speed only; but float sums depend on
+// their order, so the last bits of a picture depend on the tuning.
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string_view>
-#include <vector>
 
-#include "photile/defaults.hpp"
 #include "photile/device.hpp"
-#include "photile/progress.hpp"
-#include "photile/scene_needs.hpp"
 
 namespace photile {
 
@@ -40,8 +35,6 @@ struct EstimateTuning {
   int hits_per_item = 1;
   /// Work-items; fewer where their private memory would be too much. That of `lanes` is the width.
   int work_group_size = 64;
-  /// The grids that go with it, for PhotonMapParameters; the estimate itself does not use it.
-  float photons_per_cell = defaults::photons_per_cell;
   /// `lanes` only: whether each keeps its distances in private memory, not in local. The same bits.
   bool private_distances = false;
 
@@ -55,31 +48,5 @@ EstimateTuning shipped_tuning(const DeviceInfo& device);
 
 /// With this strategy, as wide as suits it on the device.
 EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strategy);
-
-/// One measurement of the tuner.
-struct TuningTrial {
-  EstimateTuning tuning;
-  double microseconds_per_hit = 0;  ///< median of 5; infinite where the device refused to run it
-};
-
-struct TuningResult {
-  EstimateTuning best;
-  std::vector<TuningTrial> trials;  ///< in the order in which they were made
-};
-
-/// Finds the fastest tuning for scenes of these needs, on a plane of random photons: from the
-/// shipped one on, one parameter at a time, as long as that gains. Takes seconds to minutes, most
-/// of them for compiling kernels. Errors: UsageError when k is out of range; Interrupted.
-TuningResult tune_estimate(Device& device, const SceneNeeds& needs, int neighbours,
-                           Progress& progress = Progress::none());
-
-/// Keeps a tuning for later runs in the user's cache folder, for this device, its driver, these
-/// kernels, and scenes that need the same kernel variant (one light or several, glossy or not).
-/// Errors: OutputError when there is no such folder or the file cannot be written.
-void store_tuning(const DeviceInfo& device, const SceneNeeds& needs, const EstimateTuning& tuning);
-
-/// The tuning stored for such scenes. None where there is no file, or its content is damaged or
-/// belongs to other kernels.
-std::optional<EstimateTuning> stored_tuning(const DeviceInfo& device, const SceneNeeds& needs);
 
 }  // namespace photile

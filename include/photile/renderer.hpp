@@ -10,7 +10,6 @@
 #include "photile/camera.hpp"
 #include "photile/communicator.hpp"
 #include "photile/device.hpp"
-#include "photile/estimate_tuning.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/light_maps.hpp"
@@ -70,9 +69,6 @@ struct RenderParameters {
   int least_neighbours = 0;
   float photons_per_cell = defaults::photons_per_cell;
   MapStructure structure = MapStructure::uniform_grid;
-  /// How uniform grids are queried; none = shipped_tuning of the device. Its photons_per_cell does
-  /// not count, the one above does.
-  std::optional<EstimateTuning> tuning = std::nullopt;
   AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
   /// > 0: light straight from lamps is found by so many looks at them from each hit. 0 = photons

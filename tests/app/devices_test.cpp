@@ -5,7 +5,6 @@
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
-#include "estimate/tuning_store.hpp"
 #include "file_bytes.hpp"
 #include "file_folder.hpp"
 #include "source_folder.hpp"
@@ -69,18 +68,9 @@ TEST_CASE("an unknown device is refused with the list of those there are") {
   CHECK_THAT(only_error(outcome, no_device), Contains("no-such-device") && Contains("0:0"));
 }
 
-TEST_CASE("a tuning as JSON, a k without a tuning and a k of zero are refused") {
-  CHECK_THAT(only_error(run_photile({"devices", "--tune", "--json"}), usage),
-             Contains("--json") && Contains("--tune"));
-  CHECK_THAT(only_error(run_photile({"devices", "-k", "20"}), usage), Contains("--tune"));
-  CHECK_THAT(only_error(run_photile({"devices", "--tune", "-k", "0"}), usage), Contains("0"));
-}
-
-TEST_CASE("compiling with a tuning or as JSON is refused") {
+TEST_CASE("compiling as JSON is refused") {
   CHECK_THAT(only_error(run_photile({"devices", "--compile", "--json"}), usage),
              Contains("--json") && Contains("--compile"));
-  CHECK_THAT(only_error(run_photile({"devices", "--compile", "--tune"}), usage),
-             Contains("--tune") && Contains("--compile"));
 }
 
 TEST_CASE("after devices --compile the first picture of an interior compiles nothing", "[slow]") {
@@ -99,55 +89,6 @@ TEST_CASE("after devices --compile the first picture of an interior compiles not
   const Outcome rendered = run_photile(run);
   REQUIRE(rendered.exit_code == 0);
   CHECK_THAT(rendered.errors, Contains(": 0 compiled"));
-}
-
-TEST_CASE("without a stored tuning --tuned says so and renders what is rendered without it") {
-  const FileFolder folder;
-  std::filesystem::create_directory(folder / "cache");
-  Run run;
-  run.environment["XDG_CACHE_HOME"] = folder / "cache";
-  run.arguments = {
-      "render", write_box(folder), "-o", folder / "out.png", "--photons", "2k", "--size",
-      "16x12",  "--samples",       "1",  "--quality",        "draft"};
-  REQUIRE(run_photile(run).exit_code == 0);
-  const std::string plain = folder.read("out.png");
-  run.arguments.emplace_back("--tuned");
-  const Outcome outcome = run_photile(run);
-  REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.errors, Contains("no tuning is stored") && Contains("--tune"));
-  CHECK(folder.read("out.png") == plain);
-}
-
-TEST_CASE("the option --tuned uses the stored tuning and its cell size, unless another is given") {
-  const FileFolder folder;
-  const std::filesystem::path cache = folder.path / "photile";
-  std::filesystem::create_directory(cache);
-  const auto file = estimate::tuning_file(cache, Device().info());
-  estimate::write_tuning(file, {.light_count = 2}, {EstimateStrategy::tile, 4, 1, 16, 2.0f});
-  Run run;
-  run.environment["XDG_CACHE_HOME"] = folder.path;
-  run.arguments = {"render",
-                   write_box(folder),
-                   "-o",
-                   folder / "out.png",
-                   "--tuned",
-                   "--stats",
-                   folder / "stats.json",
-                   "--quality",
-                   "draft",
-                   "--photons",
-                   "2k",
-                   "--size",
-                   "16x12"};
-  const auto photons_per_cell = [&] {
-    const Outcome outcome = run_photile(run);
-    REQUIRE(outcome.exit_code == 0);
-    CHECK_THAT(outcome.errors, Contains("tuning: tile, 4 wide, work-groups of 16"));
-    return nlohmann::json::parse(folder.read("stats.json"))["parameters"]["photons_per_cell"];
-  };
-  CHECK(photons_per_cell() == 2);
-  run.arguments.insert(run.arguments.end(), {"--photons-per-cell", "3"});
-  CHECK(photons_per_cell() == 3);
 }
 
 TEST_CASE("two halves of a device render the file of the whole, and the record names both") {
@@ -171,12 +112,10 @@ TEST_CASE("two halves of a device render the file of the whole, and the record n
   CHECK(devices[0]["share"].get<double>() + devices[1]["share"].get<double>() == Approx(1));
 }
 
-TEST_CASE("the list of devices marks the whole of which parts are chosen; tuning takes one") {
+TEST_CASE("the list of devices marks the whole of which parts are chosen") {
   const Outcome outcome = run_photile({"devices", "--device", "0:0/2"});
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("* 0:0 "));
-  CHECK_THAT(only_error(run_photile({"devices", "--device", "0:0/2", "--tune"}), no_device),
-             Contains("0:0.0, 0:0.1"));
 }
 
 TEST_CASE("PHOTILE_DEVICE chooses the device where --device does not") {

@@ -56,7 +56,6 @@ TEST_CASE("options of photon maps are usage errors beside --integrator path") {
                                                                  {"--maps", "auto"},
                                                                  {"--structure", "kdtree-2d"},
                                                                  {"--photons-per-cell", "2"},
-                                                                 {"--tuned"},
                                                                  {"--device", "cpu"},
                                                                  {"--memory", "1GiB"},
                                                                  {"--no-cache"},

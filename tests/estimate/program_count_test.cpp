@@ -1,7 +1,7 @@
 // A start is paid per program: what is built for maps and an estimate.
 #include <catch2/catch.hpp>
 
-#include "estimate/tuning_sample.hpp"
+#include "estimate/plane_sample.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "render/kernel_preparation.hpp"
@@ -46,7 +46,7 @@ TEST_CASE("kernels are prepared for whatever materials and lights a scene has") 
   const SceneNeeds needs =
       GENERATE(SceneNeeds{.light_count = 1}, SceneNeeds{.glossy = true, .light_count = 3},
                SceneNeeds{.glossy = true, .normal_maps = true, .light_count = 1});
-  const Scene scene = estimate::make_tuning_sample(needs, 20, {1000, 4}).scene;
+  const Scene scene = estimate::make_plane_sample(needs, 20, {1000, 4}).scene;
   CHECK(needs_of(scene).glossy == needs.glossy);
   CHECK(needs_of(scene).normal_maps == needs.normal_maps);
   CHECK(needs_of(scene).light_count == needs.light_count);

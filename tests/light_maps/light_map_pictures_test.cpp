@@ -117,11 +117,7 @@ TEST_CASE("Pictures that read light maps are the same bits on one, two and three
 
 TEST_CASE("What was looked at before changes no bit of a picture", "[light_map_pictures]") {
   const Scene scene = test::furnished_room(2);
-  RenderParameters parameters = with_light_maps();
-  // Tiles and hits in turn make sums depend on the hits beside: not at nodes, whatever is asked
-  // for.
-  parameters.tuning.emplace().strategy = EstimateStrategy::tile;
-  parameters.tuning->hits_per_item = 16;
+  const RenderParameters parameters = with_light_maps();
   SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters);
   Film coarse = parameters.film;
   coarse.width = 16, coarse.height = 12, coarse.samples_per_pixel = 1;

@@ -7,19 +7,15 @@
 #include <set>
 #include <string>
 
-#include "photile/defaults.hpp"
 #include "photile/device.hpp"
 #include "photile/device_test.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 #include "render/kernel_preparation.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/number_format.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
-#include "tools/command/tuning_report.hpp"
-#include "tools/command/validators.hpp"
 
 namespace photile::app {
 namespace {
@@ -29,10 +25,8 @@ using nlohmann::json;
 struct DevicesOptions {
   std::string selector;
   bool json = false;
-  bool tune = false;
   bool compile = false;
   bool test = false;
-  int neighbours = defaults::neighbours;
 };
 
 json device_json(const DeviceInfo& device, bool selected) {
@@ -63,13 +57,6 @@ std::string device_line(const DeviceInfo& device, bool selected) {
                      device.platform, device.version, device.compute_units,
                      format_bytes(device.global_memory_bytes),
                      format_bytes(device.max_allocation_bytes));
-}
-
-void run_tuning(const DevicesOptions& options) {
-  handle_signals();
-  TerminalProgress progress(false);
-  Device device({.selector = options.selector});
-  tune_device(device, options.neighbours, progress);
 }
 
 void run_compilation(const DevicesOptions& options) {
@@ -106,7 +93,6 @@ void run_tests(const DevicesOptions& options) {
 
 void run_devices(const DevicesOptions& options) {
   if (options.test) return run_tests(options);
-  if (options.tune) return run_tuning(options);
   if (options.compile) return run_compilation(options);
   // Opening the device asks the very code that `render` asks; without any device it says so.
   std::set<std::string> selected;
@@ -138,30 +124,18 @@ void add_devices_command(CLI::App& photile) {
   CLI::Option* json = command->add_flag("--json", options->json, "print JSON");
   command
       ->add_option("--device", options->selector,
-                   "devices to mark or to compile for, or the one to tune, as in photile render")
+                   "devices to mark, to test or to compile for, as in photile render")
       ->type_name("SELECTOR");
-  CLI::Option* tune =
-      command
-          ->add_flag("--tune", options->tune,
-                     "find and store the fastest kernels of the device, for photile render --tuned")
-          ->excludes(json);
   command
       ->add_flag("--compile", options->compile,
                  "compile the kernels of usual scenes ahead, so that the first picture of each is "
                  "as quick as later ones")
-      ->excludes(json)
-      ->excludes(tune);
+      ->excludes(json);
   command
       ->add_flag("--test", options->test,
                  "test what each device computes, which decides if a GPU is taken by default; "
                  "takes seconds")
-      ->excludes(json)
-      ->excludes(tune);
-  command->add_option("-k,--neighbours", options->neighbours, "photons of an estimate to tune for")
-      ->type_name("N")
-      ->transform(count_between(1, limits::max_neighbours))
-      ->capture_default_str()
-      ->needs(tune);
+      ->excludes(json);
   command->callback([options] { run_devices(*options); });
 }
 

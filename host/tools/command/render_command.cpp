@@ -35,7 +35,6 @@
 #include "tools/command/summary.hpp"
 #include "tools/command/terminal_progress.hpp"
 #include "tools/command/threads.hpp"
-#include "tools/command/tuning_report.hpp"
 #include "tools/view/snapshots.hpp"
 
 namespace photile::app {
@@ -54,31 +53,6 @@ PictureOutputs check_outputs_of(const RenderOptions& options) {
   note_inputs_of(options);
   check_outputs(files);
   return outputs;
-}
-
-/// What `photile devices --tune` found for these devices and such scenes. A tuning is of one kind
-/// of device. Errors: UsageError when there are several kinds.
-///   own_cells   were asked for: a tuning does not replace them
-void use_stored_tuning(RenderParameters& parameters, bool own_cells,
-                       std::span<const Device> devices, const Scene& scene, Progress& progress) {
-  const DeviceInfo& device = devices.front().info();
-  for (const Device& other : devices) {
-    if (other.info().name != device.name || other.info().platform != device.platform) {
-      throw UsageError(
-          fmt::format("--tuned: {} and {} have tunings of their own; choose one device "
-                      "or leave out --tuned",
-                      device.name, other.info().name));
-    }
-  }
-  parameters.tuning = stored_tuning(device, needs_of(scene));
-  if (!parameters.tuning) {
-    progress.note(fmt::format(
-        "warning: no tuning is stored for {} and such scenes; photile devices --tune makes one",
-        device.name));
-    return;
-  }
-  if (!own_cells) parameters.photons_per_cell = parameters.tuning->photons_per_cell;
-  progress.note("tuning: " + tuning_words(*parameters.tuning));
 }
 
 /// Runs `work` as a stage of its own and returns what it cost.
@@ -272,10 +246,6 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   record.goal = options.goal;
   record.used = options.parameters;
 
-  if (options.tuned) {
-    const bool own_cells = command.count("--photons-per-cell") > 0;
-    use_stored_tuning(options.parameters, own_cells, devices, scene, progress);
-  }
   std::optional<Denoising> denoising;
   if (!options.denoiser.empty()) {
     denoising.emplace(options, scene, camera);

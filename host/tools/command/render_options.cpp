@@ -160,10 +160,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_picture_settings(command, options);
   add_projection_options(command, options);
   add_integrator_option(command, options);
-  command
-      .add_flag("--tuned", options.tuned,
-                "use kernels that photile devices --tune found best; other last bits than without")
-      ->group("Estimate");
   command.add_flag("--profile", options.device.profile, "print the time of every kernel")
       ->group("Device");
   command.add_option("--stats", options.statistics, "write the summary as JSON")

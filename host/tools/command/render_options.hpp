@@ -37,7 +37,6 @@ struct RenderOptions {
   std::string direct;  ///< "photons" or "rays" bring the light straight from lamps; "" = any
   Quality quality = Quality::draft;  ///< the settings are its own but for those given
   RefinementGoal goal;               ///< pictures are made until it is met
-  bool tuned = false;                ///< use the tuning that `photile devices --tune` stored
   std::string camera;
   std::string size;  ///< "" = by the camera
   Projection projection = Projection::perspective;

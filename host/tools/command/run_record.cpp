@@ -10,7 +10,6 @@
 #include "tools/command/number_format.hpp"
 #include "tools/command/quality_options.hpp"
 #include "tools/command/setting_options.hpp"
-#include "tools/command/tuning_report.hpp"
 #include "tools/command/version.hpp"
 
 namespace photile::app {
@@ -59,6 +58,12 @@ std::string devices_text(std::span<const DeviceInfo> devices) {
                         device.platform, device.driver_version);
   }
   return text;
+}
+
+/// "select, 16 wide".
+std::string tuning_text(const DeviceInfo& device) {
+  const EstimateTuning tuning = shipped_tuning(device);
+  return fmt::format("{}, {} wide", name_of(tuning.strategy), tuning.vector_width);
 }
 
 /// What was asked for by name; the parameters are what followed.
@@ -143,8 +148,7 @@ json run_json(const RunRecord& record) {
   if (!record.denoiser.empty()) result["denoiser"] = record.denoiser;
   if (record.has_photons()) {
     result["photons_stored"] = record.stored_photons;
-    result["tuning"] =
-        tuning_words(record.used.tuning.value_or(shipped_tuning(record.devices.front())));
+    result["tuning"] = tuning_text(record.devices.front());
     result["kernels"] = kernels_json(record);
   }
   for (const MixedLight& light : record.mix.lights) {

@@ -1,4 +1,4 @@
-// What the tuner times: a plane of random photons, seen from above.
+// A plane of random photons, seen from above: what kernels are compiled, tested and timed with.
 #pragma once
 
 #include <cstddef>
@@ -9,23 +9,21 @@
 
 namespace photile::estimate {
 
-/// Sizes of a sample. Enough hits for some milliseconds a launch, photons beyond a CPU's caches of
-/// the first and second level.
-struct TuningSampleSize {
-  std::size_t photons = 200'000;
-  int hits_per_side = 256;  ///< hits lie on a jittered grid
+struct PlaneSampleSize {
+  std::size_t photons = 0;
+  int hits_per_side = 0;  ///< hits lie on a jittered grid
 };
 
 /// A square of two triangles with photons on its front, uniform and independent; hits sorted as
 /// PrimaryHits are. The same for the same arguments, everywhere.
-struct TuningSample {
+struct PlaneSample {
   Scene scene;
   Photons photons;
   PrimaryHits hits;
   double radius = 0;  ///< metres: twice the expected distance of the k-th photon
 };
 
-TuningSample make_tuning_sample(const SceneNeeds& needs, int neighbours,
-                                const TuningSampleSize& size = {});
+PlaneSample make_plane_sample(const SceneNeeds& needs, int neighbours,
+                              const PlaneSampleSize& size);
 
 }  // namespace photile::estimate

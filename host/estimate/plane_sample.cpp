@@ -1,4 +1,4 @@
-#include "estimate/tuning_sample.hpp"
+#include "estimate/plane_sample.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ Texture flat_normal_map() { return Texture("flat", 1, 1, {{128, 128, 255, 255}})
 
 /// The unit square as two triangles, with a material and lights as needed.
 Scene unit_square(const SceneNeeds& needs) {
-  SceneBuilder builder("tuning sample");
+  SceneBuilder builder("plane");
   Material material;
   material.diffuse = glm::vec3(0.5f);
   if (needs.glossy) {
@@ -101,10 +101,10 @@ PrimaryHits grid_of_hits(const Scene& scene, const SceneNeeds& needs, int per_si
 
 }  // namespace
 
-TuningSample make_tuning_sample(const SceneNeeds& needs, int neighbours,
-                                const TuningSampleSize& size) {
+PlaneSample make_plane_sample(const SceneNeeds& needs, int neighbours,
+                                const PlaneSampleSize& size) {
   std::mt19937_64 random(1);
-  TuningSample sample;
+  PlaneSample sample;
   sample.scene = unit_square(needs);
   sample.photons = random_photons(needs, size.photons, random);
   sample.hits = grid_of_hits(sample.scene, needs, size.hits_per_side, random);
