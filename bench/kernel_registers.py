@@ -64,7 +64,7 @@ VARIANTS = [
     *((f"{lanes} lanes, k = 50, clipped, 20 lights", "estimate/estimate.cl", "estimate",
        estimate(50, lanes, **MANY), lanes) for lanes in (32, 64)),
     *((f"heap, k = 50, {name}", "structures/estimate.cl", "estimate", structure(symbol), GROUP)
-      for name, symbol in (("rings", "RINGS"), ("kd-tree", "KDTREE"), ("wide BVH", "WIDE_BVH"))),
+      for name, symbol in (("kd-tree", "KDTREE"), ("wide BVH", "WIDE_BVH"))),
 ]
 
 

@@ -36,8 +36,8 @@ MUTANTS = (
     Mutant("weights of neighbouring nodes swapped", "host/light_maps/tiles.hpp",
            "within.x * (1 - within.y),", "(1 - within.x) * within.y,",
            (("light_maps", "Light maps give back light that varies linearly*"),)),
-    Mutant("estimates at nodes depend on those before", "host/estimate/estimator.cpp",
-           "tuning.hits_per_item = 1;", "",
+    Mutant("estimates depend on the hits before", "kernels/estimate/candidates.clh",
+           "max(walk->entry, start - start % VECTOR_WIDTH)", "max(walk->entry, start)",
            (("light_maps", "What was looked at before changes no bit of a picture"),)),
 
     # Physics of photons
@@ -103,10 +103,6 @@ MUTANTS = (
            "return squared;", (PATCHES,)),
     Mutant("last photon of each row of cells dropped", "kernels/estimate/candidates.clh",
            "place < (wide_uint)(end - start));", "place < (wide_uint)(end - start - 1u));", ORACLE),
-    Mutant("last photon of each range of cells dropped, in rings", "kernels/structures/rings.clh",
-           "in->cell_start[first], in->cell_start[last], list);",
-           "in->cell_start[first], max(in->cell_start[last], 1u) - 1u, list);",
-           (("estimate", "*irradiance for one light"),)),
     Mutant("photons of one light count for the other", "kernels/estimate/near_entries.clh",
            "const wide_int adds = is_near & (light_of_lane == (wide_int)((int)light));",
            "const wide_int adds = is_near & (light_of_lane >= (wide_int)((int)light));",

@@ -1,5 +1,5 @@
-// What an estimate costs by strategy, k and cells: nanoseconds a hit, over whole discs and clipped
-// ones, on a plane and in the living room.
+// What an estimate costs by tuning, k and cells: nanoseconds a hit, over whole discs and clipped
+// ones, on a plane and in the living room. The defaults of each kind of device are chosen by it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "estimate/tuning.hpp"
 #include "photile/estimator.hpp"
 #include "support/bench_record.hpp"
 #include "support/estimate_check.hpp"
@@ -19,6 +20,36 @@ namespace {
 
 using namespace photile;
 using namespace photile::bench;
+
+/// The device's own tuning, then those that differ from it in one respect.
+std::vector<EstimateTuning> tunings_of(const DeviceInfo& device) {
+  const EstimateTuning shipped = shipped_tuning(device);
+  const bool lanes = shipped.strategy == EstimateStrategy::lanes;
+  std::vector<EstimateTuning> tunings{shipped};
+  const auto add_width = [&](int width) {
+    if (width == shipped.vector_width) return;
+    tunings.push_back(shipped);
+    tunings.back().vector_width = width;
+    if (lanes) tunings.back().work_group_size = width;
+  };
+  if (lanes) {
+    for (const int width : estimate::lane_widths) add_width(width);
+    tunings.push_back(shipped);
+    tunings.back().private_distances = true;
+    tunings.push_back(shipped_tuning(device, EstimateStrategy::select));
+  } else {
+    for (const int width : estimate::vector_widths) add_width(width);
+  }
+  tunings.push_back(shipped);
+  tunings.back().hits_per_item = 1;
+  return tunings;
+}
+
+/// "lanes 32 x 4": the width, and the hits in turn.
+std::string name_of(const EstimateTuning& tuning) {
+  return fmt::format("{} {} x {}{}", photile::name_of(tuning.strategy), tuning.vector_width,
+                     tuning.hits_per_item, tuning.private_distances ? ", private" : "");
+}
 
 class StrategiesBench {
  public:
@@ -64,8 +95,7 @@ class StrategiesBench {
   }
 
  private:
-  /// The strategies in turn, so that all see the same load; vectors of 16 as shipped, tiles of 8,
-  /// too.
+  /// The tunings in turn, so that all see the same load.
   void measure(const PhotonMaps& maps, const Scene& scene, EstimateParameters parameters,
                const PrimaryHits& hits, const EstimateCheck& check, nlohmann::json& row) {
     struct Case {
@@ -75,17 +105,11 @@ class StrategiesBench {
       double least = std::numeric_limits<double>::infinity();
     };
     std::vector<Case> cases;
-    const auto add = [&](EstimateStrategy strategy, int width) {
-      parameters.tuning = shipped_tuning(device_.info(), strategy);
-      if (width != 0) parameters.tuning->vector_width = width;
-      cases.push_back({fmt::format("{} {}", name_of(strategy), parameters.tuning->vector_width),
-                       Estimator(maps, scene, parameters)});
+    for (const EstimateTuning& tuning : tunings_of(device_.info())) {
+      parameters.tuning = tuning;
+      cases.push_back({name_of(tuning), Estimator(maps, scene, parameters)});
       cases.back().estimator.estimate(hits);  // compiles
-    };
-    add(EstimateStrategy::select, 0);
-    add(EstimateStrategy::tile, 8);
-    add(EstimateStrategy::tile, 16);
-    add(EstimateStrategy::heap, 1);
+    }
     for (int repeat = 0; repeat < options_.repeats.most; ++repeat) {
       for (Case& one : cases) {
         one.least = std::min(one.least, device_or_processor_seconds_of(device_, [&] {
@@ -118,7 +142,7 @@ bool run(const BenchOptions& options) {
 
 int main(int argument_count, char** arguments) {
   BenchOptions options;
-  CLI::App command("Time of the estimate by strategy", "strategies");
+  CLI::App command("Time of the estimate by the tuning of its kernels", "strategies");
   add_options(command, options);
   return run_bench(command, argument_count, arguments, [&] { return run(options); });
 }

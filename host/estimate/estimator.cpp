@@ -30,16 +30,6 @@ namespace {
 /// that of the search or, where it is less, the size of the scene.
 constexpr double least_disc_over_radius = 1e-5;
 
-/// The tuning that a caller asks for, or the device's own.
-EstimateTuning tuning_of(const EstimateParameters& parameters, const DeviceInfo& device) {
-  EstimateTuning tuning = parameters.tuning.value_or(shipped_tuning(device));
-  if (parameters.each_alone) {
-    if (tuning.strategy == EstimateStrategy::tile) tuning.strategy = EstimateStrategy::select;
-    tuning.hits_per_item = 1;
-  }
-  return tuning;
-}
-
 /// Hits of a batch where transfers run beside kernels: while one is computed another is on its way,
 /// and its kernels take many times what a launch does.
 constexpr std::size_t overlapped_hits = std::size_t{1} << 17;
@@ -88,7 +78,7 @@ struct Estimator::Impl {
                 .radius = radius,
                 .least_radius = static_cast<float>(least_disc_over_radius *
                                                    std::min<double>(radius, scene_diagonal(scene))),
-                .tuning = tuning_of(parameters, photon_maps.device().info()),
+                .tuning = parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
                 .surface = clipped_to(),
                 .kernel = kernel_used(parameters.kernel, parameters.neighbours)});
     for (Batch& batch : in_flight) batch.estimates.emplace(context, query->sums());
@@ -248,25 +238,6 @@ Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::s
   }
   impl_->end(result);
   return result;
-}
-
-std::size_t Estimator::cut_before(const PrimaryHits& hits, std::size_t hit) const {
-  if (hit >= hits.size()) return hits.size();
-  // Work-items take hits from the first one of a page on, at most a vector of them together.
-  constexpr std::size_t together =
-      *std::max_element(estimate::vector_widths.begin(), estimate::vector_widths.end());
-  const std::vector<std::uint32_t>& map_of = impl_->store.map_of;
-  const auto map = [&](std::uint32_t own) { return map_of.empty() ? own : map_of[own]; };
-  std::size_t page_begin = 0;
-  for (std::size_t i = 0; i < impl_->store.pages.size(); ++i) {
-    const maps::PageExtent& page = impl_->store.pages[i];
-    if (page.first_map > map(hits.sided_triangle[hit])) break;
-    page_begin = static_cast<std::size_t>(
-        std::partition_point(hits.sided_triangle.begin(), hits.sided_triangle.end(),
-                             [&](std::uint32_t own) { return map(own) < page.first_map; }) -
-        hits.sided_triangle.begin());
-  }
-  return page_begin + (hit - page_begin) / together * together;
 }
 
 NeighbourLists Estimator::nearest(const PrimaryHits& hits) {

@@ -4,7 +4,6 @@
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
 #include "estimate/tuning.hpp"
-#include "structures/structure_arguments.hpp"
 
 namespace photile::estimate {
 namespace {
@@ -28,13 +27,9 @@ class GridQuery : public Query {
     device::Defines estimate_defines = defines(hits.page);
     set_density_defines(estimate_defines, parameters_.surface, parameters_.kernel);
     device::Launch launch(context_,
-                          context_.kernel(choice_.kernel_file(), "estimate", estimate_defines));
+                          context_.kernel("estimate/estimate.cl", "estimate", estimate_defines));
     set_estimate_arguments(launch, store_, hits, parameters_, estimates);
-    if (choice_.strategy == EstimateStrategy::heap) {
-      maps::set_structure_arguments(launch, hits.page);
-    } else {
-      set_grid(launch, hits.page);
-    }
+    set_grid(launch, hits.page);
     run(launch, hits, [&](std::uint32_t count) {
       launch.run(choice_.work_items(count), choice_.work_group_size);
     });

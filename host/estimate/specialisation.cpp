@@ -26,12 +26,6 @@ int capacity_for(int neighbours, EstimateStrategy strategy, int vector_width) {
   return std::clamp(rounded_up(std::min(neighbours, most) * 8, 16), least, most);
 }
 
-/// Candidates kept for a tile, whose block is larger by the extent of its hits.
-int tile_capacity_for(int neighbours) {
-  constexpr int least = 256, most = 1024;
-  return std::clamp(rounded_up(std::min(neighbours, most) * 5, 16), least, most);
-}
-
 }  // namespace
 
 device::Defines Specialisation::defines() const {
@@ -44,34 +38,14 @@ device::Defines Specialisation::defines() const {
   // Lanes list the near entries of a hit all at once.
   defines.set("NEAR_CAPACITY", static_cast<long long>(lanes ? neighbours : near_capacity));
   defines.set("HITS_PER_ITEM", static_cast<long long>(hits_per_item));
-  if (strategy == EstimateStrategy::heap) {
-    defines.set("RINGS").set("LIST_CAPACITY", static_cast<long long>(neighbours));
-  }
-  if (strategy == EstimateStrategy::tile) {
-    defines.set("TILE_CAPACITY", static_cast<long long>(tile_capacity));
-  }
   maps::set_entry_defines(defines, needs);
   sums.set_defines(defines);
   if (needs.normal_maps) defines.set("NORMAL_MAPS");
   return defines;
 }
 
-std::string Specialisation::kernel_file() const {
-  switch (strategy) {
-    case EstimateStrategy::heap:
-      return "structures/estimate.cl";
-    case EstimateStrategy::tile:
-      return "estimate/estimate_tile.cl";
-    case EstimateStrategy::select:
-    case EstimateStrategy::lanes:
-      break;
-  }
-  return "estimate/estimate.cl";
-}
-
 std::size_t Specialisation::work_items(std::uint32_t hits) const {
-  const int hits_of_item = strategy == EstimateStrategy::tile ? vector_width : hits_per_item;
-  const auto divisor = static_cast<std::uint32_t>(hits_of_item);
+  const auto divisor = static_cast<std::uint32_t>(hits_per_item);
   const std::size_t items = hits / divisor + (hits % divisor != 0);
   return strategy == EstimateStrategy::lanes ? items * static_cast<std::size_t>(vector_width)
                                              : items;
@@ -92,16 +66,9 @@ std::size_t Specialisation::private_bytes() const {
     return kept * sizeof(float) + (needs.many_lights() ? 0 : sums.private_bytes());
   }
   std::size_t bytes = sums.private_bytes();
-  if (strategy == EstimateStrategy::heap) {
-    return bytes + static_cast<std::size_t>(neighbours) * (sizeof(float) + sizeof(std::uint32_t));
-  }
   bytes += static_cast<std::size_t>(capacity) * sizeof(float) +
            static_cast<std::size_t>(capacity) / width * sizeof(std::uint32_t);
   if (listed) bytes += (near_capacity + 2 * width) * sizeof(std::uint32_t);
-  if (strategy == EstimateStrategy::tile && !listed) {
-    bytes +=
-        (static_cast<std::size_t>(tile_capacity) + 3 * needs.light_count) * width * sizeof(float);
-  }
   return bytes;
 }
 
@@ -122,14 +89,10 @@ std::size_t Specialisation::local_bytes() const {
 
 Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours) {
   Specialisation choice;
-  const bool too_many_for_heap =
-      tuning.strategy == EstimateStrategy::heap && neighbours > max_heap_neighbours;
-  choice.strategy = too_many_for_heap ? EstimateStrategy::select : tuning.strategy;
-  // A heap is a list of single entries.
-  choice.vector_width = choice.strategy == EstimateStrategy::heap ? 1 : tuning.vector_width;
+  choice.strategy = tuning.strategy;
+  choice.vector_width = tuning.vector_width;
   choice.capacity = capacity_for(neighbours, choice.strategy, choice.vector_width);
   choice.neighbours = neighbours;
-  choice.tile_capacity = tile_capacity_for(neighbours);
   choice.needs = needs;
   choice.sums = LightSums(needs, static_cast<std::uint32_t>(neighbours));
   choice.work_group_size = static_cast<std::size_t>(tuning.work_group_size);
@@ -140,9 +103,7 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
     choice.private_distances = false;
     choice.capacity = capacity_for(neighbours, choice.strategy, choice.vector_width);
   }
-  const bool in_turn =
-      choice.strategy == EstimateStrategy::select || choice.strategy == EstimateStrategy::lanes;
-  choice.hits_per_item = in_turn ? tuning.hits_per_item : 1;
+  choice.hits_per_item = tuning.hits_per_item;
   if (choice.strategy == EstimateStrategy::lanes) {
     choice.work_group_size = static_cast<std::size_t>(choice.vector_width);
     return choice;

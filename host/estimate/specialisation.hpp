@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 #include "device/context.hpp"
 #include "estimate/light_sums.hpp"
@@ -39,10 +38,9 @@ inline constexpr std::size_t max_local_bytes = 32u << 10;
 struct Specialisation {
   EstimateStrategy strategy = EstimateStrategy::select;
   int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16; work-items of `lanes`: 16, 32 or 64
-  /// Distances kept, in private memory by `select` and where a tile fails, in local by `lanes`.
+  /// Distances kept, in private memory by `select`, in local by `lanes`.
   int capacity = 256;
   int neighbours = 1;              ///< k
-  int tile_capacity = 512;         ///< candidates of a tile, `tile` only
   bool private_distances = false;  ///< `lanes` keep them in private memory
   int hits_per_item = 1;           ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
@@ -50,7 +48,6 @@ struct Specialisation {
   LightSums sums;
 
   device::Defines defines() const;
-  std::string kernel_file() const;
   /// Work-items that estimate so many hits.
   std::size_t work_items(std::uint32_t hits) const;
   /// Work-items of nearest.cl for so many hits.
@@ -61,9 +58,8 @@ struct Specialisation {
   std::size_t local_bytes() const;
 };
 
-/// The capacities hold the candidates that k photons usually need. Where k does not suit the
-/// strategy, or the lists of a group of `lanes` would not fit into max_local_bytes, it becomes
-/// `select`; work-groups are halved until their private memory is within
+/// The capacities hold the candidates that k photons usually need. Where the
+/// lists of a group of `lanes` would not fit into max_local_bytes, the strategy becomes `select`; work-groups are halved until their private memory is within
 /// max_private_bytes_per_group.
 Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours);
 

@@ -12,10 +12,6 @@ std::string_view name_of(EstimateStrategy strategy) {
   switch (strategy) {
     case EstimateStrategy::select:
       return "select";
-    case EstimateStrategy::heap:
-      return "heap";
-    case EstimateStrategy::tile:
-      return "tile";
     case EstimateStrategy::lanes:
       return "lanes";
   }
@@ -46,8 +42,6 @@ EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strateg
   } else if (device.type == DeviceType::cpu) {
     tuning.vector_width = 16;
     tuning.hits_per_item = 16;
-  } else if (strategy == EstimateStrategy::tile) {
-    tuning.vector_width = 8;
   }
   return tuning;
 }
@@ -64,9 +58,6 @@ std::string tuning_problem(const EstimateTuning& tuning) {
     }
   } else if (!is_one_of(vector_widths)) {
     return fmt::format("vector width {}: must be 1, 4, 8 or 16", tuning.vector_width);
-  }
-  if (tuning.strategy == EstimateStrategy::tile && tuning.vector_width == 1) {
-    return "vector width 1: a tile needs 4, 8 or 16";
   }
   if (tuning.hits_per_item < 1 || tuning.hits_per_item > max_hits_per_item) {
     return fmt::format("{} hits per work-item: must be between 1 and {}", tuning.hits_per_item,

@@ -36,12 +36,10 @@ TracedEstimators::TracedEstimators(const RayScene& rays, std::span<Device> devic
                                  scene, traced.photons, radius, plan.used().angle_degrees))
                            : nullptr;
   const auto estimators_of = [&](Photons photons, std::shared_ptr<const SeenPhotons> seen) {
-    std::vector<EstimateParameters> levels = plan.estimates(0, surface);
-    for (EstimateParameters& level : levels) level.each_alone = true;
     return MapEstimators(devices, scene,
                          {build_maps_on_each(devices, scene, std::move(photons), groups,
                                              plan.maps(0, radius), progress),
-                          std::move(levels), std::move(seen)},
+                          plan.estimates(0, surface), std::move(seen)},
                          layer_powers_);
   };
   ends_ = plan.ends(0, radius, scene, traced.photons, layer_powers_);

@@ -1,6 +1,5 @@
 #include "render/device_estimators.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -37,21 +36,16 @@ DeviceEstimators::DeviceEstimators(std::span<Device> devices, std::span<const Ph
 Estimates DeviceEstimators::estimate(const PrimaryHits& hits) {
   Estimates result;
   for (std::size_t first = 0; first < hits.size();) {
-    const std::size_t end = first + balance_.round(hits.size() - first);
-    const std::size_t cut = end == hits.size() ? end : estimators_.front().cut_before(hits, end);
-    const std::size_t last = cut > first ? cut : end;
-    estimate_round(hits, first, last - first, result);
-    first = last;
+    const std::size_t count = balance_.round(hits.size() - first);
+    estimate_round(hits, first, count, result);
+    first += count;
   }
   return result;
 }
 
 void DeviceEstimators::estimate_round(const PrimaryHits& hits, std::size_t first, std::size_t count,
                                       Estimates& result) {
-  std::vector<std::size_t> cuts = balance_.cuts(count);
-  for (std::size_t& cut : std::span(cuts).subspan(1, cuts.size() - 2)) {
-    cut = std::max(estimators_.front().cut_before(hits, first + cut), first) - first;
-  }
+  const std::vector<std::size_t> cuts = balance_.cuts(count);
   std::vector<double> seconds(devices_.size());
   std::vector<Estimates> parts(devices_.size());
   for_each_device(devices_, Progress::none(), [&](std::size_t i, Progress&) {

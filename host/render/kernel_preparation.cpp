@@ -70,8 +70,6 @@ void prepare(Device& device, const estimate::PlaneSample& sample,
     const PhotonMaps maps(device, sample.scene, sample.photons, groups,
                           {sample.radius, parameters.photons_per_cell, parameters.structure});
     const EstimateParameters estimate{.neighbours = parameters.neighbours,
-                                      .each_alone = parameters.light_maps != LightMapMode::off ||
-                                                    parameters.processes != nullptr,
                                       .area = parameters.area,
                                       .kernel = parameters.kernel};
     Estimator estimator(maps, sample.scene, estimate);

@@ -165,7 +165,6 @@ std::vector<EstimateParameters> RenderPlan::estimates(
   std::vector<EstimateParameters> levels;
   for (const int neighbours : neighbour_levels(least, most)) {
     levels.push_back({.neighbours = neighbours,
-                      .each_alone = reads_light_maps() || used_.processes != nullptr,
                       .compiled_neighbours = used_.neighbours,
                       .area = used_.area,
                       .kernel = used_.kernel,

@@ -12,26 +12,19 @@ namespace photile {
 /// How the k nearest photons are selected. All find the same neighbours.
 enum class EstimateStrategy {
   select,  ///< distances of a block of cells in one pass, the k-th by radix selection; no list
-  heap,    ///< a bounded max-heap per hit; for k up to max_heap_neighbours, else `select`
-  tile,    ///< a vector of neighbouring hits shares one block of candidates
   lanes    ///< as `select`, by a group of work-items that are the lanes of a vector: for GPUs
 };
 
-inline constexpr std::array all_estimate_strategies = {
-    EstimateStrategy::select, EstimateStrategy::heap, EstimateStrategy::tile,
-    EstimateStrategy::lanes};
+inline constexpr std::array all_estimate_strategies = {EstimateStrategy::select,
+                                                       EstimateStrategy::lanes};
 
-/// Largest k whose heap is kept in private memory.
-inline constexpr int max_heap_neighbours = 256;
-
-/// "select", "heap", "tile", "lanes".
+/// "select", "lanes".
 std::string_view name_of(EstimateStrategy strategy);
 
 struct EstimateTuning {
   EstimateStrategy strategy = EstimateStrategy::select;
   int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16; of `lanes` 16, 32 or 64 work-items
-  /// Neighbouring hits that a work-item, or a group of `lanes`, estimates in turn; `select` and
-  /// `lanes` only.
+  /// Neighbouring hits that a work-item, or a group of `lanes`, estimates in turn.
   int hits_per_item = 1;
   /// Work-items; fewer where their private memory would be too much. That of `lanes` is the width.
   int work_group_size = 64;
@@ -41,7 +34,7 @@ struct EstimateTuning {
   friend bool operator==(const EstimateTuning&, const EstimateTuning&) = default;
 };
 
-/// What is used unless the user asks for another: vector width 16 on every CPU, whatever its own
+/// What estimators use unless asked for another: vector width 16 on every CPU, whatever its own
 /// width, so that pictures agree in every bit between CPUs; elsewhere `lanes`, of as many
 /// work-items as the device runs in step, or of 32 where it does not say.
 EstimateTuning shipped_tuning(const DeviceInfo& device);

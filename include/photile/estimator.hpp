@@ -34,10 +34,6 @@ struct EstimateParameters {
   double radius = 0;
   /// How uniform grids are queried; none = shipped_tuning of the device.
   std::optional<EstimateTuning> tuning = std::nullopt;
-  /// Whether no estimate depends on the hits beside it, in any bit. Else the search for one hit's
-  /// neighbours begins at the radius of the hit before, which is quicker, and the order in which
-  /// photons are summed follows from where it began.
-  bool each_alone = false;
   /// Kernels are compiled for k up to this; 0 = `neighbours`. Estimators with different k share
   /// them; what they compute does not depend on it.
   int compiled_neighbours = 0;
@@ -88,16 +84,12 @@ class Estimator {
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 
-  /// Radiance estimates. Hits in the order of their maps (trace_primary_hits with
+  /// Radiance estimates; none depends on the other hits, in any bit. Hits in the order of their maps (trace_primary_hits with
   /// PhotonMaps::map_of) need not be sorted.
   Estimates estimate(const PrimaryHits& hits);
 
   /// The same for hits [first, first + count) alone.
   Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count);
-
-  /// The last place at or before `hit` where a batch may be cut without changing a bit of what is
-  /// estimated: neighbouring hits that a kernel takes together stay together.
-  std::size_t cut_before(const PrimaryHits& hits, std::size_t hit) const;
 
   /// The neighbours themselves, for tests and inspection.
   NeighbourLists nearest(const PrimaryHits& hits);

@@ -1,6 +1,6 @@
-// The radiance estimate by a bounded max-heap per hit, over kd-trees and other structures or the
-// rings of the uniform grid, for comparison with the selection: the same neighbours, the same sums
-// (estimate/sums.clh) in the order of the heap.
+// The radiance estimate by a bounded max-heap per hit, over kd-trees and other structures, for
+// comparison with the selection: the same neighbours, the same sums (estimate/sums.clh) in the order
+// of the heap.
 //
 // Symbols the host defines: those of estimate/arguments.clh, estimate/sums.clh and
 // structures/query.clh

@@ -152,6 +152,14 @@ TEST_CASE("lanes differ from vectors in the order of sums alone") {
   CHECK(relative_difference(of_lanes.irradiance, of_vectors.irradiance) > 0);
 }
 
+TEST_CASE("lanes that take hits in turn estimate the bits of each alone", "[slow]") {
+  const Subject subject(torus(3, false), 62);
+  EstimateTuning tuning = lanes(32);
+  const Estimates in_turn = subject.estimate(tuning, k, AreaMode::clipped);
+  tuning.hits_per_item = 1;
+  CHECK(subject.estimate(tuning, k, AreaMode::clipped).irradiance == in_turn.irradiance);
+}
+
 TEST_CASE("distances in private memory give the bits of those in local memory", "[slow]") {
   const std::size_t lights = GENERATE(1u, 20u);
   // At k = 1,000 a block does not fit and is walked again.

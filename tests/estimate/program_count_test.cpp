@@ -36,9 +36,7 @@ TEST_CASE("no kernel is left to compile once those of a scene are prepared") {
   const PhotonMaps maps(device, scene, photons,
                         find_map_groups(scene, photons, parameters.maps, {0.2}), {.radius = 0.2});
   CHECK(maps.statistics().mixed_maps > 0);
-  Estimator(maps, scene,
-            {.neighbours = 20, .each_alone = parameters.light_maps == LightMapMode::on})
-      .estimate(test::uniform_hits(scene, 93, 92));
+  Estimator(maps, scene, {.neighbours = 20}).estimate(test::uniform_hits(scene, 93, 92));
   CHECK(device.programs_built() + device.programs_from_cache() == prepared);
 }
 

@@ -13,16 +13,14 @@
 namespace photile::test {
 namespace {
 
-/// Every strategy and vector width, with each of the numbers of hits where they matter.
+/// Every vector width, with each of the numbers of hits where they matter.
 std::vector<EstimateTuning> tunings(const std::vector<int>& numbers_of_hits) {
   std::vector<EstimateTuning> all;
   for (const int width : estimate::vector_widths) {
     for (const int hits : numbers_of_hits) {
       all.push_back({EstimateStrategy::select, width, hits, 16});
     }
-    if (width > 1) all.push_back({EstimateStrategy::tile, width, 1, 16});
   }
-  all.push_back({EstimateStrategy::heap, 1, 1, 64});
   return all;
 }
 
@@ -66,8 +64,8 @@ Case one_light() {
   return data;
 }
 
-/// So few photons around the hits of a triangle that tiles hold them.
-Case small_tiles(bool both_sides = true) {
+/// Maps of few photons and hits.
+Case small_maps(bool both_sides = true) {
   Case data{.scene = test::empty_scene()};
   test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
   data.photons = test::uniform_photons(data.scene, both_sides ? 2000 : 1000, 84, both_sides);
@@ -104,22 +102,43 @@ Case glossy(std::size_t lights = 2) {
   return data;
 }
 
+/// Work-items that take hits in turn look for one's neighbours where those of the one before were.
+void check_bits_of_hits_in_turn(const Case& data, AreaMode area) {
+  const PhotonMaps maps(test::device(), data.scene, data.photons,
+                        find_neighbour_groups(data.scene, {data.radius, 60}), {data.radius, 4});
+  const auto estimate = [&](int hits_per_item) {
+    return Estimator(maps, data.scene,
+                     {.neighbours = data.k,
+                      .tuning = EstimateTuning{EstimateStrategy::select, 16, hits_per_item, 16},
+                      .area = area})
+        .estimate(data.hits);
+  };
+  const Estimates alone = estimate(1);
+  for (const int hits_per_item : {16, 64}) {
+    CAPTURE(hits_per_item, name_of(area), data.scene.lights.size());
+    const Estimates in_turn = estimate(hits_per_item);
+    CHECK(in_turn.irradiance == alone.irradiance);
+    CHECK(in_turn.radiance == alone.radiance);
+    CHECK(in_turn.light == alone.light);
+  }
+}
+
 }  // namespace
 
-TEST_CASE("every strategy and vector width gives the oracle's irradiance for one light") {
+TEST_CASE("every vector width gives the oracle's irradiance for one light") {
   one_light().check(tunings({8}));
 }
 
-TEST_CASE("every strategy and vector width gives the oracle's irradiance for several lights",
+TEST_CASE("every vector width gives the oracle's irradiance for several lights",
           "[slow]") {
   several_lights().check(tunings({8}));
 }
 
-TEST_CASE("every strategy and vector width gives the oracle's irradiance and glossy radiance") {
+TEST_CASE("every vector width gives the oracle's irradiance and glossy radiance") {
   glossy().check(tunings({8}));
 }
 
-TEST_CASE("every strategy and vector width gives the oracle's estimates for many lights",
+TEST_CASE("every vector width gives the oracle's estimates for many lights",
           "[slow]") {
   many_lights().check(tunings({8}));
   glossy(12).check(tunings({8}));
@@ -131,17 +150,17 @@ TEST_CASE("every number of hits per work-item gives the oracle's estimates", "[s
   }
 }
 
-TEST_CASE("k beyond a heap in private memory and beyond a tile gives the oracle's irradiance") {
+TEST_CASE("k of 1 to 900 gives the oracle's irradiance") {
   Case data = one_light();
   for (const int k : {1, 256, 257, 900}) {
     data.k = k;
     data.radius = 0.5;
-    data.check({{EstimateStrategy::heap, 1, 1, 64}, {EstimateStrategy::tile, 8, 1, 64}});
+    data.check({{EstimateStrategy::select, 8, 8, 64}});
   }
 }
 
 TEST_CASE("of two photons in one place at the border of the neighbourhood one counts") {
-  Case data = small_tiles();
+  Case data = small_maps();
   Photons twice;
   std::mt19937_64 random(80);
   for (std::size_t i = 0; i < data.photons.size() / 2; ++i) {
@@ -152,18 +171,17 @@ TEST_CASE("of two photons in one place at the border of the neighbourhood one co
   }
   data.photons = sort_by_sided_triangle(std::move(twice), 2 * data.scene.triangle_count());
   // The flux of the 19 nearest counts: of 9 pairs and one of the tenth.
-  data.check({{EstimateStrategy::select, 8, 8, 16}, {EstimateStrategy::tile, 8, 1, 16}});
+  data.check({{EstimateStrategy::select, 8, 8, 16}});
 }
 
 TEST_CASE("hits that no photon comes near read nothing, next to hits that photons do") {
-  const Case data = small_tiles(false);
+  const Case data = small_maps(false);
   REQUIRE(std::any_of(data.hits.sided_triangle.begin(), data.hits.sided_triangle.end(),
                       [](std::uint32_t s) { return side_of(s) == 1; }));
-  data.check({{EstimateStrategy::select, 8, 8, 16}, {EstimateStrategy::tile, 8, 1, 16}});
+  data.check({{EstimateStrategy::select, 8, 8, 16}});
 }
 
-// Interpolated counts come nearer to the k-th of them too slowly: bits of floats are bisected.
-TEST_CASE("tiles tell photons apart at distances of ten orders of magnitude") {
+TEST_CASE("selection tells photons apart at distances of ten orders of magnitude") {
   Case data{.scene = test::empty_scene()};
   test::add_triangle(data.scene, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
   std::mt19937_64 random(82);
@@ -175,7 +193,18 @@ TEST_CASE("tiles tell photons apart at distances of ten orders of magnitude") {
   data.photons = sort_by_sided_triangle(std::move(data.photons), 2);
   data.hits = test::uniform_hits(data.scene, 8, 83, false);
   std::fill(data.hits.position.begin(), data.hits.position.end(), glm::vec3(0.0f));
-  data.check({{EstimateStrategy::select, 8, 8, 16}, {EstimateStrategy::tile, 8, 1, 16}});
+  data.check({{EstimateStrategy::select, 8, 8, 16}});
+}
+
+TEST_CASE("an estimate has the same bits whatever hits are estimated before it") {
+  check_bits_of_hits_in_turn(one_light(), AreaMode::clipped);
+}
+
+TEST_CASE("an estimate of many lights, or of gloss, has the same bits whatever is estimated before",
+          "[slow]") {
+  for (const Case& data : {several_lights(), many_lights(), glossy(), glossy(12), small_maps()}) {
+    for (const AreaMode area : all_area_modes) check_bits_of_hits_in_turn(data, area);
+  }
 }
 
 TEST_CASE("a tuning that no kernel exists for is refused") {
@@ -187,8 +216,7 @@ TEST_CASE("a tuning that no kernel exists for is refused") {
                                    {EstimateStrategy::select, 16, 0, 64},
                                    {EstimateStrategy::select, 16, 65, 64},
                                    {EstimateStrategy::select, 16, 1, 0},
-                                   {EstimateStrategy::select, 16, 1, 257},
-                                   {EstimateStrategy::tile, 1, 1, 64}}) {
+                                   {EstimateStrategy::select, 16, 1, 257}}) {
     CHECK_THROWS_AS(Estimator(maps, data.scene, {50, 0, tuning}), UsageError);
   }
 }

@@ -33,7 +33,7 @@ struct PhotonsOfRoom {
     MapEstimators::Parts parts;
     parts.maps.emplace_back(test::device(), scene, photons, groups,
                             PhotonMapParameters{.radius = radius}, Progress::none(), wanted);
-    parts.levels.push_back({.neighbours = 30, .each_alone = true});
+    parts.levels.push_back({.neighbours = 30});
     return parts;
   }
 

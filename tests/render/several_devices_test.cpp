@@ -10,7 +10,6 @@
 #include "render/for_each_device.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
-#include "test_tunings.hpp"
 
 namespace photile::test {
 namespace {
@@ -51,17 +50,6 @@ TEST_CASE("two sub-devices gather the bits of one device") {
   std::vector<Device> devices = halves();
   CHECK(test::same_bits(render(scene, test::room_camera(), devices, gathering).layers,
                         expected.layers));
-}
-
-TEST_CASE("every strategy estimates the bits of one device on two") {
-  // One light: a tile then adds its photons in another order than a hit by itself.
-  const Scene scene = test::closed_box(test::diffuse(glm::vec3(0.6f)), 3);
-  const Camera camera = Camera::look_at({0.1, 0.1, 0.1}, {0.9, 0.8, 0.7}, {0, 0, 1}, 1.2);
-  RenderParameters chosen = parameters();
-  chosen.tuning = GENERATE(from_range(test::tunings_of(test::device().info())));
-  const auto expected = render(scene, camera, test::device(), chosen);
-  std::vector<Device> devices = halves();
-  CHECK(test::same_bits(render(scene, camera, devices, chosen).layers, expected.layers));
 }
 
 TEST_CASE("the kd-trees estimate the bits of one device on two") {

@@ -172,13 +172,6 @@ std::vector<Case> cases(bool every_kernel) {
     if (structure == MapStructure::uniform_grid) continue;
     list.push_back({std::string(name_of(structure)), torus_and_plate(1, false), structure});
   }
-  for (const EstimateStrategy strategy : {EstimateStrategy::heap, EstimateStrategy::tile}) {
-    for (const std::size_t lights : {1u, 3u}) {
-      list.push_back({fmt::format("{}-{}-lights", name_of(strategy), lights),
-                      torus_and_plate(lights, false), MapStructure::uniform_grid, 50,
-                      EstimateTuning{strategy, 16, 1, 16}});
-    }
-  }
   // Lists too long for private memory.
   list.push_back({"kdtree-3d-k-300", torus_and_plate(1, false), MapStructure::kdtree_3d, 300});
   return list;
