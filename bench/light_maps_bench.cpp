@@ -116,8 +116,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   const NeighbourGroups groups = default_groups(scene, photons, radius);
   const auto surface = std::make_shared<const SurfaceIndex>(
       index_surface(scene, photons, radius, defaults::group_angle_degrees));
-  const EstimateParameters estimate{
-      .neighbours = settings.neighbours, .surface = surface};
+  const EstimateParameters estimate{.neighbours = settings.neighbours, .surface = surface};
   const std::vector<double> powers = layer_powers(scene);
   std::vector<PhotonMaps> maps;
   maps.emplace_back(device, scene, photons, groups, PhotonMapParameters{.radius = radius});

@@ -13,6 +13,7 @@
 #include "maps/map_store.hpp"
 #include "photile/density_kernel.hpp"
 #include "photile/estimate_tuning.hpp"
+#include "photile/neighbour_groups.hpp"
 
 namespace photile::estimate {
 
@@ -107,7 +108,7 @@ inline void set_normal_arguments(device::Launch& launch, const maps::MapStore& s
   if (mixed || surface != nullptr) {
     // The slack of normals_agree, which groups are made with.
     launch.set("hit_face_normal", hits.face_normal)
-        .set("least_cosine", static_cast<float>(store.cos_angle - 1e-6));
+        .set("least_cosine", static_cast<float>(store.cos_angle - cosine_slack));
   }
   if (surface != nullptr) {
     launch.set("hit_place", hits.place)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "maps/entry_defines.hpp"
+#include "photile/device/lane_memory.h"
 #include "photile/device/surface.h"
 
 namespace photile::estimate {
@@ -77,12 +78,12 @@ std::size_t Specialisation::local_bytes() const {
   const auto width = static_cast<std::size_t>(vector_width);
   const auto kept = static_cast<std::size_t>(capacity);
   const std::size_t chunks = kept / width;
-  constexpr std::size_t word = sizeof(std::uint32_t), columns = 8, queue = 16;
-  std::size_t words = 5 * (width + columns) + (private_distances ? 0 : kept) + chunks;
+  constexpr std::size_t word = sizeof(std::uint32_t);
+  std::size_t words = 5 * (width + PHOTILE_LANE_COLUMNS) + (private_distances ? 0 : kept) + chunks;
   if (needs.glossy || needs.many_lights()) {
     words += chunks * ((width + 31) / 32) + static_cast<std::size_t>(neighbours);
   }
-  words += PHOTILE_SURFACE_STACK + queue + PHOTILE_SURFACE_WIDTH;
+  words += PHOTILE_SURFACE_STACK + PHOTILE_LEAF_QUEUE + PHOTILE_SURFACE_WIDTH;
   if (needs.many_lights()) words += (needs.glossy ? 7 : 4) * width + sums.table_bytes() / word + 1;
   return words * word;
 }

@@ -59,8 +59,8 @@ struct Specialisation {
 };
 
 /// The capacities hold the candidates that k photons usually need. Where the
-/// lists of a group of `lanes` would not fit into max_local_bytes, the strategy becomes `select`; work-groups are halved until their private memory is within
-/// max_private_bytes_per_group.
+/// lists of a group of `lanes` would not fit into max_local_bytes, the strategy becomes `select`;
+/// work-groups are halved until their private memory is within max_private_bytes_per_group.
 Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours);
 
 }  // namespace photile::estimate

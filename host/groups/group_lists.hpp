@@ -15,10 +15,6 @@ namespace photile::groups {
 // the groups of both sides are written: equal sides agree, opposite sides agree.
 inline constexpr std::uint32_t equal_sides = 1, opposite_sides = 2;
 
-/// Rounding slack of the normal test, so that normals folded by exactly the angle agree although
-/// their vertices were rounded to float.
-inline constexpr double cosine_slack = 1e-6;
-
 /// The normal test of photile::normals_agree for both pairs of sides. In single precision, as
 /// kernels/structures/search.clh filters: facets of a cylinder may meet the angle within rounding,
 /// and every structure must decide alike.

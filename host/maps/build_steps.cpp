@@ -8,6 +8,7 @@
 
 #include "maps/entry_defines.hpp"
 #include "maps/prefix_sum.hpp"
+#include "photile/device/grid.h"
 #include "photile/errors.hpp"
 #include "structures/kdtree_builder.hpp"
 
@@ -29,9 +30,6 @@ namespace {
 
 using device::Buffer;
 using device::Context;
-
-/// Cells of more photons are sorted by a group: kernels/grid/sort_cells.cl.
-constexpr std::uint32_t insertion_limit = 48;
 
 /// Groups that sort crowded cells: enough to fill any GPU with what there is of them.
 constexpr std::size_t sorting_groups = 1024;
@@ -130,8 +128,8 @@ void sort_cells(const device::KernelSet& kernels, const MapPage& page) {
     return;
   }
   auto crowded = context.allocate<std::uint32_t>(1, "number of crowded cells");
-  auto crowded_cell =
-      context.allocate<std::uint32_t>(page.entry_count / insertion_limit + 1, "crowded cells");
+  auto crowded_cell = context.allocate<std::uint32_t>(
+      page.entry_count / PHOTILE_INSERTION_LIMIT + 1, "crowded cells");
   context.fill(crowded, 0u);
   launch.set("crowded", crowded).set("crowded_cell", crowded_cell);
   launch.run(page.cell_count, work_group_size);

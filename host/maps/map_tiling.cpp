@@ -23,8 +23,8 @@ MapTiling::MapTiling(const PhotileGrid& grid, double radius)
       columns_(divided_up(grid.columns, bin_width())),
       rows_(divided_up(grid.rows, bin_height_)),
       map_of_bin_(std::size_t{columns_} * rows_, none) {
-  // Queries look at the cells within the radius and the slack of a hit (kernels/estimate/block.clh).
-  // The slack twice more: rounding may put hits, and the ends of
+  // Queries look at the cells within the radius and the slack of a hit
+  // (kernels/estimate/block.clh). The slack twice more: rounding may put hits, and the ends of
   // their cells, beyond the borders.
   const double rows = (radius + 3 * double{grid.slack}) / double{grid.cell_height};
   border_ = static_cast<std::uint32_t>(

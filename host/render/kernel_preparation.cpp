@@ -69,9 +69,8 @@ void prepare(Device& device, const estimate::PlaneSample& sample,
                                                    {sample.radius, parameters.angle_degrees});
     const PhotonMaps maps(device, sample.scene, sample.photons, groups,
                           {sample.radius, parameters.photons_per_cell, parameters.structure});
-    const EstimateParameters estimate{.neighbours = parameters.neighbours,
-                                      .area = parameters.area,
-                                      .kernel = parameters.kernel};
+    const EstimateParameters estimate{
+        .neighbours = parameters.neighbours, .area = parameters.area, .kernel = parameters.kernel};
     Estimator estimator(maps, sample.scene, estimate);
     estimator.estimate(sample.hits);
     if (specular && parameters.light_map_rays > 0) estimator.nearest(sample.hits);

@@ -95,8 +95,7 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
     used_.passes = automatic_passes(rays, all_photons(used_), progress, asked.processes);
   }
   if (asked.light_maps == LightMapMode::automatic) {
-    const bool at_hits =
-        asked.maps == MapMode::naive || (passes() > 1 && !gathers_at_nodes());
+    const bool at_hits = asked.maps == MapMode::naive || (passes() > 1 && !gathers_at_nodes());
     used_.light_maps = at_hits ? LightMapMode::off : LightMapMode::on;
   }
   if (asked.gloss == GlossMode::automatic) {

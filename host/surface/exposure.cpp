@@ -11,13 +11,14 @@
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_bvh.hpp"
 #include "groups/group_lists.hpp"
+#include "photile/device/surface.h"
 
 namespace photile::surface {
 namespace {
 
-constexpr double reach = 0.2;        ///< over the radius: as high as the slab of an estimate
-constexpr double coincident = 1e-4;  ///< over the radius: layers so close lie on each other
-constexpr float least_open = 0.5f;   ///< with less a triangle counts as covered
+constexpr double reach = PHOTILE_SLAB;  ///< over the radius
+constexpr double coincident = 1e-4;     ///< over the radius: layers so close lie on each other
+constexpr float least_open = 0.5f;      ///< with less a triangle counts as covered
 constexpr int samples = 64;
 
 using Corners = std::array<glm::dvec3, 3>;

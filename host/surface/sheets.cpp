@@ -53,7 +53,7 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
       }
       for (std::size_t i = 0; i < edges.size(); ++i) {
         for (std::size_t j = i + 1; j < edges.size(); ++j) {
-          if (!(fold_cosine(mesh, edges[i], edges[j]) >= cos_angle - 1e-6)) continue;
+          if (!(fold_cosine(mesh, edges[i], edges[j]) >= cos_angle - cosine_slack)) continue;
           connected[share].push_back(
               {edges[i].triangle, edges[j].triangle, flip_between(edges[i], edges[j])});
         }

@@ -84,8 +84,8 @@ class Estimator {
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 
-  /// Radiance estimates; none depends on the other hits, in any bit. Hits in the order of their maps (trace_primary_hits with
-  /// PhotonMaps::map_of) need not be sorted.
+  /// Radiance estimates; none depends on the other hits, in any bit. Hits in the order of their
+  /// maps (trace_primary_hits with PhotonMaps::map_of) need not be sorted.
   Estimates estimate(const PrimaryHits& hits);
 
   /// The same for hits [first, first + count) alone.

@@ -81,8 +81,12 @@ NeighbourGroups find_map_groups(const Scene& scene, const Photons& photons, MapM
 /// paper: dark edges). Their radius is infinite: no other triangle's photon is ever looked for.
 NeighbourGroups naive_groups(const Scene& scene);
 
+/// Rounding slack of the normal test, so that normals folded by exactly the angle agree although
+/// their vertices were rounded to float.
+inline constexpr double cosine_slack = 1e-6;
+
 /// The normal test that groups use, so that oracles can apply the very same one.
-/// `cos_angle` = cos(angle); inclusive up to a rounding slack of 1e-6.
+/// `cos_angle` = cos(angle); inclusive up to cosine_slack.
 bool normals_agree(const glm::dvec3& a, const glm::dvec3& b, double cos_angle);
 
 /// A search radius in metres for `k` neighbours: defaults::radius_over_median_kth_distance times

@@ -3,12 +3,11 @@
 
 // Symbols the host defines:
 //   IN_GROUPS   work-items of a group sort a crowded cell together: on a GPU one alone takes minutes
+//
+// Cells up to PHOTILE_INSERTION_LIMIT are sorted by insertion, larger ones by heap sort, or by a
+// group (a million photons may lie in one point).
 
-// Cells up to this size are sorted by insertion, larger ones by heap sort, or by a group (a million
-// photons may lie in one point).
-#ifndef INSERTION_LIMIT
-#define INSERTION_LIMIT 48  // (16 - 64)
-#endif
+#include "photile/device/grid.h"
 
 void insertion_sort(__global uint* values, uint count) {
   for (uint i = 1; i < count; ++i) {
@@ -97,7 +96,7 @@ __kernel void sort_cells(uint cell_count, __global const uint* cell_start,
   for (uint cell = get_global_id(0); cell < cell_count; cell += get_global_size(0)) {
     const uint start = cell_start[cell];
     const uint count = cell_start[cell + 1] - start;
-    if (count <= INSERTION_LIMIT) {
+    if (count <= PHOTILE_INSERTION_LIMIT) {
       insertion_sort(entry_photon + start, count);
     } else {
       SORT_CROWDED;

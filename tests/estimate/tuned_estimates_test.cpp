@@ -129,8 +129,7 @@ TEST_CASE("every vector width gives the oracle's irradiance for one light") {
   one_light().check(tunings({8}));
 }
 
-TEST_CASE("every vector width gives the oracle's irradiance for several lights",
-          "[slow]") {
+TEST_CASE("every vector width gives the oracle's irradiance for several lights", "[slow]") {
   several_lights().check(tunings({8}));
 }
 
@@ -138,8 +137,7 @@ TEST_CASE("every vector width gives the oracle's irradiance and glossy radiance"
   glossy().check(tunings({8}));
 }
 
-TEST_CASE("every vector width gives the oracle's estimates for many lights",
-          "[slow]") {
+TEST_CASE("every vector width gives the oracle's estimates for many lights", "[slow]") {
   many_lights().check(tunings({8}));
   glossy(12).check(tunings({8}));
 }

@@ -1,4 +1,5 @@
-// Root held to the permissions of files, as users are: what is refused to a user can be tested by it.
+// Root held to the permissions of files, as users are: what is refused to a user can be tested by
+// it.
 #pragma once
 
 #include <linux/capability.h>
@@ -23,7 +24,8 @@ class HeldToPermissions {
   HeldToPermissions(const HeldToPermissions&) = delete;
   HeldToPermissions& operator=(const HeldToPermissions&) = delete;
 
-  /// The same for good, of a process that then executes another program; users have nothing to lose.
+  /// The same for good, of a process that then executes another program; users have nothing to
+  /// lose.
   static void for_good() {
     ::prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE);
     ::prctl(PR_CAPBSET_DROP, CAP_DAC_READ_SEARCH);

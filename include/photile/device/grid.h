@@ -6,6 +6,10 @@
 
 #define PHOTILE_CELL_ASPECT 4
 
+/* Photons of a cell that are sorted by insertion; cells of more are sorted by a group on GPUs
+   (kernels/grid/sort_cells.cl). 16 to 64. */
+#define PHOTILE_INSERTION_LIMIT 48
+
 /* Grid over the plane of a triangle or patch. A point p projects to
      u = (p - origin) . u_axis,  v = (p - origin) . v_axis      (metres)
    and falls in column (u - minimum_u) / cell_width and row (v - minimum_v) / cell_height, clamped

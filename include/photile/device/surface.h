@@ -6,6 +6,10 @@
 
 #define PHOTILE_SURFACE_WIDTH 8
 
+/* Height of the slab around a hit's plane in which surface and photons count, over the radius: with
+   0.1 thin curved shells go dark, without a slab plates a few centimetres below bleed through. */
+#define PHOTILE_SLAB 0.2f
+
 /* No path from the root to a node is longer, and no stack of a traversal deeper. */
 #define PHOTILE_SURFACE_STACK 160
 

@@ -1,7 +1,7 @@
 // What an OpenCL layer needs: the loader calls clGetLayerInfo and clInitLayer of the library that
-// OPENCL_LAYERS names and puts the layer's functions in front of the runtime's. A loader passes over a
-// layer that it cannot load without a word: one that is loaded writes the file that PHOTILE_LAYER_MARK
-// names, for tests that would otherwise run without it.
+// OPENCL_LAYERS names and puts the layer's functions in front of the runtime's. A loader passes
+// over a layer that it cannot load without a word: one that is loaded writes the file that
+// PHOTILE_LAYER_MARK names, for tests that would otherwise run without it.
 #pragma once
 
 #define CL_TARGET_OPENCL_VERSION 120
