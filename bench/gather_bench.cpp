@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "gather/irradiance_gather.hpp"
-#include "gather/traced_estimators.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/path_estimate.hpp"
 #include "render/reflected_radiance.hpp"
@@ -145,7 +144,7 @@ double timed(const Work& work) {
 void measure_gathering(const std::string& name, const RayScene& rays, Device& device,
                        const PrimaryHits& points, const Truth& truth, const Sizes& sizes,
                        BenchRecord& record) {
-  std::optional<TracedEstimators> maps;
+  std::optional<test::GatheringPhotons> maps;
   const double set_up = timed([&] {
     maps.emplace(rays, std::span(&device, 1), parameters_of(sizes.gathered_photons, 100));
   });
@@ -155,10 +154,9 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
     IrradianceGatherParameters parameters;
     parameters.rays = gathering;
     parameters.looks = looks;
-    IrradianceGather gather(rays, maps->photons(), maps->ends(), maps->caustics(), parameters);
+    IrradianceGather gather = maps->gather(parameters);
     GatheredIrradiance light = gather.gather(points, numbers(points.size()));  // compiles kernels
-    IrradianceGather timed_gather(rays, maps->photons(), maps->ends(), maps->caustics(),
-                                  parameters);
+    IrradianceGather timed_gather = maps->gather(parameters);
     const double seconds = timed([&] { timed_gather.gather(many, numbers(many.size())); }) /
                            static_cast<double>(many.size());
     const IrradianceGather::Costs& costs = timed_gather.costs();
@@ -197,12 +195,12 @@ void measure_photons(const std::string& name, const RayScene& rays, Device& devi
                      BenchRecord& record) {
   const PrimaryHits many = seen_points(rays, sizes.timed_points);
   for (const int neighbours : {250, 1000}) {
-    std::optional<TracedEstimators> maps;
+    std::optional<test::GatheringPhotons> maps;
     const double set_up = timed([&] {
       maps.emplace(rays, std::span(&device, 1), parameters_of(sizes.looked_up_photons, neighbours));
     });
-    const Estimates estimates = maps->photons().estimate(points);  // compiles kernels
-    const double seconds = timed([&] { maps->photons().estimate(many); });
+    const Estimates estimates = maps->light().at(points, Progress::none());  // compiles kernels
+    const double seconds = timed([&] { maps->light().at(many, Progress::none()); });
     nlohmann::json row{{"scene", name},
                        {"method", "photons"},
                        {"paths", sizes.looked_up_photons},

@@ -18,7 +18,8 @@
 #include "photile/picture_error.hpp"
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
-#include "render/light_map_estimates.hpp"
+#include "render/photon_estimate.hpp"
+#include "render/surface_cache.hpp"
 #include "render/light_map_frames.hpp"
 #include "render/neighbour_choice.hpp"
 #include "support/bench_record.hpp"
@@ -120,7 +121,8 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   const std::vector<double> powers = layer_powers(scene);
   std::vector<PhotonMaps> maps;
   maps.emplace_back(device, scene, photons, groups, PhotonMapParameters{.radius = radius});
-  MapEstimators estimators(std::span(&device, 1), scene, {std::move(maps), {estimate}}, powers);
+  PhotonEstimate light(std::span(&device, 1), scene, {std::move(maps), {estimate}}, powers);
+  ValuedBy by_photons(light);
   LightMapParameters light_maps =
       light_map_parameters(scene, photons, settings.neighbours, radius,
                            defaults::group_angle_degrees, settings.detail, powers);
@@ -141,11 +143,11 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
     return std::pair(stopwatch.taken(), drawn);
   };
   {
-    LightMapEstimates warm(rays, light_maps, estimators);  // compiles the kernels
+    SurfaceCache warm(rays, light_maps, light, by_photons, nullptr);  // compiles the kernels
     LightMapFrames frames(rays, warm.maps(), warm.source());
     draw(frames, scene.cameras.front(), 32, 32, all);
   }
-  LightMapEstimates estimates(rays, light_maps, estimators);
+  SurfaceCache estimates(rays, light_maps, light, by_photons, nullptr);
   LightMapFrames frames(rays, estimates.maps(), estimates.source());
   const auto [width, height] = settings.sizes.front();
   const TimeTaken fill = draw(frames, scene.cameras.front(), width, height, all).first;
@@ -175,7 +177,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   }
   // Each pixel's mean of 16 rays, nodes filled as it asks for them; the reference has all light.
   if (const auto reference = reference_of(name)) {
-    LightMapEstimates compared(rays, light_maps, estimators);
+    SurfaceCache compared(rays, light_maps, light, by_photons, nullptr);
     LightMapFrames framed(rays, compared.maps(), compared.source());
     const Film film{reference->width, reference->height, 16};
     std::vector<glm::vec3> picture(reference->pixels());
@@ -193,7 +195,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   look("look back", 0, 180);
 
   // What the window does when somebody turns: frames of a thirtieth of a second.
-  LightMapEstimates fresh(rays, light_maps, estimators);
+  SurfaceCache fresh(rays, light_maps, light, by_photons, nullptr);
   LightMapFrames bounded(rays, fresh.maps(), fresh.source());
   draw(bounded, scene.cameras.front(), width, height, all);
   double longest = 0, drawing = 0;

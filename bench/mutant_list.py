@@ -184,10 +184,10 @@ MUTANTS = (
     Mutant("scattered light among caustics, so counted twice", "host/trace/photon_path.cpp",
            "keep_caustics && specular && !straight", "keep_caustics && !straight",
            (("gather", "gathering: the light of a caustic*"),)),
-    Mutant("photons of all light for those of caustics", "host/render/rendering_maps.cpp",
-           "  Maps maps{build(std::move(traced.photons), parameters), {}, nullptr};",
+    Mutant("photons of all light for those of caustics", "host/render/photon_passes.cpp",
+           "  Maps maps{build(std::move(traced.photons), parameters, progress), {}, nullptr, std::move(found)};",
            "  traced.caustics = traced.photons;\n"
-           "  Maps maps{build(std::move(traced.photons), parameters), {}, nullptr};",
+           "  Maps maps{build(std::move(traced.photons), parameters, progress), {}, nullptr, std::move(found)};",
            (("gather", "gathering: the light of a caustic*"),)),
     Mutant("radiance seen through water as bright as in it", "host/trace/scatter_specular.cpp",
            "if (material.thin) return 1;", "return 1;",

@@ -41,7 +41,6 @@ STAGES = {
     "bin_of": "selection",
     "edge_above": "selection",
     "reach_for": "block of cells",
-    "block_around": "block of cells",
     "block_within": "block of cells",
     "entries_in": "block of cells",
     "project": "block of cells",

@@ -38,10 +38,7 @@ if(TARGET photile_command)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, photile-openimageio, fonts-dejavu-core")
   set(CPACK_COMPONENT_COMMAND_DESCRIPTION
     "photon mapping on OpenCL devices, a layer per light\n Renders interiors from glTF and OBJ files, changes the lights of finished pictures, measures lux,\n and walks through scenes in a window.")
-  # Manual pages and completions are what the command itself prints.
-  install(CODE "set(PHOTILE_COMMAND \"$<TARGET_FILE:photile_command>\")
-    set(PHOTILE_SCRATCH \"${PROJECT_BINARY_DIR}/manuals\")" COMPONENT command)
-  install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install_manuals.cmake COMPONENT command)
+  set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/packaging/manual_pages.cmake)
   install(FILES cmake/packaging/org.photile.Photile.desktop DESTINATION share/applications
     COMPONENT command)
   install(FILES cmake/packaging/org.photile.Photile.metainfo.xml DESTINATION share/metainfo

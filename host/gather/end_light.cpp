@@ -44,7 +44,7 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
     light.own_of[end] = static_cast<std::uint32_t>(own.size());
     own.push_back(end);
   }
-  if (!own.empty() || processes()) light.own = estimates_at(ends, own);
+  if (!own.empty() || processes()) light.own = estimates_at(ends, own, progress);
   costs_.estimated += own.size();
   costs_.ends += ends.hits.size();
   costs_.rays += ends.rays;
@@ -72,7 +72,7 @@ std::uint64_t EndLight::bytes() const {
 
 Estimates EndLight::irradiance(const PrimaryHits& nodes) {
   costs_.estimated += nodes.size();
-  return photons_.estimate_same(nodes);
+  return of_nodes_.at(nodes, Progress::none());
 }
 
 void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
@@ -166,22 +166,18 @@ void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_o
 
 /// In the order of the ends that are chosen.
 EndEstimates EndLight::estimates_at(const trace::EyeRecord& ends,
-                                    std::span<const std::uint32_t> chosen) {
+                                    std::span<const std::uint32_t> chosen,
+                                    const Progress& progress) {
   trace::EyeRecord record;
   for (const std::uint32_t end : chosen) {
     record.hits.push_back(ends.hits[end]);
     if (!ends.glossy.empty()) record.glossy.push_back(ends.glossy[end]);
   }
-  const std::span<const trace::EyeRecord> records(&record, 1);
-  const std::vector<trace::HitPlace> places =
-      trace::sorted_places(records, impl_of(rays_).bounds, photons_.map_of());
-  std::vector<std::uint32_t> order;
-  for (const trace::HitPlace& place : places) order.push_back(place.index);
-  Estimates in_order = photons_.estimate(trace::hits_at(records, places));
-  std::vector<trace::HitPlace> as_chosen;
-  for (std::uint32_t i = 0; i < chosen.size(); ++i) as_chosen.push_back({0, i});
-  return {trace::hits_at(records, as_chosen),
-          estimate::restored(std::move(in_order), order, rays_.needs().light_count)};
+  std::vector<trace::HitPlace> places;
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) places.push_back({0, i});
+  PrimaryHits hits = trace::hits_at({&record, 1}, places);
+  Estimates estimates = photons_.at(hits, progress);
+  return {std::move(hits), std::move(estimates)};
 }
 
 }  // namespace photile::gathering

@@ -14,7 +14,7 @@
 #include "photile/light_maps.hpp"
 #include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
-#include "render/map_estimators.hpp"
+#include "render/light_at_points.hpp"
 #include "trace/hemisphere_rays.hpp"
 
 namespace photile::gathering {
@@ -39,10 +39,13 @@ struct IndirectLight {
 class EndLight : private PointSource {
  public:
   /// References are kept.
-  ///   photons   whose estimates of hits do not depend on the hits beside them
+  ///   photons   answers for ends that light maps do not serve, and `of_nodes` for nodes: the same
+  ///             but where several processes have the photons. What a point gets does not depend on
+  ///             the points beside it.
   ///   maps      of one level: a cell is known by its first node
-  EndLight(const RayScene& rays, MapEstimators& photons, const LightMapParameters& maps)
-      : rays_(rays), photons_(photons), parameters_(maps) {}
+  EndLight(const RayScene& rays, LightAtPoints& photons, LightAtPoints& of_nodes,
+           const LightMapParameters& maps)
+      : rays_(rays), photons_(photons), of_nodes_(of_nodes), parameters_(maps) {}
 
   /// Finds an estimate for each end.
   /// Errors: as DeviceEstimators; Interrupted.
@@ -58,9 +61,7 @@ class EndLight : private PointSource {
   const Estimates& values() const { return maps_->maps.values(); }
 
   /// That have the photon maps, and make the same calls; null: this one alone.
-  Communicator* processes() const {
-    return photons_.owners() ? &photons_.owners()->processes() : nullptr;
-  }
+  Communicator* processes() const { return parameters_.processes; }
 
   /// Metres, from node to node: as wide as the estimates that value them.
   double spacing() const { return parameters_.spacing; }
@@ -84,10 +85,12 @@ class EndLight : private PointSource {
   void fill(const PrimaryHits& hits, const Progress& progress);
   bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
   bool is_open(const NodeBlend& cell) const;
-  EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen);
+  EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen,
+                            const Progress& progress);
 
   const RayScene& rays_;
-  MapEstimators& photons_;
+  LightAtPoints& photons_;
+  LightAtPoints& of_nodes_;
   /// What nodes of a cell must differ by to be looked at where something stands in it.
   static constexpr double any_contrast = 0;
 

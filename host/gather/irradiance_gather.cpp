@@ -236,8 +236,9 @@ void check_range(const char* what, int value, int low, int high) {
 
 }  // namespace
 
-IrradianceGather::IrradianceGather(const RayScene& rays, MapEstimators& photons,
-                                   const LightMapParameters& ends, MapEstimators* caustics,
+IrradianceGather::IrradianceGather(const RayScene& rays, LightAtPoints& photons,
+                                   LightAtPoints& of_nodes, const LightMapParameters& ends,
+                                   LightAtPoints* caustics,
                                    const IrradianceGatherParameters& parameters)
     : rays_(rays),
       caustics_(caustics),
@@ -245,7 +246,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, MapEstimators& photons,
       lamps_(rays.scene()),
       emitted_(emitted_radiance_at_unit_power(rays.scene())),
       layer_powers_(layer_powers(rays.scene())),
-      ends_(rays, photons, ends) {
+      ends_(rays, photons, of_nodes, ends) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
   check_range("looks at lamps from a point", parameters.looks, 0, limits::max_direct_rays);
   check_range("batches of rays", parameters.batches, 2, 64);
@@ -275,7 +276,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            int looks, std::size_t most, const Progress& progress) {
   const EndLight::Costs before = ends_.costs();
   const Stopwatch caustics_watch;
-  const Estimates caustics = caustics_ ? caustics_->estimate(points) : Estimates{};
+  const Estimates caustics = caustics_ ? caustics_->at(points, progress) : Estimates{};
   costs_.estimate_seconds += caustics_watch.seconds();
   costs_.estimated += caustics_ ? points.size() : 0;
 
@@ -326,7 +327,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
              .traced = rays_per_batch > 0 ? &traced : nullptr,
              .ends = ends_,
              .caustics = caustics,
-             .caustic_relative_variance = caustics_ ? 1.0 / caustics_->neighbours() : 0.0,
+             .caustic_relative_variance = caustics_ ? 1.0 / parameters_.caustic_neighbours : 0.0,
              .layer_powers = layer_powers_},
             first, count, all);
     costs_.sum_seconds += sum_watch.seconds();

@@ -11,7 +11,7 @@
 #include "photile/defaults.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
-#include "render/map_estimators.hpp"
+#include "render/light_at_points.hpp"
 #include "trace/light_sampler.hpp"
 
 namespace photile {
@@ -28,6 +28,8 @@ struct IrradianceGatherParameters {
   /// lamps, for photon estimates blur over such distances and miss what hides there. Not where
   /// there are caustics, which only photons know. 0 = all is read.
   double near = 0;
+  /// Photons of an estimate of caustics, which tell its error.
+  int caustic_neighbours = defaults::neighbours;
   std::uint64_t seed = defaults::seed;
   int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
 };
@@ -58,13 +60,13 @@ struct GatheredParts {
 class IrradianceGather {
  public:
   /// References are kept.
-  ///   photons    of all light; k of about 100 serves. Estimates of hits must not depend on the
-  ///              hits beside them.
+  ///   photons    of all light, and `of_nodes`, as EndLight has them; k of about 100 serves
   ///   ends       light maps for these photons
-  ///   caustics   of those that came by mirrors and glass alone; null where there are none
+  ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
-  IrradianceGather(const RayScene& rays, MapEstimators& photons, const LightMapParameters& ends,
-                   MapEstimators* caustics, const IrradianceGatherParameters& parameters);
+  IrradianceGather(const RayScene& rays, LightAtPoints& photons, LightAtPoints& of_nodes,
+                   const LightMapParameters& ends, LightAtPoints* caustics,
+                   const IrradianceGatherParameters& parameters);
 
   /// Irradiance at points, in their order. What a point gets depends on itself and its number.
   ///   points   position, sided_triangle, diffuse_albedo and, in glossy scenes, outgoing and lobe
@@ -104,7 +106,7 @@ class IrradianceGather {
                            int rays, int looks, std::size_t most, const Progress& progress);
 
   const RayScene& rays_;
-  MapEstimators* caustics_;
+  LightAtPoints* caustics_;
   IrradianceGatherParameters parameters_;
   trace::LightSampler lamps_;
   std::vector<glm::vec3> emitted_;  ///< per light

@@ -213,27 +213,6 @@ Charts::Owner Charts::owner(const NodePlace& node, int levels) const {
           side_of(owner)};
 }
 
-void Charts::append_owners(std::uint32_t index, const glm::uvec2& cell,
-                           std::vector<std::uint32_t>& sided) const {
-  const std::span<const std::uint32_t> triangles = members(index);
-  const geometry::BoxTree* const tree = trees_[index].get();
-  if (tree == nullptr) {
-    sided.insert(sided.end(), triangles.begin(), triangles.end());
-    return;
-  }
-  const glm::dvec2& spacing = charts_[index].spacing;
-  const glm::dvec2 low = glm::dvec2(cell) * spacing, high = low + spacing;
-  geometry::Box box;
-  box.extend(glm::vec3(low, 0.0f));
-  box.extend(glm::vec3(high, 0.0f));
-  // No node is farther from the surface in the cell than the cell's diagonal.
-  const double limit = 1.01 * glm::length(spacing) + 1e-6 * glm::length(high);
-  tree->visit_within(box, static_cast<float>(limit * limit), [&](std::uint32_t i) {
-    sided.push_back(triangles[i]);
-    return false;
-  });
-}
-
 std::uint64_t Charts::bytes() const {
   return (chart_of_.size() + first_member_.size() + members_.size()) * sizeof(std::uint32_t) +
          charts_.size() * (sizeof(Chart) + sizeof(ChartPlace));

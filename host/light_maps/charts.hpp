@@ -87,11 +87,6 @@ class Charts {
     return {along(place.x, charts_[chart].columns), along(place.y, charts_[chart].rows)};
   }
 
-  /// Appends the sided triangles that nodes in a cell of the coarsest lattice, or on its border,
-  /// may stand for where surface lies in the cell, and some more. `prepare` has been called.
-  void append_owners(std::uint32_t chart, const glm::uvec2& cell,
-                     std::vector<std::uint32_t>& sided) const;
-
  private:
   void frame(std::uint32_t chart, std::uint32_t seed);
   glm::dvec2 in_plane(const Chart& chart, const glm::vec3& point) const;

@@ -129,18 +129,8 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
     left.tiles.back().known = kept[index];
     left.tiles.back().split &= kept[index];
   }
-  // By the first pass, whose values are gone.
-  std::vector<float> together;
-  for (const std::uint32_t node : former) together.push_back(impl_->together[node]);
-  std::vector<std::size_t> refined;
-  for (const std::size_t nodes : impl_->refined) {
-    refined.push_back(static_cast<std::size_t>(
-        std::lower_bound(former.begin(), former.end(), nodes) - former.begin()));
-  }
   impl_->clear();
   restore(std::move(left));
-  impl_->together = std::move(together);
-  impl_->refined = std::move(refined);
   return former;
 }
 

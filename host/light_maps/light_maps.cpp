@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -114,7 +113,6 @@ void LightMaps::Impl::clear() {
   distance.clear();
   points.clear();
   places.clear();
-  refined.clear();
   cells = 0;
 }
 
@@ -300,31 +298,6 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
   }
 }
 
-std::vector<std::uint32_t> LightMaps::owners_around(const PrimaryHits& hits) {
-  struct Cell {
-    std::uint32_t chart, y, x;
-    auto operator<=>(const Cell&) const = default;
-  };
-  Charts& charts = impl_->charts;
-  std::vector<Cell> cells(hits.size());
-  tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t hit) {
-    const std::uint32_t chart = charts.chart_of()[hits.sided_triangle[hit]];
-    const glm::uvec2 cell = charts.cell_at(chart, charts.place(chart).of(hits.position[hit]));
-    cells[hit] = {chart, cell.y, cell.x};
-  });
-  tbb::parallel_sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  std::vector<std::uint32_t> owners;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto [chart, y, x] = cells[i];
-    if (i == 0 || cells[i - 1].chart != chart) charts.prepare(chart);
-    charts.append_owners(chart, {x, y}, owners);
-  }
-  std::sort(owners.begin(), owners.end());
-  owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
-  return owners;
-}
-
 bool LightMaps::find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend,
                      int levels) const {
   return !impl_->tiles.find(impl_->charts.chart_of()[sided_triangle], position, blend, levels);
@@ -337,8 +310,7 @@ double LightMaps::relative_error(const NodeBlend& blend) const {
     error += double{blend.weight[i]} * impl_->error[blend.node[i]];
     light += double{blend.weight[i]} * impl_->together[blend.node[i]];
   }
-  const auto passes = static_cast<double>(1 + impl_->refined.size());
-  return light > 0 ? error / light / std::sqrt(passes) : 0;
+  return light > 0 ? error / light : 0;
 }
 
 bool LightMaps::uneven(const NodeBlend& blend, double contrast) const {
@@ -369,7 +341,6 @@ LightMapStatistics LightMaps::statistics() const {
   return {.nodes = impl_->together.size(),
           .tiles = impl_->tiles.size(),
           .cells = impl_->cells,
-          .refinements = impl_->refinements,
           .charts = impl_->charts.size(),
           .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
                          values.first.size() * sizeof(std::uint64_t) +

@@ -33,9 +33,6 @@ struct LightMaps::Impl {
                                                NodeSource& source, const Progress& progress);
   void append(Estimates estimates, const PrimaryHits& at,
               std::span<const light_maps::NodePlace> nodes);
-  /// Makes nodes [first, last), which hold the mean of so many passes, hold that of one more.
-  void add_pass(std::uint32_t passes, NodeSource& source, std::size_t first, std::size_t last,
-                const Progress& progress);
   bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
   bool is_dark(double light) const;
   bool differ_by_photons(double high, double low) const;
@@ -49,12 +46,10 @@ struct LightMaps::Impl {
   light_maps::NodeIndex node_at;
   std::vector<light_maps::NodePlace> places;  ///< of nodes
   Estimates values;                           ///< of nodes
-  /// Per node: luminance of all lights at their powers, by the first pass.
+  /// Per node: luminance of all lights at their powers.
   std::vector<float> together;
   std::vector<float> error, distance;  ///< per node, where the source tells: see NodeValues
   std::vector<NodePoint> points;       ///< of nodes
-  std::vector<std::size_t> refined;    ///< per further pass: the first nodes, which hold it
-  std::uint64_t refinements = 0;
   std::uint64_t cells = 0;
   double chart_seconds = 0;
 };

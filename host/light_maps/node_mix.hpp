@@ -21,12 +21,6 @@ class NodeMix {
   ///   powers   per layer: power x tint
   void mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers);
 
-  /// What nodes hold is not what it was.
-  void forget() {
-    light_.clear();
-    by_normal_.clear();
-  }
-
   /// Keeps these nodes alone, in this order.
   void keep(std::span<const std::uint32_t> nodes);
 

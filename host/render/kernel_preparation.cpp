@@ -11,7 +11,7 @@
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/settings.hpp"
-#include "render/map_estimators.hpp"
+#include "render/photon_estimate.hpp"
 
 namespace photile {
 namespace {

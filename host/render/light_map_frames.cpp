@@ -30,8 +30,6 @@ static_assert(packet_side * packet_side == trace::coherent_rays);
 /// Of valuing a place, before it is known: by photons, and by rays at it and around it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 2e-3;
 
-/// Nodes to which a pass is added at a time: bounds the memory of their estimates.
-constexpr std::uint64_t refinements_per_batch = std::uint64_t{1} << 18;
 
 /// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread
 /// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). The same in every
@@ -109,8 +107,7 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
       layer_of_(light_groups_of(scene_).group_of),
       emitted_(emitted_radiance_at_unit_power(scene_)),
       distant_(scene_),
-      seconds_per_place_(source.surroundings().rounds > 0 ? seconds_of_rays : seconds_of_photons),
-      seconds_per_refinement_(seconds_per_place_) {
+      seconds_per_place_(source.surroundings().rounds > 0 ? seconds_of_rays : seconds_of_photons) {
   const std::span<const std::uint32_t> chart_of = maps.charts().chart_of();
   for (std::uint32_t t = 0; t < surfaces_.size(); ++t) {
     const Material& material = scene_.materials[scene_.triangle_material[t]];
@@ -140,7 +137,7 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
   std::optional<Stopwatch> filling;
   for (;;) {
     progress.throw_if_cancelled();
-    mix(powers);
+    mixed_.mix(maps_.values(), maps_.statistics().nodes, powers);
     if (bound_ > 0) seen_.resize(maps_.statistics().nodes, 0);
     ambient_ = mean_of_some(mixed_.light());
     std::vector<MissingPlace> missing = draw_blocks(view, blocks);
@@ -148,29 +145,11 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
     drawn.empty = static_cast<std::size_t>(std::count_if(
         missing.begin(), missing.end(), [](const auto& place) { return place.empty; }));
     drawn.fill_seconds = filling ? filling->seconds() : 0;
-    drawn.lacking += maps_.refine(source_, progress, 0);
     const double left = fill_seconds - drawn.fill_seconds;
     if (drawn.lacking == 0 || !(left > 0)) return drawn;
     if (!filling) filling.emplace();
-    if (!missing.empty()) {
-      fill(missing, left, progress);
-      continue;
-    }
-    refine(drawn.lacking, left, progress);
-    if (std::isfinite(left)) {  // all pixels change: the next frame shows it
-      drawn.fill_seconds = filling->seconds();
-      return drawn;
-    }
-    blocks.resize(view.blocks());
-    std::iota(blocks.begin(), blocks.end(), std::size_t{0});
+    fill(missing, left, progress);
   }
-}
-
-void LightMapFrames::mix(std::span<const glm::vec3> powers) {
-  const LightMapStatistics statistics = maps_.statistics();
-  if (statistics.refinements != mixed_refinements_) mixed_.forget();
-  mixed_refinements_ = statistics.refinements;
-  mixed_.mix(maps_.values(), statistics.nodes, powers);
 }
 
 /// Before a frame: the latest is the one before.
@@ -256,21 +235,6 @@ void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
     seconds_per_place_ += 0.5 * (latest - seconds_per_place_);
     first += count;
   } while (first < places.size() && stopwatch.seconds() < seconds);
-}
-
-/// Adds further passes to nodes, for about so long.
-void LightMapFrames::refine(std::uint64_t lacking, double seconds, const Progress& progress) {
-  const Stopwatch stopwatch;
-  do {
-    const double affordable =
-        std::max(1.0, (seconds - stopwatch.seconds()) / seconds_per_refinement_);
-    const auto count = static_cast<std::uint64_t>(
-        std::min(affordable, static_cast<double>(std::min(lacking, refinements_per_batch))));
-    const Stopwatch of_batch;
-    lacking = maps_.refine(source_, progress, count);
-    const double latest = of_batch.seconds() / static_cast<double>(count);
-    seconds_per_refinement_ += 0.5 * (latest - seconds_per_refinement_);
-  } while (lacking > 0 && stopwatch.seconds() < seconds);
 }
 
 void LightMapFrames::draw_block(const View& view, std::size_t block, Missing& missing) const {

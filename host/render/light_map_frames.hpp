@@ -36,9 +36,8 @@ class LightMapFrames {
   /// average.
   ///   powers         per layer: power x tint
   ///   fill_seconds   that may go into valuing nodes which pixels lack and into drawing these
-  ///   pixels
-  ///                  again, level by level, the nearest to the eye first; and then into further
-  ///                  passes of nodes; infinite: all of them
+  ///                  pixels again, level by level, the nearest to the eye first; infinite: all of
+  ///                  them
   /// Errors: those of LightMaps::fill.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   double fill_seconds, std::span<glm::vec3> picture, const Progress& progress);
@@ -66,9 +65,7 @@ class LightMapFrames {
 
   void forget_unseen();
   std::vector<MissingPlace> draw_blocks(const View& view, std::vector<std::size_t>& blocks) const;
-  void mix(std::span<const glm::vec3> powers);
   void fill(std::span<const MissingPlace> places, double seconds, const Progress& progress);
-  void refine(std::uint64_t lacking, double seconds, const Progress& progress);
   void draw_block(const View& view, std::size_t block, Missing& missing) const;
   glm::vec3 seen(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                  std::uint32_t triangle, std::uint32_t side, float u, float v, float distance,
@@ -88,13 +85,11 @@ class LightMapFrames {
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1
   trace::DistantLights distant_;
   light_maps::NodeMix mixed_;
-  std::uint64_t mixed_refinements_ = 0;      ///< of the nodes that are mixed
   std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none
   std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
   mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell
   glm::vec3 ambient_{0.0f};                  ///< irradiance where no level is valued
   double seconds_per_place_;                 ///< of valuing, learned from what it took
-  double seconds_per_refinement_;            ///< by a further pass, likewise
 };
 
 }  // namespace photile

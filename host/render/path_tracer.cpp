@@ -7,7 +7,8 @@
 #include "render/hit_source.hpp"
 #include "render/path_estimate.hpp"
 #include "render/path_numbers.hpp"
-#include "render/rendering.hpp"
+#include "render/render_costs.hpp"
+#include "render/render_session.hpp"
 
 namespace photile {
 namespace {

@@ -62,26 +62,9 @@ void StageCost::add(const TimeTaken& more_time, std::uint64_t more_host_bytes,
   device_bytes = std::max(device_bytes, more_device_bytes);
 }
 
-void RenderCosts::add_pass(const RenderCosts& further) {
-  trace.add(further.trace.time, further.trace.host_bytes);
-  build.add(further.build.time, further.build.host_bytes);
-  build.device_bytes += further.build.device_bytes;
-  estimators.add(further.estimators.time);
-  release.add(further.release.time);
-  emitted_photons += further.emitted_photons;
-  exchange.add(further.exchange.time, further.exchange.host_bytes);
-  photons_sent += further.photons_sent;
-  photon_bytes_sent += further.photon_bytes_sent;
-  photons_held += further.photons_held;
-  stored_photons += further.stored_photons;
-  caustic_photons += further.caustic_photons;
-  references += further.references;
-  largest_map = std::max(largest_map, further.largest_map);
-}
-
 void RenderCosts::start_picture() {
   hits = light_maps = estimate = film = {};
-  hits_sent = hit_bytes_sent = 0;
+  points_sent = {};
   rays = light_map_nodes = hit_count = 0;
   estimate_compile_seconds = 0;
 }
@@ -100,8 +83,8 @@ void RenderCosts::add_processes(Communicator& all) {
                        photons_sent,
                        photon_bytes_sent,
                        photons_held,
-                       hits_sent,
-                       hit_bytes_sent,
+                       points_sent.points,
+                       points_sent.bytes,
                        traffic.bytes,
                        memory,
                        std::bit_cast<std::uint64_t>(light_map_errors.squares),

@@ -8,6 +8,7 @@
 
 #include "photile/communicator.hpp"
 #include "photile/statistics.hpp"
+#include "render/exchange.hpp"
 
 namespace photile {
 
@@ -55,15 +56,12 @@ struct RenderCosts {
 
   // Where several processes share the rendering: what this one sent to others, and holds.
   std::uint64_t photons_sent = 0, photon_bytes_sent = 0, photons_held = 0;
-  std::uint64_t hits_sent = 0, hit_bytes_sent = 0;        ///< of the picture
+  PointTraffic points_sent;                               ///< of the picture
   std::vector<std::pair<std::string, double>> processes;  ///< figures of all
 
   /// Replaces counts by those of all processes, and fills in their figures. Times stay those of
   /// this one. Collective.
   void add_processes(Communicator& all);
-
-  /// Adds what the maps of a further pass have cost.
-  void add_pass(const RenderCosts& further);
 
   /// Forgets what the picture before has cost, and not the maps.
   void start_picture();

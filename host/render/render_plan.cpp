@@ -7,7 +7,7 @@
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/neighbour_groups.hpp"
-#include "render/light_map_estimates.hpp"
+#include "render/surface_cache.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
@@ -67,9 +67,9 @@ std::string_view name_of(GlossMode mode) {
 }
 
 bool nodes_gather(const RenderParameters& asked) {
-  const bool shows_other_light = asked.maps == MapMode::naive;
   const bool read = asked.light_maps == LightMapMode::on ||
-                    (asked.light_maps == LightMapMode::automatic && !shows_other_light);
+                    (asked.light_maps == LightMapMode::automatic && asked.maps != MapMode::naive &&
+                     asked.passes <= 1);
   return asked.light_map_rays > 0 && asked.direct_rays == 0 && read;
 }
 
@@ -81,9 +81,9 @@ PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
           .max_specular_depth = parameters.max_specular_depth};
 }
 
-RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Progress& progress)
+RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits,
+                       Progress& progress)
     : used_(asked),
-      asked_light_maps_(asked.light_maps),
       asked_passes_(asked.passes),
       least_radius_(photile::least_radius(rays.scene())),
       scene_(rays.scene().source.filename().string()) {
@@ -94,13 +94,22 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Prog
   if (asked.passes == 0) {
     used_.passes = automatic_passes(rays, all_photons(used_), progress, asked.processes);
   }
-  if (asked.light_maps == LightMapMode::automatic) {
-    const bool at_hits = asked.maps == MapMode::naive || (passes() > 1 && !gathers_at_nodes());
-    used_.light_maps = at_hits ? LightMapMode::off : LightMapMode::on;
+  if (asked.light_maps == LightMapMode::on && passes() > 1) {
+    throw SettingError(setting_named("light_maps"),
+                       fmt::format("light maps are of one photon pass, and there are {}; take fewer "
+                                   "photons, or one pass",
+                                   passes()));
   }
+  const bool read = asked.light_maps == LightMapMode::on ||
+                    (asked.light_maps == LightMapMode::automatic &&
+                     asked.maps != MapMode::naive && passes() == 1);
+  if (!read) used_.light_map_rays = 0;
   if (asked.gloss == GlossMode::automatic) {
-    used_.gloss = reads_light_maps() ? GlossMode::rays : GlossMode::photons;
+    used_.gloss = read ? GlossMode::rays : GlossMode::photons;
   }
+  const bool at_points = hits == HitsAsk::points && asked.light_maps == LightMapMode::automatic &&
+                         !gathers_at_nodes();
+  used_.light_maps = read && !at_points ? LightMapMode::on : LightMapMode::off;
   // Beyond the scene there is nothing to find.
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
 }
@@ -196,10 +205,11 @@ LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& 
 }
 
 IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {
+  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
   return {.rays = used_.light_map_rays,
           .looks = used_.light_map_rays,
-          .near = defaults::near_radii *
-                  estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
+          .near = defaults::near_radii * estimate.radius,
+          .caustic_neighbours = estimate.neighbours,
           .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(pass)),
           .max_specular_depth = used_.max_specular_depth};
 }

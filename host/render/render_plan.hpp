@@ -21,11 +21,15 @@ namespace photile {
 /// light is not that of nodes, or looks at lamps from the hits replace a part of it.
 bool nodes_gather(const RenderParameters& asked);
 
+/// Who asks for light: pictures, whose hits lie so close that many share nodes of light maps, or
+/// points here and there, which read them only where they are asked to.
+enum class HitsAsk { pictures, points };
+
 class RenderPlan {
  public:
   /// Traces a few paths where the number of passes follows from the memory. Errors: those of
   /// `check` in render/setting.hpp and of automatic_passes.
-  RenderPlan(const RenderParameters& asked, const RayScene& rays, Progress& progress);
+  RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits, Progress& progress);
 
   /// What is asked, with what follows from it in place: photon passes that fit in memory, looks at
   /// lamps where rays gather, discs for naive maps. The radius is 0 where photons tell it.
@@ -36,10 +40,6 @@ class RenderPlan {
   /// not follow from the memory.
   bool may_keep_passes() const { return passes() == 1 || asked_passes_ > 0; }
   bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
-  /// Whether light maps are to be read by any hits, even if few share nodes.
-  bool asks_for_light_maps() const {
-    return asked_light_maps_ == LightMapMode::on || gathers_at_nodes();
-  }
   bool gathers_at_nodes() const { return used_.light_map_rays > 0; }
   bool keeps_caustics() const { return gathers_at_nodes(); }
   bool clips_areas() const { return used_.area == AreaMode::clipped; }
@@ -80,7 +80,6 @@ class RenderPlan {
 
  private:
   RenderParameters used_;
-  LightMapMode asked_light_maps_;
   int asked_passes_;
   double least_radius_;  ///< metres
   std::string scene_;    ///< for messages

@@ -205,9 +205,8 @@ std::vector<Setting> estimate_rows() {
                      "read, else photons",
                      not_kept),
       row<&P::light_maps>("light_maps", "light-maps", "light maps", words_of(all_light_map_modes),
-                          "matt surfaces are read between nodes; auto: not with "
-                          "naive maps or, unless nodes gather, several passes; off: an estimate "
-                          "at each hit",
+                          "matt surfaces are read between nodes; auto: not with naive maps or "
+                          "several passes; off: an estimate at each hit",
                           not_kept),
       by_quality(row<&P::light_map_rays>(
                      "light_map_rays", "light-map-rays", "light maps",

@@ -79,10 +79,6 @@ class NodeSource {
 
   virtual NodeValues value(const NodeBatch& batch, const Progress& progress) = 0;
 
-  /// Those of further photon passes, in their order: LightMaps::refine makes nodes hold the mean of
-  /// all. There may be more of them from call to call.
-  virtual std::span<NodeSource* const> further() const { return {}; }
-
   /// Whether it has all that it needs of the node of this number to value those that lie between it
   /// and others. Those that it does not know are given to `value` once more, the coarsest first.
   virtual bool knows(std::uint64_t /*number*/) const { return true; }
@@ -125,7 +121,6 @@ struct LightMapStatistics {
   std::uint64_t nodes = 0;
   std::uint64_t tiles = 0;        ///< of 8 x 8 cells
   std::uint64_t cells = 0;        ///< compared
-  std::uint64_t refinements = 0;  ///< further passes of nodes
   std::uint64_t charts = 0;       ///< planes with lattices of their own
   std::uint64_t value_bytes = 0;  ///< of the nodes' light
   std::uint64_t index_bytes = 0;  ///< of all that finds it
@@ -173,18 +168,6 @@ class LightMaps {
             int rounds = all_rounds, int levels = all_rounds);
   static constexpr int all_rounds = 1 << 30;
 
-  /// The sided triangles that nodes may lie on which these hits on opaque surfaces need, at any
-  /// level, and some more.
-  std::vector<std::uint32_t> owners_around(const PrimaryHits& hits);
-
-  /// Makes nodes hold the mean over all passes of their source, as far as so many values go: pass
-  /// by pass, in the order in which nodes came to be. What is seen first later gets the passes in
-  /// the same order, and the first alone says which cells are split: what nodes hold in the end
-  /// does not depend on when they came to be. Returns how many values are lacking still. Errors: as
-  /// `fill`.
-  std::uint64_t refine(NodeSource& source, const Progress& progress,
-                       std::uint64_t most = ~std::uint64_t{0});
-
   /// The nodes around a point of an opaque surface. Thread-safe between fills. Where nodes are not
   /// valued yet it returns false, and the nodes of the finest level that is there; the first is
   /// `none` where no level is.
@@ -192,8 +175,7 @@ class LightMaps {
             int levels = all_rounds) const;
 
   /// Standard error of the light of all lights between nodes, relative; 0 where the source does not
-  /// tell it, or without light. Errors of neighbours are taken for the same, and so are those of
-  /// passes.
+  /// tell it, or without light. Errors of neighbours are taken for the same.
   double relative_error(const NodeBlend& blend) const;
 
   /// Whether what stands between a place and its nodes matters: they differ by more than this part

@@ -32,6 +32,9 @@ struct PrimaryHits {
   std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
   std::vector<HitLobe> lobe;              ///< empty unless glossy
   std::vector<float> share;  ///< of its sample, for its illuminance; empty where all are whole
+  /// Whether a coarse answer suffices, for its noise will not show (reflection_noise.hpp); empty
+  /// where it does nowhere.
+  std::vector<std::uint8_t> coarse;
 
   std::size_t size() const { return position.size(); }
 };

@@ -33,8 +33,7 @@ using KeepPhotons = std::function<void(const PreparedPhotons&)>;
 
 /// What a quick frame shows.
 struct DrawnFrame {
-  /// Cells of light maps that it shows coarser than they should be, and passes of nodes that it
-  /// does not show.
+  /// Cells of light maps that it shows coarser than they should be.
   std::size_t lacking = 0;
   std::size_t empty = 0;    ///< of them, those without light of their own: they are grey
   double fill_seconds = 0;  ///< that went into nodes which were lacking
@@ -46,27 +45,13 @@ class SceneRenderer {
   /// Traces the photons and builds the maps. The scene and the devices must outlive it.
   ///   prepared   in place of tracing, of the same scene and parameters; left empty. Null: none
   ///   keep       is called with what the maps are built from, before they are. Empty: nothing
-  ///   passes     of several photon passes: pictures are the mean of all. `prepared` and `keep` are
-  ///              of the first
+  /// Of several photon passes pictures are the mean of all; `prepared` and `keep` are of the first.
   /// Errors: those of `render`, and of `keep`; UsageError where the photons do not fit in memory at
   /// once, or where rays gather and `prepared` has no caustics apart.
-  enum class Passes { all, first };
   SceneRenderer(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
                 PreparedPhotons* prepared = nullptr, const KeepPhotons& keep = {},
-                Progress& progress = Progress::none(), Passes passes = Passes::all);
+                Progress& progress = Progress::none());
   ~SceneRenderer();
-
-  /// Photons of a pass after the first, and their maps.
-  struct Pass;
-  /// Traces and builds them, while another thread makes pictures.
-  ///   pass      from 1
-  ///   devices   of its own
-  /// Errors: those of the constructor.
-  std::shared_ptr<Pass> prepare_pass(int pass, std::vector<Device> devices,
-                                     Progress& progress = Progress::none()) const;
-  /// From now on pictures are the mean of this pass, too, the next in order; nodes of light maps
-  /// that are there are refined in place. Takes what the pass holds.
-  void add(Pass& pass);
 
   /// The picture that `render` gives with this film, bit for bit. Statistics contain the costs of
   /// the maps each time.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gather/irradiance_gather.hpp"
-#include "gather/traced_estimators.hpp"
+#include "gathering_photons.hpp"
 #include "photile/sensors.hpp"
 #include "test_device.hpp"
 #include "trace/sensor_hits.hpp"
@@ -35,8 +35,7 @@ class GatheringScene {
       : scene(std::move(taken)), rays(scene), estimators(rays, {&device(), 1}, parameters) {}
 
   IrradianceGather gather(const IrradianceGatherParameters& parameters) {
-    return IrradianceGather(rays, estimators.photons(), estimators.ends(), estimators.caustics(),
-                            parameters);
+    return estimators.gather(parameters);
   }
   GatheredIrradiance at(const std::vector<Sensor>& sensors,
                         const IrradianceGatherParameters& parameters = {}) {
@@ -45,7 +44,7 @@ class GatheringScene {
 
   const Scene scene;
   RayScene rays;
-  TracedEstimators estimators;
+  GatheringPhotons estimators;
 };
 
 /// count x count points of a parallelogram, none on its border.

@@ -133,7 +133,7 @@ TEST_CASE("Nodes show a smooth sphere and cylinder in a room as paths do", "[smo
   CHECK(rms_beside_paths(in_room(cylinder), some_of(cylinder, 1), 6'000) < 0.02);
 }
 
-TEST_CASE("Many lights and photon passes are shaded as smoothly", "[smooth_shading]") {
+TEST_CASE("Many lights are shaded as smoothly", "[smooth_shading]") {
   const std::vector<Sensor> sensors = some_of(sphere, 5);
   SceneBuilder builder;
   const std::uint32_t wall = builder.add(diffuse(glm::vec3(0.6f)));
@@ -147,8 +147,7 @@ TEST_CASE("Many lights and photon passes are shaded as smoothly", "[smooth_shadi
   }
   const Scene strips = builder.build();
   REQUIRE(needs_of(strips).many_lights());
-  RenderParameters parameters = good();
-  parameters.passes = 2;
+  const RenderParameters parameters = good();
   const std::vector<double> many =
       radiance_of(strips, measure(strips, sensors, {&device(), 1}, parameters).layers.dense());
   const Scene panel = in_room(sphere, true, 1);

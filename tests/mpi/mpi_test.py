@@ -203,8 +203,8 @@ def walk():
 
 def passes():
     """Several photon passes, in light maps and in the mean of pictures."""
-    same_pictures([3], [*SMALL, "--quality", "draft", "--passes", "3", "--light-maps", "on"])
-    same_pictures([2], [*SMALL[:4], "--samples", "4", "--light-map-rays", "8", "--passes", "2"])
+    same_pictures([3], [*SMALL, "--quality", "draft", "--light-maps", "on"])
+    same_pictures([2], [*SMALL[:4], "--samples", "4", "--light-map-rays", "8"])
     same_pictures([3], [*SMALL, "--quality", "draft", "--passes", "2"], by=1)
 
 

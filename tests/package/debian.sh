@@ -1,7 +1,7 @@
 #!/bin/bash
 # Makes the Debian packages, installs them on a bare Debian 12 in a folder of its own, and uses each
-# there: a picture, a module, a program that is linked. Needs root, debootstrap and a mirror of Debian;
-# without, the test is skipped and says so.
+# there: a picture, a module, a program that is linked. Needs root, help2man,
+# debootstrap and a mirror of Debian; without, the test is skipped and says so.
 #   debian.sh BUILD-FOLDER SOURCE-FOLDER SCRATCH-FOLDER
 set -eu
 build=$1 source=$2 scratch=$3/debian
@@ -16,6 +16,7 @@ fail() {
   exit 1
 }
 [ "$(id -u)" = 0 ] || skip "a chroot needs root"
+command -v help2man > /dev/null || skip "there is no help2man; apt-get install help2man"
 command -v debootstrap > /dev/null || skip "there is no debootstrap; apt-get install debootstrap"
 
 root=$scratch/root
@@ -82,9 +83,7 @@ if /usr/bin/python3 -m pip install --quiet --target "$root/root/numpy_2" 'numpy>
   numpy_2=found
   use_module numpy_2 | grep -q '^numpy 2' || fail "the module does not work with numpy 2"
 fi
-for file in man/man1/photile.1 man/man1/photile-render.1 bash-completion/completions/photile \
-  zsh/vendor-completions/_photile fish/vendor_completions.d/photile.fish \
-  applications/org.photile.Photile.desktop metainfo/org.photile.Photile.metainfo.xml \
+for file in man/man1/photile.1 man/man1/photile-render.1 applications/org.photile.Photile.desktop metainfo/org.photile.Photile.metainfo.xml \
   icons/hicolor/scalable/apps/org.photile.Photile.svg blender/scripts/addons/photile/__init__.py; do
   # minbase leaves pages out, as Debian's own containers do; then the package lists them.
   [ -s "$root/usr/share/$file" ] || inside "dpkg -L photile" | grep -q "/$file" ||

@@ -1,11 +1,13 @@
 // A picture whose rows are estimated a few at a time, as where many lights are pooled.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "photile/light_groups.hpp"
 #include "photile/light_pooling.hpp"
-#include "render/rendering.hpp"
+#include "render/hit_source.hpp"
+#include "render/render_session.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
@@ -19,13 +21,9 @@ inline LightLayers picture_in_parts(const Scene& scene, const Camera& camera,
     itself.layers.push_back(group.name);
     itself.scale.push_back(1.0f);
   }
-  const PreparedScene prepared(scene);
-  Rendering rendering(prepared, std::span(&device(), 1), parameters, Progress::none());
-  rendering.expect_one_picture();
-  rendering.start(parameters.film, 0, &itself);
-  rendering.prepare(0, nullptr, nullptr);
-  rendering.add_pass(CameraHits(camera));
-  return rendering.finish().layers;
+  RenderSession session(std::make_shared<const PreparedScene>(scene), std::span(&device(), 1),
+                        parameters, nullptr, {}, Progress::none());
+  return session.render(CameraHits(camera), parameters.film, Progress::none(), &itself).layers;
 }
 
 }  // namespace photile::test

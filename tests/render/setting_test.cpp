@@ -129,7 +129,7 @@ TEST_CASE("a plan draws from what is asked what follows from it") {
   const RayScene rays(scene);
   RenderParameters asked = small();
   asked.neighbours = 80;
-  const auto plan = [&] { return RenderPlan(asked, rays, Progress::none()); };
+  const auto plan = [&] { return RenderPlan(asked, rays, HitsAsk::pictures, Progress::none()); };
   CHECK(plan().passes() == 1);
   CHECK(plan().estimates(0, nullptr).size() == 1);
   CHECK(plan().estimates(0, nullptr)[0].neighbours == 80);

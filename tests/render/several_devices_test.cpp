@@ -6,7 +6,6 @@
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
-#include "render/device_estimators.hpp"
 #include "render/for_each_device.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"

@@ -48,7 +48,7 @@ struct BothForms {
   Estimates dense, sparse;
 };
 
-BothForms random_estimates(std::size_t hits, bool glossy, std::mt19937& random) {
+BothForms random_both_forms(std::size_t hits, bool glossy, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(0.1f, 1.0f);
   BothForms both;
   both.dense.irradiance.assign(hits * lights, glm::vec3(0.0f));
@@ -86,7 +86,7 @@ TEST_CASE("a sparse film sums to the bits of a dense one, in batches of any rows
   // Rows that are apart, that overlap, and that are met again.
   for (const auto& [first, last] : {std::pair{0, 3}, {2, 6}, {9, 11}, {0, 11}}) {
     const PrimaryHitBatch batch = random_batch(first, last, random);
-    const BothForms both = random_estimates(batch.hits.size(), glossy, random);
+    const BothForms both = random_both_forms(batch.hits.size(), glossy, random);
     add_to_film(dense, batch, both.dense, 0.25f);
     add_to_film(sparse, batch, both.sparse, 0.25f);
   }

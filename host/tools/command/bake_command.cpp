@@ -7,7 +7,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "render/kept_maps.hpp"
+#include "render/render_session.hpp"
 #include "tools/bake/write_baked.hpp"
 #include "tools/command/commands.hpp"
 #include "tools/command/output_files.hpp"
@@ -43,16 +43,17 @@ void run_bake(BakeOptions& options) {
   tell_scene(scene, mix, progress);
 
   std::optional<PreparedPhotons> prepared = load_maps(scene, render, progress);
-  KeptMaps maps(std::make_shared<const PreparedScene>(scene), devices, render.parameters,
-                prepared ? &*prepared : nullptr, keep_maps(scene, render, progress), progress);
-  LightMapEstimates& light_maps = maps.light_maps(progress);
+  RenderSession session(std::make_shared<const PreparedScene>(scene), devices, render.parameters,
+                        prepared ? &*prepared : nullptr, keep_maps(scene, render, progress),
+                        progress);
+  SurfaceCache& cache = *session.light().cache();
   for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
   progress.begin("bake light maps", 0, "");
-  const bake::BakedLight baked(scene, light_maps.maps(), light_maps.source(), light_maps.sight(),
+  const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.sight(),
                                options.baking, progress);
   bake::write_baked(options.output, scene, baked, mix);
   progress.end();
-  keep_light_maps(maps.light_map_contents(), render, progress);
+  keep_light_maps(session.light_map_contents(), render, progress);
   progress.note(fmt::format("{}: {} x {} texels, {:.3g} cm apart", options.output, baked.width(),
                             baked.height(), 100 * baked.texel()));
 }

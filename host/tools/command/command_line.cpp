@@ -14,7 +14,6 @@
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
 #include "tools/command/commands.hpp"
-#include "tools/command/described_command.hpp"
 #include "tools/command/exit_code.hpp"
 #include "tools/command/processes.hpp"
 #include "tools/command/setting_options.hpp"
@@ -25,19 +24,6 @@
 namespace photile::app {
 namespace {
 
-/// Errors: UsageError where there is no such command.
-void print_manual(const CLI::App& app, const std::string& name) {
-  const DescribedCommand photile = describe(app);
-  const DescribedCommand* chosen = nullptr;
-  for (const DescribedCommand& command : photile.commands) {
-    if (command.name == name) chosen = &command;
-  }
-  if (!chosen && name != photile.name) {
-    throw UsageError(fmt::format("--manual: there is no command '{}'; see photile --help", name));
-  }
-  std::cout << manual_page(photile, chosen);
-}
-
 void define(CLI::App& photile) {
   photile.set_version_flag("--version", version_text());
   photile.add_flag_callback(
@@ -47,24 +33,6 @@ void define(CLI::App& photile) {
         throw CLI::Success();
       },
       "print the settings of a rendering as a table of Markdown");
-  photile
-      .add_option_function<std::string>(
-          "--manual",
-          [&photile](const std::string& name) {
-            print_manual(photile, name);
-            throw CLI::Success();
-          },
-          "print the manual page of photile, or of a command, for man")
-      ->type_name("photile|COMMAND");
-  photile
-      .add_option_function<std::string>(
-          "--completion",
-          [&photile](const std::string& shell) {
-            std::cout << completion(describe(photile), shell);
-            throw CLI::Success();
-          },
-          "print what completes the command line in a shell")
-      ->type_name("bash|zsh|fish");
   photile.require_subcommand(1);
   add_render_command(photile);
   add_relight_command(photile);

@@ -13,7 +13,7 @@
 namespace photile::app {
 namespace {
 
-Communicator* joined = nullptr;
+Communicator* communicator = nullptr;
 decltype(&photile_mpi_other_failed) other_failed_of_module = nullptr;
 
 int number_in(const char* variable) {
@@ -43,7 +43,7 @@ bool names_its_part(std::span<const char* const> arguments) {
 }  // namespace
 
 void join_processes(std::span<const char* const> arguments) {
-  joined = nullptr;
+  communicator = nullptr;
   const int launched = launched_with_mpi();
   if (launched == 0) {
     const int tasks = std::getenv("SLURM_STEP_ID") ? number_in("SLURM_STEP_NUM_TASKS") : 0;
@@ -67,31 +67,31 @@ void join_processes(std::span<const char* const> arguments) {
   }
   other_failed_of_module =
       module.find<decltype(photile_mpi_other_failed)>("photile_mpi_other_failed");
-  joined = found();
-  if (!joined) throw UsageError("MPI cannot be initialised; see what mpirun says");
+  communicator = found();
+  if (!communicator) throw UsageError("MPI cannot be initialised; see what mpirun says");
 }
 
-Communicator* processes() { return joined; }
+Communicator* processes() { return communicator; }
 
-bool other_failed() { return joined != nullptr && other_failed_of_module(); }
+bool other_failed() { return communicator != nullptr && other_failed_of_module(); }
 
-bool leads() { return joined == nullptr || joined->rank() == 0; }
+bool leads() { return communicator == nullptr || communicator->rank() == 0; }
 
 std::vector<bool> as_first_says(const std::vector<bool>& own) {
-  if (!joined) return own;
+  if (!communicator) return own;
   std::vector<std::byte> bytes;
   for (const bool one : own) bytes.push_back(std::byte{one});
   if (!leads()) bytes.clear();
-  const std::vector<Communicator::Bytes> all = joined->gather(bytes);
+  const std::vector<Communicator::Bytes> all = communicator->gather(bytes);
   std::vector<bool> said;
   for (const std::byte one : all.front()) said.push_back(one != std::byte{0});
   return said;
 }
 
 void refuse_several(const std::string& what, const std::string& remedy) {
-  if (joined == nullptr || joined->size() == 1) return;
+  if (communicator == nullptr || communicator->size() == 1) return;
   throw UsageError(
-      fmt::format("{} is of one process, and {} share the work; {}", what, joined->size(), remedy));
+      fmt::format("{} is of one process, and {} share the work; {}", what, communicator->size(), remedy));
 }
 
 }  // namespace photile::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "render/kept_maps.hpp"
+#include "render/render_session.hpp"
 #include "render/render_costs.hpp"
 #include "render/setting.hpp"
 #include "saved_maps/saved_maps.hpp"
@@ -79,10 +79,9 @@ RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, con
       timed(keeping, [&] { save(photons); });
     };
   }
-  auto maps = std::make_unique<KeptMaps>(std::make_shared<const PreparedScene>(scene), devices,
-                                         options.parameters, prepared ? &*prepared : nullptr, keep,
-                                         progress);
-  maps->add_passes(progress);
+  auto maps = std::make_unique<RenderSession>(std::make_shared<const PreparedScene>(scene), devices,
+                                              options.parameters, prepared ? &*prepared : nullptr,
+                                              keep, progress);
   RenderResult result = maps->render(hits, options.parameters.film, progress);
   timed(keeping, [&] { keep_light_maps(maps->light_map_contents(), options, progress); });
   if (reflections) {

@@ -46,7 +46,7 @@ void run_trace(TraceOptions& options) {
   tell_scene(scene, LightMix::of(scene, render.load.lumen_per_watt), progress);
 
   const RayScene rays(scene);
-  const RenderPlan plan(render.parameters, rays, progress);
+  const RenderPlan plan(render.parameters, rays, HitsAsk::pictures, progress);
   PhotonTracerParameters tracing = plan.tracing(0, {});
   tracing.shard = options.shard;
   PhotonTracerResult traced = trace_photons(rays, tracing, progress);

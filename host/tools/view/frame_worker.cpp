@@ -137,7 +137,6 @@ std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, cons
 
 std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, const Task& task) {
   lacks_nodes_ = false;
-  task.maps->add_passes();
   if (task.quick) return draw(stop, task);
   Film film;
   film.width = task.request.width;

@@ -43,20 +43,6 @@ class PhotonWorker::Listener : public Progress {
   std::atomic<bool> stopped_{false};
 };
 
-void MapGeneration::hand_over(std::shared_ptr<SceneRenderer::Pass> pass, std::uint64_t paths) {
-  const std::lock_guard lock(mutex_);
-  handed_over_.emplace_back(std::move(pass), paths);
-}
-
-void MapGeneration::add_passes() {
-  const std::lock_guard lock(mutex_);
-  for (const auto& [pass, paths] : handed_over_) {
-    renderer->add(*pass);
-    emitted_photons += paths;
-  }
-  handed_over_.clear();
-}
-
 std::vector<std::uint64_t> generations_to(std::uint64_t total) {
   std::vector<std::uint64_t> paths{total};
   for (std::uint64_t fewer = total / 4; paths.size() < 3 && fewer >= limits::min_photons;
@@ -95,8 +81,7 @@ std::exception_ptr PhotonWorker::take_error() {
 
 void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
   try {
-    const int passes = std::max(1, parameters_.passes);
-    const std::uint64_t paths = parameters_.photons.emitted_photons / passes;
+    const std::uint64_t paths = parameters_.photons.emitted_photons;
     if (!prepared) {
       std::vector<std::uint64_t> before = generations_to(paths);
       before.pop_back();
@@ -104,12 +89,7 @@ void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
         deliver_(build(fewer, fewer == before.front() ? Step::first : Step::next, nullptr));
       }
     }
-    const auto maps = build(paths, Step::last, prepared ? &*prepared : nullptr);
-    deliver_(maps);
-    for (int pass = 1; pass < passes; ++pass) {
-      maps->hand_over(maps->renderer->prepare_pass(pass, open_devices_(), *listener_), paths);
-      deliver_(maps);
-    }
+    deliver_(build(paths, Step::last, prepared ? &*prepared : nullptr));
   } catch (const Interrupted&) {
     // The window was closed, or other parameters were asked for.
   } catch (...) {
@@ -133,9 +113,8 @@ std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, Step ste
     generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
     if (step == Step::last && keep_) keep_(photons);
   };
-  generation->renderer =
-      std::make_unique<SceneRenderer>(scene_, generation->devices, parameters, prepared, keep,
-                                      *listener_, SceneRenderer::Passes::first);
+  generation->renderer = std::make_unique<SceneRenderer>(scene_, generation->devices, parameters,
+                                                         prepared, keep, *listener_);
   generation->emitted_photons = paths;
   generation->noise = EstimateNoise::of(scene_, parameters);
   return generation;

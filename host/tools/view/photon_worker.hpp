@@ -24,18 +24,9 @@ struct MapGeneration {
   std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where somebody else holds it
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
-  std::uint64_t emitted_photons = 0;  ///< of the passes that are added
+  std::uint64_t emitted_photons = 0;
   EstimateNoise noise;
-  std::shared_ptr<const InspectablePhotons> photons;  ///< of the first pass
-
-  /// A further pass of so many paths, from whoever built it.
-  void hand_over(std::shared_ptr<SceneRenderer::Pass> pass, std::uint64_t paths);
-  /// Adds those that were handed over: for whoever renders, between pictures.
-  void add_passes();
-
- private:
-  std::mutex mutex_;
-  std::vector<std::pair<std::shared_ptr<SceneRenderer::Pass>, std::uint64_t>> handed_over_;
+  std::shared_ptr<const InspectablePhotons> photons;
 };
 
 /// How far the work in the background is.
@@ -56,8 +47,7 @@ class PhotonWorker {
 
   ///   prepared   photons of an earlier run, in place of all tracing, or none
   ///   keep       is given the photons of the last maps; may be empty
-  ///   deliver    is called on the worker's thread with each set of maps, and with the last again
-  ///              whenever a pass was handed over
+  ///   deliver    is called on the worker's thread with each set of maps
   PhotonWorker(const Scene& scene, OpenDevices open_devices, const RenderParameters& parameters,
                std::optional<PreparedPhotons> prepared, KeepPhotons keep, Deliver deliver);
   ~PhotonWorker();

@@ -1,4 +1,4 @@
-#include "render/light_map_estimates.hpp"
+#include "render/surface_cache.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -239,37 +239,20 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
   return parameters;
 }
 
-LightMapEstimates::LightMapEstimates(const RayScene& rays, const LightMapParameters& parameters,
-                                     MapEstimators& photons, const GatheringPass& gathering)
+SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
+                           LightAtPoints& elsewhere, NodeSource& source, gathering::EndLight* ends)
     : scene_(rays.scene()),
       needs_(rays.needs()),
-      gathered_(gathering.nodes != nullptr),
+      shared_(parameters.processes != nullptr),
       neighbours_(parameters.neighbours),
+      elsewhere_(elsewhere),
+      source_(source),
+      ends_(ends),
       maps_(scene_, parameters),
-      sight_(rays, maps_) {
-  add_pass(photons, gathering);
-}
+      sight_(rays, maps_) {}
 
-void LightMapEstimates::add_pass(MapEstimators& photons, const GatheringPass& gathering) {
-  photons_.push_back(&photons);
-  ends_.push_back(gathering.ends);
-  source_.add(gathered_ ? *gathering.nodes : photon_nodes_.emplace_back(photons));
-}
-
-std::uint64_t LightMapEstimates::Passes::bytes() const {
-  std::uint64_t sum = first_->bytes();
-  for (const NodeSource* source : further_) sum += source->bytes();
-  return sum;
-}
-
-void LightMapEstimates::Passes::forget() {
-  first_->forget();
-  for (NodeSource* source : further_) source->forget();
-}
-
-Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& progress,
-                                      std::size_t pass, std::span<const std::uint8_t> by_photons) {
-  const HitReading reading = read(hits, by_photons, progress, pass);
+Estimates SurfaceCache::at(const PrimaryHits& hits, const Progress& progress) {
+  const HitReading reading = read(hits, progress);
   std::vector<std::uint32_t> alone, place(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (reading.levels[hit] != HitReading::own_estimate) continue;
@@ -277,12 +260,12 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
     alone.push_back(hit);
   }
   hits_alone_ += alone.size();
-  const Estimates own = alone.empty() && !shared()
+  const Estimates own = alone.empty() && !shared_
                             ? Estimates{}
-                            : photons_[pass]->estimate(estimate::reordered(hits, 0, alone));
+                            : elsewhere_.at(estimate::reordered(hits, 0, alone), progress);
   const bool reads_ends = std::find(reading.levels.begin(), reading.levels.end(),
                                     int{HitReading::ends}) != reading.levels.end();
-  const Estimates* ends = reads_ends ? &ends_[pass]->values() : nullptr;
+  const Estimates* ends = reads_ends ? &ends_->values() : nullptr;
   const Blend blend(scene_, needs_, hits, reading, maps_.values(), ends, own, place);
   std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
   std::vector<double> squared_errors(parts.size(), 0.0);
@@ -298,20 +281,9 @@ Estimates LightMapEstimates::estimate(const PrimaryHits& hits, const Progress& p
   return joined(std::move(parts));
 }
 
-std::vector<std::uint32_t> LightMapEstimates::looked_at(const PrimaryHits& hits) {
-  std::vector<std::uint32_t> served;
-  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (serves(hits, hit)) served.push_back(hit);
-  }
-  std::vector<std::uint32_t> triangles = maps_.owners_around(estimate::reordered(hits, 0, served));
-  triangles.insert(triangles.end(), hits.sided_triangle.begin(), hits.sided_triangle.end());
-  return triangles;
-}
-
-Estimates LightMapEstimates::errors(const PrimaryHits& hits, const Estimates& estimates,
-                                    const Estimates& of_nodes,
-                                    std::span<const std::uint8_t> by_photons) {
-  const HitReading reading = read(hits, by_photons, Progress::none(), 0);
+Estimates SurfaceCache::errors(const PrimaryHits& hits, const Estimates& estimates,
+                               const Estimates& of_nodes) {
+  const HitReading reading = read(hits, Progress::none());
   std::vector<std::uint32_t> place(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (reading.levels[hit] <= 0) place[hit] = hit;  // photons
@@ -329,40 +301,37 @@ Estimates LightMapEstimates::errors(const PrimaryHits& hits, const Estimates& es
   return joined(std::move(parts));
 }
 
-Estimates LightMapEstimates::joined(std::vector<Estimates> parts) const {
+Estimates SurfaceCache::joined(std::vector<Estimates> parts) const {
   Estimates all;
   if (needs_.many_lights()) all.first.push_back(0);
   for (Estimates& part : parts) all.append(std::move(part));
   return all;
 }
 
-HitReading LightMapEstimates::read(const PrimaryHits& hits,
-                                   std::span<const std::uint8_t> by_photons,
-                                   const Progress& progress, std::size_t pass) {
+HitReading SurfaceCache::read(const PrimaryHits& hits, const Progress& progress) {
   HitReading reading{std::vector<int>(hits.size(), LightMaps::all_rounds),
                      std::vector<NodeBlend>(hits.size())};
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     if (!serves(hits, hit)) {
       reading.levels[hit] = HitReading::own_estimate;
-    } else if (!by_photons.empty() && by_photons[hit] != 0) {
-      reading.levels[hit] = gathered_ ? HitReading::ends : 1;
+    } else if (!hits.coarse.empty() && hits.coarse[hit] != 0) {
+      reading.levels[hit] = ends_ ? HitReading::ends : 1;
     }
   }
   const Stopwatch stopwatch;
   fill(hits, reading.levels, progress);
-  find_ends(hits, progress, pass, reading);
-  maps_.refine(source_, progress);
+  find_ends(hits, progress, reading);
   fill_time_ += stopwatch.taken();
   find_nodes(hits, reading);
   return reading;
 }
 
 /// Values the nodes that hits read.
-void LightMapEstimates::fill(const PrimaryHits& hits, std::span<const int> levels,
+void SurfaceCache::fill(const PrimaryHits& hits, std::span<const int> levels,
                              const Progress& progress) {
   const bool all =
       std::all_of(levels.begin(), levels.end(), [](int l) { return l == LightMaps::all_rounds; });
-  if (all && !shared()) {
+  if (all && !shared_) {
     maps_.fill(hits, source_, progress);
     return;
   }
@@ -372,17 +341,17 @@ void LightMapEstimates::fill(const PrimaryHits& hits, std::span<const int> level
   }
 }
 
-void LightMapEstimates::find_ends(const PrimaryHits& hits, const Progress& progress,
-                                  std::size_t pass, HitReading& reading) {
+void SurfaceCache::find_ends(const PrimaryHits& hits, const Progress& progress,
+                             HitReading& reading) {
   const std::vector<std::uint32_t> chosen = places_of(reading.levels, HitReading::ends);
-  if (chosen.empty() && !(gathered_ && shared())) return;
+  if (chosen.empty() && !(ends_ && shared_)) return;
   const std::vector<NodeBlend> blends =
-      ends_[pass]->nodes_around(estimate::reordered(hits, 0, chosen), progress);
+      ends_->nodes_around(estimate::reordered(hits, 0, chosen), progress);
   for (std::size_t i = 0; i < chosen.size(); ++i) reading.blends[chosen[i]] = blends[i];
 }
 
 /// Hits that no node sees are to have estimates of their own.
-void LightMapEstimates::find_nodes(const PrimaryHits& hits, HitReading& reading) const {
+void SurfaceCache::find_nodes(const PrimaryHits& hits, HitReading& reading) const {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_blend_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
@@ -395,17 +364,17 @@ void LightMapEstimates::find_nodes(const PrimaryHits& hits, HitReading& reading)
                         const bool seen = sight_.look(sided, hits.position[hit], blend);
                         // Where photons value nodes they would say no more at the hit, and may
                         // have to be traced first.
-                        if (gathered_ && !seen && levels > 1) levels = HitReading::own_estimate;
+                        if (ends_ && !seen && levels > 1) levels = HitReading::own_estimate;
                       }
                     });
 }
 
-PhotonBlotches LightMapEstimates::blotches() const {
-  return {gathered_ ? ends_.front()->spacing() : maps_.charts().spacing(),
+PhotonBlotches SurfaceCache::blotches() const {
+  return {ends_ ? ends_->spacing() : maps_.charts().spacing(),
           1 / std::sqrt(neighbours_)};
 }
 
-bool LightMapEstimates::serves(const PrimaryHits& hits, std::size_t hit) const {
+bool SurfaceCache::serves(const PrimaryHits& hits, std::size_t hit) const {
   const Material& material =
       scene_.materials[scene_.triangle_material[triangle_of(hits.sided_triangle[hit])]];
   const bool has_lobe = !hits.lobe.empty() && hits.lobe[hit].f90 > 0.0f;

@@ -1,4 +1,4 @@
-#include "render/owner_estimates.hpp"
+#include "render/exchange.hpp"
 
 #include <numeric>
 #include <utility>
@@ -50,8 +50,6 @@ Estimates part_of(const Estimates& all, std::size_t first, std::size_t count, st
   return part;
 }
 
-}  // namespace
-
 std::vector<std::byte> bytes_of(const Estimates& estimates) {
   ByteWriter bytes;
   bytes.put(estimates.irradiance);
@@ -71,30 +69,28 @@ void append_estimates(std::span<const std::byte> bytes, Estimates& estimates) {
   estimates.append(std::move(part));
 }
 
-Estimates OwnerEstimates::none_yet() const {
+}  // namespace
+
+Estimates Exchange::none_yet() const {
   Estimates estimates;
   if (many_) estimates.first.push_back(0);
   return estimates;
 }
 
-Estimates OwnerEstimates::of(const PrimaryHits& hits, const Estimate& here) const {
-  return hits.size() == 0 ? none_yet() : here(hits);
-}
-
-std::vector<std::vector<std::uint32_t>> OwnerEstimates::by_owner(const PrimaryHits& hits) const {
+std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& points) const {
   std::vector<std::vector<std::uint32_t>> places(processes_.size());
-  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    places[owners_->of(hits.sided_triangle[hit])].push_back(hit);
+  for (std::uint32_t point = 0; point < points.size(); ++point) {
+    places[owners_->of(points.sided_triangle[point])].push_back(point);
   }
   return places;
 }
 
-Estimates OwnerEstimates::in_order(std::span<const std::vector<std::uint32_t>> places,
+Estimates Exchange::in_order(std::span<const std::vector<std::uint32_t>> places,
                                    std::span<const std::vector<std::byte>> bytes,
-                                   std::size_t hits) const {
+                                   std::size_t points) const {
   std::vector<std::uint32_t> order;
   Estimates all = none_yet();
-  order.reserve(hits);
+  order.reserve(points);
   for (std::size_t rank = 0; rank < places.size(); ++rank) {
     order.insert(order.end(), places[rank].begin(), places[rank].end());
     if (!places[rank].empty()) append_estimates(bytes[rank], all);
@@ -102,16 +98,16 @@ Estimates OwnerEstimates::in_order(std::span<const std::vector<std::uint32_t>> p
   return estimate::restored(std::move(all), order, lights_);
 }
 
-Estimates OwnerEstimates::estimate(const PrimaryHits& hits, const Estimate& here) {
+Estimates Exchange::at_own(const PrimaryHits& points, const Progress& progress) {
   const std::uint32_t ranks = processes_.size(), own = processes_.rank();
-  const std::vector<std::vector<std::uint32_t>> places = by_owner(hits);
+  const std::vector<std::vector<std::uint32_t>> places = by_owner(points);
   std::vector<Communicator::Bytes> asked(ranks);
   for (std::uint32_t rank = 0; rank < ranks; ++rank) {
     if (places[rank].empty()) continue;
-    asked[rank] = bytes_of(estimate::reordered(hits, 0, places[rank]));
+    asked[rank] = bytes_of(estimate::reordered(points, 0, places[rank]));
     if (rank == own) continue;
-    moved_.hits += places[rank].size();
-    moved_.bytes += asked[rank].size();
+    traffic_.points += places[rank].size();
+    traffic_.bytes += asked[rank].size();
   }
   asked = processes_.exchange(std::move(asked));
   PrimaryHits all;
@@ -121,24 +117,25 @@ Estimates OwnerEstimates::estimate(const PrimaryHits& hits, const Estimate& here
     first.push_back(all.size());
     bytes = {};
   }
-  const Estimates found = of(all, here);
+  const Estimates found = all.size() > 0 ? here_->at(all, progress) : none_yet();
   std::vector<Communicator::Bytes> answers(ranks);
   for (std::uint32_t rank = 0; rank < ranks; ++rank) {
     const std::size_t count = first[rank + 1] - first[rank];
     if (count == 0) continue;
     answers[rank] = bytes_of(part_of(found, first[rank], count, lights_));
-    if (rank != own) moved_.bytes += answers[rank].size();
+    if (rank != own) traffic_.bytes += answers[rank].size();
   }
   answers = processes_.exchange(std::move(answers));
-  return in_order(places, answers, hits.size());
+  return in_order(places, answers, points.size());
 }
 
-Estimates OwnerEstimates::estimate_same(const PrimaryHits& hits, const Estimate& here) {
-  const std::vector<std::vector<std::uint32_t>> places = by_owner(hits);
+Estimates Exchange::at_common(const PrimaryHits& points, const Progress& progress) {
+  const std::vector<std::vector<std::uint32_t>> places = by_owner(points);
   const std::vector<std::uint32_t>& own = places[processes_.rank()];
   const Communicator::Bytes bytes =
-      own.empty() ? Communicator::Bytes() : bytes_of(here(estimate::reordered(hits, 0, own)));
-  return in_order(places, processes_.gather(bytes), hits.size());
+      own.empty() ? Communicator::Bytes()
+                  : bytes_of(here_->at(estimate::reordered(points, 0, own), progress));
+  return in_order(places, processes_.gather(bytes), points.size());
 }
 
 }  // namespace photile

@@ -1,0 +1,56 @@
+// A picture that fills: hits, their light, and the film.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "photile/device.hpp"
+#include "photile/light_pooling.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/renderer.hpp"
+#include "render/hit_source.hpp"
+#include "render/photon_passes.hpp"
+#include "render/render_costs.hpp"
+#include "render/render_plan.hpp"
+
+namespace photile {
+
+/// Asks for the light of what is seen, row by row, and adds it to the film.
+class Picture {
+ public:
+  /// References are kept.
+  ///   passes    that are added before `finish`
+  ///   pooling   of its layers, before they take memory; null = each for itself
+  Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device> devices, const Film& film,
+          int passes, const LightPooling* pooling, RenderCosts& costs);
+
+  /// Adds what is seen by the light of the next pass. Errors: those of LightAtPoints.
+  void add(const HitSource& source, PassLight& light, Progress& progress);
+
+  /// The picture; it is gone from here.
+  ///   radius   of the first pass, metres
+  RenderResult finish(double radius);
+
+ private:
+  /// Rows of the film that this process makes.
+  Shard own_rows() const;
+  int rows_per_batch() const;
+  PrimaryHitBatch trace_rows(const HitSource& source, const PassLight& light, int first, int last);
+  void add_rows(const HitSource& source, PassLight& light, PrimaryHitBatch batch,
+                const Progress& progress);
+  Estimates light_at(PassLight& light, const PrimaryHits& hits, const Progress& progress);
+  double compile_seconds() const;
+
+  const RayScene& rays_;
+  const Scene& scene_;
+  const RenderPlan& plan_;
+  std::span<Device> devices_;
+  PrimaryHitParameters film_;
+  const LightPooling* pooling_;
+  RenderCosts& costs_;
+  LightLayers layers_;
+  LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples
+  std::vector<double> shares_;
+};
+
+}  // namespace photile
