@@ -1,7 +1,7 @@
 #!/bin/bash
 # Makes the Debian packages, installs them on a bare Debian 12 in a folder of its own, and uses each
-# there: a picture, a module, a program that is linked. Needs root, help2man,
-# debootstrap and a mirror of Debian; without, the test is skipped and says so.
+# there: a picture, a module, a program that is linked. Needs root, help2man, debootstrap and a mirror
+# of Debian; without, the test is skipped and says so.
 #   debian.sh BUILD-FOLDER SOURCE-FOLDER SCRATCH-FOLDER
 set -eu
 build=$1 source=$2 scratch=$3/debian
@@ -27,6 +27,14 @@ mkdir -p "$scratch"
 for name in photile photile-openimageio libphotile-dev python3-photile; do
   ls "$scratch"/packages/${name}_*.deb > /dev/null || fail "there is no package $name"
 done
+
+# The manual page of a command has every option of its help.
+page=$(dpkg-deb --fsys-tarfile "$scratch"/packages/photile_*.deb |
+  tar -xO ./usr/share/man/man1/photile-render.1)
+"$build/photile" render --help | grep -o '^  -[^ ]*' | tr ',' '\n' | tr -d ' ' |
+  while read -r option; do
+    grep -qF -- "${option//-/\\-}" <<< "$page" || fail "photile-render.1 lacks $option"
+  done
 
 # A bare Debian is made once and copied for each run.
 if [ ! -e "$scratch/bare.tar" ]; then
@@ -83,7 +91,8 @@ if /usr/bin/python3 -m pip install --quiet --target "$root/root/numpy_2" 'numpy>
   numpy_2=found
   use_module numpy_2 | grep -q '^numpy 2' || fail "the module does not work with numpy 2"
 fi
-for file in man/man1/photile.1 man/man1/photile-render.1 applications/org.photile.Photile.desktop metainfo/org.photile.Photile.metainfo.xml \
+for file in man/man1/photile.1 man/man1/photile-render.1 \
+  applications/org.photile.Photile.desktop metainfo/org.photile.Photile.metainfo.xml \
   icons/hicolor/scalable/apps/org.photile.Photile.svg blender/scripts/addons/photile/__init__.py; do
   # minbase leaves pages out, as Debian's own containers do; then the package lists them.
   [ -s "$root/usr/share/$file" ] || inside "dpkg -L photile" | grep -q "/$file" ||
