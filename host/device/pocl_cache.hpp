@@ -10,12 +10,10 @@
 #include <functional>
 #include <map>
 #include <mutex>
-#include <set>
 #include <string>
 
 #include "device/cache_key.hpp"
 #include "device/kernel_store.hpp"
-#include "device/pocl_pack.hpp"
 
 namespace photile::device {
 
@@ -35,11 +33,11 @@ class PoclCache {
  private:
   struct Program {
     CacheKey key;
-    std::set<std::string> folders;  ///< of PoCL's, in the work folder
-    std::size_t stored_files = 0;   ///< in its pack
+    std::filesystem::path folder{};  ///< PoCL's, below the work folder; empty before it is known
+    std::size_t stored_files = 0;    ///< in its pack
   };
 
-  Program restored(const CacheKey& key) const;
+  void restore(Program& program) const;
 
   std::filesystem::path work_;
   KernelStore store_;

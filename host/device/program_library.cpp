@@ -24,7 +24,7 @@ PoclCache* shared_pocl_cache() {
   static const auto cache = []() -> std::unique_ptr<PoclCache> {
     const auto work = pocl_work_folder();
     if (!work) return nullptr;
-    auto store = kernel_store(".pack");
+    auto store = kernel_store(".pocl");
     return store ? std::make_unique<PoclCache>(*work, std::move(*store)) : nullptr;
   }();
   return cache.get();

@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "child_process.hpp"
-#include "device/pocl_pack.hpp"
 #include "file_bytes.hpp"
 #include "probe_output.hpp"
 #include "temporary_folder.hpp"
@@ -78,13 +77,7 @@ TEST_CASE("a pack holds what PoCL needs: without recompiling nothing is publishe
   const TemporaryFolder cache;
   probe(cache.path);
   const auto pack = packs(cache.path).at(0);
-  const auto files = photile::device::unpack(bytes_of(pack).substr(56));
-  const auto holds = [&](const std::string& ending) {
-    return std::any_of(files.begin(), files.end(),
-                       [&](const auto& file) { return file.first.ends_with(ending); });
-  };
-  CHECK(holds("/program.bc"));
-  CHECK(holds(".so"));
+  CHECK_THAT(bytes_of(pack), Catch::Contains("/program.bc") && Catch::Contains(".so"));
   const auto written = fs::last_write_time(pack);
   probe(cache.path);
   CHECK(fs::last_write_time(pack) == written);
@@ -118,17 +111,19 @@ TEST_CASE("a damaged pack of PoCL's files ends in the right result and one warni
 TEST_CASE("damaged files in the folder of a killed process are never used, and go") {
   const TemporaryFolder cache;
   probe(cache.path);
-  const auto files = photile::device::unpack(bytes_of(packs(cache.path).at(0)).substr(56));
   // As a process leaves them that was killed while PoCL wrote: each file empty, cut, or garbage.
   for (const int damage : {0, 1, 2}) {
-    const auto folder = cache.path / "photile" / "pocl-run-killed";
-    for (const auto& [name, text] : files) {
-      fs::create_directories((folder / name).parent_path());
-      put(folder / name, damage == 0   ? ""
-                         : damage == 1 ? text.substr(0, text.size() / 2)
-                                       : std::string(text.size(), 'x'));
+    probe(cache.path, "abort");
+    int files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(run_folders(cache.path).at(0))) {
+      if (!entry.is_regular_file() || entry.path().filename() == "lock") continue;
+      const auto text = bytes_of(entry.path());
+      put(entry.path(), damage == 0   ? ""
+                        : damage == 1 ? text.substr(0, text.size() / 2)
+                                      : std::string(text.size(), 'x'));
+      ++files;
     }
-    put(folder / "lock", "");
+    CHECK(files > 1);
     const auto result = probe(cache.path);
     INFO(result.errors);
     CHECK(result.output == restored);
@@ -174,28 +169,6 @@ TEST_CASE("without the cache nothing is read and nothing is kept") {
   probe(cache.path);
   CHECK(uncached().output == compiled);
   CHECK(run_folders(cache.path).empty());
-}
-
-TEST_CASE("a pack that would leave its folder, or ends early, is refused") {
-  using photile::device::pack;
-  using photile::device::unpack;
-  const photile::device::PackedFiles files = {{"AB/x/program.bc", "text"}, {"AB/x/k/k.so", ""}};
-  CHECK(unpack(pack(files)) == files);
-  for (const char* name : {"../x", "AB/../../x", "/etc/x", ""}) {
-    INFO(name);
-    CHECK_THROWS(unpack(pack({{name, "text"}})));
-  }
-  // The files are packed by name: a length of 8 bytes before each name and each text.
-  const auto text = pack(files);
-  const std::size_t first_file = 8 + std::string("AB/x/k/k.so").size() + 8;
-  for (std::size_t length = 1; length < text.size(); ++length) {
-    INFO(length << " of " << text.size() << " bytes");
-    if (length == first_file) {
-      CHECK(unpack(text.substr(0, length)).size() == 1);
-    } else {
-      CHECK_THROWS_AS(unpack(text.substr(0, length)), std::runtime_error);
-    }
-  }
 }
 
 }  // namespace photile::test
