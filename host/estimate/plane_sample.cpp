@@ -102,7 +102,7 @@ PrimaryHits grid_of_hits(const Scene& scene, const SceneNeeds& needs, int per_si
 }  // namespace
 
 PlaneSample make_plane_sample(const SceneNeeds& needs, int neighbours,
-                                const PlaneSampleSize& size) {
+                              const PlaneSampleSize& size) {
   std::mt19937_64 random(1);
   PlaneSample sample;
   sample.scene = unit_square(needs);

@@ -23,7 +23,6 @@ struct PlaneSample {
   double radius = 0;  ///< metres: twice the expected distance of the k-th photon
 };
 
-PlaneSample make_plane_sample(const SceneNeeds& needs, int neighbours,
-                              const PlaneSampleSize& size);
+PlaneSample make_plane_sample(const SceneNeeds& needs, int neighbours, const PlaneSampleSize& size);
 
 }  // namespace photile::estimate

@@ -86,8 +86,8 @@ std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& po
 }
 
 Estimates Exchange::in_order(std::span<const std::vector<std::uint32_t>> places,
-                                   std::span<const std::vector<std::byte>> bytes,
-                                   std::size_t points) const {
+                             std::span<const std::vector<std::byte>> bytes,
+                             std::size_t points) const {
   std::vector<std::uint32_t> order;
   Estimates all = none_yet();
   order.reserve(points);

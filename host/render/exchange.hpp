@@ -18,8 +18,8 @@ struct PointTraffic {
   std::uint64_t points = 0, bytes = 0;
 };
 
-/// Sends points to the owners of their maps, and brings their estimates back. What a point gets must
-/// not depend on the points beside it. Collective: all processes ask at the same time.
+/// Sends points to the owners of their maps, and brings their estimates back. What a point gets
+/// must not depend on the points beside it. Collective: all processes ask at the same time.
 class Exchange : public LightAtPoints {
  public:
   enum class Points {

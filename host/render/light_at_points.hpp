@@ -9,8 +9,8 @@ namespace photile {
 
 /// Tells the irradiance and the reflected radiance of every light at points of opaque surfaces.
 /// The photon estimate answers by photons, rays that gather by asking another where they end, a
-/// cache by samples that another valued, and an exchange by asking the process that has the photons.
-/// RenderPlan::light says which of them a rendering is made of.
+/// cache by samples that another valued, and an exchange by asking the process that has the
+/// photons. RenderPlan::light says which of them a rendering is made of.
 class LightAtPoints {
  public:
   virtual ~LightAtPoints() = default;

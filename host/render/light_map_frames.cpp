@@ -30,7 +30,6 @@ static_assert(packet_side * packet_side == trace::coherent_rays);
 /// Of valuing a place, before it is known: by photons, and by rays at it and around it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 2e-3;
 
-
 /// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread
 /// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). The same in every
 /// pixel and frame: nothing flickers.

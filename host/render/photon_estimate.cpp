@@ -114,7 +114,8 @@ Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
   for (std::size_t first = 0; first < lit.size(); first += lists_at_a_time) {
     const std::span<const std::uint32_t> chosen =
         std::span(lit).subspan(first, std::min(lists_at_a_time, lit.size() - first));
-    const NeighbourLists near = level.estimators.front().nearest(estimate::reordered(points, 0, chosen));
+    const NeighbourLists near =
+        level.estimators.front().nearest(estimate::reordered(points, 0, chosen));
     seen_->leave_out_hidden(points, chosen, near, result);
   }
   return result;

@@ -26,8 +26,8 @@ std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scen
                                            std::span<const std::uint8_t> wanted = {});
 
 /// Light by the k nearest photons of each point, found on every device at once. On devices of one
-/// kind the result is that of one device, bit for bit, however the points are shared. Points are put
-/// in the order of their maps here, and nowhere else.
+/// kind the result is that of one device, bit for bit, however the points are shared. Points are
+/// put in the order of their maps here, and nowhere else.
 class PhotonEstimate : public LightAtPoints {
  public:
   struct Parts {

@@ -97,8 +97,7 @@ PassPhotons PhotonPasses::next(PreparedPhotons* prepared, const KeepPhotons* kee
   PassPhotons photons = std::move(maps.facts);
   photons.all = shared(estimate_of(std::move(maps.photons), nullptr));
   if (!maps.caustics.empty()) {
-    photons.caustics =
-        shared(estimate_of(std::move(maps.caustics), std::move(maps.seen_caustics)));
+    photons.caustics = shared(estimate_of(std::move(maps.caustics), std::move(maps.seen_caustics)));
   }
   costs_.estimators.add(stopwatch.taken());
   ++pass_;
@@ -129,8 +128,7 @@ PassPhotons PhotonPasses::waiting(PreparedPhotons& prepared, const KeepPhotons* 
     const auto light = std::make_shared<LazyLight>(std::move(make));
     return PhotonLight{light, light, nullptr};
   };
-  photons.all =
-      lazy([this, built] { return estimate_of(std::move(built().photons), nullptr); });
+  photons.all = lazy([this, built] { return estimate_of(std::move(built().photons), nullptr); });
   if (has_caustics) {
     photons.caustics = lazy([this, built] {
       Maps& maps = built();
@@ -141,8 +139,8 @@ PassPhotons PhotonPasses::waiting(PreparedPhotons& prepared, const KeepPhotons* 
 }
 
 PassPhotons PhotonPasses::facts(const Photons& photons) const {
-  PassPhotons facts{.pass = pass_, .first_radius = radius_, .all = {}, .caustics = {}, .maps = {},
-                    .ends = {}};
+  PassPhotons facts{
+      .pass = pass_, .first_radius = radius_, .all = {}, .caustics = {}, .maps = {}, .ends = {}};
   if (plan_.reads_light_maps()) {
     facts.maps = plan_.light_maps(pass_, radius_, scene_, photons, layer_powers_);
     facts.ends = plan_.ends(pass_, radius_, scene_, photons, layer_powers_);
@@ -256,8 +254,8 @@ std::vector<PhotonMaps> PhotonPasses::build(Photons photons, const PhotonMapPara
   kernels_->wait();
   std::vector<std::uint8_t> own;
   if (owners_) own = owners_->maps_of(plan_.used().processes->rank());
-  std::vector<PhotonMaps> maps = build_maps_on_each(devices_, scene_, std::move(photons), groups_,
-                                                    parameters, progress, own);
+  std::vector<PhotonMaps> maps =
+      build_maps_on_each(devices_, scene_, std::move(photons), groups_, parameters, progress, own);
   std::uint64_t device_bytes = 0, spilled_bytes = 0;
   for (const PhotonMaps& one : maps) {
     device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;

@@ -25,7 +25,8 @@ struct PhotonLight {
   std::shared_ptr<LightAtPoints> of_points;
   /// Of points that all processes ask for together; the same where there is one process.
   std::shared_ptr<LightAtPoints> of_nodes;
-  std::shared_ptr<const PhotonEstimate> estimate;  ///< null where maps are built when they are needed
+  std::shared_ptr<const PhotonEstimate>
+      estimate;  ///< null where maps are built when they are needed
 };
 
 /// The photons of one pass, and what follows from them.

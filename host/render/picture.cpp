@@ -116,8 +116,7 @@ int Picture::rows_per_batch() const {
       std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
   const int most = pooling_ ? (film_.height - 1) / pooled_batches + 1 : film_.height;
   // Where light maps are read, only their nodes take long.
-  const int neighbours =
-      plan_.reads_light_maps() ? defaults::neighbours : plan_.used().neighbours;
+  const int neighbours = plan_.reads_light_maps() ? defaults::neighbours : plan_.used().neighbours;
   return static_cast<int>(
       std::clamp<std::int64_t>(hits_per_batch(neighbours) / hits_per_row, 1, most));
 }
@@ -182,8 +181,7 @@ Estimates Picture::light_at(PassLight& light, const PrimaryHits& hits, const Pro
   Estimates estimates = light.light().at(hits, progress);
   const LightMapStatistics maps = cache->maps().statistics();
   const TimeTaken filling = cache->fill_time() - filled_before;
-  costs_.light_maps.add(filling - (costs_.build.time - built),
-                        maps.value_bytes + maps.index_bytes);
+  costs_.light_maps.add(filling - (costs_.build.time - built), maps.value_bytes + maps.index_bytes);
   costs_.light_map_nodes += maps.nodes - nodes_before;
   costs_.light_map_errors = cache->errors_read();
   costs_.estimate.add(stopwatch.taken() - filling);

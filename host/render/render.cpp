@@ -1,8 +1,7 @@
-#include "photile/renderer.hpp"
-
 #include <memory>
 #include <optional>
 
+#include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
 #include "render/picture.hpp"

@@ -39,8 +39,8 @@ struct ErrorSum {
 
 /// Counts add up over passes.
 struct RenderCosts {
-  StageCost structure, trace, exchange, radius, group, surface, build, estimators, hits,
-      light_maps, estimate, film, release;
+  StageCost structure, trace, exchange, radius, group, surface, build, estimators, hits, light_maps,
+      estimate, film, release;
   std::uint64_t emitted_photons = 0, stored_photons = 0, caustic_photons = 0;
   std::uint64_t group_members = 0, groups = 0, patches = 0;
   std::uint64_t sheets = 0, surface_leaves = 0;

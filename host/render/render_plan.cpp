@@ -7,11 +7,11 @@
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/neighbour_groups.hpp"
-#include "render/surface_cache.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
 #include "render/setting.hpp"
+#include "render/surface_cache.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile {
@@ -67,9 +67,9 @@ std::string_view name_of(GlossMode mode) {
 }
 
 bool nodes_gather(const RenderParameters& asked) {
-  const bool read = asked.light_maps == LightMapMode::on ||
-                    (asked.light_maps == LightMapMode::automatic && asked.maps != MapMode::naive &&
-                     asked.passes <= 1);
+  const bool read =
+      asked.light_maps == LightMapMode::on || (asked.light_maps == LightMapMode::automatic &&
+                                               asked.maps != MapMode::naive && asked.passes <= 1);
   return asked.light_map_rays > 0 && asked.direct_rays == 0 && read;
 }
 
@@ -95,20 +95,21 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
     used_.passes = automatic_passes(rays, all_photons(used_), progress, asked.processes);
   }
   if (asked.light_maps == LightMapMode::on && passes() > 1) {
-    throw SettingError(setting_named("light_maps"),
-                       fmt::format("light maps are of one photon pass, and there are {}; take fewer "
-                                   "photons, or one pass",
-                                   passes()));
+    throw SettingError(
+        setting_named("light_maps"),
+        fmt::format("light maps are of one photon pass, and there are {}; take fewer "
+                    "photons, or one pass",
+                    passes()));
   }
-  const bool read = asked.light_maps == LightMapMode::on ||
-                    (asked.light_maps == LightMapMode::automatic &&
-                     asked.maps != MapMode::naive && passes() == 1);
+  const bool read =
+      asked.light_maps == LightMapMode::on || (asked.light_maps == LightMapMode::automatic &&
+                                               asked.maps != MapMode::naive && passes() == 1);
   if (!read) used_.light_map_rays = 0;
   if (asked.gloss == GlossMode::automatic) {
     used_.gloss = read ? GlossMode::rays : GlossMode::photons;
   }
-  const bool at_points = hits == HitsAsk::points && asked.light_maps == LightMapMode::automatic &&
-                         !gathers_at_nodes();
+  const bool at_points =
+      hits == HitsAsk::points && asked.light_maps == LightMapMode::automatic && !gathers_at_nodes();
   used_.light_maps = read && !at_points ? LightMapMode::on : LightMapMode::off;
   // Beyond the scene there is nothing to find.
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));

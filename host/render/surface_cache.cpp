@@ -328,7 +328,7 @@ HitReading SurfaceCache::read(const PrimaryHits& hits, const Progress& progress)
 
 /// Values the nodes that hits read.
 void SurfaceCache::fill(const PrimaryHits& hits, std::span<const int> levels,
-                             const Progress& progress) {
+                        const Progress& progress) {
   const bool all =
       std::all_of(levels.begin(), levels.end(), [](int l) { return l == LightMaps::all_rounds; });
   if (all && !shared_) {
@@ -370,8 +370,7 @@ void SurfaceCache::find_nodes(const PrimaryHits& hits, HitReading& reading) cons
 }
 
 PhotonBlotches SurfaceCache::blotches() const {
-  return {ends_ ? ends_->spacing() : maps_.charts().spacing(),
-          1 / std::sqrt(neighbours_)};
+  return {ends_ ? ends_->spacing() : maps_.charts().spacing(), 1 / std::sqrt(neighbours_)};
 }
 
 bool SurfaceCache::serves(const PrimaryHits& hits, std::size_t hit) const {

@@ -18,7 +18,7 @@ inline constexpr int max_passes = 65'536;
 inline constexpr int max_specular_depth = 1'000'000;  ///< mirrors and glass that a ray follows
 inline constexpr int max_neighbours = 1'000'000;      ///< k
 inline constexpr int max_direct_rays = 4096;          ///< looks at lamps from a hit
-inline constexpr int max_gathering_rays = 4096;        ///< from a point; each has its random numbers
+inline constexpr int max_gathering_rays = 4096;       ///< from a point; each has its random numbers
 
 // Radii of search
 /// Metres. The square of a hundred-thousandth of it is a normal float, and so is its inverse.

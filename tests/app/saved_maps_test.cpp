@@ -26,9 +26,8 @@ std::vector<std::string> arguments_of(const FileFolder& folder, const std::strin
 TEST_CASE("saved photons give the picture again, in other powers and sizes as well") {
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
-  const auto [option, value] = GENERATE(table<std::string, std::string>({{"--light-maps", "auto"},
-                                                                         {"--light-maps", "off"},
-                                                                         {"--light-map-rays", "8"}}));
+  const auto [option, value] = GENERATE(table<std::string, std::string>(
+      {{"--light-maps", "auto"}, {"--light-maps", "off"}, {"--light-map-rays", "8"}}));
   const auto render = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.end(), {option, value});
     return run_photile(arguments_of(folder, name, more));

@@ -16,8 +16,8 @@
 #include "render/first_picture.hpp"
 #include "render/neighbour_choice.hpp"
 #include "render/picture_in_parts.hpp"
-#include "render/surface_cache.hpp"
 #include "render/pictures.hpp"
+#include "render/surface_cache.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 

@@ -18,7 +18,7 @@ const std::map<std::string_view, std::uint64_t>& cheap_counts() {
   static const std::map<std::string_view, std::uint64_t> most{
       {"samples_per_pixel", 4}, {"photons_emitted", 2'000}, {"passes", 2},
       {"neighbours", 60},       {"least_neighbours", 40},   {"direct_rays", 3},
-      {"light_map_rays", 4},      {"seed", 1'000'000}};
+      {"light_map_rays", 4},    {"seed", 1'000'000}};
   return most;
 }
 

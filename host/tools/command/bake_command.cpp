@@ -81,9 +81,8 @@ void add_bake_command(CLI::App& photile) {
       ->transform(count_between(64, limits::max_image_side))
       ->capture_default_str()
       ->group("Output");
-  add_setting_options(
-      *command, options->render,
-      {"samples_per_pixel", "passes", "direct_rays", "light_maps"});
+  add_setting_options(*command, options->render,
+                      {"samples_per_pixel", "passes", "direct_rays", "light_maps"});
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_bake(*options); });
 }

@@ -222,8 +222,7 @@ void add_measure_command(CLI::App& photile) {
   add_measure_output_options(*command, options->outputs);
   add_places(*command, *options);
   add_measuring(*command, *options);
-  add_setting_options(*command, options->render,
-                      {"samples_per_pixel", "direct_rays", "gloss"});
+  add_setting_options(*command, options->render, {"samples_per_pixel", "direct_rays", "gloss"});
   add_integrator_option(*command, options->render);
   command->callback([command, options] { run_measure(*command, *options); });
 }

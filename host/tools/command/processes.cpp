@@ -90,8 +90,8 @@ std::vector<bool> as_first_says(const std::vector<bool>& own) {
 
 void refuse_several(const std::string& what, const std::string& remedy) {
   if (communicator == nullptr || communicator->size() == 1) return;
-  throw UsageError(
-      fmt::format("{} is of one process, and {} share the work; {}", what, communicator->size(), remedy));
+  throw UsageError(fmt::format("{} is of one process, and {} share the work; {}", what,
+                               communicator->size(), remedy));
 }
 
 }  // namespace photile::app

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "render/render_session.hpp"
 #include "render/render_costs.hpp"
+#include "render/render_session.hpp"
 #include "render/setting.hpp"
 #include "saved_maps/saved_maps.hpp"
 #include "tools/command/version.hpp"

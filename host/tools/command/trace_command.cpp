@@ -89,8 +89,8 @@ void add_trace_command(CLI::App& photile) {
       ->type_name("");
   set_quality(render.quality_options(), Quality::good);
   add_quality_preset(*command, render.quality_options());
-  for (const char* name : {"photons_emitted", "quota", "seed", "maps", "direct_rays",
-                           "light_maps", "light_map_rays"}) {
+  for (const char* name : {"photons_emitted", "quota", "seed", "maps", "direct_rays", "light_maps",
+                           "light_map_rays"}) {
     add_setting(*command, render.parameters, name);
   }
   add_direct_option(*command, render);
