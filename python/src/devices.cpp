@@ -11,20 +11,6 @@ namespace py = pybind11;
 namespace photile::python {
 namespace {
 
-std::string_view word_of(DeviceType type) {
-  switch (type) {
-    case DeviceType::cpu:
-      return "cpu";
-    case DeviceType::gpu:
-      return "gpu";
-    case DeviceType::accelerator:
-      return "accelerator";
-    case DeviceType::other:
-      break;
-  }
-  return "other";
-}
-
 py::list list_of_devices() {
   py::list list;
   std::vector<DeviceInfo> devices;
@@ -37,7 +23,7 @@ py::list list_of_devices() {
     row["id"] = device.id;
     row["name"] = device.name;
     row["platform"] = device.platform;
-    row["type"] = word_of(device.type);
+    row["type"] = name_of(device.type);
     row["version"] = device.version;
     row["driver_version"] = device.driver_version;
     row["compute_units"] = device.compute_units;
