@@ -19,9 +19,8 @@ namespace {
 constexpr double area_tolerance = 1e-3;
 
 test::ExpectedEstimates expected_clipped(const Scene& scene, const Photons& photons,
-                                         const PrimaryHits& hits, int k, double radius,
-                                         DensityKernel kernel) {
-  const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), radius, 60);
+                                         const SurfaceIndex& surface, const PrimaryHits& hits,
+                                         int k, double radius, DensityKernel kernel) {
   const reference::ClippedArea area(scene, photons, surface, 60);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   test::ExpectedEstimates expected;
@@ -32,10 +31,12 @@ test::ExpectedEstimates expected_clipped(const Scene& scene, const Photons& phot
   return expected;
 }
 
-void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
-                   double radius, int k, DensityKernel kernel, MapMode mode = MapMode::triangle) {
+/// Estimates over discs clipped to `surface`, by each structure and strategy.
+void check_clipped_to(const std::shared_ptr<const SurfaceIndex>& surface, const Scene& scene,
+                      const Photons& photons, const PrimaryHits& hits, double radius, int k,
+                      DensityKernel kernel, MapMode mode = MapMode::triangle) {
   const std::size_t lights = scene.lights.size();
-  const auto expected = expected_clipped(scene, photons, hits, k, radius, kernel);
+  const auto expected = expected_clipped(scene, photons, *surface, hits, k, radius, kernel);
   const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
   for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_3d}) {
     for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
@@ -47,6 +48,7 @@ void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits
       parameters.neighbours = k;
       parameters.kernel = kernel;
       parameters.tuning = tuning;
+      parameters.surface = surface;
       const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
       const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
       REQUIRE(irradiance.size() == hits.size() * lights);
@@ -54,6 +56,14 @@ void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits
       CHECK(test::worst_difference(irradiance, expected) <= area_tolerance);
     }
   }
+}
+
+/// The same without dark parts: uniform photons leave none.
+void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
+                   double radius, int k, DensityKernel kernel, MapMode mode = MapMode::triangle) {
+  check_clipped_to(std::make_shared<const SurfaceIndex>(
+                       index_surface(scene, landed_on(scene, photons), radius, 60)),
+                   scene, photons, hits, radius, k, kernel, mode);
 }
 
 /// Triangles round `centre` whose outer corners lie far off it and near it in turn: corners of
@@ -196,6 +206,34 @@ TEST_CASE("a panel all under a plate counts whole for hits on it, and as nothing
   REQUIRE(surface.exposure[sided(0, 0)] == 0.0f);
   check_clipped(scene, photons, test::uniform_hits(scene, 100, 62, false), 0.2, 50,
                 DensityKernel::constant);
+}
+
+TEST_CASE(
+    "dark parts of a floor are holes in it for hits on it and on a panel above, as by the oracle") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 1);
+  test::add_plate(scene, {0.5f, 0.5f, 0.02f}, {1, 0, 0}, {0.1f, 0.8f, 0}, 1);
+  Photons photons;
+  std::mt19937_64 random(65);
+  const Photons everywhere = test::uniform_photons(scene, 20'000, 64, false);
+  for (std::size_t i = 0; i < everywhere.size(); ++i) {
+    const glm::vec3& p = everywhere.position[i];
+    const bool is_covered = p.z == 0 && p.x > 0.5f && p.x < 1.6f && p.y > 0.5f && p.y < 1.3f;
+    if (!is_covered) test::add_photon(photons, scene, p, everywhere.sided_triangle[i], random);
+  }
+  photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  const PrimaryHits hits = test::uniform_hits(scene, 300, 66, false);
+  const auto surface =
+      std::make_shared<const SurfaceIndex>(index_surface(scene, photons, 0.15, 60));
+  REQUIRE(surface->dark_parts.size() >= 10);
+  const auto is_dark = [&](std::size_t i) {
+    return surface->sheet_at(hits.sided_triangle[i], hits.position[i]) == surface->sheets;
+  };
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) dark += is_dark(i) ? 1 : 0;
+  REQUIRE(dark >= 20);
+  const DensityKernel kernel = GENERATE(from_range(all_density_kernels));
+  check_clipped_to(surface, scene, photons, hits, 0.15, 50, kernel);
 }
 
 TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, for every mode",

@@ -77,39 +77,62 @@ ClippedArea::ClippedArea(const Scene& scene, const Photons& photons, const Surfa
     : scene_(scene),
       surface_(surface),
       cos_angle_(std::cos(glm::radians(angle_degrees))),
-      lit_(surface.sheets, false) {
+      lit_(surface.sheets + 1, false) {
   for (const std::uint32_t s : photons.sided_triangle) {
     if (surface.dark[s] == 0) lit_[surface.sheet[s]] = true;
   }
   for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
     normals_.push_back(sided_normal(scene, s));
   }
+  lit_.back() = true;
+}
+
+bool ClippedArea::is_in_dark_part(const glm::dvec3& hit, std::uint32_t own) const {
+  return std::any_of(surface_.dark_parts.begin(), surface_.dark_parts.end(), [&](const auto& part) {
+    if (part.sided_triangle != own) return false;
+    const glm::dvec3 a(part.corner[0]), ab = glm::dvec3(part.corner[1]) - a;
+    const glm::dvec3 ac = glm::dvec3(part.corner[2]) - a, ah = hit - a;
+    const glm::dvec3 normal = glm::cross(ab, ac);
+    const double whole = glm::dot(normal, normal);
+    const double b = glm::dot(glm::cross(ah, ac), normal) / whole;
+    const double c = glm::dot(glm::cross(ab, ah), normal) / whole;
+    return b >= 0 && c >= 0 && b + c <= 1;
+  });
 }
 
 double ClippedArea::area(const glm::dvec3& hit, std::uint32_t own, double radius,
                          DensityKernel kernel) const {
   const glm::dvec3& n = normals_[own];
+  const bool in_the_dark = is_in_dark_part(hit, surface_.original[own]);
+  const std::uint32_t own_sheet = in_the_dark ? surface_.sheets : surface_.sheet[own];
   double sum = 0, projected = 0;
   for (std::uint32_t s = 0; s < normals_.size(); ++s) {
     const std::uint32_t sheet = surface_.sheet[s];
     if (surface_.original[s] != s) continue;
-    if (!lit_[sheet] && sheet != surface_.sheet[own]) continue;
+    if (!lit_[sheet] && sheet != own_sheet) continue;
     if (!normals_agree(normals_[s], n, cos_angle_)) continue;
-    const double exposure =
-        sheet == surface_.sheet[own] ? 1.0 : static_cast<double>(surface_.exposure[s]);
-    const double part = exposure * area_of_triangle(hit, n, s, radius, kernel);
+    const double exposure = sheet == own_sheet ? 1.0 : static_cast<double>(surface_.exposure[s]);
+    const double part =
+        exposure * area_of_triangle(hit, n, scene_.corners(triangle_of(s)), radius, kernel);
     sum += part;
     projected += part * glm::dot(normals_[s], n);
+  }
+  for (const DarkPart& dark : surface_.dark_parts) {
+    const glm::dvec3& normal = normals_[dark.sided_triangle];
+    if (in_the_dark || !normals_agree(normal, n, cos_angle_)) continue;
+    const double hole = area_of_triangle(hit, n, dark.corner, radius, kernel);
+    sum -= hole;
+    projected -= hole * glm::dot(normal, n);
   }
   // Light that falls along the normal lands once, however many layers there are.
   const double disc = glm::pi<double>() * mean_weight(kernel) * radius * radius;
   return std::max(sum * std::min(1.0, disc / projected), 1e-4 * disc);
 }
 
-double ClippedArea::area_of_triangle(const glm::dvec3& hit, const glm::dvec3& n, std::uint32_t s,
-                                     double radius, DensityKernel kernel) const {
+double ClippedArea::area_of_triangle(const glm::dvec3& hit, const glm::dvec3& n,
+                                     const std::array<glm::vec3, 3>& corners, double radius,
+                                     DensityKernel kernel) const {
   std::array<glm::dvec3, 3> p;
-  const auto corners = scene_.corners(triangle_of(s));
   for (int i = 0; i < 3; ++i) p[i] = (glm::dvec3(corners[i]) - hit) / radius;
   const glm::dvec3 low = glm::min(p[0], glm::min(p[1], p[2]));
   const glm::dvec3 high = glm::max(p[0], glm::max(p[1], p[2]));

@@ -2,6 +2,7 @@
 // clipping in double precision, kernels integrated numerically. Shares no code with the kernels.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -18,19 +19,22 @@ class ClippedArea {
   /// Height of the slab in which surface and photons count, over the radius.
   static constexpr double slab = 0.2;
 
-  /// References are kept. Takes from `surface` sheets and exposure, and no more.
+  /// References are kept. The constructor takes from `surface` the sheets, the exposure and the
+  /// dark parts, and no more.
   ClippedArea(const Scene& scene, const Photons& photons, const SurfaceIndex& surface,
               double angle_degrees);
 
   /// The integral of the kernel, square metres, over the surface within `radius` of a hit and in
   /// the slab around its plane, of agreeing normal, on sheets where photons landed or on the hit's
-  /// own.
+  /// own, without the dark parts. A hit within a dark part counts these, too.
   double area(const glm::dvec3& hit, std::uint32_t sided_triangle, double radius,
               DensityKernel kernel = DensityKernel::constant) const;
 
  private:
-  double area_of_triangle(const glm::dvec3& hit, const glm::dvec3& normal, std::uint32_t s,
-                          double radius, DensityKernel kernel) const;
+  bool is_in_dark_part(const glm::dvec3& hit, std::uint32_t original) const;
+  double area_of_triangle(const glm::dvec3& hit, const glm::dvec3& normal,
+                          const std::array<glm::vec3, 3>& corners, double radius,
+                          DensityKernel kernel) const;
 
   const Scene& scene_;
   const SurfaceIndex& surface_;
