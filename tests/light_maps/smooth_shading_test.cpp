@@ -102,30 +102,57 @@ double rms_beside_paths(const Scene& scene, const std::vector<Sensor>& sensors, 
 
 }  // namespace
 
-TEST_CASE("Nodes show a sphere of facets in the sun by the cosine to the interpolated normal",
-          "[smooth_shading]") {
-  constexpr double lux = 1000;
-  const glm::dvec3 to_sun = glm::normalize(glm::dvec3(0.4, -0.5, 0.7));
+TEST_CASE(
+    "Nodes show a sphere of facets in suns by the cosine to the interpolated normal, each sun and "
+    "their sum",
+    "[smooth_shading]") {
+  // Half of the suns shine from the other side: what one light leaves dark takes nothing from
+  // another. Of more than eight lights each light sample draws one, so that a layer is right on
+  // average.
+  const int suns = GENERATE(1, 2, 10);
+  const bool are_drawn = suns > 8;
   SceneBuilder builder;
   sphere.add_to(builder, builder.add(diffuse(glm::vec3(albedo))));
-  Light sun = point_light("sun", {});
-  sun.kind = LightKind::directional;
-  sun.direction = glm::vec3(-to_sun);
-  builder.add_distant(sun, lux);
+  std::vector<glm::dvec3> to_sun;
+  std::vector<double> lux;
+  for (int i = 0; i < suns; ++i) {
+    const double side = i % 2 == 0 ? 1 : -1;
+    to_sun.push_back(glm::normalize(glm::dvec3(0.4 * side + 0.01 * i, -0.5 * side, 0.7 * side)));
+    lux.push_back(1000.0 / (1 + i));
+    Light sun = point_light("sun " + std::to_string(i), {});
+    sun.kind = LightKind::directional;
+    sun.direction = glm::vec3(-to_sun.back());
+    builder.add_distant(sun, lux.back());
+  }
   const Scene scene = builder.build();
+  REQUIRE(needs_of(scene).many_lights() == are_drawn);
   const std::vector<SmoothMesh::Place> places = sphere.places();
   const LightLayers layers = by_nodes(scene, sensors_of(places));
-  const std::vector<double> radiance = radiance_of(scene, layers);
-  int lit = 0;
+  const std::vector<double> of_all = radiance_of(scene, layers), powers = layer_powers(scene);
+  REQUIRE(layers.layers.size() == to_sun.size());
+  std::vector<double> lit(to_sun.size(), 0.0), ratios = lit;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double cosine = glm::dot(places[i].smooth, to_sun);
-    if (std::abs(cosine) < 0.3) continue;  // the terminator of the facets around
-    CAPTURE(cosine, glm::dot(places[i].sensor.normal, to_sun));
-    CHECK(radiance[i] ==
-          Approx(albedo / pi * lux * std::max(0.0, cosine)).epsilon(0.01).margin(1e-3));
-    lit += cosine > 0 ? 1 : 0;
+    const auto cosine_to = [&](int sun) { return glm::dot(places[i].smooth, to_sun[sun]); };
+    double sum = 0;
+    bool is_at_a_terminator = false;  // of the facets around
+    for (int sun = 0; sun < suns; ++sun) is_at_a_terminator |= std::abs(cosine_to(sun)) < 0.3;
+    if (is_at_a_terminator) continue;
+    for (int sun = 0; sun < suns; ++sun) {
+      CAPTURE(suns, sun, cosine_to(sun), glm::dot(places[i].sensor.normal, to_sun[sun]));
+      const double expected = albedo / pi * lux[sun] * std::max(0.0, cosine_to(sun));
+      const double found = powers[sun] * luminance(glm::dvec3(layers.layers[sun].radiance[i]));
+      if (expected == 0 || !are_drawn) CHECK(found == Approx(expected).epsilon(0.01).margin(1e-3));
+      sum += expected;
+      if (expected == 0) continue;
+      ratios[sun] += found / expected;
+      lit[sun] += 1;
+    }
+    CHECK(of_all[i] == Approx(sum).epsilon(are_drawn ? 0.02 : 0.01).margin(1e-3));
   }
-  CHECK(lit > 150);
+  for (int sun = 0; sun < suns; ++sun) {
+    CHECK(lit[sun] > 120);
+    CHECK(ratios[sun] / lit[sun] == Approx(1.0).epsilon(0.01));
+  }
 }
 
 TEST_CASE("Nodes show a smooth sphere and cylinder in a room as paths do", "[smooth_shading]") {
@@ -212,7 +239,8 @@ TEST_CASE("Light by the normal is kept, taken in again and refused where it is n
   refused([](auto& by_normal) { by_normal[7].w = std::nanf(""); });
 }
 
-TEST_CASE("Vertex normals change no lux, and layers of lamps add", "[smooth_shading]") {
+TEST_CASE("Vertex normals change no lux, and layers follow the powers of lamps",
+          "[smooth_shading]") {
   const std::vector<Sensor> sensors = some_of(sphere, 7);
   const Scene smooth = in_room(sphere), flat = in_room(sphere, false);
   REQUIRE(needs_of(smooth).smooth_shading);
