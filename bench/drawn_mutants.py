@@ -341,8 +341,8 @@ def page(results):
     """The section of docs/testing.md."""
     rows = ["| | drawn | noticed | equivalent | survive | do not compile | not decided | "
             "share noticed |", "|---|--:|--:|--:|--:|--:|--:|---|"]
-    areas = {"kernels": "kernels/", "groups": "host/groups/", "surface": "host/surface/",
-             "trace": "host/trace/", "all": ""}
+    areas = {"kernels": "kernels/", "groups": "host/renderer/groups/", "surface": "host/renderer/surface/",
+             "trace": "host/renderer/trace/", "all": ""}
     for name, start in areas.items():
         count = sum(mutant.startswith(start) for mutant in results)
         of_area = [result for mutant, result in results.items()

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "gather/irradiance_gather.hpp"
-#include "render/neighbour_choice.hpp"
+#include "cache/irradiance_gather.hpp"
+#include "estimate/neighbour_choice.hpp"
 #include "render/path_estimate.hpp"
-#include "render/reflected_radiance.hpp"
+#include "estimate/reflected_radiance.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"
 

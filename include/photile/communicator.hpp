@@ -17,7 +17,7 @@ struct OtherProcessFailed : Error {
 };
 
 /// Processes that make the same calls in the same order, each with data of its own: ranks, from 0.
-/// photile has one over MPI (host/mpi); a program may bring its own. All functions but the first
+/// photile has one over MPI (host/cluster); a program may bring its own. All functions but the first
 /// two are collective, and throw OtherProcessFailed once a process has called `conclude` with a
 /// failure in place of them.
 class Communicator {

@@ -32,8 +32,8 @@ inline constexpr std::array all_light_map_modes = {LightMapMode::off, LightMapMo
                                                    LightMapMode::automatic};
 
 namespace light_maps {
-class Charts;  // host/light_maps/charts.hpp
-class Tiles;   // host/light_maps/tiles.hpp
+class Charts;  // host/renderer/cache/charts.hpp
+class Tiles;   // host/renderer/cache/tiles.hpp
 }  // namespace light_maps
 
 /// Nodes of light maps that are valued together.

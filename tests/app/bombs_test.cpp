@@ -10,10 +10,10 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
-#include "import/luminaire_list.hpp"
+#include "loading/luminaire_list.hpp"
 #include "photile/image.hpp"
 #include "photile/limits.hpp"
-#include "tools/view/moods.hpp"
+#include "view/moods.hpp"
 
 namespace photile::test {
 namespace {

@@ -10,7 +10,7 @@
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
-#include "tools/report/palette.hpp"
+#include "report/palette.hpp"
 
 namespace photile::test {
 namespace {

@@ -6,7 +6,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
-#include "tools/command/scene_report.hpp"
+#include "command/scene_report.hpp"
 
 namespace photile::test {
 namespace {

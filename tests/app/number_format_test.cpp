@@ -1,5 +1,5 @@
 // Numbers as people read them, at the borders between units.
-#include "tools/command/number_format.hpp"
+#include "command/number_format.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -5,7 +5,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
-#include "tools/command/progress_bar.hpp"
+#include "command/progress_bar.hpp"
 
 namespace photile::test {
 namespace {

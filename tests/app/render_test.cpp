@@ -9,7 +9,7 @@
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "render/render_costs.hpp"
-#include "tools/command/run_record.hpp"
+#include "command/run_record.hpp"
 
 namespace photile::test {
 namespace {

@@ -10,7 +10,7 @@
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "source_folder.hpp"
-#include "tools/command/setting_options.hpp"
+#include "command/setting_options.hpp"
 
 namespace photile::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tools/command/threads.hpp"
+#include "command/threads.hpp"
 
 namespace photile::test {
 namespace {

@@ -1,5 +1,5 @@
 // Counts and sizes as typed.
-#include "tools/command/validators.hpp"
+#include "command/validators.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

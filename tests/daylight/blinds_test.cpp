@@ -7,7 +7,7 @@
 #include "daylight/sky_states.hpp"
 #include "photile/errors.hpp"
 #include "room_with_window.hpp"
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 

@@ -1,5 +1,5 @@
 // The clear sky against another model, and its table by hand.
-#include "daylight/clear_sky.hpp"
+#include "weather/clear_sky.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "daylight/annual_daylight.hpp"
-#include "daylight/sky_lights.hpp"
+#include "weather/sky_lights.hpp"
 #include "room_with_window.hpp"
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 #include "trace/distant_light.hpp"
 
 namespace photile::test {

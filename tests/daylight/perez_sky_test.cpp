@@ -1,13 +1,13 @@
 // Skies of irradiances, against Radiance's gendaymtx and gendaylit.
-#include "daylight/perez_sky.hpp"
+#include "weather/perez_sky.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
 
-#include "daylight/sky_patches.hpp"
-#include "import/sky_map.hpp"
+#include "weather/sky_patches.hpp"
+#include "loading/sky_map.hpp"
 
 namespace photile::test {
 

@@ -1,14 +1,14 @@
 // Suns and skies by place, time and weather; skies of pictures by another hour.
-#include "import/sky_situation.hpp"
+#include "loading/sky_situation.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "daylight/sky_lights.hpp"
-#include "daylight/sun_position.hpp"
-#include "import/relit_sky.hpp"
+#include "weather/sky_lights.hpp"
+#include "weather/sun_position.hpp"
+#include "loading/relit_sky.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::test {

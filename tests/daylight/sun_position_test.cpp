@@ -1,5 +1,5 @@
 // Where the sun stands, against an observatory's example and what geometry says.
-#include "daylight/sun_position.hpp"
+#include "weather/sun_position.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

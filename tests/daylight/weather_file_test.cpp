@@ -1,5 +1,5 @@
 // EPW files, whole and damaged.
-#include "import/weather_file.hpp"
+#include "weather/weather_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <fstream>

@@ -3,7 +3,7 @@
 
 #include "device/launch.hpp"
 #include "device/program_source.hpp"
-#include "tools/command/exit_code.hpp"
+#include "command/exit_code.hpp"
 
 namespace photile::test {
 namespace {

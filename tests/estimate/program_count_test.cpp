@@ -5,7 +5,7 @@
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "render/kernel_preparation.hpp"
-#include "render/photon_estimate.hpp"
+#include "estimate/photon_estimate.hpp"
 
 namespace photile::test {
 

@@ -5,13 +5,13 @@
 
 #include "daylight/blinds.hpp"
 #include "daylight/occupancy.hpp"
-#include "daylight/sun_position.hpp"
+#include "weather/sun_position.hpp"
 #include "fuzz_files.hpp"
 #include "glare/observers.hpp"
-#include "import/finishing.hpp"
-#include "import/light_changes.hpp"
-#include "import/material_changes.hpp"
-#include "import/up_axis.hpp"
+#include "loading/finishing.hpp"
+#include "loading/light_changes.hpp"
+#include "loading/material_changes.hpp"
+#include "loading/up_axis.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_files.hpp"
 #include "measuring/working_plane.hpp"
@@ -19,9 +19,9 @@
 #include "photile/light_options.hpp"
 #include "photile/scene_builder.hpp"
 #include "test_scenes.hpp"
-#include "tools/command/validators.hpp"
-#include "tools/view/moods.hpp"
-#include "tools/walk/frame_names.hpp"
+#include "command/validators.hpp"
+#include "view/moods.hpp"
+#include "walk/frame_names.hpp"
 
 namespace photile::test {
 namespace {

@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "fuzz_files.hpp"
-#include "import/camera_path.hpp"
-#include "import/photometry/photometric_file.hpp"
-#include "import/texture_decoder.hpp"
-#include "import/warnings.hpp"
+#include "reading/camera_path.hpp"
+#include "photometry/photometric_file.hpp"
+#include "pictures/texture_decoder.hpp"
+#include "files/warnings.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
 

@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "daylight/occupancy.hpp"
-#include "daylight/sky_patches.hpp"
+#include "weather/sky_patches.hpp"
 #include "fuzz_files.hpp"
-#include "import/luminaires.hpp"
-#include "import/warnings.hpp"
-#include "import/weather_file.hpp"
+#include "loading/luminaires.hpp"
+#include "files/warnings.hpp"
+#include "weather/weather_file.hpp"
 #include "measuring/requirements.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "scene/light_names.hpp"
 #include "test_scenes.hpp"
-#include "tools/report/included_results.hpp"
+#include "report/included_results.hpp"
 
 namespace photile::test {
 namespace {

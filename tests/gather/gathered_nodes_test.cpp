@@ -1,6 +1,6 @@
 // Light maps whose nodes gather light: closed forms, and on what they depend.
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
-#include "gather/gathered_nodes.hpp"
+#include "cache/gathered_nodes.hpp"
 
 #include <tbb/global_control.h>
 
@@ -13,9 +13,9 @@
 #include "gathering.hpp"
 #include "light_maps/node_sources.hpp"
 #include "photile/light_maps.hpp"
-#include "render/reflected_radiance.hpp"
+#include "estimate/reflected_radiance.hpp"
 #include "test_scenes.hpp"
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "gather/irradiance_gather.hpp"
+#include "cache/irradiance_gather.hpp"
 #include "gathering_photons.hpp"
 #include "photile/sensors.hpp"
 #include "test_device.hpp"

@@ -1,6 +1,6 @@
 // The filter over linked points, on values whose truth is known.
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
-#include "gather/irradiance_filter.hpp"
+#include "cache/irradiance_filter.hpp"
 
 #include <tbb/global_control.h>
 

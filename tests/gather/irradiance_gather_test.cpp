@@ -1,6 +1,6 @@
 // Irradiance gathered by rays, against closed forms and the path tracer.
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
-#include "gather/irradiance_gather.hpp"
+#include "cache/irradiance_gather.hpp"
 
 #include <tbb/global_control.h>
 
@@ -15,7 +15,7 @@
 #include "render/path_estimate.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 namespace {

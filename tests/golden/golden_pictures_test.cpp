@@ -14,7 +14,7 @@
 #include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
 #include "photile/settings.hpp"
-#include "render/neighbour_choice.hpp"
+#include "estimate/neighbour_choice.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"
 #include "tile_means.hpp"

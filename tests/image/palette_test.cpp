@@ -1,10 +1,10 @@
 // The palettes of Radiance's falsecolor, from its formulas and tables.
-#include "tools/report/palette.hpp"
+#include "report/palette.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tools/report/palette_colours.hpp"
+#include "report/palette_colours.hpp"
 
 namespace photile::test {
 

@@ -1,6 +1,6 @@
 // Light maps as textures: what a bilinear lookup gives at points of the surface, and how rectangles
 // lie on a picture.
-#include "tools/bake/baked_light.hpp"
+#include "bake/baked_light.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // Which triangles share a chart, and which point of the surface a node stands for.
-#include "light_maps/charts.hpp"
+#include "cache/charts.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>

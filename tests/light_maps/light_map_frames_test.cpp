@@ -1,5 +1,5 @@
 // Quick frames from light maps: what they show while nodes are lacking, and once none is.
-#include "render/light_map_frames.hpp"
+#include "cache/light_map_frames.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -14,10 +14,10 @@
 #include "photile/scene_needs.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/first_picture.hpp"
-#include "render/neighbour_choice.hpp"
+#include "estimate/neighbour_choice.hpp"
 #include "render/picture_in_parts.hpp"
 #include "render/pictures.hpp"
-#include "render/surface_cache.hpp"
+#include "cache/surface_cache.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 

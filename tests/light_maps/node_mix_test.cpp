@@ -1,5 +1,5 @@
 // The light of all lamps together at nodes: its value, and that no bit of it remembers old powers.
-#include "light_maps/node_mix.hpp"
+#include "cache/node_mix.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstring>

@@ -1,5 +1,5 @@
 // Nodes under things that stand on a floor: what is read beside these.
-#include "light_maps/node_sight.hpp"
+#include "cache/node_sight.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,14 +1,14 @@
 // Pictures in false colour: known lux and cd/m2 in known colours.
-#include "tools/report/false_colour_picture.hpp"
+#include "report/false_colour_picture.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
 
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
-#include "tools/report/number_text.hpp"
-#include "tools/report/palette.hpp"
-#include "tools/report/sheet.hpp"
+#include "report/number_text.hpp"
+#include "report/palette.hpp"
+#include "report/sheet.hpp"
 
 namespace photile::test {
 

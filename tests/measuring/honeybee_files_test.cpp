@@ -1,5 +1,5 @@
 // Files for Honeybee.
-#include "tools/report/honeybee_files.hpp"
+#include "report/honeybee_files.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

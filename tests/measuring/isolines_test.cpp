@@ -1,5 +1,5 @@
 // Isolines against straight lines and circles, and the colours of values.
-#include "tools/report/isolines.hpp"
+#include "report/isolines.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "photile/errors.hpp"
-#include "tools/report/false_colour.hpp"
+#include "report/false_colour.hpp"
 
 namespace photile::test {
 

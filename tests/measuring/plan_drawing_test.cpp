@@ -1,11 +1,11 @@
 // Plans of planes whose values are known.
-#include "tools/report/plan_drawing.hpp"
+#include "report/plan_drawing.hpp"
 
 #include <catch2/catch.hpp>
 #include <regex>
 
-#include "tools/report/illuminance_steps.hpp"
-#include "tools/report/palette.hpp"
+#include "report/illuminance_steps.hpp"
+#include "report/palette.hpp"
 
 namespace photile::test {
 

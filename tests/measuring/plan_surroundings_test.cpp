@@ -1,5 +1,5 @@
 // Walls, furniture and lamps on plans, of a room that is known.
-#include "tools/report/plan_surroundings.hpp"
+#include "report/plan_surroundings.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // The share of each device follows its throughput.
-#include "render/load_balance.hpp"
+#include "estimate/load_balance.hpp"
 
 #include <catch2/catch.hpp>
 

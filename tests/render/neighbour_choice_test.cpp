@@ -1,5 +1,5 @@
 // Numbers of neighbours of their own for each hit.
-#include "render/neighbour_choice.hpp"
+#include "estimate/neighbour_choice.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

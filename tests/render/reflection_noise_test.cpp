@@ -1,5 +1,5 @@
 // Where the noise of photon estimates is not seen in what lobes reflect.
-#include "render/reflection_noise.hpp"
+#include "cache/reflection_noise.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

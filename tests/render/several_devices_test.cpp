@@ -6,7 +6,7 @@
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
-#include "render/for_each_device.hpp"
+#include "estimate/for_each_device.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 

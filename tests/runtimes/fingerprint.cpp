@@ -19,8 +19,8 @@
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
-#include "render/photon_estimate.hpp"
-#include "tools/command/exit_code.hpp"
+#include "estimate/photon_estimate.hpp"
+#include "command/exit_code.hpp"
 
 namespace photile::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 
-#include "import/cube_map.hpp"
+#include "pictures/cube_map.hpp"
 
 namespace photile::test {
 

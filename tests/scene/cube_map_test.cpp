@@ -1,5 +1,5 @@
 // Cube maps against OpenGL's table of their faces and against integrals in closed form.
-#include "import/cube_map.hpp"
+#include "pictures/cube_map.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

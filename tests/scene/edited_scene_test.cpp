@@ -1,5 +1,5 @@
 // Copies of scene files with other lights: what is written reads back as the same powers.
-#include "export/edited_scene.hpp"
+#include "writing/edited_scene.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdint>

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <random>
 
-#include "import/photometry/eulumdat_reader.hpp"
-#include "import/warnings.hpp"
+#include "photometry/eulumdat_reader.hpp"
+#include "files/warnings.hpp"
 #include "photometric_texts.hpp"
 
 namespace photile::test {

@@ -1,8 +1,8 @@
 // Small glTF files that ask for more than any memory holds are refused before anything is read.
 #include <catch2/catch.hpp>
 
-#include "import/gltf/document.hpp"
-#include "import/gltf/steps.hpp"
+#include "gltf/document.hpp"
+#include "gltf/steps.hpp"
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 

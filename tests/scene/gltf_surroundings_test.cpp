@@ -5,7 +5,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "export/edited_scene.hpp"
+#include "writing/edited_scene.hpp"
 #include "photile/light_mix.hpp"
 #include "srgb_oracle.hpp"
 #include "textured_square.hpp"

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <random>
 
-#include "import/photometry/ies_reader.hpp"
-#include "import/warnings.hpp"
+#include "photometry/ies_reader.hpp"
+#include "files/warnings.hpp"
 #include "photometric_texts.hpp"
 
 namespace photile::test {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "import/polygon_triangulator.hpp"
+#include "reading/polygon_triangulator.hpp"
 
 namespace photile::test {
 

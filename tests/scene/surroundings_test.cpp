@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "import/sky_map.hpp"
+#include "loading/sky_map.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

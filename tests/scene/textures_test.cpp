@@ -7,8 +7,8 @@
 #include <functional>
 #include <iterator>
 
-#include "import/texture_decoder.hpp"
-#include "import/warnings.hpp"
+#include "pictures/texture_decoder.hpp"
+#include "files/warnings.hpp"
 #include "photile/image.hpp"
 #include "scene_files.hpp"
 #include "srgb_oracle.hpp"

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "gather/irradiance_gather.hpp"
+#include "cache/irradiance_gather.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
-#include "render/neighbour_choice.hpp"
+#include "estimate/neighbour_choice.hpp"
 #include "render/photon_passes.hpp"
 
 namespace photile::test {

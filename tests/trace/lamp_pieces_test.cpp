@@ -6,7 +6,7 @@
 #include <set>
 
 #include "test_scenes.hpp"
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "uniform.hpp"

@@ -1,4 +1,4 @@
-#include "tools/trade/trade.hpp"
+#include "trade/trade.hpp"
 
 #include <catch2/catch.hpp>
 #include <map>

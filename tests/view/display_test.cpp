@@ -1,5 +1,5 @@
 // From layers and powers to what the screen shows.
-#include "tools/view/display.hpp"
+#include "view/display.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
 #include "test_scenes.hpp"
-#include "tools/report/number_text.hpp"
-#include "tools/report/palette.hpp"
+#include "report/number_text.hpp"
+#include "report/palette.hpp"
 #include "two_lights.hpp"
 
 namespace photile::test {

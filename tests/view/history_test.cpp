@@ -1,9 +1,9 @@
 // Changes of lamps, taken back and made again.
-#include "tools/view/history.hpp"
+#include "view/history.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "tools/view/light_board.hpp"
+#include "view/light_board.hpp"
 #include "two_lights.hpp"
 
 namespace photile::test {

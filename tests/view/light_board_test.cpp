@@ -1,9 +1,9 @@
 // What the sliders make of the lamps.
-#include "tools/view/light_board.hpp"
+#include "view/light_board.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "import/relit_sky.hpp"
+#include "loading/relit_sky.hpp"
 #include "two_lights.hpp"
 
 namespace photile::test {

@@ -1,5 +1,5 @@
 // Edits of luminaires without a window: what they do to the file, and what they leave alone.
-#include "tools/view/luminaire_editor.hpp"
+#include "view/luminaire_editor.hpp"
 
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -12,8 +12,8 @@
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"
-#include "tools/view/scene_loader.hpp"
-#include "tools/view/settings_history.hpp"
+#include "view/scene_loader.hpp"
+#include "view/settings_history.hpp"
 
 namespace photile::test {
 namespace {

@@ -1,5 +1,5 @@
 // The sky of the window at any hour: against the sun's place and what reaches open ground.
-#include "tools/view/moving_sky.hpp"
+#include "view/moving_sky.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "common/output_file.hpp"
-#include "daylight/clear_sky.hpp"
-#include "daylight/perez_sky.hpp"
-#include "import/relit_sky.hpp"
+#include "weather/clear_sky.hpp"
+#include "weather/perez_sky.hpp"
+#include "loading/relit_sky.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 #include "weather_text.hpp"

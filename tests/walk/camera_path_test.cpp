@@ -1,5 +1,5 @@
 // Keyframes of a camera.
-#include "import/camera_path.hpp"
+#include "reading/camera_path.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "import/gltf/animation.hpp"
+#include "gltf/animation.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 
