@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "../scene/scene_files.hpp"
+#include "loading/scene_files.hpp"
 #include "garbage.hpp"
 #include "instanced_scenes.hpp"
 #include "photile/errors.hpp"

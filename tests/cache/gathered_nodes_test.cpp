@@ -11,7 +11,7 @@
 #include <string>
 
 #include "gathering.hpp"
-#include "light_maps/node_sources.hpp"
+#include "cache/node_sources.hpp"
 #include "photile/light_maps.hpp"
 #include "estimate/reflected_radiance.hpp"
 #include "test_scenes.hpp"

@@ -279,7 +279,7 @@ def network():
         folder = pathlib.Path(name)
         _, expected = picture_of(folder, 0, arguments)
         file = folder / "network.exr"
-        done = subprocess.run([sys.executable, str(SOURCE / "tests/mpi/lossy_network.py"), "--delay", "2", "--loss",
+        done = subprocess.run([sys.executable, str(SOURCE / "tests/cluster/lossy_network.py"), "--delay", "2", "--loss",
                                "1", "--ranks", "3", "--", mpiexec, photile, "render", str(BOX), "-o", str(file),
                                *arguments], text=True, capture_output=True, check=False)
         print(done.stdout, done.stderr)

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "light_maps/node_sources.hpp"
+#include "cache/node_sources.hpp"
 #include "photile/defaults.hpp"
 #include "photile/scene_builder.hpp"
 #include "test_scenes.hpp"

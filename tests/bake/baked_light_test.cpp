@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "light_maps/node_sources.hpp"
+#include "cache/node_sources.hpp"
 #include "photile/errors.hpp"
 #include "test_scenes.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "light_maps/node_sources.hpp"
+#include "cache/node_sources.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
