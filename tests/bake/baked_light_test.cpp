@@ -64,7 +64,7 @@ struct BakedRoom {
   }
 
   RayScene rays;
-  light_maps::NodeSight sight;
+  cache::NodeSight sight;
   bake::BakedLight baked;
   std::vector<glm::vec3> texels;
 };

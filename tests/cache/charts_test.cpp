@@ -8,7 +8,7 @@
 
 namespace photile::test {
 
-using light_maps::Charts;
+using cache::Charts;
 
 namespace {
 
@@ -75,7 +75,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it", "[cha
   Charts charts(scene, 0.04, 60);
   constexpr int levels = 4;
   for (std::uint32_t i = 0; i < charts.size(); ++i) {
-    const light_maps::Chart& chart = charts[i];
+    const cache::Chart& chart = charts[i];
     CHECK(chart.columns * chart.rows == 29 * 15);
     charts.prepare(i);
     const std::uint32_t last_x = chart.columns << (levels - 1), last_y = chart.rows << (levels - 1);
@@ -109,7 +109,7 @@ TEST_CASE("A node beyond an edge stands for the nearest point of the edge", "[ch
   Charts charts(scene, 0.04, 60);
   for (std::uint32_t i = 0; i < charts.size(); ++i) {
     charts.prepare(i);
-    const light_maps::Chart& chart = charts[i];
+    const cache::Chart& chart = charts[i];
     for (std::uint32_t x = 0; x <= chart.columns; ++x) {
       for (std::uint32_t y = 0; y <= chart.rows; ++y) {
         const glm::dvec3 place =
@@ -145,7 +145,7 @@ TEST_CASE("Owners in charts of many triangles are those that looking at all find
   const Charts without(scene, 0.04, 60);
   for (std::uint32_t i = 0; i < with_trees.size(); ++i) {
     with_trees.prepare(i);
-    const light_maps::Chart& chart = with_trees[i];
+    const cache::Chart& chart = with_trees[i];
     for (std::uint32_t x = 0; x <= 8 * chart.columns; x += 3) {
       for (std::uint32_t y = 0; y <= 8 * chart.rows; y += 5) {
         const auto a = with_trees.owner({i, x, y}, 4), b = without.owner({i, x, y}, 4);

@@ -10,10 +10,10 @@
 #include <cmath>
 #include <string>
 
-#include "gathering.hpp"
 #include "cache/node_sources.hpp"
-#include "photile/light_maps.hpp"
 #include "estimate/reflected_radiance.hpp"
+#include "gathering.hpp"
+#include "photile/light_maps.hpp"
 #include "test_scenes.hpp"
 #include "validation/form_factors.hpp"
 
@@ -22,7 +22,8 @@ namespace {
 
 /// Light maps of a scene, and what values them.
 struct GatheredMaps {
-  GatheredMaps(GatheringScene& scene, const GatheredNodesParameters& rays, double spacing = 0.16)
+  GatheredMaps(GatheringScene& scene, const cache::GatheredNodesParameters& rays,
+               double spacing = 0.16)
       : gather(scene.gather({})),
         parameters(parameters_of(scene, spacing)),
         nodes(scene.scene, gather, scene.estimators.layer_powers(), rays),
@@ -45,11 +46,11 @@ struct GatheredMaps {
     REQUIRE(maps.find(hits.sided_triangle[hit], hits.position[hit], blend));
     double sum = 0;
     for (std::size_t i = 0; i < blend.node.size(); ++i) {
-      for_each_estimate(maps.values(), blend.node[i], parameters.powers.size(),
-                        [&](std::size_t layer, std::size_t value) {
-                          sum += double{blend.weight[i]} * parameters.powers[layer] *
-                                 luminance(glm::dvec3(maps.values().irradiance[value]));
-                        });
+      estimate::for_each_estimate(maps.values(), blend.node[i], parameters.powers.size(),
+                                  [&](std::size_t layer, std::size_t value) {
+                                    sum += double{blend.weight[i]} * parameters.powers[layer] *
+                                           luminance(glm::dvec3(maps.values().irradiance[value]));
+                                  });
     }
     return sum;
   }
@@ -60,13 +61,13 @@ struct GatheredMaps {
     return result;
   }
 
-  IrradianceGather gather;
+  cache::IrradianceGather gather;
   LightMapParameters parameters;
-  GatheredNodes nodes;
+  cache::GatheredNodes nodes;
   LightMaps maps;
 };
 
-constexpr GatheredNodesParameters few_rays{{32, 32}, {16, 16}, 1e-4};
+constexpr cache::GatheredNodesParameters few_rays{{32, 32}, {16, 16}, 1e-4};
 
 /// The hits of one half of the room, and of the other.
 std::array<PrimaryHits, 2> halves(const PrimaryHits& hits) {
@@ -139,7 +140,7 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
   GatheredMaps maps(plain, few_rays, 0.04);
   maps.fill(floor);
   const auto [rms, mean] = errors_of(maps, floor, truth);
-  const GatheredIrradiance raw =
+  const cache::GatheredIrradiance raw =
       plain.gather({.rays = 32, .looks = 32}).gather(floor, numbers(floor.size()));
   double squares = 0;
   for (std::size_t i = 0; i < floor.size(); ++i) {
@@ -256,7 +257,7 @@ TEST_CASE("gathered nodes: many lights, each in its layer, are what their group 
   GatheredMaps together(grouped, few_rays);
   together.fill(hits);
   // Each layer is averaged by its own noise: what is left of it differs, the light does not.
-  const GatheredIrradiance many_rays =
+  const cache::GatheredIrradiance many_rays =
       grouped.gather({.rays = 400, .looks = 400}).gather(hits, numbers(hits.size()));
   const auto errors = [&](const std::vector<double>& lux) {
     double sum = 0, truth = 0, squares = 0;

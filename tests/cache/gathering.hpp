@@ -34,11 +34,11 @@ class GatheringScene {
   GatheringScene(Scene taken, const RenderParameters& parameters)
       : scene(std::move(taken)), rays(scene), estimators(rays, {&device(), 1}, parameters) {}
 
-  IrradianceGather gather(const IrradianceGatherParameters& parameters) {
+  cache::IrradianceGather gather(const cache::IrradianceGatherParameters& parameters) {
     return estimators.gather(parameters);
   }
-  GatheredIrradiance at(const std::vector<Sensor>& sensors,
-                        const IrradianceGatherParameters& parameters = {}) {
+  cache::GatheredIrradiance at(const std::vector<Sensor>& sensors,
+                               const cache::IrradianceGatherParameters& parameters = {}) {
     return gather(parameters).gather(trace::sensor_hits(rays, sensors), numbers(sensors.size()));
   }
 

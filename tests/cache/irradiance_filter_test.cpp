@@ -18,8 +18,8 @@ constexpr int side = 48, batches = 8, border = 8;
 std::size_t index(int x, int y) { return static_cast<std::size_t>(y * side + x); }
 
 /// A square lattice, each point linked to its four neighbours.
-PointLinks lattice() {
-  PointLinks links;
+cache::PointLinks lattice() {
+  cache::PointLinks links;
   links.first.push_back(0);
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
@@ -46,8 +46,9 @@ using Truth = std::function<double(int x, int y)>;
 
 /// Grey light of `lights` layers, each the truth with noise of its own in every batch.
 ///   error   standard error of each layer
-GatheredIrradiance noisy(const Truth& truth, double error, std::uint64_t seed, int lights = 1) {
-  GatheredIrradiance result;
+cache::GatheredIrradiance noisy(const Truth& truth, double error, std::uint64_t seed,
+                                int lights = 1) {
+  cache::GatheredIrradiance result;
   result.batches = batches;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
@@ -67,7 +68,7 @@ GatheredIrradiance noisy(const Truth& truth, double error, std::uint64_t seed, i
 }
 
 /// Over the columns [from, to), but for the border.
-double rms_error(const GatheredIrradiance& light, const Truth& truth, int from, int to) {
+double rms_error(const cache::GatheredIrradiance& light, const Truth& truth, int from, int to) {
   double sum = 0;
   int count = 0;
   for (int y = border; y < side - border; ++y)
@@ -87,8 +88,8 @@ TEST_CASE("filter: noise on an even surface falls, and its error is known afterw
   constexpr int inner = side - 2 * border;
   double known = 0, found = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const GatheredIrradiance after =
-        filter_irradiance(noisy(even, 0.05, seed), lattice(), one_light);
+    const cache::GatheredIrradiance after =
+        cache::filter_irradiance(noisy(even, 0.05, seed), lattice(), one_light);
     found += std::pow(rms_error(after, even, border, side - border), 2) / 8;
     for (int y = border; y < side - border; ++y)
       for (int x = border; x < side - border; ++x) {
@@ -102,7 +103,8 @@ TEST_CASE("filter: noise on an even surface falls, and its error is known afterw
 TEST_CASE("filter: steps that exceed the noise stay, slopes stay what they are") {
   const double height = GENERATE(0.5, 1.0);  // 7 and 14 standard errors of a difference
   const Truth step = [&](int x, int) { return x < side / 2 ? 1.0 : 1.0 + height; };
-  const GatheredIrradiance after = filter_irradiance(noisy(step, 0.05, 3), lattice(), one_light);
+  const cache::GatheredIrradiance after =
+      cache::filter_irradiance(noisy(step, 0.05, 3), lattice(), one_light);
   double left = 0, right = 0;  // beside the step
   for (int y = border; y < side - border; ++y) {
     left += double{after.mean.irradiance[index(side / 2 - 1, y)].g} / (side - 2 * border);
@@ -110,20 +112,20 @@ TEST_CASE("filter: steps that exceed the noise stay, slopes stay what they are")
   }
   CHECK(right - left == Approx(height).epsilon(0.1));
   const Truth slope = [](int x, int) { return 1.0 + 0.02 * x; };
-  CHECK(rms_error(filter_irradiance(noisy(slope, 0.05, 4), lattice(), one_light), slope, 12,
+  CHECK(rms_error(cache::filter_irradiance(noisy(slope, 0.05, 4), lattice(), one_light), slope, 12,
                   side - 12) < 0.05 / 2.5);
 }
 
 TEST_CASE("filter: without noise nothing changes, and what is dark stays dark") {
   const Truth waves = [](int x, int y) { return 2 + std::sin(x * 0.7) * std::cos(y * 0.9); };
-  const GatheredIrradiance before = noisy(waves, 0, 1);
-  const GatheredIrradiance after = filter_irradiance(before, lattice(), one_light);
+  const cache::GatheredIrradiance before = noisy(waves, 0, 1);
+  const cache::GatheredIrradiance after = cache::filter_irradiance(before, lattice(), one_light);
   for (std::size_t i = 0; i < before.mean.irradiance.size(); ++i) {
     REQUIRE(after.mean.irradiance[i].g == Approx(before.mean.irradiance[i].g).epsilon(1e-6));
   }
   const Truth black = [](int, int) { return 0.0; };
   for (const glm::vec3& value :
-       filter_irradiance(noisy(black, 0, 1), lattice(), one_light).mean.irradiance) {
+       cache::filter_irradiance(noisy(black, 0, 1), lattice(), one_light).mean.irradiance) {
     REQUIRE(value == glm::vec3(0.0f));
   }
 }
@@ -133,7 +135,7 @@ TEST_CASE("filter: light that few rays find is spread over the points that found
   // five found nothing, and do not know that they err.
   constexpr double found = 0.1;
   const Truth even = [](int, int) { return 1.0; };
-  GatheredIrradiance rare = noisy(even, 0, 1);
+  cache::GatheredIrradiance rare = noisy(even, 0, 1);
   for (std::size_t point = 0; point < rare.mean.irradiance.size(); ++point) {
     double sum = 0;
     for (std::size_t b = 0; b < batches; ++b) {
@@ -145,9 +147,9 @@ TEST_CASE("filter: light that few rays find is spread over the points that found
     rare.mean.irradiance[point] = glm::vec3(static_cast<float>(sum / batches));
   }
   const double before = rms_error(rare, even, border, side - border);
-  const NoiseTolerance of_looks{.errors = 3, .ratio = 2};
-  const GatheredIrradiance after =
-      filter_irradiance(rare, lattice(), one_light, {.rounds = 8, .tolerated = of_looks});
+  const cache::NoiseTolerance of_looks{.errors = 3, .ratio = 2};
+  const cache::GatheredIrradiance after =
+      cache::filter_irradiance(rare, lattice(), one_light, {.rounds = 8, .tolerated = of_looks});
   double mean = 0, of_found = 0;
   for (std::size_t point = 0; point < after.mean.irradiance.size(); ++point) {
     mean += double{after.mean.irradiance[point].g};
@@ -161,22 +163,23 @@ TEST_CASE("filter: light that few rays find is spread over the points that found
 TEST_CASE("filter: noise of a lamp falls beside the border of the sun as it does without the sun") {
   const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 90.0; };
   const Truth even = [](int, int) { return 2.0; };
-  const GatheredIrradiance sun = noisy(step, 0.5, 5), lamp = noisy(even, 0.1, 6);
-  GatheredIrradiance both;
+  const cache::GatheredIrradiance sun = noisy(step, 0.5, 5), lamp = noisy(even, 0.1, 6);
+  cache::GatheredIrradiance both;
   both.batches = batches;
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
-    for (const GatheredIrradiance* one : {&sun, &lamp}) both.append(*one, i, 1);
+    for (const cache::GatheredIrradiance* one : {&sun, &lamp}) both.append(*one, i, 1);
   }
-  const GatheredIrradiance layers = filter_irradiance(both, lattice(), std::vector<double>{1, 1});
-  GatheredIrradiance of_sun, of_lamp;
+  const cache::GatheredIrradiance layers =
+      cache::filter_irradiance(both, lattice(), std::vector<double>{1, 1});
+  cache::GatheredIrradiance of_sun, of_lamp;
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
     of_sun.mean.irradiance.push_back(layers.mean.irradiance[2 * i]);
     of_lamp.mean.irradiance.push_back(layers.mean.irradiance[2 * i + 1]);
   }
-  const auto beside_border = [](const GatheredIrradiance& light, const Truth& truth) {
+  const auto beside_border = [](const cache::GatheredIrradiance& light, const Truth& truth) {
     return rms_error(light, truth, side / 2 - 2, side / 2 + 2);
   };
-  const double alone = beside_border(filter_irradiance(lamp, lattice(), one_light), even);
+  const double alone = beside_border(cache::filter_irradiance(lamp, lattice(), one_light), even);
   CHECK(alone < 0.5 * beside_border(lamp, even));
   CHECK(beside_border(of_lamp, even) < 1.1 * alone);
   CHECK(beside_border(of_sun, step) < 0.5);  // and the border stays
@@ -184,8 +187,8 @@ TEST_CASE("filter: noise of a lamp falls beside the border of the sun as it does
 
 TEST_CASE("filter: sparse layers are filtered as dense ones, on any number of threads") {
   const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 1.6; };
-  const GatheredIrradiance dense = noisy(step, 0.05, 6, 2);
-  GatheredIrradiance sparse = dense;
+  const cache::GatheredIrradiance dense = noisy(step, 0.05, 6, 2);
+  cache::GatheredIrradiance sparse = dense;
   sparse.mean.first.push_back(0);
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
     sparse.mean.light.push_back(0);
@@ -193,10 +196,10 @@ TEST_CASE("filter: sparse layers are filtered as dense ones, on any number of th
     sparse.mean.first.push_back(2 * (i + 1));
   }
   const std::vector<double> powers{1, 1};
-  const GatheredIrradiance expected = filter_irradiance(dense, lattice(), powers);
+  const cache::GatheredIrradiance expected = cache::filter_irradiance(dense, lattice(), powers);
   for (const std::size_t threads : {1u, 2u, 3u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const GatheredIrradiance after = filter_irradiance(sparse, lattice(), powers);
+    const cache::GatheredIrradiance after = cache::filter_irradiance(sparse, lattice(), powers);
     CHECK(after.mean.irradiance == expected.mean.irradiance);
     CHECK(after.batch == expected.batch);
     CHECK(after.mean.first == sparse.mean.first);

@@ -24,7 +24,7 @@ using std::numbers::pi;
 
 const glm::dvec3 up(0, 0, 1);
 
-double lux(const GatheredIrradiance& light, std::size_t estimate) {
+double lux(const cache::GatheredIrradiance& light, std::size_t estimate) {
   return luminance(glm::dvec3(light.mean.irradiance[estimate]));
 }
 
@@ -97,10 +97,10 @@ std::vector<Sensor> room_sensors(int count) {
 /// Whether light gathered in a room is that of the path tracer, layer by layer.
 ///   bias   root mean square of what photons are wrong by, relative
 void check_against_paths(const Scene& scene, double bias,
-                         const IrradianceGatherParameters& parameters = {}) {
+                         const cache::IrradianceGatherParameters& parameters = {}) {
   GatheringScene room(scene, looked_up(400'000));
   const std::vector<Sensor> sensors = room_sensors(5);
-  const GatheredIrradiance light = room.at(sensors, parameters);
+  const cache::GatheredIrradiance light = room.at(sensors, parameters);
   const PathReference truth = by_paths(room.rays, sensors, 4096);
   REQUIRE(light.mean.irradiance.size() == truth.lux.size());
   double squares = 0, relative = 0, error = 0;
@@ -131,9 +131,9 @@ TEST_CASE("gathering: a furnace reads its closed form, in corners, too") {
   std::vector<double> middle, corners;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     GatheringScene box(scene, looked_up(100'000, seed));
-    IrradianceGatherParameters parameters;
+    cache::IrradianceGatherParameters parameters;
     parameters.seed = seed;
-    const GatheredIrradiance light = box.at(sensors, parameters);
+    const cache::GatheredIrradiance light = box.at(sensors, parameters);
     middle.push_back(lux(light, 0));
     corners.push_back((lux(light, 1) + lux(light, 2) + lux(light, 3) + lux(light, 4)) / 4);
   }
@@ -149,7 +149,7 @@ TEST_CASE("gathering: direct light is that of form factors, within its own error
                builder.add(area_light("lamp")));
   GatheringScene plain(builder.build(), looked_up(20'000));
   const std::vector<Sensor> sensors = sensors_on({-1.5, -1.5, 0}, {3, 0, 0}, {0, 3, 0}, up, 20);
-  const GatheredIrradiance light = plain.at(sensors);
+  const cache::GatheredIrradiance light = plain.at(sensors);
   double squares = 0, errors = 0, relative = 0;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const double truth =
@@ -197,7 +197,7 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
   std::vector<double> ratio;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     GatheringScene place(scene, looked_up(60'000, seed));
-    const GatheredIrradiance light = place.at(sensors);
+    const cache::GatheredIrradiance light = place.at(sensors);
     double sum = 0, truth = 0;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
       sum += lux(light, i);
@@ -215,13 +215,13 @@ TEST_CASE("gathering: no caustic shines through a screen that stands on the floo
   builder.grid({0, -2, 0}, {0, 4, 0}, {0, 0, 1.1f}, 1, 0);
   const Scene scene = builder.build();
   GatheringScene place(scene, looked_up(60'000, 1));
-  const GatheredIrradiance behind =
+  const cache::GatheredIrradiance behind =
       place.at(sensors_on({-0.2, -0.3, 0}, {0.19, 0, 0}, {0, 0.6, 0}, up, 6));
   for (std::size_t i = 0; i < 36; ++i) CHECK(lux(behind, i) == 0.0);
 
   // Farther from it than all neighbours are, the floor is lit as without it.
   const std::vector<Sensor> before = sensors_on({0.35, -0.3, 0}, {0.35, 0, 0}, {0, 0.6, 0}, up, 6);
-  const GatheredIrradiance lit = place.at(before);
+  const cache::GatheredIrradiance lit = place.at(before);
   double sum = 0, truth = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     sum += lux(lit, i);
@@ -237,7 +237,7 @@ TEST_CASE("gathering: surroundings are direct light, and seen once") {
   const Scene scene = builder.build();
   GatheringScene open(scene, looked_up(50'000));
   const std::vector<Sensor> sensors = sensors_on({-0.9, -0.9, 0}, {1.8, 0, 0}, {0, 1.8, 0}, up, 4);
-  const GatheredIrradiance light = open.at(sensors);
+  const cache::GatheredIrradiance light = open.at(sensors);
   // Its flux falls on the disc of the scene's sphere: illuminance on a plane is 1 / that, times pi
   // over 4 pi's share of the sky's hemisphere.
   const double radius = bounding_sphere(scene).radius;
@@ -254,9 +254,9 @@ TEST_CASE("gathering: the stated error is the scatter of other random numbers") 
   const std::size_t values = 2 * sensors.size();
   std::vector<double> sum(values, 0.0), squares(values, 0.0), stated(values, 0.0);
   for (int trial = 0; trial < trials; ++trial) {
-    IrradianceGatherParameters parameters;
+    cache::IrradianceGatherParameters parameters;
     parameters.seed = 100 + static_cast<std::uint64_t>(trial);
-    const GatheredIrradiance light = room.at(sensors, parameters);
+    const cache::GatheredIrradiance light = room.at(sensors, parameters);
     for (std::size_t i = 0; i < values; ++i) {
       sum[i] += lux(light, i) / trials;
       squares[i] += lux(light, i) * lux(light, i) / trials;
@@ -281,10 +281,10 @@ TEST_CASE("gathering: the same bits in any order of points and on any number of 
   sensors.resize(700);
   const PrimaryHits hits = trace::sensor_hits(room.rays, sensors);
   const std::vector<std::uint64_t> number = numbers(sensors.size());
-  IrradianceGatherParameters parameters;
+  cache::IrradianceGatherParameters parameters;
   parameters.rays = 512;
   parameters.looks = 16;
-  const GatheredIrradiance expected = room.gather(parameters).gather(hits, number);
+  const cache::GatheredIrradiance expected = room.gather(parameters).gather(hits, number);
 
   // Every seventh point after another: 700 has to be put in another order without a remainder.
   std::vector<Sensor> shuffled(sensors.size());
@@ -297,7 +297,8 @@ TEST_CASE("gathering: the same bits in any order of points and on any number of 
   const PrimaryHits shuffled_hits = trace::sensor_hits(room.rays, shuffled);
   for (const std::size_t threads : {1u, 2u, 3u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const GatheredIrradiance light = room.gather(parameters).gather(shuffled_hits, shuffled_number);
+    const cache::GatheredIrradiance light =
+        room.gather(parameters).gather(shuffled_hits, shuffled_number);
     bool same = true;
     for (std::size_t i = 0; i < sensors.size(); ++i)
       for (std::size_t layer = 0; layer < 2; ++layer) {
@@ -316,9 +317,9 @@ TEST_CASE("gathering: layers are the same whatever the powers") {
   RenderParameters parameters = looked_up(50'000);
   parameters.photons.quota = PhotonQuota::equal;
   const std::vector<Sensor> sensors = room_sensors(3);
-  const GatheredIrradiance dim = GatheringScene(scene, parameters).at(sensors);
+  const cache::GatheredIrradiance dim = GatheringScene(scene, parameters).at(sensors);
   scene.lights[0].power *= 1000;
-  const GatheredIrradiance bright = GatheringScene(scene, parameters).at(sensors);
+  const cache::GatheredIrradiance bright = GatheringScene(scene, parameters).at(sensors);
   CHECK(dim.mean.irradiance == bright.mean.irradiance);
   CHECK(dim.batch == bright.batch);
 }
@@ -330,15 +331,15 @@ TEST_CASE("gathering: many lights, each in its layer, are what their group is") 
   parameters.radius = 0.3;
   const std::vector<Sensor> sensors = room_sensors(3);
   GatheringScene alone(scene, parameters);
-  const GatheredIrradiance layers = alone.at(sensors);
+  const cache::GatheredIrradiance layers = alone.at(sensors);
   REQUIRE(layers.mean.first.size() == sensors.size() + 1);
   double power = 0;
   for (const Light& light : scene.lights) power += light.power;
   for (Light& light : scene.lights) light.group = "all";
-  const GatheredIrradiance together = GatheringScene(scene, parameters).at(sensors);
+  const cache::GatheredIrradiance together = GatheringScene(scene, parameters).at(sensors);
   REQUIRE(together.mean.irradiance.size() == sensors.size());
   for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const GatheredIrradiance::Total total = layers.total(i, alone.estimators.layer_powers());
+    const cache::GatheredIrradiance::Total total = layers.total(i, alone.estimators.layer_powers());
     CHECK(power * lux(together, i) == Approx(total.luminance).epsilon(1e-4));
     CHECK(power * together.error(i) == Approx(total.error).epsilon(1e-3));
   }
@@ -346,7 +347,7 @@ TEST_CASE("gathering: many lights, each in its layer, are what their group is") 
 
 TEST_CASE("gathering: parameters out of range are refused") {
   GatheringScene box(closed_box(diffuse(glm::vec3(0.5f))), looked_up(1'000));
-  const auto refused = [&](const IrradianceGatherParameters& parameters) {
+  const auto refused = [&](const cache::IrradianceGatherParameters& parameters) {
     CHECK_THROWS_AS(box.gather(parameters), UsageError);
   };
   refused({.rays = -1});

@@ -41,7 +41,7 @@ struct DrawnRoom {
   const RayScene rays;
   FormulaSource source;
   LightMaps maps;
-  LightMapFrames frames;
+  cache::LightMapFrames frames;
   DrawnFrame drawn;
 };
 

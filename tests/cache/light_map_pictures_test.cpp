@@ -8,16 +8,16 @@
 #include <limits>
 #include <memory>
 
+#include "cache/surface_cache.hpp"
+#include "estimate/neighbour_choice.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/photon_tracer.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene_needs.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/first_picture.hpp"
-#include "estimate/neighbour_choice.hpp"
 #include "render/picture_in_parts.hpp"
 #include "render/pictures.hpp"
-#include "cache/surface_cache.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
@@ -86,9 +86,9 @@ TEST_CASE("Nodes are as far apart as the radius asks, and no closer than half th
           "[light_map_pictures]") {
   const Scene scene = test::furnished_room(2);
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 2'000}).photons;
-  const std::vector<double> powers = layer_powers(scene);
+  const std::vector<double> powers = estimate::layer_powers(scene);
   const auto spacing = [&](double radius) {
-    return light_map_parameters(scene, photons, 100, radius, 60, 0, powers).spacing;
+    return cache::light_map_parameters(scene, photons, 100, radius, 60, 0, powers).spacing;
   };
   CHECK(spacing(0.4) == 2 * spacing(0.2));
   CHECK(spacing(0.4) < 0.4);

@@ -7,7 +7,7 @@
 
 namespace photile::test {
 
-using light_maps::NodeMix;
+using cache::NodeMix;
 
 namespace {
 

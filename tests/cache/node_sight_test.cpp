@@ -82,7 +82,7 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
   const RayScene rays(scene);
   FormulaSource source(open_floor);
   LightMaps maps(scene, quiet_parameters());
-  const light_maps::NodeSight sight(rays, maps);
+  const cache::NodeSight sight(rays, maps);
   PrimaryHits hits;
   for (const float away : {0.0005f, 0.001f, 0.002f, 0.004f, 0.006f, 0.01f}) {
     for (float y = 0.32f; y < 0.68f; y += 0.0171f) {
@@ -118,7 +118,7 @@ TEST_CASE("a place in a slot sees none of the nodes under its sides", "[light_ma
   const RayScene rays(scene);
   FormulaSource source(open_floor);
   LightMaps maps(scene, quiet_parameters());
-  const light_maps::NodeSight sight(rays, maps);
+  const cache::NodeSight sight(rays, maps);
   PrimaryHits hits;
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
     const glm::vec3 place(0.5f * (between_from + between_to), y, 0);
@@ -142,7 +142,7 @@ TEST_CASE(
   const RayScene rays(scene);
   PlateSource source;
   LightMaps maps(scene, quiet_parameters());
-  const light_maps::NodeSight sight(rays, maps);
+  const cache::NodeSight sight(rays, maps);
   PrimaryHits hits;
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
     for (const float x : {0.4985f, 0.4995f, 0.5005f, 0.5015f}) {
@@ -184,7 +184,7 @@ TEST_CASE("all nodes of open floor and of a bowl are seen", "[light_maps]") {
   // Uneven everywhere, so that all nodes are looked at.
   FormulaSource source([](const glm::vec3& p, std::uint32_t) { return std::exp(200 * p.y); });
   LightMaps maps(scene, quiet_parameters());
-  const light_maps::NodeSight sight(rays, maps);
+  const cache::NodeSight sight(rays, maps);
   const PrimaryHits hits = points_on(scene, 8);
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {

@@ -72,7 +72,7 @@ LightLayers by_nodes(const Scene& scene, const std::vector<Sensor>& sensors) {
 
 /// Luminance of all lights at their powers, per sensor.
 std::vector<double> radiance_of(const Scene& scene, const LightLayers& layers) {
-  const std::vector<double> powers = layer_powers(scene);
+  const std::vector<double> powers = estimate::layer_powers(scene);
   std::vector<double> radiance(layers.layers.front().radiance.size(), 0.0);
   for (std::size_t layer = 0; layer < powers.size(); ++layer) {
     for (std::size_t i = 0; i < radiance.size(); ++i) {

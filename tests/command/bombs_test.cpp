@@ -154,7 +154,7 @@ TEST_CASE("JSON that is nested a million deep is refused in a line") {
   CHECK_THROWS_WITH(view::Moods(file), Catch::Contains("deep.json: is nested more than"));
   // Brackets in texts are none.
   const std::string text = "[{\"name\": \"\\\"" + std::string(levels, '[') + "\"}]";
-  CHECK(scene_io::LuminaireList::parse(text, "texts").entries.size() == 1);
+  CHECK(loading::LuminaireList::parse(text, "texts").entries.size() == 1);
 }
 
 }  // namespace photile::test

@@ -52,7 +52,7 @@ void run(const std::vector<std::string>& arguments) {
 TEST_CASE("relight draws known lux and cd/m2 in their colours, as its changes leave them") {
   const FileFolder folder;
   const std::string picture = write_picture(folder);
-  const image::Palette palette("turbo");
+  const report::Palette palette("turbo");
   const double factor = GENERATE(1.0, 2.0);
   run({"relight", picture, "--light", factor == 1 ? "lamp=10" : "lamp=20", "--illuminance",
        folder / "lux.png", "--luminance", folder / "luminance.png", "-s", "1000"});
@@ -71,12 +71,12 @@ TEST_CASE("relight takes the options of falsecolor") {
   const FileFolder folder;
   const std::string picture = write_picture(folder);
   run({"relight", picture, "--illuminance", folder / "auto.png", "-s", "auto", "--pal", "viridis"});
-  CHECK(colour_at(read_image(folder / "auto.png"), 1, 0) == image::Palette("viridis").at(0.5));
+  CHECK(colour_at(read_image(folder / "auto.png"), 1, 0) == report::Palette("viridis").at(0.5));
   run({"relight", picture, "--illuminance", folder / "log.png", "-s", "400", "--log", "1"});
   CHECK(colour_at(read_image(folder / "log.png"), 1, 0) ==
-        image::Palette("turbo").at(1 + std::log10(0.5)));
+        report::Palette("turbo").at(1 + std::log10(0.5)));
   run({"relight", picture, "--illuminance", folder / "steps.png", "--cp", "-n", "4"});
-  CHECK(colour_at(read_image(folder / "steps.png"), 2, 0) == image::Palette("turbo").at(0.375));
+  CHECK(colour_at(read_image(folder / "steps.png"), 2, 0) == report::Palette("turbo").at(0.375));
 }
 
 TEST_CASE("under an even sky of 500 lux a floor has the colour of 500 lux") {
@@ -89,7 +89,7 @@ TEST_CASE("under an even sky of 500 lux a floor has the colour of 500 lux") {
   run({"render", scene, "--sky", "uniform=500", "--size", "64x48", "--photons", "300k", "-k", "600",
        "--quality", "draft", "--illuminance", folder / "lux.png", "--cp", "-n", "5"});
   const Image lux = read_image(folder / "lux.png");
-  const image::Palette palette("turbo");
+  const report::Palette palette("turbo");
   std::map<Colour, int> pixels;
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 64; ++x) ++pixels[colour_at(lux, x, y)];
@@ -107,7 +107,7 @@ TEST_CASE("what is drawn of a render is what its EXR holds, in scenes of watts a
        folder / "luminance.png", "-s", "3000", "--pal", "def"});
   const Image exr = read_image(folder / "a.exr");
   const Image lux = read_image(folder / "lux.png"), drawn = read_image(folder / "luminance.png");
-  const image::Palette palette("def");
+  const report::Palette palette("def");
   const double efficacy = 683;
   for (std::size_t pixel = 0; pixel < exr.pixels(); ++pixel) {
     const auto value = [&](const char* channel) {

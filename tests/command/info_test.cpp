@@ -5,8 +5,8 @@
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
-#include "file_folder.hpp"
 #include "command/scene_report.hpp"
+#include "file_folder.hpp"
 
 namespace photile::test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
-#include "file_folder.hpp"
 #include "command/progress_bar.hpp"
+#include "file_folder.hpp"
 
 namespace photile::test {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
+#include "command/run_record.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "render/render_costs.hpp"
-#include "command/run_record.hpp"
 
 namespace photile::test {
 namespace {

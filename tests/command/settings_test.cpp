@@ -7,10 +7,10 @@
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
+#include "command/setting_options.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "source_folder.hpp"
-#include "command/setting_options.hpp"
 
 namespace photile::test {
 namespace {

@@ -7,7 +7,7 @@
 
 namespace photile::test {
 
-using daylight::clear_sky;
+using weather::clear_sky;
 
 namespace {
 constexpr double degree = std::numbers::pi / 180;

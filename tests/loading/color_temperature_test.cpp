@@ -9,8 +9,8 @@
 namespace photile::test {
 namespace {
 
-using scene_io::chromaticity_of_temperature;
-using scene_io::color_of_temperature;
+using scene::chromaticity_of_temperature;
+using scene::color_of_temperature;
 
 TEST_CASE("chromaticities are those that are published", "[temperature]") {
   // CIE standard illuminants A, D55, D65 and D75; the Planckian locus of Wyszecki and Stiles.

@@ -25,9 +25,9 @@ inline glm::dvec3 texel_direction(std::size_t face, int column, int row, int sid
 }
 
 /// A cube whose texels hold `radiance` of their directions.
-inline scene_io::CubeMap cube_of(int side,
+inline pictures::CubeMap cube_of(int side,
                                  const std::function<glm::vec3(const glm::dvec3&)>& radiance) {
-  scene_io::CubeMap cube;
+  pictures::CubeMap cube;
   for (std::size_t face = 0; face < 6; ++face) {
     cube[face] = {side, side, {}};
     for (int row = 0; row < side; ++row) {

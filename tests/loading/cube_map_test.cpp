@@ -11,7 +11,7 @@
 namespace photile::test {
 namespace {
 
-using scene_io::CubeMap;
+using pictures::CubeMap;
 using std::numbers::pi;
 
 TEST_CASE("each texel of a cube map lies where OpenGL has it, flipped", "[cube_map]") {
@@ -24,7 +24,7 @@ TEST_CASE("each texel of a cube map lies where OpenGL has it, flipped", "[cube_m
       for (int column = 0; column < side; ++column) {
         CAPTURE(face, row, column);
         const glm::dvec3 direction = texel_direction(face, column, row, side);
-        CHECK(scene_io::radiance_towards(cube, direction) == glm::vec3(number++));
+        CHECK(pictures::radiance_towards(cube, direction) == glm::vec3(number++));
       }
     }
   }
@@ -35,7 +35,7 @@ TEST_CASE("edges and corners of the cube belong to a face that meets there", "[c
   for (const glm::dvec3 direction :
        {glm::dvec3(1, 1, 1), glm::dvec3(-1, 1, -1), glm::dvec3(1, -1, 0), glm::dvec3(0, 1, -1)}) {
     const glm::dvec3 unit = glm::normalize(direction);
-    CHECK(glm::distance(glm::dvec3(scene_io::radiance_towards(cube, unit)), unit) < 0.5);
+    CHECK(glm::distance(glm::dvec3(pictures::radiance_towards(cube, unit)), unit) < 0.5);
   }
 }
 
@@ -46,7 +46,7 @@ glm::vec3 uneven(const glm::dvec3& d) {
 
 TEST_CASE("the equirectangular map of a cube has its radiance and its integral", "[cube_map]") {
   const CubeMap cube = cube_of(64, uneven);
-  const EnvironmentMap map = scene_io::environment_of(cube, glm::dquat(1.0, 0.0, 0.0, 0.0), "cube");
+  const EnvironmentMap map = pictures::environment_of(cube, glm::dquat(1.0, 0.0, 0.0, 0.0), "cube");
   CHECK(map.name() == "cube");
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -64,7 +64,7 @@ TEST_CASE("the equirectangular map of a cube has its radiance and its integral",
 TEST_CASE("a rotation turns the surroundings, by any axis", "[cube_map]") {
   const CubeMap cube = cube_of(64, uneven);
   const glm::dquat rotation = glm::angleAxis(1.1, glm::normalize(glm::dvec3(0.3, -0.5, 0.8)));
-  const EnvironmentMap map = scene_io::environment_of(cube, rotation, "turned");
+  const EnvironmentMap map = pictures::environment_of(cube, rotation, "turned");
   for (const glm::dvec3 d : {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1),
                              glm::normalize(glm::dvec3(1, -2, 3))}) {
     CHECK(glm::distance(map.radiance(glm::vec3(rotation * d)), uneven(d)) < 0.1f);
@@ -79,7 +79,7 @@ TEST_CASE("a patch of sky keeps its flux wherever it is turned", "[cube_map]") {
   const double expected = 100 * 2 * pi * (1 - std::cos(20 * pi / 180));
   for (const double angle : {0.0, 0.4, pi / 2, 2.0}) {
     const glm::dquat rotation = glm::angleAxis(angle, glm::dvec3(1, 0, 0));  // over a pole
-    CHECK(scene_io::environment_of(cube, rotation, "cap").integral().g ==
+    CHECK(pictures::environment_of(cube, rotation, "cap").integral().g ==
           Approx(expected).epsilon(0.01));
   }
 }

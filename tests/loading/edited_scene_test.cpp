@@ -85,7 +85,7 @@ TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a
                       {"bulb", "2700K"},
                       {"panel", "x0.25"},
                       {"second", "#80ff40"}});
-  const scene_io::EditedScene copy = scene_io::write_edited_scene(file, {}, mix, "late evening");
+  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "late evening");
   CHECK(copy.file.filename() == "room.late_evening.gltf");
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
@@ -102,7 +102,7 @@ TEST_CASE("instances of one lamp stay one in a copy of a glTF file") {
   LightMix mix = LightMix::of(load_scene(file), 683);
   REQUIRE(mix.lights.size() == 3);
   change_lights(mix, {{"lamp", "50"}, {"lamp", "2700K"}, {"panel", "x0.25"}});
-  const scene_io::EditedScene copy = scene_io::write_edited_scene(file, {}, mix, "evening");
+  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "evening");
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
 }
@@ -118,7 +118,7 @@ TEST_CASE("nodes outside the scene may name what no file can hold") {
   const auto file = write_scene(folder, document);
   LightMix mix = LightMix::of(load_scene(file), 683);
   change_lights(mix, {{"lamp", "50"}, {"panel", "x0.25"}});
-  const scene_io::EditedScene copy = scene_io::write_edited_scene(file, {}, mix, "evening");
+  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "evening");
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
 }
@@ -128,7 +128,7 @@ TEST_CASE("a lamp that is off is written with intensity 0") {
   const auto file = write_scene(folder, shared_document());
   LightMix mix = LightMix::of(load_scene(file), 683);
   change_lights(mix, {{"lamp", "off"}, {"panel", "off"}});
-  check_reads_back(scene_io::write_edited_scene(file, {}, mix, "dark").file, mix);
+  check_reads_back(writing::write_edited_scene(file, {}, mix, "dark").file, mix);
 }
 
 TEST_CASE("what photile_lumens and photile_kelvin say follows in a copy") {
@@ -143,7 +143,7 @@ TEST_CASE("what photile_lumens and photile_kelvin say follows in a copy") {
   const auto file = write_scene(folder, document);
   LightMix mix = LightMix::of(load_scene(file), 683);
   change_lights(mix, {{"panel", "500"}, {"panel", "5000K"}, {"lamp", "100"}, {"bulb", "#ff0000"}});
-  check_reads_back(scene_io::write_edited_scene(file, {}, mix, "a").file, mix);
+  check_reads_back(writing::write_edited_scene(file, {}, mix, "a").file, mix);
 }
 
 TEST_CASE("lights of a group are scaled and tinted together in a copy") {
@@ -153,7 +153,7 @@ TEST_CASE("lights of a group are scaled and tinted together in a copy") {
   const auto file = write_scene(folder, document);
   LightMix mix = LightMix::of(load_scene(file), 683);
   change_lights(mix, {{"all", "x0.5"}, {"all", "#ffc080"}});
-  check_reads_back(scene_io::write_edited_scene(file, {}, mix, "a").file, mix);
+  check_reads_back(writing::write_edited_scene(file, {}, mix, "a").file, mix);
 }
 
 TEST_CASE("a copy of a GLB keeps what follows its JSON") {
@@ -170,7 +170,7 @@ TEST_CASE("a copy of a GLB keeps what follows its JSON") {
                       "JSON" + text + word(buffer.size()) + std::string("BIN\0", 4) + buffer);
   LightMix mix = LightMix::of(load_scene(file), 683);
   change_lights(mix, {{"lamp", "x0.1"}, {"second", "x7"}});
-  const auto copy = scene_io::write_edited_scene(file, {}, mix, "a");
+  const auto copy = writing::write_edited_scene(file, {}, mix, "a");
   CHECK(copy.file.extension() == ".glb");
   check_reads_back(copy.file, mix);
 }
@@ -186,7 +186,7 @@ TEST_CASE("the bundled living room is copied with a mood") {
                       {"desk_lamp", "3000K"},
                       {"sconce_left", "#ffd9a0"},
                       {"picture_spot", "x2"}});
-  const auto copy = scene_io::write_edited_scene(file, {}, mix, "evening");
+  const auto copy = writing::write_edited_scene(file, {}, mix, "evening");
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
 }
@@ -199,7 +199,7 @@ TEST_CASE("an OBJ file is copied with a library of its own") {
                       "o panel\nusemtl lamp\nf 1 2 3 4\no floor\nusemtl wall\nf 1 2 3\n");
   LightMix mix = LightMix::of(load_scene(file), 683);
   change_lights(mix, {{"panel", "x0.3"}, {"panel", "#ff8000"}});
-  const auto copy = scene_io::write_edited_scene(file, {}, mix, "warm");
+  const auto copy = writing::write_edited_scene(file, {}, mix, "warm");
   CHECK(copy.file.filename() == "room.warm.obj");
   check_reads_back(copy.file, mix);
   CHECK(bytes_in(folder.path / "materials.mtl") == lamp_and_wall);
@@ -212,7 +212,7 @@ TEST_CASE("lamps of one MTL material that are set differently are told and keep 
                                                  "usemtl lamp\no one\nf 1 2 3\no two\nf 1 3 4\n");
   LightMix mix = LightMix::of(load_scene(file), 683);
   change_lights(mix, {{"one", "x2"}});
-  const auto copy = scene_io::write_edited_scene(file, {}, mix, "a");
+  const auto copy = writing::write_edited_scene(file, {}, mix, "a");
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Contains("one") && Contains("two") && Contains("lamp"));
   CHECK(LightMix::of(load_scene(copy.file), 683).lights[0].power == Approx(mix.lights[1].power));
@@ -225,10 +225,10 @@ TEST_CASE("lights of options are told, and no file is written over another") {
   options.sky = Sky{SkyKind::uniform, 1000};
   LightMix mix = LightMix::of(load_scene(file, options), 683);
   change_lights(mix, {{"sky", "x0.5"}, {"panel", "x2"}});
-  const auto copy = scene_io::write_edited_scene(file, options, mix, "a");
+  const auto copy = writing::write_edited_scene(file, options, mix, "a");
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Contains("sky") && Contains("option"));
-  CHECK_THROWS_WITH(scene_io::write_edited_scene(file, options, mix, "a"),
+  CHECK_THROWS_WITH(writing::write_edited_scene(file, options, mix, "a"),
                     Contains("room.a.gltf") && Contains("there already"));
 }
 

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <random>
 
-#include "photometry/eulumdat_reader.hpp"
 #include "files/warnings.hpp"
 #include "photometric_texts.hpp"
+#include "photometry/eulumdat_reader.hpp"
 
 namespace photile::test {
 namespace {
@@ -14,14 +14,14 @@ namespace {
 using std::numbers::pi;
 
 IntensityDistribution read_eulumdat(const std::string& text) {
-  scene_io::Warnings warnings;
-  return scene_io::read_eulumdat("lamp.ldt", text, warnings);
+  files::Warnings warnings;
+  return photometry::read_eulumdat("lamp.ldt", text, warnings);
 }
 
 std::string eulumdat_refusal(const std::string& text) {
   try {
     read_eulumdat(text);
-  } catch (const scene_io::ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     return error.what();
   }
   return "";
@@ -77,8 +77,8 @@ TEST_CASE("each symmetry leaves out the planes that mirrors give", "[eulumdat]")
 TEST_CASE("of several sets of lamps the first counts, and a warning says so", "[eulumdat]") {
   EulumdatText file;
   file.sets = 3;
-  scene_io::Warnings warnings;
-  const auto lamp = scene_io::read_eulumdat("lamp.ldt", file.str(), warnings);
+  files::Warnings warnings;
+  const auto lamp = photometry::read_eulumdat("lamp.ldt", file.str(), warnings);
   CHECK(lamp.flux() == Approx(50 * 2 * 4 * pi));
   CHECK(warnings.lines().size() == 1);
 }

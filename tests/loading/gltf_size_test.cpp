@@ -44,14 +44,14 @@ std::string size_refusal(const json& document) {
   const std::filesystem::path file = on_disk.write("scene.gltf", document.dump());
   Scene scene;
   const SceneLoadOptions options;
-  scene_io::SceneFolder folder(file, false);
-  scene_io::Warnings warnings;
-  scene_io::AreaLights area_lights(scene);
-  scene_io::ImportContext context{scene, folder, options, warnings, area_lights, {}};
-  const tinygltf::Model model = scene_io::read_gltf(context);
-  const scene_io::AccessorReader accessors(model, context);
-  const auto visits = scene_io::visit_nodes(model, context);
-  return input_error_of([&] { scene_io::check_scene_size(model, accessors, visits, context); });
+  files::SceneFolder folder(file, false);
+  files::Warnings warnings;
+  reading::AreaLights area_lights(scene);
+  reading::ImportContext context{scene, folder, options, warnings, area_lights, {}};
+  const tinygltf::Model model = gltf::read_gltf(context);
+  const gltf::AccessorReader accessors(model, context);
+  const auto visits = gltf::visit_nodes(model, context);
+  return input_error_of([&] { gltf::check_scene_size(model, accessors, visits, context); });
 }
 
 TEST_CASE("a file of a kilobyte that asks for a hundred gigabytes is refused", "[size]") {

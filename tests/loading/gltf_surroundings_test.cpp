@@ -5,10 +5,10 @@
 #include <iterator>
 #include <numbers>
 
-#include "writing/edited_scene.hpp"
 #include "photile/light_mix.hpp"
 #include "srgb_oracle.hpp"
 #include "textured_square.hpp"
+#include "writing/edited_scene.hpp"
 
 namespace photile::test {
 namespace {
@@ -162,7 +162,7 @@ TEST_CASE("an edited copy keeps the pictures of surroundings and says so", "[ima
   LightMix mix = LightMix::of(load_scene(file), 683);
   REQUIRE(mix.lights.size() == 2);
   for (MixedLight& light : mix.lights) light.power *= 0.5;
-  const auto copy = scene_io::write_edited_scene(file, {}, mix, "dim");
+  const auto copy = writing::write_edited_scene(file, {}, mix, "dim");
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Catch::Contains("environment") && Catch::Contains("pictures"));
   const Scene before = load_scene(file), after = load_scene(copy.file);

@@ -4,19 +4,19 @@
 #include <numbers>
 #include <random>
 
-#include "photometry/ies_reader.hpp"
 #include "files/warnings.hpp"
 #include "photometric_texts.hpp"
+#include "photometry/ies_reader.hpp"
 
 namespace photile::test {
 namespace {
 
-using scene_io::read_ies;
-using scene_io::ResourceError;
+using files::ResourceError;
+using photometry::read_ies;
 using std::numbers::pi;
 
 IntensityDistribution read_ies(const std::string& text) {
-  scene_io::Warnings warnings;
+  files::Warnings warnings;
   return read_ies("lamp.ies", text, warnings);
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("tilt is read over, with a warning where it says something", "[ies]") 
   }));
   IesText file;
   file.tilt = tilt;
-  scene_io::Warnings warnings;
+  files::Warnings warnings;
   CHECK(read_ies("lamp.ies", file.str(), warnings).flux() == Approx(400 * pi));
   CHECK(warnings.lines().empty() != warned);
 }

@@ -13,7 +13,7 @@ namespace photile::test {
 namespace {
 
 using nlohmann::json;
-using scene_io::reflectance_of;
+using scene::reflectance_of;
 
 /// A plate so wide that nothing else is seen from just above it.
 Scene wide_plate(const Material& material) { return plate(material, 1000); }
@@ -101,14 +101,14 @@ TEST_CASE("reflectances that cannot be are refused with the remedy", "[reflectan
 
 TEST_CASE("a black material becomes grey, and glass has no reflectance", "[reflectance]") {
   Scene scene = wide_plate(diffuse(glm::vec3(0.0f)));
-  REQUIRE(scene_io::set_reflectance(scene, scene.materials[0], 0.3));
+  REQUIRE(scene::set_reflectance(scene, scene.materials[0], 0.3));
   CHECK(scene.materials[0].diffuse == glm::vec3(scene.materials[0].diffuse.r));
   CHECK(reflectance_of(scene, scene.materials[0])->whole == Approx(0.3));
   Scene pane = wide_plate(test::glass(1.5f));
   CHECK_FALSE(reflectance_of(pane, pane.materials[0]));
-  CHECK_FALSE(scene_io::set_reflectance(pane, pane.materials[0], 0.3));
+  CHECK_FALSE(scene::set_reflectance(pane, pane.materials[0], 0.3));
   Scene silver = wide_plate(test::mirror(glm::vec3(0.9f)));
-  REQUIRE(scene_io::set_reflectance(silver, silver.materials[0], 0.6));
+  REQUIRE(scene::set_reflectance(silver, silver.materials[0], 0.6));
   CHECK(silver.materials[0].specular.r == Approx(0.6f));
 }
 

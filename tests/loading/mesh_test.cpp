@@ -8,8 +8,8 @@
 namespace photile::test {
 namespace {
 
-using scene_io::Corner;
-using scene_io::MeshBuilder;
+using scene::Corner;
+using scene::MeshBuilder;
 using test::load_obj;
 
 /// A bumpy grid of triangles with texture coordinates; every third is wound the other way round

@@ -8,8 +8,6 @@
 #include "reading/polygon_triangulator.hpp"
 
 namespace photile::test {
-
-using namespace scene_io;
 namespace {
 
 glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -19,7 +17,7 @@ glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec
 /// Checks that the triangles tile a planar polygon: their oriented areas all point the polygon's
 /// way, and sum to its area by the shoelace formula.
 void check_tiling(const std::vector<glm::dvec3>& polygon) {
-  const Triangulation result = triangulate_polygon(polygon);
+  const reading::Triangulation result = reading::triangulate_polygon(polygon);
   CHECK(result.simple);
   CHECK(result.triangles.size() == polygon.size() - 2);
   glm::dvec3 expected(0.0);
@@ -62,8 +60,8 @@ TEST_CASE("polygons with corners on their straight edges are tiled") {
 }
 
 TEST_CASE("a dart is split along its only diagonal inside") {
-  const Triangulation dart =
-      triangulate_polygon(std::vector<glm::dvec3>{{0, 0, 0}, {2, -1, 0}, {0.5, 0, 0}, {2, 1, 0}});
+  const reading::Triangulation dart = reading::triangulate_polygon(
+      std::vector<glm::dvec3>{{0, 0, 0}, {2, -1, 0}, {0.5, 0, 0}, {2, 1, 0}});
   REQUIRE(dart.triangles.size() == 2);
   for (const auto& triangle : dart.triangles) {
     CHECK(std::count(triangle.begin(), triangle.end(), 0u) == 1);
@@ -75,7 +73,7 @@ TEST_CASE("the triangles of a polygon depend neither on its winding nor on its f
   const std::vector<glm::dvec3> polygon = star(17, 3);
   const auto positions = [](const std::vector<glm::dvec3>& corners) {
     std::vector<std::vector<double>> result;
-    for (const auto& triangle : triangulate_polygon(corners).triangles) {
+    for (const auto& triangle : reading::triangulate_polygon(corners).triangles) {
       std::vector<double> sorted;
       for (const std::uint32_t i : triangle) {
         sorted.insert(sorted.end(), {corners[i].x, corners[i].y, corners[i].z});
@@ -92,14 +90,17 @@ TEST_CASE("the triangles of a polygon depend neither on its winding nor on its f
 }
 
 TEST_CASE("a polygon that crosses itself is told from a simple one") {
-  CHECK_FALSE(triangulate_polygon(
+  CHECK_FALSE(reading::triangulate_polygon(
                   std::vector<glm::dvec3>{{0, 0, 0}, {4, 3, 0}, {4, 0, 0}, {0, 2, 0}, {-1, 1, 0}})
                   .simple);
 }
 
 TEST_CASE("polygons without area give triangles for the caller to drop, and end") {
-  CHECK(triangulate_polygon(std::vector<glm::dvec3>(6, glm::dvec3(1.0))).triangles.size() == 4);
-  CHECK(triangulate_polygon(std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})
+  CHECK(
+      reading::triangulate_polygon(std::vector<glm::dvec3>(6, glm::dvec3(1.0))).triangles.size() ==
+      4);
+  CHECK(reading::triangulate_polygon(
+            std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})
             .triangles.size() == 2);
 }
 

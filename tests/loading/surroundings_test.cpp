@@ -145,18 +145,18 @@ TEST_CASE("a sun gives its lux to a surface that faces it, whatever its size", "
 }
 
 TEST_CASE("skies give their lux to the ground", "[sky]") {
-  const glm::dvec3 to_sun = scene_io::direction_to(Sun{200, 35, 1});
+  const glm::dvec3 to_sun = loading::direction_to(Sun{200, 35, 1});
   for (const SkyKind kind : {SkyKind::uniform, SkyKind::overcast, SkyKind::clear}) {
-    const EnvironmentMap sky = scene_io::sky_map(kind, 12'000, to_sun);
+    const EnvironmentMap sky = loading::sky_map(kind, 12'000, to_sun);
     CHECK(illuminance(sky, {0, 1, 0}) == Approx(12'000).epsilon(1e-4));
     CHECK(illuminance(sky, {0, -1, 0}) == 0);
   }
 }
 
 TEST_CASE("luminances of uniform and overcast skies follow their closed forms", "[sky]") {
-  const EnvironmentMap uniform = scene_io::sky_map(SkyKind::uniform, 1000, {});
+  const EnvironmentMap uniform = loading::sky_map(SkyKind::uniform, 1000, {});
   CHECK(uniform.radiance({0.6f, 0.8f, 0}).g == Approx(1000 / pi));
-  const EnvironmentMap overcast = scene_io::sky_map(SkyKind::overcast, 10'000, {});
+  const EnvironmentMap overcast = loading::sky_map(SkyKind::overcast, 10'000, {});
   const double zenith = 9 * 10'000 / (7 * pi);
   CHECK(overcast.radiance({0.001f, 1, 0}).g == Approx(zenith).epsilon(1e-3));
   CHECK(overcast.radiance({0.8f, 0.6f, 0}).g == Approx(zenith * 2.2 / 3).epsilon(5e-3));
@@ -166,8 +166,8 @@ TEST_CASE("luminances of uniform and overcast skies follow their closed forms", 
 }
 
 TEST_CASE("a clear sky is brightest at its sun and darkest about 90 degrees from it", "[sky]") {
-  const glm::dvec3 to_sun = scene_io::direction_to(Sun{0, 45, 1});
-  const EnvironmentMap sky = scene_io::sky_map(SkyKind::clear, 10'000, to_sun);
+  const glm::dvec3 to_sun = loading::direction_to(Sun{0, 45, 1});
+  const EnvironmentMap sky = loading::sky_map(SkyKind::clear, 10'000, to_sun);
   const auto relative = [&](const glm::dvec3& direction) {
     // ISO 15469, type 12, as the standard writes it: zenith angle and angle from the sun.
     const double zenith = std::acos(direction.y), from_sun = std::acos(glm::dot(direction, to_sun));

@@ -95,7 +95,7 @@ TEST_CASE("an OBJ lamp takes its map_Ke", "[emission]") {
 
 TEST_CASE("cells of a textured light are chosen with the density that they state", "[emission]") {
   const Scene scene = TexturedSquare().load(TexturedSquare().document());
-  const scene_io::EmissionCells cells(scene, scene.lights.at(0));
+  const scene::EmissionCells cells(scene, scene.lights.at(0));
   // The density integrates to 1, and what is drawn in 8 columns follows it.
   std::vector<double> counts(8, 0.0), expected(8, 0.0);
   constexpr int steps = 400, trials = 200'000;

@@ -7,9 +7,9 @@
 #include <functional>
 #include <iterator>
 
-#include "pictures/texture_decoder.hpp"
 #include "files/warnings.hpp"
 #include "photile/image.hpp"
+#include "pictures/texture_decoder.hpp"
 #include "scene_files.hpp"
 #include "srgb_oracle.hpp"
 
@@ -73,7 +73,7 @@ TEST_CASE("pictures of 1 to 4 channels decode to the colours written, alpha left
     pixel.resize(static_cast<std::size_t>(channels));
     write_picture(file, 1, 1, channels, pixel, OIIO::TypeDesc::UINT8);
     const glm::vec3 value =
-        scene_io::decode_texture("t.png", read_bytes(file)).sample({0.5f, 0.5f});
+        pictures::decode_texture("t.png", read_bytes(file)).sample({0.5f, 0.5f});
     CHECK(value.r == Approx(linear(200)));
     CHECK(value.g == Approx(linear(channels < 3 ? 200 : 100)));
     CHECK(value.b == Approx(linear(channels < 3 ? 200 : 50)));
@@ -85,7 +85,7 @@ TEST_CASE("linear pictures are clamped and come back within half an 8-bit step")
   const std::filesystem::path file = folder.path / "t.exr";
   write_picture<float>(file, 2, 1, 3, {0.5f, 0.1f, 0.9f, std::nanf(""), -1.0f, 7.0f},
                        OIIO::TypeDesc::FLOAT);
-  const Texture texture = scene_io::decode_texture("t.exr", read_bytes(file));
+  const Texture texture = pictures::decode_texture("t.exr", read_bytes(file));
   const glm::vec3 first = texture.sample({0.25f, 0.5f}), second = texture.sample({0.75f, 0.5f});
   CHECK(first.r == Approx(0.5).margin(0.005));
   CHECK(first.g == Approx(0.1).margin(0.005));
@@ -103,7 +103,7 @@ TEST_CASE("channels of an EXR behind its picture are no alpha") {
   }
   write_exr(folder.path / "t.exr", picture);
   const auto alpha = [&] {
-    return scene_io::decode_texture("t.exr", read_bytes(folder.path / "t.exr"))
+    return pictures::decode_texture("t.exr", read_bytes(folder.path / "t.exr"))
         .sample_data({0.5f, 0.5f})
         .a;
   };
@@ -128,7 +128,7 @@ TEST_CASE("a PNG header that promises too many pixels is refused before decoding
   }
   for (int i = 0; i < 4; ++i)
     bytes[29 + static_cast<std::size_t>(i)] = static_cast<unsigned char>(~crc >> (24 - 8 * i));
-  CHECK_THROWS_WITH(scene_io::decode_texture("t.png", bytes),
+  CHECK_THROWS_WITH(pictures::decode_texture("t.png", bytes),
                     Catch::Contains("20000 x 1") && Catch::Contains("limit"));
 }
 
@@ -139,9 +139,9 @@ TEST_CASE("truncated and unknown pictures are refused by name") {
                               OIIO::TypeDesc::UINT8);
   std::vector<unsigned char> bytes = read_bytes(file);
   bytes.resize(20);
-  CHECK_THROWS_AS(scene_io::decode_texture("t.png", bytes), scene_io::ResourceError);
+  CHECK_THROWS_AS(pictures::decode_texture("t.png", bytes), files::ResourceError);
   const std::vector<unsigned char> text{'h', 'e', 'l', 'l', 'o'};
-  CHECK_THROWS_WITH(scene_io::decode_texture("note.png", text), Catch::Contains("note.png"));
+  CHECK_THROWS_WITH(pictures::decode_texture("note.png", text), Catch::Contains("note.png"));
 }
 
 /// A textured square; its picture is red in the left half and green in the right one.

@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "view/light_board.hpp"
 #include "two_lights.hpp"
+#include "view/light_board.hpp"
 
 namespace photile::test {
 namespace {

@@ -59,7 +59,7 @@ glm::vec3 blended(const Estimates& values, const NodeBlend& blend, std::size_t l
 }  // namespace
 
 BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-                       const light_maps::NodeSight& sight, const BakeParameters& parameters,
+                       const cache::NodeSight& sight, const BakeParameters& parameters,
                        const Progress& progress)
     : scene_(scene), maps_(maps) {
   choose_sides(source, parameters, progress);
@@ -111,7 +111,7 @@ void BakedLight::choose_sides(NodeSource& source, const BakeParameters& paramete
 }
 
 bool BakedLight::place_charts(double texel, std::uint32_t most_side) {
-  const light_maps::Charts& charts = maps_.charts();
+  const cache::Charts& charts = maps_.charts();
   placed_.clear();
   place_of_chart_.assign(charts.size(), none);
   member_.assign(charts.size(), none);
@@ -120,7 +120,7 @@ bool BakedLight::place_charts(double texel, std::uint32_t most_side) {
     if (chart == none || place_of_chart_[chart] != none) continue;
     member_[chart] = side;
     place_of_chart_[chart] = static_cast<std::uint32_t>(placed_.size());
-    const light_maps::Chart& lattice = charts[chart];
+    const cache::Chart& lattice = charts[chart];
     const glm::dvec2 size = lattice.spacing * glm::dvec2(lattice.columns, lattice.rows);
     // A hundredth of a cell more is rounding.
     const glm::dvec2 cells = glm::max(glm::ceil(size / texel - 0.01), glm::dvec2(1.0));
@@ -140,7 +140,7 @@ bool BakedLight::place_charts(double texel, std::uint32_t most_side) {
 
 /// Of a texel of the rectangle.
 glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t y) const {
-  const light_maps::Chart& lattice = maps_.charts()[placed.chart];
+  const cache::Chart& lattice = maps_.charts()[placed.chart];
   const glm::uvec2 within(std::clamp(x, border, placed.cells.x + border) - border,
                           std::clamp(y, border, placed.cells.y + border) - border);
   const glm::dvec2 size = lattice.spacing * glm::dvec2(lattice.columns, lattice.rows);
@@ -148,8 +148,7 @@ glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t
   return glm::vec3(lattice.origin + at.x * lattice.across + at.y * lattice.along);
 }
 
-void BakedLight::fill(NodeSource& source, const light_maps::NodeSight& sight,
-                      const Progress& progress) {
+void BakedLight::fill(NodeSource& source, const cache::NodeSight& sight, const Progress& progress) {
   NodeBlend nothing{};
   nothing.node.fill(none);
   blend_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
@@ -182,7 +181,7 @@ void BakedLight::fill(NodeSource& source, const light_maps::NodeSight& sight,
 /// A lookup beside a box that stands on a floor takes a part of the texels under the box. Those
 /// that hold no light, and from which the box hides a lit texel next to them, get what that one
 /// has.
-void BakedLight::spread(const light_maps::NodeSight& sight) {
+void BakedLight::spread(const cache::NodeSight& sight) {
   const std::vector<NodeBlend> found = blend_;
   const Estimates& values = maps_.values();
   const std::size_t nodes = maps_.statistics().nodes;
@@ -225,12 +224,12 @@ void BakedLight::spread(const light_maps::NodeSight& sight) {
 }
 
 std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t sided_triangle) const {
-  const light_maps::Charts& charts = maps_.charts();
+  const cache::Charts& charts = maps_.charts();
   const std::uint32_t chart = charts.chart_of()[sided_triangle];
   std::array<glm::vec2, 3> corners{};
   if (chart == none) return corners;
   const Placed& placed = placed_[place_of_chart_[chart]];
-  const light_maps::Chart& lattice = charts[chart];
+  const cache::Chart& lattice = charts[chart];
   const auto positions = scene_.corners(triangle_of(sided_triangle));
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 offset = glm::dvec3(positions[i]) - lattice.origin;

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "bake/atlas.hpp"
 #include "cache/node_sight.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
-#include "bake/atlas.hpp"
 
 namespace photile::bake {
 
@@ -30,9 +30,8 @@ class BakedLight {
   /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
   /// at this distance of texels; those of LightMaps::fill.
   ///   sight   of the light maps
-  BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-             const light_maps::NodeSight& sight, const BakeParameters& parameters,
-             const Progress& progress);
+  BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source, const cache::NodeSight& sight,
+             const BakeParameters& parameters, const Progress& progress);
 
   std::uint32_t width() const { return atlas_.width; }
   std::uint32_t height() const { return atlas_.height; }
@@ -55,8 +54,8 @@ class BakedLight {
 
   void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
   bool place_charts(double texel, std::uint32_t most_side);
-  void fill(NodeSource& source, const light_maps::NodeSight& sight, const Progress& progress);
-  void spread(const light_maps::NodeSight& sight);
+  void fill(NodeSource& source, const cache::NodeSight& sight, const Progress& progress);
+  void spread(const cache::NodeSight& sight);
   glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
 
   const Scene& scene_;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "bake/baked_light.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
-#include "bake/baked_light.hpp"
 
 namespace photile::bake {
 

@@ -5,9 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "photile/errors.hpp"
-#include "photile/limits.hpp"
-#include "render/render_session.hpp"
 #include "bake/write_baked.hpp"
 #include "command/commands.hpp"
 #include "command/output_files.hpp"
@@ -18,6 +15,9 @@
 #include "command/terminal_progress.hpp"
 #include "command/threads.hpp"
 #include "command/validators.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "render/render_session.hpp"
 
 namespace photile::app {
 namespace {
@@ -46,7 +46,7 @@ void run_bake(BakeOptions& options) {
   RenderSession session(std::make_shared<const PreparedScene>(scene), devices, render.parameters,
                         prepared ? &*prepared : nullptr, keep_maps(scene, render, progress),
                         progress);
-  SurfaceCache& cache = *session.light().cache();
+  cache::SurfaceCache& cache = *session.light().cache();
   for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
   progress.begin("bake light maps", 0, "");
   const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.sight(),

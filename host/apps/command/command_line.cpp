@@ -11,8 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "common/run_files.hpp"
-#include "photile/errors.hpp"
 #include "command/commands.hpp"
 #include "command/exit_code.hpp"
 #include "command/processes.hpp"
@@ -20,6 +18,8 @@
 #include "command/signals.hpp"
 #include "command/terminal.hpp"
 #include "command/version.hpp"
+#include "common/run_files.hpp"
+#include "photile/errors.hpp"
 
 namespace photile::app {
 namespace {

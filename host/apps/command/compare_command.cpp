@@ -9,10 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
-#include "photile/errors.hpp"
-#include "photile/layered_picture.hpp"
 #include "command/commands.hpp"
 #include "command/mood_options.hpp"
 #include "command/number_format.hpp"
@@ -20,6 +16,10 @@
 #include "command/signals.hpp"
 #include "command/tone_mapping_options.hpp"
 #include "command/validators.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
 #include "report/picture_comparison.hpp"
 
 namespace photile::app {
@@ -46,12 +46,12 @@ std::string words_of(const PictureError& error) {
   return line;
 }
 
-void print_missing(const image::PictureComparison& comparison) {
+void print_missing(const report::PictureComparison& comparison) {
   for (const auto& light : comparison.only_a) std::cout << light << ": only in the first\n";
   for (const auto& light : comparison.only_b) std::cout << light << ": only in the second\n";
 }
 
-void print(const image::PictureComparison& comparison) {
+void print(const report::PictureComparison& comparison) {
   std::cout << fmt::format("{:<24}{:>11}{:>10}{:>11}{:>10}\n", "", "error", "mean", "PSNR",
                            "worst");
   for (const auto& part : comparison.parts) {
@@ -61,7 +61,7 @@ void print(const image::PictureComparison& comparison) {
   print_missing(comparison);
 }
 
-nlohmann::ordered_json part_json(const image::ComparedPart& part) {
+nlohmann::ordered_json part_json(const report::ComparedPart& part) {
   nlohmann::ordered_json entry{{"light", part.light}};
   if (!part.error) return entry;
   const PictureError& error = *part.error;
@@ -76,7 +76,7 @@ nlohmann::ordered_json part_json(const image::ComparedPart& part) {
 }
 
 nlohmann::ordered_json record_of(const CompareOptions& options,
-                                 const image::PictureComparison& comparison) {
+                                 const report::PictureComparison& comparison) {
   nlohmann::ordered_json record{
       {"first", std::filesystem::path(options.first).filename().string()},
       {"second", std::filesystem::path(options.second).filename().string()}};
@@ -120,7 +120,7 @@ std::string ratio_text(double a, double b) {
   return b > 0 ? fmt::format("{:.3g}", a / b) : a > 0 ? "-" : "1";
 }
 
-void print(const image::LevelComparison& comparison, const std::string& a, const std::string& b) {
+void print(const report::LevelComparison& comparison, const std::string& a, const std::string& b) {
   std::cout << fmt::format("{:<24}{:>16}{:>16}{:>10}\n", "", a, b, "ratio");
   for (const auto& level : comparison.levels) {
     std::cout << fmt::format(
@@ -134,7 +134,7 @@ void print(const image::LevelComparison& comparison, const std::string& a, const
   }
 }
 
-nlohmann::ordered_json levels_json(const image::LevelComparison& comparison) {
+nlohmann::ordered_json levels_json(const report::LevelComparison& comparison) {
   nlohmann::ordered_json json{{"levels", nlohmann::ordered_json::array()},
                               {"powers", nlohmann::ordered_json::array()}};
   for (const auto& level : comparison.levels) {
@@ -186,25 +186,25 @@ void run_compare(const CompareOptions& options) {
     const auto unit = first.whole.attributes.find("photile.units");
     write_png(
         options.picture,
-        image::draw_comparison(first.whole, second.whole,
-                               {first.name, second.name,
-                                unit == first.whole.attributes.end() ? "luminance" : unit->second,
-                                options.scale, options.tone_mapping}));
+        report::draw_comparison(first.whole, second.whole,
+                                {first.name, second.name,
+                                 unit == first.whole.attributes.end() ? "luminance" : unit->second,
+                                 options.scale, options.tone_mapping}));
   }
   if (moods) {
-    const image::LevelComparison levels =
-        image::compare_levels(*first.layers, *second.layers, first.whole, second.whole);
+    const report::LevelComparison levels =
+        report::compare_levels(*first.layers, *second.layers, first.whole, second.whole);
     nlohmann::ordered_json record{{"first", first.name}, {"second", second.name}};
     record.update(levels_json(levels));
     write_record(options, record);
     print(levels, first.name, second.name);
     return;
   }
-  const image::PictureComparison comparison = image::compare_pictures(first.whole, second.whole);
+  const report::PictureComparison comparison = report::compare_pictures(first.whole, second.whole);
   nlohmann::ordered_json record = record_of(options, comparison);
-  if (first.layers && second.layers && image::lights_differ(first.whole, second.whole)) {
-    const image::LevelComparison levels =
-        image::compare_levels(*first.layers, *second.layers, first.whole, second.whole);
+  if (first.layers && second.layers && report::lights_differ(first.whole, second.whole)) {
+    const report::LevelComparison levels =
+        report::compare_levels(*first.layers, *second.layers, first.whole, second.whole);
     record.update(levels_json(levels));
     print(levels, first.name, second.name);
     print_missing(comparison);

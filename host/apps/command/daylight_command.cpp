@@ -9,14 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
-#include "weather/weather_file.hpp"
-#include "measuring/measure_grids.hpp"
-#include "photile/errors.hpp"
-#include "photile/illuminance.hpp"
-#include "photile/light_groups.hpp"
-#include "photile/limits.hpp"
 #include "command/commands.hpp"
 #include "command/daylight_results.hpp"
 #include "command/output_files.hpp"
@@ -26,7 +18,15 @@
 #include "command/terminal_progress.hpp"
 #include "command/threads.hpp"
 #include "command/validators.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "measuring/measure_grids.hpp"
+#include "photile/errors.hpp"
+#include "photile/illuminance.hpp"
+#include "photile/light_groups.hpp"
+#include "photile/limits.hpp"
 #include "report/honeybee_year.hpp"
+#include "weather/weather_file.hpp"
 
 namespace photile::app {
 namespace {
@@ -70,16 +70,16 @@ std::vector<LightIlluminance> lamps_of(const DaylightOptions& options, const Sce
   return found;
 }
 
-void write(const DaylightOptions& options, const measuring::DaylightResults& results,
+void write(const DaylightOptions& options, const report::DaylightResults& results,
            const std::vector<SkyHour>& hours) {
   for (const std::filesystem::path file : options.outputs) {
     write_file(file, file.extension() == ".csv"
-                         ? measuring::daylight_csv(results)
-                         : measuring::daylight_json(results, options.asked).dump(1) + "\n");
+                         ? report::daylight_csv(results)
+                         : report::daylight_json(results, options.asked).dump(1) + "\n");
   }
   if (options.honeybee.empty()) return;
   const std::filesystem::path folder = options.honeybee;
-  for (const auto& [name, content] : measuring::annual_files(results, hours)) {
+  for (const auto& [name, content] : report::annual_files(results, hours)) {
     make_folder((folder / name).parent_path());
     write_file(folder / name, content);
   }
@@ -106,7 +106,7 @@ void check_lights(const DaylightOptions& options) {
 
 /// The sky's lights are needed to find the windows, and for no more.
 Scene scene_under_sky(const std::string& file, SceneLoadOptions load) {
-  load.sky = Sky{SkyKind::patches, 0, 0, 0, patch_counts[0]};
+  load.sky = Sky{SkyKind::patches, 0, 0, 0, weather::patch_counts[0]};
   load.situation.weather.clear();
   load.situation.site.reset();
   load.portals = {"off"};  // those of the grids are looked for
@@ -122,7 +122,7 @@ void take_windows(const DaylightOptions& options, std::span<const measuring::Sen
 void warn_of_darkness(const std::vector<SkyState>& states, Progress& progress) {
   const std::vector<float>& lux = states.front().matrix.from_sky;
   if (std::any_of(lux.begin(), lux.end(), [](float value) { return value > 0; })) return;
-  progress.note(measuring::no_sky_warning);
+  progress.note(report::no_sky_warning);
 }
 
 std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year, Scene& scene,
@@ -159,9 +159,9 @@ void run_daylight(DaylightOptions& options) {
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  scene_io::WeatherYear weather = scene_io::read_weather(render.load.situation.weather);
+  weather::WeatherYear weather = weather::read_weather(render.load.situation.weather);
   if (render.load.situation.site) weather.site = *render.load.situation.site;
-  Year year{{}, sky_patches(options.patches), {}, options.suns == "rays", {}};
+  Year year{{}, weather::sky_patches(options.patches), {}, options.suns == "rays", {}};
   year.hours = sky_hours(weather, year.patches, options.ground);
   options.asked.occupied = occupied_hours(year.hours, options.asked.occupancy);
 
@@ -183,11 +183,10 @@ void run_daylight(DaylightOptions& options) {
   const std::vector<SkyState> states = states_of(options, year, scene, grids, progress);
   warn_of_darkness(states, progress);
   const auto lamps = lamps_of(options, scene, year.sensors, mix, progress);
-  const measuring::DaylightResults results =
+  const report::DaylightResults results =
       daylight_results(options, year, grids, states, lamps, mix);
   write(options, results, year.hours);
-  for (const auto& line : measuring::daylight_lines(results, options.asked))
-    std::cout << line << '\n';
+  for (const auto& line : report::daylight_lines(results, options.asked)) std::cout << line << '\n';
 }
 
 void add_year(CLI::App& command, DaylightOptions& options) {

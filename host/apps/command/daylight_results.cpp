@@ -10,7 +10,7 @@
 namespace photile::app {
 
 using namespace daylight;
-using measuring::GridDaylight;
+using report::GridDaylight;
 
 namespace {
 
@@ -88,12 +88,12 @@ std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year&
 
 }  // namespace
 
-measuring::DaylightResults daylight_results(const DaylightOptions& options, const Year& year,
-                                            const std::vector<measuring::SensorGrid>& grids,
-                                            const std::vector<SkyState>& states,
-                                            const std::vector<LightIlluminance>& lamps,
-                                            const LightMix& mix) {
-  measuring::DaylightResults results;
+report::DaylightResults daylight_results(const DaylightOptions& options, const Year& year,
+                                         const std::vector<measuring::SensorGrid>& grids,
+                                         const std::vector<SkyState>& states,
+                                         const std::vector<LightIlluminance>& lamps,
+                                         const LightMix& mix) {
+  report::DaylightResults results;
   const SkyState& open = states.front();
   if (states.size() == 1) {
     results.grids = results_of(options, year, grids, {open.lux, open.sun, open.matrix}, lamps, mix);

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "command/place_options.hpp"
+#include "command/render_options.hpp"
 #include "daylight/sky_states.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/defaults.hpp"
 #include "photile/illuminance.hpp"
-#include "command/place_options.hpp"
-#include "command/render_options.hpp"
 #include "report/daylight_tables.hpp"
 
 namespace photile::app {
@@ -23,7 +23,7 @@ struct DaylightOptions {
   int patches = defaults::sky_patches;
   double ground = defaults::ground_reflectance;
   std::string suns = "rays";
-  measuring::DaylightAsked asked{defaults::daylight_lux, {}, {}};
+  report::DaylightAsked asked{defaults::daylight_lux, {}, {}};
   std::string occupied = "8-18", days = "mon-sun";
   std::string schedule;             ///< file, "" = none
   std::vector<std::string> blinds;  ///< a scene's file, or groups of panes
@@ -40,11 +40,10 @@ struct DaylightOptions {
 /// their states.
 ///   states   as sky_states has them
 ///   lamps    lux of each at full power, at the sensors of the year
-measuring::DaylightResults daylight_results(const DaylightOptions& options,
-                                            const daylight::Year& year,
-                                            const std::vector<measuring::SensorGrid>& grids,
-                                            const std::vector<daylight::SkyState>& states,
-                                            const std::vector<LightIlluminance>& lamps,
-                                            const LightMix& mix);
+report::DaylightResults daylight_results(const DaylightOptions& options, const daylight::Year& year,
+                                         const std::vector<measuring::SensorGrid>& grids,
+                                         const std::vector<daylight::SkyState>& states,
+                                         const std::vector<LightIlluminance>& lamps,
+                                         const LightMix& mix);
 
 }  // namespace photile::app

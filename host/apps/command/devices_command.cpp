@@ -7,15 +7,15 @@
 #include <set>
 #include <string>
 
+#include "command/commands.hpp"
+#include "command/number_format.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
 #include "photile/device.hpp"
 #include "photile/device_test.hpp"
 #include "photile/errors.hpp"
 #include "photile/statistics.hpp"
 #include "render/kernel_preparation.hpp"
-#include "command/commands.hpp"
-#include "command/number_format.hpp"
-#include "command/signals.hpp"
-#include "command/terminal_progress.hpp"
 
 namespace photile::app {
 namespace {

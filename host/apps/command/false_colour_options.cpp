@@ -23,15 +23,15 @@ FalseColourOptions::FalseColourOptions() : scale(fmt::format("{}", colours.scale
   colours.label.clear();
 }
 
-measuring::FalseColour FalseColourOptions::of(const std::string& unit) const {
-  measuring::FalseColour result = colours;
+report::FalseColour FalseColourOptions::of(const std::string& unit) const {
+  report::FalseColour result = colours;
   if (result.label.empty()) result.label = unit;
   result.scale = scale == "auto" ? 0 : std::stod(scale);
   return result;
 }
 
 void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
-  measuring::FalseColour& colours = options.colours;
+  report::FalseColour& colours = options.colours;
   const char* group = "False colour";
   command
       .add_option("-s,--scale", options.scale,
@@ -54,20 +54,19 @@ void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
       ->group(group);
   command.add_option("--pal", colours.palette, "palette")
       ->type_name("")
-      ->check(CLI::IsMember(image::Palette::names()))
+      ->check(CLI::IsMember(report::Palette::names()))
       ->capture_default_str()
       ->group(group);
-  const auto contours = [&](const char* name, measuring::Contours drawn, const char* what) {
+  const auto contours = [&](const char* name, report::Contours drawn, const char* what) {
     return command
         .add_flag_callback(
             name, [&colours, drawn] { colours.contours = drawn; }, what)
         ->group(group);
   };
-  CLI::Option* lines = contours("--cl", measuring::Contours::lines, "isolines alone");
-  CLI::Option* bands =
-      contours("--cb", measuring::Contours::bands, "bands around the isolines alone");
+  CLI::Option* lines = contours("--cl", report::Contours::lines, "isolines alone");
+  CLI::Option* bands = contours("--cb", report::Contours::bands, "bands around the isolines alone");
   CLI::Option* steps =
-      contours("--cp", measuring::Contours::steps, "posterized: one colour for each step");
+      contours("--cp", report::Contours::steps, "posterized: one colour for each step");
   bands->excludes(lines);
   steps->excludes(lines)->excludes(bands);
 }

@@ -13,13 +13,13 @@ namespace photile::app {
 
 /// As typed, checked against the limits.
 struct FalseColourOptions {
-  measuring::FalseColour colours;  ///< but for the top of the scale; no label: the unit
-  std::string scale;               ///< top, or "auto"
+  report::FalseColour colours;  ///< but for the top of the scale; no label: the unit
+  std::string scale;            ///< top, or "auto"
 
   FalseColourOptions();
 
   /// What they ask for where values are in `unit`.
-  measuring::FalseColour of(const std::string& unit) const;
+  report::FalseColour of(const std::string& unit) const;
 };
 
 /// Adds the options to a subcommand.

@@ -15,7 +15,7 @@ constexpr const char* attribute = "photile.settings";
 
 std::string digest_of(const Scene& scene) {
   ContentHash hash;
-  add_scene(scene, hash);
+  scene::add_scene(scene, hash);
   return hash.hex();
 }
 

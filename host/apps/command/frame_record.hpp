@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
+#include "command/run_record.hpp"
 #include "photile/camera.hpp"
 #include "photile/scene.hpp"
-#include "command/run_record.hpp"
 
 namespace photile::app {
 

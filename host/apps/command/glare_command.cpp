@@ -6,17 +6,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/ascii_text.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
-#include "glare/measure_glare.hpp"
-#include "glare/observers.hpp"
-#include "measuring/requirements.hpp"
-#include "measuring/sensor_files.hpp"
-#include "photile/camera_attributes.hpp"
-#include "photile/errors.hpp"
-#include "photile/layered_picture.hpp"
-#include "photile/limits.hpp"
 #include "command/commands.hpp"
 #include "command/output_files.hpp"
 #include "command/place_options.hpp"
@@ -28,6 +17,17 @@
 #include "command/threads.hpp"
 #include "command/validators.hpp"
 #include "command/version.hpp"
+#include "common/ascii_text.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "glare/measure_glare.hpp"
+#include "glare/observers.hpp"
+#include "measuring/requirements.hpp"
+#include "measuring/sensor_files.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/limits.hpp"
 #include "report/glare_tables.hpp"
 
 namespace photile::app {
@@ -121,7 +121,7 @@ Json run_json(const GlareOptions& options, const Scene& scene, const LightMix& m
                         {"highest_ugr", judgement->measured.value},
                         {"met", judgement->met()}};
   }
-  record["observers"] = glare::glare_json(all);
+  record["observers"] = report::glare_json(all);
   return record;
 }
 
@@ -153,7 +153,7 @@ void write_outputs(const GlareOptions& options, const Scene& scene, const LightM
                    std::span<const glare::ObserverGlare> all) {
   for (const std::string& file : options.outputs) {
     if (ends_in(file, ".csv")) {
-      write_file(file, glare::glare_csv(all));
+      write_file(file, report::glare_csv(all));
     } else {
       write_file(
           file,
@@ -202,7 +202,7 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
       glare::measure_glare(scene, observers, mix, coverage_of(options, scene, observers.front()),
                            devices, parameters, keep, progress);
   write_outputs(options, scene, mix, all);
-  for (const auto& line : glare::glare_lines(all)) std::cout << line << '\n';
+  for (const auto& line : report::glare_lines(all)) std::cout << line << '\n';
   if (const auto judgement = judged(options, all)) {
     std::cout << fmt::format("target {}: {}\n", options.target,
                              measuring::judgement_text(*judgement));

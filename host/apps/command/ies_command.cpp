@@ -6,16 +6,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/ascii_text.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
-#include "glare/ugr_table.hpp"
-#include "loading/light_changes.hpp"
-#include "files/warnings.hpp"
-#include "photile/errors.hpp"
 #include "command/commands.hpp"
 #include "command/output_files.hpp"
 #include "command/validators.hpp"
+#include "common/ascii_text.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "files/warnings.hpp"
+#include "glare/ugr_table.hpp"
+#include "loading/light_changes.hpp"
+#include "photile/errors.hpp"
 #include "report/glare_tables.hpp"
 
 namespace photile::app {
@@ -65,8 +65,8 @@ void run_ies(const IesOptions& options) {
     }
   }
   check_outputs(files);
-  scene_io::Warnings warnings;
-  const IntensityDistribution lamp = scene_io::read_user_photometry(options.file, warnings);
+  files::Warnings warnings;
+  const IntensityDistribution lamp = loading::read_user_photometry(options.file, warnings);
   print_lamp(lamp);
   for (const auto& line : warnings.lines()) std::cerr << "warning: " << line << '\n';
   if (!options.ugr_table) return;
@@ -78,10 +78,10 @@ void run_ies(const IesOptions& options) {
   glare::UgrTable table = glare::ugr_table(lamp, options.spacing);
   if (options.per_thousand_lumens) scale_to_thousand_lumens(lamp.flux(), table);
   for (const std::string& file : options.outputs) {
-    write_file(file, ends_in(file, ".csv") ? glare::ugr_table_csv(table)
-                                           : glare::ugr_table_json(table).dump(1) + "\n");
+    write_file(file, ends_in(file, ".csv") ? report::ugr_table_csv(table)
+                                           : report::ugr_table_json(table).dump(1) + "\n");
   }
-  for (const auto& line : glare::ugr_table_lines(table)) std::cout << line << '\n';
+  for (const auto& line : report::ugr_table_lines(table)) std::cout << line << '\n';
 }
 
 }  // namespace

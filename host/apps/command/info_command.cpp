@@ -5,11 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "photile/light_mix.hpp"
-#include "photile/scene.hpp"
 #include "command/commands.hpp"
 #include "command/scene_options.hpp"
 #include "command/scene_report.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::app {
 namespace {

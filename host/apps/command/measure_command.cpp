@@ -8,13 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "common/run_files.hpp"
-#include "measuring/measure_grids.hpp"
-#include "measuring/requirements.hpp"
-#include "measuring/room_surfaces.hpp"
-#include "measuring/sensor_files.hpp"
-#include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "command/commands.hpp"
 #include "command/measure_outputs.hpp"
 #include "command/output_files.hpp"
@@ -28,6 +21,13 @@
 #include "command/terminal_progress.hpp"
 #include "command/threads.hpp"
 #include "command/validators.hpp"
+#include "common/run_files.hpp"
+#include "measuring/measure_grids.hpp"
+#include "measuring/requirements.hpp"
+#include "measuring/room_surfaces.hpp"
+#include "measuring/sensor_files.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
 #include "report/daylight_tables.hpp"
 #include "report/sensor_tables.hpp"
 
@@ -143,7 +143,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
 
   const std::filesystem::path moods = moods_of_report(render.mood.file, render.scene);
   outputs.check_moods(moods);
-  const measuring::IncludedResults included = outputs.included(requirement);
+  const report::IncludedResults included = outputs.included(requirement);
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet || !leads());
@@ -166,11 +166,11 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) {
     keep_sky(measurement);
-    if (all_dark(measurement)) progress.note(measuring::no_sky_warning);
+    if (all_dark(measurement)) progress.note(report::no_sky_warning);
   }
   outputs.write(measurement,
                 {scene, mix, parameters, render.mood.mood, requirement, moods, included});
-  for (const auto& line : measuring::measurement_lines(measurement, outputs.unit())) {
+  for (const auto& line : report::measurement_lines(measurement, outputs.unit())) {
     std::cout << line << '\n';
   }
   if (requirement) {

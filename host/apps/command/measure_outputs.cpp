@@ -8,15 +8,15 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
-#include "photile/errors.hpp"
-#include "photile/ray_scene.hpp"
 #include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/report_contents.hpp"
 #include "command/validators.hpp"
 #include "command/version.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "photile/errors.hpp"
+#include "photile/ray_scene.hpp"
 #include "report/honeybee_files.hpp"
 #include "report/plan_drawing.hpp"
 #include "report/plan_surroundings.hpp"
@@ -75,7 +75,7 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
         {{"name", light.name}, {"power", light.power}, {"unit", unit_symbol(light.unit)}});
   }
   if (run.requirement) record["target"] = target_json(measurement, *run.requirement);
-  record["grids"] = measuring::measurement_json(measurement);
+  record["grids"] = report::measurement_json(measurement);
   return record;
 }
 
@@ -110,14 +110,14 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run)
 }
 
 /// Of each grid.
-std::vector<measuring::PlanSurroundings> surroundings_of(const measuring::Measurement& measurement,
-                                                         const MeasureRun& run) {
+std::vector<report::PlanSurroundings> surroundings_of(const measuring::Measurement& measurement,
+                                                      const MeasureRun& run) {
   const RayScene rays(run.scene);
-  std::vector<measuring::PlanSurroundings> surroundings;
+  std::vector<report::PlanSurroundings> surroundings;
   for (const auto& values : measurement) {
     const auto& layout = values.grid.layout;
-    surroundings.push_back(layout ? measuring::surroundings_of(rays, *layout)
-                                  : measuring::PlanSurroundings());
+    surroundings.push_back(layout ? report::surroundings_of(rays, *layout)
+                                  : report::PlanSurroundings());
   }
   return surroundings;
 }
@@ -198,7 +198,7 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
   }
   if (!honeybee_.empty()) {
     make_folder(honeybee_);
-    for (const char* name : measuring::honeybee_tables) all.push_back(honeybee_ / name);
+    for (const char* name : report::honeybee_tables) all.push_back(honeybee_ / name);
   }
   const bool reports = !html_.empty() || !pdf_.empty();
   const auto only_in_reports = [&](const char* option, bool given) {
@@ -216,7 +216,7 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
 
 void MeasureOutputs::check_names(const std::vector<measuring::SensorGrid>& grids) const {
   if (!honeybee_.empty()) {
-    for (const auto& name : measuring::honeybee_names(grids)) note_output(honeybee_ / name);
+    for (const auto& name : report::honeybee_names(grids)) note_output(honeybee_ / name);
   }
   const auto planes = static_cast<std::size_t>(std::count_if(
       grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
@@ -239,11 +239,11 @@ void MeasureOutputs::check_moods(const std::filesystem::path& moods) const {
 
 void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
   if (!honeybee_.empty()) {
-    for (const auto& [name, text] : measuring::honeybee_files(measurement)) {
+    for (const auto& [name, text] : report::honeybee_files(measurement)) {
       write_file(honeybee_ / name, text);
     }
   }
-  for (const auto& file : csv_) write_file(file, measuring::measurement_csv(measurement, unit_));
+  for (const auto& file : csv_) write_file(file, report::measurement_csv(measurement, unit_));
   for (const auto& file : json_) {
     write_file(
         file,
@@ -255,28 +255,28 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
     if (values.grid.layout) planes.push_back(&values);
   }
   if (svg_.empty() && html_.empty() && pdf_.empty()) return;
-  const std::vector<measuring::PlanSurroundings> surroundings = surroundings_of(measurement, run);
+  const std::vector<report::PlanSurroundings> surroundings = surroundings_of(measurement, run);
   for (const auto& file : svg_) {
     const auto names = plan_names(file, planes.size());
     for (std::size_t i = 0; i < planes.size(); ++i) {
       const auto grid = static_cast<std::size_t>(planes[i] - measurement.data());
-      write_file(names[i], measuring::plan_svg(*planes[i], planes[i]->total(), colours_,
-                                               measuring::PlanSize::whole, surroundings[grid]));
+      write_file(names[i], report::plan_svg(*planes[i], planes[i]->total(), colours_,
+                                            report::PlanSize::whole, surroundings[grid]));
     }
   }
   if (html_.empty() && pdf_.empty()) return;
-  measuring::ReportText text{run.scene.source.filename().string(),
-                             facts_of(run),
-                             run.requirement,
-                             {lamp_schedule(run.scene, run.mix), reflectances(run.scene)},
-                             run.included.glare,
-                             project_,
-                             {}};
+  report::ReportText text{run.scene.source.filename().string(),
+                          facts_of(run),
+                          run.requirement,
+                          {lamp_schedule(run.scene, run.mix), reflectances(run.scene)},
+                          run.included.glare,
+                          project_,
+                          {}};
   text.tables.insert(text.tables.begin(), run.included.tables.begin(), run.included.tables.end());
   if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
-  const std::string page = measuring::report_html(measurement, text, colours_, surroundings);
+  const std::string page = report::report_html(measurement, text, colours_, surroundings);
   for (const auto& file : html_) write_file(file, page);
-  for (const auto& file : pdf_) write_file(file, measuring::pdf_of(page));
+  for (const auto& file : pdf_) write_file(file, report::pdf_of(page));
 }
 
 }  // namespace photile::app

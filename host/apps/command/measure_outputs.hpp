@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "command/false_colour_options.hpp"
 #include "measuring/measure_grids.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
-#include "command/false_colour_options.hpp"
 #include "report/false_colour.hpp"
 #include "report/included_results.hpp"
 
@@ -27,7 +27,7 @@ struct MeasureOutputOptions {
   std::string honeybee;              ///< folder, "" = none
   std::string picture;               ///< EXR for the report, "" = none
   std::vector<std::string> results;  ///< JSON files for the report
-  measuring::ReportProject project;
+  report::ReportProject project;
   bool daylight_factor = false;  ///< values are per cent of the sky's lux
 };
 
@@ -41,8 +41,8 @@ struct MeasureRun {
   const MeasuringParameters& parameters;
   std::string mood = {};  ///< "" = none
   std::optional<measuring::Requirement> requirement = std::nullopt;
-  std::filesystem::path moods = {};          ///< file of those that a report shows; "" = none
-  measuring::IncludedResults included = {};  ///< of `included`
+  std::filesystem::path moods = {};       ///< file of those that a report shows; "" = none
+  report::IncludedResults included = {};  ///< of `included`
 };
 
 class MeasureOutputs {
@@ -62,9 +62,8 @@ class MeasureOutputs {
   void check_moods(const std::filesystem::path& moods) const;
 
   /// What the report shows of other commands. Errors: those of included_results.
-  measuring::IncludedResults included(
-      const std::optional<measuring::Requirement>& requirement) const {
-    return measuring::included_results(results_, requirement);
+  report::IncludedResults included(const std::optional<measuring::Requirement>& requirement) const {
+    return report::included_results(results_, requirement);
   }
 
   /// "lux", or "DF %" of daylight factors.
@@ -76,10 +75,10 @@ class MeasureOutputs {
  private:
   std::vector<std::filesystem::path> csv_, json_, svg_, html_, pdf_;
   std::string unit_;
-  measuring::FalseColour colours_;
+  report::FalseColour colours_;
   std::filesystem::path honeybee_, picture_;
   std::vector<std::filesystem::path> results_;
-  measuring::ReportProject project_;
+  report::ReportProject project_;
 };
 
 }  // namespace photile::app

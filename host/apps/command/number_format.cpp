@@ -46,7 +46,7 @@ std::string format_seconds(double seconds) {
 std::string unit_symbol(PowerUnit unit) { return unit == PowerUnit::lumen ? "lm" : "W"; }
 
 std::string format_number(double value, int digits) {
-  std::string text = measuring::number_text(value, digits);
+  std::string text = report::number_text(value, digits);
   const std::size_t sign = text.starts_with('-') ? 1 : 0;
   const std::size_t end = std::min(text.find_first_not_of("0123456789", sign), text.size());
   constexpr std::size_t most_ungrouped = 4;

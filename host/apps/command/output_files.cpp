@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "command/processes.hpp"
+#include "command/render_options.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
-#include "command/processes.hpp"
-#include "command/render_options.hpp"
 
 namespace photile::app {
 

@@ -4,11 +4,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include "command/tone_mapping_options.hpp"
+#include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "common/input_file.hpp"
 #include "photile/errors.hpp"
-#include "command/tone_mapping_options.hpp"
-#include "command/validators.hpp"
 #include "report/false_colour_picture.hpp"
 #include "report/sheet.hpp"
 
@@ -77,8 +77,8 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
     displayed = tone_map(root, tone_mapping_);
   }
   about_file(source, [&] {
-    if (!illuminance_.empty()) lux = measuring::illuminance_of(picture);
-    if (!luminance_.empty()) candela = measuring::luminance_of(root);
+    if (!illuminance_.empty()) lux = report::illuminance_of(picture);
+    if (!luminance_.empty()) candela = report::luminance_of(root);
   });
 
   for (const auto& file : exr_) write_exr(file, picture);
@@ -87,8 +87,8 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
   const auto draw = [&](const std::filesystem::path& file, const std::vector<float>& values,
                         const char* unit) {
     if (file.empty()) return;
-    write_png(file, measuring::false_colour_picture(values, displayed, false_colour_.of(unit)));
-    if (image::Sheet::has_font()) return;
+    write_png(file, report::false_colour_picture(values, displayed, false_colour_.of(unit)));
+    if (report::Sheet::has_font()) return;
     notes.note(
         fmt::format("warning: {}: the legend has no numbers without the font DejaVu Sans; "
                     "install fonts-dejavu-core",

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "command/false_colour_options.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/progress.hpp"
-#include "command/false_colour_options.hpp"
 
 namespace CLI {
 class App;

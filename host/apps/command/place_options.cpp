@@ -5,13 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
+#include "command/validators.hpp"
 #include "common/run_files.hpp"
 #include "measuring/furniture.hpp"
 #include "measuring/sensor_files.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "command/validators.hpp"
 
 namespace photile::app {
 

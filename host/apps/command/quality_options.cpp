@@ -7,11 +7,11 @@
 #include <array>
 #include <string>
 
-#include "photile/errors.hpp"
-#include "render/render_plan.hpp"
 #include "command/number_format.hpp"
 #include "command/setting_options.hpp"
 #include "command/validators.hpp"
+#include "photile/errors.hpp"
+#include "render/render_plan.hpp"
 
 namespace photile::app {
 namespace {

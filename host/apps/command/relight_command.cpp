@@ -5,10 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "common/run_files.hpp"
-#include "loading/relit_sky.hpp"
-#include "photile/errors.hpp"
-#include "photile/layered_picture.hpp"
 #include "command/commands.hpp"
 #include "command/mood_options.hpp"
 #include "command/number_format.hpp"
@@ -17,6 +13,10 @@
 #include "command/scene_options.hpp"
 #include "command/signals.hpp"
 #include "command/terminal_progress.hpp"
+#include "common/run_files.hpp"
+#include "loading/relit_sky.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace photile::app {
 namespace {
@@ -45,7 +45,7 @@ void run_relight(const RelightOptions& options) {
   handle_signals();
   std::vector<LightChange> changes;
   if (options.by_time())
-    changes = scene_io::sky_changes(read_light_mix(options.input), options.situation, options.sky);
+    changes = loading::sky_changes(read_light_mix(options.input), options.situation, options.sky);
   for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
   const PictureOutputs outputs(options.pictures);
   if (outputs.empty() && (!changes.empty() || options.mood.asked())) {

@@ -10,18 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "common/output_file.hpp"
-#include "device/context.hpp"
-#include "image/glare.hpp"
-#include "image/srgb.hpp"
-#include "photile/camera_attributes.hpp"
-#include "photile/denoiser.hpp"
-#include "photile/errors.hpp"
-#include "photile/layered_picture.hpp"
-#include "photile/path_tracer.hpp"
-#include "render/hit_source.hpp"
-#include "render/render_costs.hpp"
-#include "render/render_plan.hpp"
 #include "command/commands.hpp"
 #include "command/number_format.hpp"
 #include "command/output_files.hpp"
@@ -35,6 +23,18 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/threads.hpp"
+#include "common/output_file.hpp"
+#include "device/context.hpp"
+#include "image/glare.hpp"
+#include "image/srgb.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/denoiser.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/path_tracer.hpp"
+#include "render/hit_source.hpp"
+#include "render/render_costs.hpp"
+#include "render/render_plan.hpp"
 #include "view/snapshots.hpp"
 
 namespace photile::app {

@@ -9,12 +9,12 @@
 #include <string_view>
 #include <utility>
 
-#include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
 #include "command/validators.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::app {
 namespace {

@@ -6,6 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "command/mood_options.hpp"
+#include "command/picture_outputs.hpp"
+#include "command/quality_options.hpp"
 #include "photile/camera.hpp"
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
@@ -13,9 +16,6 @@
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 #include "photile/shard.hpp"
-#include "command/mood_options.hpp"
-#include "command/picture_outputs.hpp"
-#include "command/quality_options.hpp"
 
 namespace CLI {
 class App;

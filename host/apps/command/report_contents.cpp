@@ -7,22 +7,22 @@
 #include <memory>
 #include <utility>
 
+#include "command/number_format.hpp"
+#include "command/scene_report.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_groups.hpp"
-#include "scene/material_reflectance.hpp"
-#include "command/number_format.hpp"
-#include "command/scene_report.hpp"
 #include "report/false_colour_picture.hpp"
 #include "report/plan_surroundings.hpp"
 #include "report/scratch_folder.hpp"
+#include "scene/material_reflectance.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {
 namespace {
 
 std::string place_text(const Scene& scene, const Light& light) {
-  const auto place = measuring::place_of(scene, light);
+  const auto place = report::place_of(scene, light);
   if (!place) return "";
   const glm::dvec3 world = place_in_world(scene, *place);
   return fmt::format("{:.2f}, {:.2f}, {:.2f}", world.x, world.y, world.z);
@@ -30,7 +30,7 @@ std::string place_text(const Scene& scene, const Light& light) {
 
 /// The bytes of a PNG file.
 std::string png_of(const Image& displayed) {
-  const measuring::ScratchFolder folder;
+  const report::ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "picture.png";
   write_png(file, displayed);
   std::ifstream stream(file, std::ios::binary);
@@ -38,21 +38,21 @@ std::string png_of(const Image& displayed) {
 }
 
 void add_pictures(const LayeredPicture& picture, const std::string& caption,
-                  const measuring::FalseColour& colours,
-                  std::vector<measuring::ReportPicture>& pictures) {
+                  const report::FalseColour& colours,
+                  std::vector<report::ReportPicture>& pictures) {
   const Image displayed = tone_map(picture.root(), {});
   pictures.push_back({caption, png_of(displayed)});
   constexpr std::size_t with_illuminance = 4;  // beside R, G and B
   if (picture.lights() == 0 || picture.channel_names(0).size() < with_illuminance) return;
-  const std::vector<float> lux = measuring::illuminance_of(picture);
+  const std::vector<float> lux = report::illuminance_of(picture);
   pictures.push_back({caption + ": illuminance of the surfaces that are seen, lux",
-                      png_of(measuring::false_colour_picture(lux, displayed, colours))});
+                      png_of(report::false_colour_picture(lux, displayed, colours))});
 }
 
 }  // namespace
 
-measuring::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix) {
-  measuring::ReportTable table{
+report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix) {
+  report::ReportTable table{
       "Lamps", {"number", "name", "kind", "photometric file", "place (x, y, z), m", "power"}, {}};
   const std::vector<double> powers = powers_of(scene, mix);
   const LightGroups groups = light_groups_of(scene);
@@ -67,13 +67,13 @@ measuring::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix) {
   return table;
 }
 
-measuring::ReportTable reflectances(const Scene& scene) {
-  measuring::ReportTable table{"Reflectances", {"material", "reflectance"}, {}};
+report::ReportTable reflectances(const Scene& scene) {
+  report::ReportTable table{"Reflectances", {"material", "reflectance"}, {}};
   std::vector<bool> used(scene.materials.size(), false);
   for (const std::uint32_t material : scene.triangle_material) used[material] = true;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     if (!used[i]) continue;
-    const auto reflectance = scene_io::reflectance_of(scene, scene.materials[i]);
+    const auto reflectance = scene::reflectance_of(scene, scene.materials[i]);
     if (!reflectance) continue;
     table.rows.push_back(
         {scene.materials[i].name, fmt::format("{:.0f}%", 100 * reflectance->whole)});
@@ -88,10 +88,10 @@ std::filesystem::path moods_of_report(const std::string& given,
   return std::filesystem::exists(file) ? file : std::filesystem::path();
 }
 
-std::vector<measuring::ReportPicture> report_pictures(const std::filesystem::path& picture,
-                                                      const std::filesystem::path& moods,
-                                                      const measuring::FalseColour& colours) {
-  std::vector<measuring::ReportPicture> pictures;
+std::vector<report::ReportPicture> report_pictures(const std::filesystem::path& picture,
+                                                   const std::filesystem::path& moods,
+                                                   const report::FalseColour& colours) {
+  std::vector<report::ReportPicture> pictures;
   add_pictures(*relit_picture(picture, {}), "as rendered", colours, pictures);
   if (moods.empty()) return pictures;
   const view::Moods kept(moods);

@@ -3,11 +3,11 @@
 
 #include <vector>
 
+#include "command/render_options.hpp"
 #include "photile/device.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
-#include "command/render_options.hpp"
 
 namespace photile::app {
 

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "render/render_costs.hpp"
 #include "command/number_format.hpp"
 #include "command/quality_options.hpp"
 #include "command/setting_options.hpp"
 #include "command/version.hpp"
+#include "render/render_costs.hpp"
 
 namespace photile::app {
 namespace {

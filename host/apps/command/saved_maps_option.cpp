@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
+#include "command/version.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_session.hpp"
 #include "render/setting.hpp"
 #include "saved_maps/saved_maps.hpp"
-#include "command/version.hpp"
 
 namespace photile::app {
 namespace {

@@ -4,11 +4,11 @@
 #include <optional>
 #include <span>
 
+#include "command/render_options.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
 #include "saved_maps/saved_maps.hpp"
-#include "command/render_options.hpp"
 
 namespace photile::app {
 

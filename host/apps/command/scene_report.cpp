@@ -7,9 +7,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "command/number_format.hpp"
 #include "scene/material_reflectance.hpp"
 #include "scene/open_glass.hpp"
-#include "command/number_format.hpp"
 
 namespace photile::app {
 namespace {
@@ -22,7 +22,7 @@ constexpr double doubtfully_small = 0.05;  // metres
 
 /// "reflectance 0.52", and why it is not the colour that the file has; "" of glass.
 std::string reflectance_text(const Scene& scene, const Material& material) {
-  const auto reflectance = scene_io::reflectance_of(scene, material);
+  const auto reflectance = scene::reflectance_of(scene, material);
   if (!reflectance) return "";
   std::string text = fmt::format(", reflectance {:.3g}", reflectance->whole);
   if (!material.glossy()) return text;
@@ -102,7 +102,7 @@ json material_json(const Scene& scene, const Material& material, std::size_t tri
              {"roughness", material.roughness},
              {"opacity", material.opacity},
              {"opacity_cutoff", material.opacity_cutoff}};
-  if (const auto reflectance = scene_io::reflectance_of(scene, material)) {
+  if (const auto reflectance = scene::reflectance_of(scene, material)) {
     entry["reflectance"] = reflectance->whole;
     entry["matt_reflectance"] = reflectance->matt;
   }
@@ -234,7 +234,7 @@ std::vector<std::string> scene_warnings(const Scene& scene) {
 
 std::vector<std::string> info_warnings(const Scene& scene) {
   std::vector<std::string> lines = scene_warnings(scene);
-  const std::vector<std::uint32_t> open = open_edges_of_glass(scene);
+  const std::vector<std::uint32_t> open = scene::open_edges_of_glass(scene);
   for (std::size_t i = 0; i < open.size(); ++i) {
     if (open[i] == 0) continue;
     lines.push_back(fmt::format(

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "command/run_record.hpp"
 #include "device/context.hpp"
 #include "photile/statistics.hpp"
-#include "command/run_record.hpp"
 
 namespace photile::app {
 

@@ -3,10 +3,10 @@
 #include <chrono>
 #include <cstdio>
 
-#include "common/ascii_text.hpp"
 #include "command/processes.hpp"
 #include "command/signals.hpp"
 #include "command/terminal.hpp"
+#include "common/ascii_text.hpp"
 
 namespace photile::app {
 namespace {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <thread>
 
+#include "command/progress_bar.hpp"
 #include "photile/progress.hpp"
 #include "photile/statistics.hpp"
-#include "command/progress_bar.hpp"
 
 namespace photile::app {
 

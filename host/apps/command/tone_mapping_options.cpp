@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "photile/limits.hpp"
 #include "command/validators.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::app {
 

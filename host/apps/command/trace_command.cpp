@@ -6,12 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "common/run_files.hpp"
-#include "photile/limits.hpp"
-#include "photile/photon_tracer.hpp"
-#include "photile/ray_scene.hpp"
-#include "render/render_plan.hpp"
-#include "saved_maps/saved_maps.hpp"
 #include "command/commands.hpp"
 #include "command/output_files.hpp"
 #include "command/render_options.hpp"
@@ -23,6 +17,12 @@
 #include "command/terminal_progress.hpp"
 #include "command/threads.hpp"
 #include "command/validators.hpp"
+#include "common/run_files.hpp"
+#include "photile/limits.hpp"
+#include "photile/photon_tracer.hpp"
+#include "photile/ray_scene.hpp"
+#include "render/render_plan.hpp"
+#include "saved_maps/saved_maps.hpp"
 
 namespace photile::app {
 namespace {

@@ -10,12 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
-#include "photile/errors.hpp"
-#include "photile/layered_picture.hpp"
-#include "photile/limits.hpp"
-#include "photile/path_tracer.hpp"
 #include "command/commands.hpp"
 #include "command/number_format.hpp"
 #include "command/output_files.hpp"
@@ -26,8 +20,14 @@
 #include "command/threads.hpp"
 #include "command/validators.hpp"
 #include "command/version.hpp"
-#include "trade/trade.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/limits.hpp"
+#include "photile/path_tracer.hpp"
 #include "trace/random_stream.hpp"
+#include "trade/trade.hpp"
 
 namespace photile::app {
 namespace {
@@ -90,7 +90,7 @@ Reference reference_of(const Scene& scene, const Camera& camera, const LightMix&
   return read;
 }
 
-nlohmann::ordered_json json_of(const TradePoint& point) {
+nlohmann::ordered_json json_of(const trade::TradePoint& point) {
   const PictureError& error = point.error;
   nlohmann::ordered_json row{{"varied", point.settings.varied},
                              {"options", options_text(point.settings.parameters)}};
@@ -117,7 +117,7 @@ std::string csv_of(const nlohmann::ordered_json& rows) {
   return fmt::format("{}\n{}\n", fmt::join(names, ","), fmt::join(lines, "\n"));
 }
 
-std::string row_of(const TradePoint* point) {
+std::string row_of(const trade::TradePoint* point) {
   constexpr const char* row = "{:>15}{:>13}{:>12}  {}";
   if (!point) return fmt::format(row, "-", "-", "-", "none of those tried");
   return fmt::format(row, format_seconds(point->first_picture_seconds),
@@ -127,10 +127,11 @@ std::string row_of(const TradePoint* point) {
 }
 
 /// The fastest settings for some errors, and those of the least error.
-void print_table(std::span<const TradePoint> points) {
+void print_table(std::span<const trade::TradePoint> points) {
   std::cout << " error  first picture   each frame      memory  fastest settings\n";
   for (const double wanted : {0.10, 0.05, 0.02, 0.01}) {
-    std::cout << fmt::format("{:>5.0f}%{}\n", 100 * wanted, row_of(fastest_within(points, wanted)));
+    std::cout << fmt::format("{:>5.0f}%{}\n", 100 * wanted,
+                             row_of(trade::fastest_within(points, wanted)));
   }
   const auto least = std::min_element(points.begin(), points.end(), [](auto& a, auto& b) {
     return a.error.relative_mse < b.error.relative_mse;
@@ -139,11 +140,12 @@ void print_table(std::span<const TradePoint> points) {
                            row_of(&*least));
 }
 
-void warn_of_noise(const Reference& reference, std::span<const TradePoint> points,
+void warn_of_noise(const Reference& reference, std::span<const trade::TradePoint> points,
                    Progress& progress) {
-  const auto near = std::count_if(points.begin(), points.end(), [&](const TradePoint& point) {
-    return point.error.relative_mse < 4 * reference.relative_mse;
-  });
+  const auto near =
+      std::count_if(points.begin(), points.end(), [&](const trade::TradePoint& point) {
+        return point.error.relative_mse < 4 * reference.relative_mse;
+      });
   if (near == 0) return;
   progress.note(
       fmt::format("warning: {} of {} errors are within twice the reference's own, which is "
@@ -177,9 +179,9 @@ void run_trade(TradeOptions& options) {
   set_film_size(film, render.size, camera);
 
   const Reference reference = reference_of(scene, camera, mix, options, progress);
-  const std::vector<TradePoint> points =
-      measure_trade({scene, camera, devices, mix, reference.picture},
-                    settings_around(render.parameters), progress);
+  const std::vector<trade::TradePoint> points =
+      trade::measure_trade({scene, camera, devices, mix, reference.picture},
+                           trade::settings_around(render.parameters), progress);
   nlohmann::ordered_json record{{"photile", version_text()},
                                 {"scene", scene.source.filename().string()},
                                 {"width", film.width},
@@ -187,7 +189,7 @@ void run_trade(TradeOptions& options) {
                                 {"devices", nlohmann::json::array()},
                                 {"renderings", nlohmann::json::array()}};
   for (const Device& device : devices) record["devices"].push_back(device.info().name);
-  for (const TradePoint& point : points) record["renderings"].push_back(json_of(point));
+  for (const trade::TradePoint& point : points) record["renderings"].push_back(json_of(point));
   if (options.reference.empty()) {
     record["reference_samples"] = options.reference_samples;
     record["reference_relative_mse"] = reference.relative_mse;

@@ -10,10 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "common/output_file.hpp"
-#include "photile/errors.hpp"
-#include "photile/limits.hpp"
-#include "photile/quiet_progress.hpp"
 #include "command/commands.hpp"
 #include "command/output_files.hpp"
 #include "command/setting_options.hpp"
@@ -22,6 +18,10 @@
 #include "command/threads.hpp"
 #include "command/validation_report.hpp"
 #include "command/validators.hpp"
+#include "common/output_file.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/quiet_progress.hpp"
 #include "validation/validate.hpp"
 
 namespace photile::app {

@@ -6,8 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "loading/sourced_scene.hpp"
-#include "photile/errors.hpp"
 #include "command/commands.hpp"
 #include "command/output_files.hpp"
 #include "command/render_options.hpp"
@@ -18,6 +16,8 @@
 #include "command/threads.hpp"
 #include "command/tone_mapping_options.hpp"
 #include "command/validators.hpp"
+#include "loading/sourced_scene.hpp"
+#include "photile/errors.hpp"
 #include "view/moving_sky.hpp"
 #include "view/viewer.hpp"
 
@@ -53,7 +53,7 @@ void run_view(ViewOptions& options) {
   note_inputs_of(render);
   if (!luminaires.empty()) {
     render.load.luminaires = luminaires;
-    render.load.luminaires_text = scene_io::read_own_luminaires(luminaires).text();
+    render.load.luminaires_text = loading::read_own_luminaires(luminaires).text();
   }
   if (!render.save_maps.empty()) {
     const std::filesystem::path file = render.save_maps;
@@ -63,7 +63,7 @@ void run_view(ViewOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const SkySituation situation = view::take_moving_sky(render.load);
-  const scene_io::SourcedScene sourced = scene_io::load_sourced_scene(render.scene, render.load);
+  const loading::SourcedScene sourced = loading::load_sourced_scene(render.scene, render.load);
   const Scene& scene = sourced.scene;
   render.mood.edited = true;
   const LightMix mix = mix_of(scene, render);

@@ -12,15 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "common/run_files.hpp"
-#include "reading/camera_path.hpp"
-#include "gltf/animation.hpp"
-#include "photile/camera_attributes.hpp"
-#include "photile/errors.hpp"
-#include "photile/layered_picture.hpp"
-#include "photile/limits.hpp"
-#include "photile/quiet_progress.hpp"
-#include "photile/scene_renderer.hpp"
 #include "command/commands.hpp"
 #include "command/frame_record.hpp"
 #include "command/output_files.hpp"
@@ -34,6 +25,15 @@
 #include "command/threads.hpp"
 #include "command/tone_mapping_options.hpp"
 #include "command/validators.hpp"
+#include "common/run_files.hpp"
+#include "gltf/animation.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/limits.hpp"
+#include "photile/quiet_progress.hpp"
+#include "photile/scene_renderer.hpp"
+#include "reading/camera_path.hpp"
 #include "view/display.hpp"
 #include "walk/contact_sheet.hpp"
 #include "walk/frame_names.hpp"
@@ -56,17 +56,17 @@ struct WalkOptions {
   Shard shard;                             ///< of them
 };
 
-walk::CameraMotion motion_of(const WalkOptions& options, const Camera& camera) {
-  if (!options.path.empty()) return walk::read_camera_path(options.path, camera);
+reading::CameraMotion motion_of(const WalkOptions& options, const Camera& camera) {
+  if (!options.path.empty()) return reading::read_camera_path(options.path, camera);
   try {
-    return scene_io::read_camera_animation(options.render.scene, options.render.load, camera,
-                                           options.animation);
+    return gltf::read_camera_animation(options.render.scene, options.render.load, camera,
+                                       options.animation);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{} (--camera-path)", error.what()));
   }
 }
 
-int count_of(const walk::CameraMotion& motion, double frames_per_second) {
+int count_of(const reading::CameraMotion& motion, double frames_per_second) {
   const double count = std::floor((motion.end - motion.begin) * frames_per_second + 1e-6) + 1;
   if (count > limits::max_frames) {
     throw UsageError(fmt::format("{:.0f} frames are more than {}; give fewer with --fps", count,
@@ -301,7 +301,7 @@ class Walk {
   const WalkOptions& options_;
   const Scene& scene_;
   const LightMix& mix_;
-  const walk::CameraMotion motion_;
+  const reading::CameraMotion motion_;
   const int count_;  ///< of the whole walk
   const std::vector<int> frames_;
   const bool to_exr_;

@@ -9,7 +9,7 @@
 #include "render/refinement.hpp"
 #include "render/setting.hpp"
 
-namespace photile {
+namespace photile::trade {
 namespace {
 
 /// Stages of render() that a further frame repeats.
@@ -109,4 +109,4 @@ const TradePoint* fastest_within(std::span<const TradePoint> points, double erro
   return fastest;
 }
 
-}  // namespace photile
+}  // namespace photile::trade

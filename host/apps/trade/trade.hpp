@@ -14,7 +14,7 @@
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 
-namespace photile {
+namespace photile::trade {
 
 /// Settings to measure.
 struct TradeSettings {
@@ -56,4 +56,4 @@ std::vector<TradePoint> measure_trade(const TradeSubject& subject,
 /// The fastest point to the first picture whose relative error is at most `error`, or nullptr.
 const TradePoint* fastest_within(std::span<const TradePoint> points, double error);
 
-}  // namespace photile
+}  // namespace photile::trade

@@ -12,8 +12,8 @@ namespace {
 double diffuse_reflectance(double albedo, double f0, double alpha) {
   constexpr int steps = 20'000;
   const auto a = static_cast<float>(alpha), f = static_cast<float>(f0);
-  const DiffusePart part =
-      diffuse_part({glm::vec3(static_cast<float>(albedo)), glm::vec3(f), 1.0f, a}, 1.0f);
+  const trace::DiffusePart part =
+      trace::diffuse_part({glm::vec3(static_cast<float>(albedo)), glm::vec3(f), 1.0f, a}, 1.0f);
   PhotileAlbedoFit fit;
   photile_albedo_fit(a, &fit);
   double sum = 0;

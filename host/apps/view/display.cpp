@@ -49,7 +49,7 @@ DisplayedFrame tone_mapped(const Frame& frame, const LightMix& mix,
 /// Illuminances in their colours; of isolines and bands the rest is the picture.
 DisplayedFrame false_coloured(const Frame& frame, const LightMix& mix,
                               const DisplaySettings& settings) {
-  using measuring::Contours;
+  using report::Contours;
   const Contours contours = settings.false_colour.contours;
   const std::vector<float> values = mixed_illuminance(frame.layers, mix);
   DisplayedFrame result{frame.layers.width, frame.layers.height,
@@ -57,7 +57,7 @@ DisplayedFrame false_coloured(const Frame& frame, const LightMix& mix,
   if (contours == Contours::lines || contours == Contours::bands) {
     result = tone_mapped(frame, mix, settings);
   }
-  measuring::draw_false_colour(values, result.width, settings.false_colour, result.rgb);
+  report::draw_false_colour(values, result.width, settings.false_colour, result.rgb);
   return result;
 }
 

@@ -26,7 +26,7 @@ struct DisplaySettings {
   /// The exposure follows a sky that is moved: from noon to dusk it loses a thousandfold.
   bool adapts = true;
   DisplayView view = ToneMapping{}.view;  ///< of the picture
-  measuring::FalseColour false_colour;
+  report::FalseColour false_colour;
   double glare_limit = defaults::glare_limit;  ///< as image::find_glare takes it
   bool photon_map = false;                     ///< of the clicked triangle, over any of the modes
 };

@@ -21,16 +21,16 @@ void draw_colour(const std::array<std::uint8_t, 3>& rgb) {
 }
 
 /// Contours and palette of false colour.
-bool draw_false_colour(measuring::FalseColour& colours) {
+bool draw_false_colour(report::FalseColour& colours) {
   bool changed = false;
   constexpr std::array names{"filled", "lines", "bands", "steps"};
   int contours = static_cast<int>(colours.contours);
   if (ImGui::Combo("contours", &contours, names.data(), static_cast<int>(names.size()))) {
-    colours.contours = static_cast<measuring::Contours>(contours);
+    colours.contours = static_cast<report::Contours>(contours);
     changed = true;
   }
   if (ImGui::BeginCombo("palette", colours.palette.c_str())) {
-    for (const std::string& name : image::Palette::names()) {
+    for (const std::string& name : report::Palette::names()) {
       if (!ImGui::Selectable(name.c_str(), name == colours.palette)) continue;
       colours.palette = name;
       changed = true;
@@ -56,14 +56,14 @@ bool draw_glare(PanelState& state, const Frame* frame) {
   if (!frame || !frame->reflections) return changed;
   const image::Glare glare = image::find_glare(frame->layers, *frame->reflections,
                                                state.lights.shown_mix(), state.display.glare_limit);
-  ImGui::Text("above %s %s", measuring::number_text(glare.limit, 4).c_str(), unit);
+  ImGui::Text("above %s %s", report::number_text(glare.limit, 4).c_str(), unit);
   for (std::size_t light = 0; light < glare.lights.size(); ++light) {
     const image::LightGlare& its = glare.lights[light];
     if (!(its.share > 0)) continue;
     draw_colour(image::mark_colour(static_cast<int>(light)));
     ImGui::SameLine();
     ImGui::TextWrapped("%s: %.2g%%, up to %s", its.light.c_str(), 100 * its.share,
-                       measuring::number_text(its.peak, 4).c_str());
+                       report::number_text(its.peak, 4).c_str());
   }
   return changed;
 }
@@ -127,10 +127,9 @@ void draw_legend(const PanelState& state, const Frame* frame) {
   if (!frame || display.mode != DisplayMode::illuminance) return;
   double automatic = 0;
   if (!(display.false_colour.scale > 0)) {
-    automatic =
-        measuring::automatic_top(mixed_illuminance(frame->layers, state.lights.shown_mix()));
+    automatic = report::automatic_top(mixed_illuminance(frame->layers, state.lights.shown_mix()));
   }
-  const measuring::ColourScale scale(display.false_colour, automatic);
+  const report::ColourScale scale(display.false_colour, automatic);
   std::vector<double> levels = scale.levels();
   std::reverse(levels.begin(), levels.end());
   const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -143,7 +142,7 @@ void draw_legend(const PanelState& state, const Frame* frame) {
   for (const double level : levels) {
     draw_colour(scale.rgb(level));
     ImGui::SameLine();
-    ImGui::TextUnformatted(measuring::number_text(level, 4).c_str());
+    ImGui::TextUnformatted(report::number_text(level, 4).c_str());
   }
   ImGui::End();
   ImGui::PopStyleVar();

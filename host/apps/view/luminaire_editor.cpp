@@ -15,7 +15,7 @@
 namespace photile::view {
 namespace {
 
-using scene_io::PlacedLuminaires;
+using loading::PlacedLuminaires;
 
 constexpr double off_surface = 0.005;  // metres: an opening is seen before what it hangs on
 /// Positions and spacings are written to the millimetre, rotations to a hundredth of a degree.
@@ -60,11 +60,11 @@ LuminaireEditor::LuminaireEditor(std::filesystem::path file, std::vector<PlacedL
     : file_(std::move(file)),
       origin_(scene.origin),
       turn_(scene.turn),
-      list_(scene_io::read_own_luminaires(file_)),
+      list_(loading::read_own_luminaires(file_)),
       saved_(list_),
       placed_(std::move(placed)) {}
 
-void LuminaireEditor::restore(scene_io::LuminaireList list) {
+void LuminaireEditor::restore(loading::LuminaireList list) {
   if (list == list_) return;
   list_ = std::move(list);
   placed_.clear();
@@ -156,7 +156,7 @@ void LuminaireEditor::place(const glm::dvec3& position, const glm::dvec3& normal
   }
   nlohmann::ordered_json entry{{"name", free_name(std::filesystem::path(name).stem().string())},
                                {"file", name}};
-  const std::optional<glm::dvec2> stated = scene_io::stated_opening(file_.parent_path() / name);
+  const std::optional<glm::dvec2> stated = loading::stated_opening(file_.parent_path() / name);
   if (!stated) entry["size"] = {defaults::luminaire_side, defaults::luminaire_side};
   PlacedLuminaires lamp;
   lamp.name = entry["name"].get<std::string>();
@@ -167,7 +167,7 @@ void LuminaireEditor::place(const glm::dvec3& position, const glm::dvec3& normal
     aim = normal;
     entry["aim"] = vector_of(glm::transpose(turn_) * aim, millimetre);
   }
-  lamp.axes = scene_io::luminaire_axes(aim, 0);
+  lamp.axes = loading::luminaire_axes(aim, 0);
   const bool known = placed_.size() == list_.entries.size();
   list_.entries.push_back(std::move(entry));
   if (known) placed_.push_back(lamp);
@@ -205,7 +205,7 @@ void LuminaireEditor::rotate(double degrees) {
   const double turned = std::remainder(glm::degrees(lamps->rotation) + degrees, 360.0);
   entry()["rotation"] = rounded(turned, hundredth);
   lamps->rotation = glm::radians(turned);
-  lamps->axes = scene_io::luminaire_axes(-lamps->axes[2], lamps->rotation);
+  lamps->axes = loading::luminaire_axes(-lamps->axes[2], lamps->rotation);
 }
 
 bool LuminaireEditor::drag(const glm::dvec3& eye, const glm::dvec3& from, const glm::dvec3& to) {

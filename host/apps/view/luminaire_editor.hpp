@@ -21,17 +21,17 @@ class LuminaireEditor {
   ///   placed   as the scene has the entries
   ///   scene    from whose coordinates the file's world follows
   /// Errors: those of read_own_luminaires.
-  LuminaireEditor(std::filesystem::path file, std::vector<scene_io::PlacedLuminaires> placed,
+  LuminaireEditor(std::filesystem::path file, std::vector<loading::PlacedLuminaires> placed,
                   const Scene& scene);
 
   const std::filesystem::path& file() const { return file_; }
-  const scene_io::LuminaireList& list() const { return list_; }
-  const std::vector<scene_io::PlacedLuminaires>& placed() const { return placed_; }
+  const loading::LuminaireList& list() const { return list_; }
+  const std::vector<loading::PlacedLuminaires>& placed() const { return placed_; }
 
   /// A list of another time; where its lamps are is known when it is loaded.
-  void restore(scene_io::LuminaireList list);
+  void restore(loading::LuminaireList list);
   /// What loading a list found.
-  void loaded(const std::string& text, std::vector<scene_io::PlacedLuminaires> placed);
+  void loaded(const std::string& text, std::vector<loading::PlacedLuminaires> placed);
 
   bool unsaved() const { return list_ != saved_; }
   /// Errors: those of write_luminaires.
@@ -75,7 +75,7 @@ class LuminaireEditor {
  private:
   nlohmann::ordered_json& entry() { return list_.entries[*selected_]; }
   /// The selected lamps' place; null while it is not known.
-  scene_io::PlacedLuminaires* at();
+  loading::PlacedLuminaires* at();
   std::string free_name(const std::string& name) const;
   void write_position(const glm::dvec3& in_scene);
   glm::dvec3 in_world(const glm::dvec3& in_scene) const;
@@ -83,8 +83,8 @@ class LuminaireEditor {
   std::filesystem::path file_;
   glm::dvec3 origin_;  ///< of the scene, as Scene has it
   glm::dmat3 turn_;    ///< likewise
-  scene_io::LuminaireList list_, saved_;
-  std::vector<scene_io::PlacedLuminaires> placed_;
+  loading::LuminaireList list_, saved_;
+  std::vector<loading::PlacedLuminaires> placed_;
   std::optional<std::size_t> selected_;
   std::string next_file_;
 };

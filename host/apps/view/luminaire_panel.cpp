@@ -39,7 +39,7 @@ void draw_list(LuminaireEditor& editor) {
   }
 }
 
-void draw_array(LuminaireEditor& editor, const scene_io::PlacedLuminaires& lamps) {
+void draw_array(LuminaireEditor& editor, const loading::PlacedLuminaires& lamps) {
   std::array<int, 2> count{lamps.columns, lamps.rows};
   glm::vec2 spacing(lamps.spacing);
   bool changed = ImGui::DragInt2("count", count.data(), 0.1f, 1, most_in_a_row, "%d",
@@ -56,7 +56,7 @@ void draw_array(LuminaireEditor& editor, const scene_io::PlacedLuminaires& lamps
 
 void draw_selected(LuminaireEditor& editor) {
   if (!editor.selected() || *editor.selected() >= editor.placed().size()) return;
-  const scene_io::PlacedLuminaires lamps = editor.placed()[*editor.selected()];
+  const loading::PlacedLuminaires lamps = editor.placed()[*editor.selected()];
   glm::vec3 position(editor.position());
   if (ImGui::DragFloat3("position", &position.x, metres_per_pixel, 0, 0, "%.2f")) {
     editor.set_position(glm::dvec3(position));

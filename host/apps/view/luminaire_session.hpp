@@ -21,9 +21,8 @@ class LuminaireSession {
   ///   placed   as the scene has its entries
   ///   load     with which the scene was loaded
   /// Errors: those of LuminaireEditor.
-  LuminaireSession(const std::filesystem::path& file,
-                   std::vector<scene_io::PlacedLuminaires> placed, const Scene& scene,
-                   const SceneLoadOptions& load)
+  LuminaireSession(const std::filesystem::path& file, std::vector<loading::PlacedLuminaires> placed,
+                   const Scene& scene, const SceneLoadOptions& load)
       : editor_(file, std::move(placed), scene), tool_(editor_), loader_(scene.source, load) {}
 
   LuminaireEditor& editor() { return editor_; }

@@ -19,7 +19,7 @@ glm::dvec3 direction_at_pointer(const Camera& camera) {
                           static_cast<int>(io.DisplaySize.x), static_cast<int>(io.DisplaySize.y));
 }
 
-void draw_opening(const scene_io::PlacedLuminaires& lamps, const glm::dvec3& middle,
+void draw_opening(const loading::PlacedLuminaires& lamps, const glm::dvec3& middle,
                   const Camera& camera, ImU32 colour, float width) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   std::array<ImVec2, 4> corners;

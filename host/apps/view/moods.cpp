@@ -176,7 +176,7 @@ void Moods::refuse_unknown_lights(const std::string& name,
     if (std::find(there.begin(), there.end(), light) != there.end()) continue;
     throw UsageError(fmt::format(
         "{}: mood '{}' names a light '{}' that is not there; there {}; mend it or keep it again",
-        file_.string(), name, light, scene_io::names_like(light, there)));
+        file_.string(), name, light, scene::names_like(light, there)));
   }
 }
 

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <utility>
 
+#include "loading/relit_sky.hpp"
 #include "weather/clear_sky.hpp"
 #include "weather/sky_lights.hpp"
-#include "loading/relit_sky.hpp"
 
 namespace photile::view {
 namespace {
@@ -27,7 +27,7 @@ SkyMoment SkyMoment::of(const LocalTime& time) {
   LocalTime same = time;
   same.year = year;
   if (same.month == 2 && same.day == 29) same.day = 28;
-  return {daylight::day_of_year(same), time.hour};
+  return {weather::day_of_year(same), time.hour};
 }
 
 LocalTime SkyMoment::time() const {
@@ -72,13 +72,13 @@ SkySituation take_moving_sky(SceneLoadOptions& options) {
 
 std::shared_ptr<const MovingSky> MovingSky::of(const LightMix& mix, const SkySituation& situation) {
   const std::shared_ptr<MovingSky> sky(new MovingSky);
-  sky->patches_ = scene_io::patches_of(mix);
+  sky->patches_ = loading::patches_of(mix);
   if (sky->patches_.empty()) return nullptr;
-  if (!situation.weather.empty()) sky->weather_ = scene_io::read_weather(situation.weather);
+  if (!situation.weather.empty()) sky->weather_ = weather::read_weather(situation.weather);
   if (!situation.site && !sky->weather_) return nullptr;
   sky->site_ = situation.site ? *situation.site : sky->weather_->site;
   for (std::size_t i = 0; i <= sky->patches_.size(); ++i) {
-    const std::string name = scene_io::sky_light_name(i, sky->patches_.size());
+    const std::string name = loading::sky_light_name(i, sky->patches_.size());
     const auto found = std::find_if(mix.lights.begin(), mix.lights.end(),
                                     [&](const MixedLight& light) { return light.name == name; });
     if (found == mix.lights.end()) return nullptr;  // the ground may have been put into a group
@@ -89,18 +89,18 @@ std::shared_ptr<const MovingSky> MovingSky::of(const LightMix& mix, const SkySit
   return sky;
 }
 
-daylight::SunPosition MovingSky::sun(const SkyMoment& moment) const {
-  return daylight::sun_position(site_, moment.time());
+weather::SunPosition MovingSky::sun(const SkyMoment& moment) const {
+  return weather::sun_position(site_, moment.time());
 }
 
-daylight::SkyIrradiance MovingSky::irradiance(const SkyMoment& moment) const {
-  if (weather_) return scene_io::hour_at(*weather_, moment.time()).irradiance;
-  return daylight::clear_sky(sun(moment).elevation, moment.day);
+weather::SkyIrradiance MovingSky::irradiance(const SkyMoment& moment) const {
+  if (weather_) return weather::hour_at(*weather_, moment.time()).irradiance;
+  return weather::clear_sky(sun(moment).elevation, moment.day);
 }
 
 std::vector<double> MovingSky::powers(const SkyMoment& moment) const {
   std::vector<double> powers =
-      daylight::sky_luminances(patches_, sun(moment), irradiance(moment), moment.day);
+      weather::sky_luminances(patches_, sun(moment), irradiance(moment), moment.day);
   for (std::size_t i = 0; i < powers.size(); ++i) powers[i] *= unit_powers_[i];
   return powers;
 }
@@ -108,13 +108,13 @@ std::vector<double> MovingSky::powers(const SkyMoment& moment) const {
 std::string MovingSky::text(const SkyMoment& moment) const {
   constexpr std::array winds{"north", "northeast", "east", "southeast",
                              "south", "southwest", "west", "northwest"};
-  const daylight::SunPosition place = sun(moment);
+  const weather::SunPosition place = sun(moment);
   const double height = degrees * place.elevation;
   if (!(height > 0)) {
     return fmt::format("night: the sun is {:.0f} degrees below the horizon", -height);
   }
   const auto octant = static_cast<std::size_t>(std::lround(degrees * place.azimuth / 45)) % 8;
-  const daylight::SkyIrradiance light = irradiance(moment);
+  const weather::SkyIrradiance light = irradiance(moment);
   return fmt::format("the sun is {:.0f} degrees high in the {}; direct {:.0f}, diffuse {:.0f} W/m2",
                      height, winds[octant], light.direct_normal, light.diffuse_horizontal);
 }

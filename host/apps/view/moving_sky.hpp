@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "weather/sky_patches.hpp"
-#include "weather/sun_position.hpp"
-#include "weather/weather_file.hpp"
 #include "photile/defaults.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
+#include "weather/sky_patches.hpp"
+#include "weather/sun_position.hpp"
+#include "weather/weather_file.hpp"
 
 namespace photile::view {
 
@@ -50,8 +50,8 @@ class MovingSky {
   /// The power of each of them, in its own unit.
   std::vector<double> powers(const SkyMoment& moment) const;
 
-  daylight::SunPosition sun(const SkyMoment& moment) const;
-  daylight::SkyIrradiance irradiance(const SkyMoment& moment) const;
+  weather::SunPosition sun(const SkyMoment& moment) const;
+  weather::SkyIrradiance irradiance(const SkyMoment& moment) const;
 
   /// "sun 47 degrees high in the SW", or that it is night.
   std::string text(const SkyMoment& moment) const;
@@ -59,11 +59,11 @@ class MovingSky {
  private:
   MovingSky() = default;
 
-  std::vector<daylight::SkyPatch> patches_;
+  std::vector<weather::SkyPatch> patches_;
   std::vector<std::size_t> lights_;  ///< of each patch, and of the ground
   std::vector<double> unit_powers_;  ///< of each, at 1 cd/m2
   Site site_;
-  std::optional<scene_io::WeatherYear> weather_;  ///< none: clear skies
+  std::optional<weather::WeatherYear> weather_;  ///< none: clear skies
 };
 
 }  // namespace photile::view

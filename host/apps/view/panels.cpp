@@ -95,7 +95,7 @@ void draw_probe(PanelState& state, const Frame* frame, PanelEvents& events) {
 }  // namespace
 
 std::string text_of(const Measured& measured) {
-  return measuring::text_with_error(measured.value, measured.standard_error);
+  return report::text_with_error(measured.value, measured.standard_error);
 }
 
 PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {

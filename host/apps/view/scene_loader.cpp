@@ -47,11 +47,11 @@ void SceneLoader::work(const std::stop_token& stop) {
       options_.luminaires_text = *std::exchange(wanted_, std::nullopt);
       loading_ = true;
     }
-    std::shared_ptr<const scene_io::SourcedScene> scene;
+    std::shared_ptr<const loading::SourcedScene> scene;
     std::exception_ptr error;
     try {
-      scene = std::make_shared<const scene_io::SourcedScene>(
-          scene_io::load_sourced_scene(scene_, options_));
+      scene = std::make_shared<const loading::SourcedScene>(
+          loading::load_sourced_scene(scene_, options_));
     } catch (...) {
       error = std::current_exception();
     }

@@ -25,7 +25,7 @@ class SceneLoader {
 
   struct Loaded {
     std::string luminaires;
-    std::shared_ptr<const scene_io::SourcedScene> scene;
+    std::shared_ptr<const loading::SourcedScene> scene;
   };
   /// The newest scene that is loaded, once.
   std::optional<Loaded> take();

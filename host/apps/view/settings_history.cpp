@@ -3,7 +3,7 @@
 namespace photile::view {
 
 SettingsHistory::Settings SettingsHistory::now() const {
-  return {lights_, luminaires_ ? luminaires_->editor().list() : scene_io::LuminaireList()};
+  return {lights_, luminaires_ ? luminaires_->editor().list() : loading::LuminaireList()};
 }
 
 void SettingsHistory::end_frame(bool lights_changed, bool held) {

@@ -26,7 +26,7 @@ class SettingsHistory {
  private:
   struct Settings {
     LightBoard lights;
-    scene_io::LuminaireList luminaires;
+    loading::LuminaireList luminaires;
   };
   Settings now() const;
   void restore(const Settings& settings);

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "common/output_file.hpp"
-#include "writing/edited_scene.hpp"
 #include "image/srgb.hpp"
 #include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
+#include "writing/edited_scene.hpp"
 
 namespace photile::view {
 
@@ -70,8 +70,8 @@ std::string write_mood(const Scene& scene, const SceneLoadOptions& load, LightBo
   try {
     for (LightControl& control : board.controls()) control.solo = false;
     moods.apply(mood, board);
-    const scene_io::EditedScene copy =
-        scene_io::write_edited_scene(scene.source, load, board.lamps_mix(), mood);
+    const writing::EditedScene copy =
+        writing::write_edited_scene(scene.source, load, board.lamps_mix(), mood);
     std::string told = fmt::format("{} is written", copy.file.filename().string());
     for (const std::string& line : copy.left_out) told += "\n" + line;
     return told;

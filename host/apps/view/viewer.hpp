@@ -34,8 +34,8 @@ struct ViewerParameters {
   SkySituation situation;  ///< of a sky of patches; without a place nothing moves it
   /// Makes the mix of a scene that was loaded again, as `mix` was made of the first.
   std::function<LightMix(const Scene&)> mix_of;
-  std::filesystem::path luminaire_file;                ///< that is edited; "" = none
-  std::vector<scene_io::PlacedLuminaires> luminaires;  ///< as the scene has its entries
+  std::filesystem::path luminaire_file;               ///< that is edited; "" = none
+  std::vector<loading::PlacedLuminaires> luminaires;  ///< as the scene has its entries
   DisplayView view = ToneMapping{}.view;
   Progress* notes = &Progress::none();  ///< is told what has no place in the window
   KeepPhotons keep;                     ///< is given all photons once they are there; may be empty

@@ -31,7 +31,7 @@ void check_size(std::string_view what, std::size_t size, std::size_t expected,
 void check_places(std::string_view what, std::span<const glm::vec3> places) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const glm::vec3& p = places[i];
-    if (scene_io::within_limit(glm::dvec3(p))) continue;
+    if (scene::within_limit(glm::dvec3(p))) continue;
     throw InputError(fmt::format(
         "photon cloud: {} {} lies at ({}, {}, {}); coordinates must be numbers up to {:g} m", what,
         i, p.x, p.y, p.z, limits::max_coordinate));

@@ -14,7 +14,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::files {
 namespace {
 
 class FileDescriptor {
@@ -122,4 +122,4 @@ std::vector<unsigned char> SceneFolder::read(const std::string& name) {
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::files

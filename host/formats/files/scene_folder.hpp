@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace photile::scene_io {
+namespace photile::files {
 
 /// The bytes of a regular file. Errors: ResourceError with the reason, without the name; those of
 /// note_input.
@@ -41,4 +41,4 @@ class SceneFolder {
   std::uint64_t external_bytes_ = 0;
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::files

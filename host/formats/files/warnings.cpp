@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace photile::scene_io {
+namespace photile::files {
 namespace {
 
 constexpr std::size_t names_listed = 5;
@@ -39,4 +39,4 @@ std::vector<std::string> Warnings::lines() const {
   return lines;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::files

@@ -11,7 +11,7 @@
 
 #include "common/ascii_text.hpp"
 
-namespace photile::scene_io {
+namespace photile::files {
 
 /// A texture, buffer or material library cannot be used. `what()` names the file and the reason;
 /// the importer decides whether to go on with a warning or to fail.
@@ -42,4 +42,4 @@ class Warnings {
   std::map<std::pair<std::string, std::string>, std::size_t> index_;  ///< by kind and message
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::files

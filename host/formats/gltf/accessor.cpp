@@ -7,7 +7,7 @@
 
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 template <typename T>
@@ -232,4 +232,4 @@ std::vector<std::uint32_t> AccessorReader::indices(int accessor_index,
   return result;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -10,11 +10,11 @@
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 class AccessorReader {
  public:
-  AccessorReader(const tinygltf::Model& model, const ImportContext& context)
+  AccessorReader(const tinygltf::Model& model, const reading::ImportContext& context)
       : model_(model), context_(context) {}
 
   /// All elements of an accessor as floats, `components` for each; normalised integers become
@@ -53,7 +53,7 @@ class AccessorReader {
                        const std::string& use, const SparseVisit& visit) const;
 
   const tinygltf::Model& model_;
-  const ImportContext& context_;
+  const reading::ImportContext& context_;
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -19,7 +19,7 @@
 #include "scene/coordinate_limit.hpp"
 #include "scene/interpolation.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 /// One animated property of a node.
@@ -47,12 +47,12 @@ struct Channel {
 
   glm::dvec4 at(double time) const {
     if (times.size() < 2) return key(0);
-    const auto [i, share] = walk::between(times, time);
+    const auto [i, share] = scene::between(times, time);
     if (interpolation == "STEP") return key(share < 1 ? i : i + 1);
     if (interpolation == "CUBICSPLINE") {
       const double length = times[i + 1] - times[i];
-      return walk::hermite(element(3 * i + 1), length * element(3 * i + 2), element(3 * i + 4),
-                           length * element(3 * i + 3), share);
+      return scene::hermite(element(3 * i + 1), length * element(3 * i + 2), element(3 * i + 4),
+                            length * element(3 * i + 3), share);
     }
     if (path != "rotation") return glm::mix(key(i), key(i + 1), share);
     const glm::dvec4 a = key(i), b = key(i + 1);
@@ -94,7 +94,7 @@ std::optional<int> camera_node(const tinygltf::Model& model, const std::vector<N
 
 class AnimationReader {
  public:
-  AnimationReader(const tinygltf::Model& model, const ImportContext& context)
+  AnimationReader(const tinygltf::Model& model, const reading::ImportContext& context)
       : model_(model), context_(context), accessors_(model, context) {}
 
   /// The channels of an animation that move nodes of the chain.
@@ -149,7 +149,7 @@ class AnimationReader {
   }
 
   const tinygltf::Model& model_;
-  const ImportContext& context_;
+  const reading::ImportContext& context_;
   AccessorReader accessors_;
 };
 
@@ -178,7 +178,7 @@ struct AnimatedChain {
   }
 };
 
-walk::CameraMotion motion_of(AnimatedChain chain, const Camera& base) {
+reading::CameraMotion motion_of(AnimatedChain chain, const Camera& base) {
   double begin = HUGE_VAL, end = -HUGE_VAL;
   for (const Channel& channel : chain.channels) {
     begin = std::min(begin, channel.times.front());
@@ -204,15 +204,15 @@ bool is_chosen(const tinygltf::Animation& animation, std::size_t index,
 
 }  // namespace
 
-walk::CameraMotion read_camera_animation(const std::filesystem::path& file,
-                                         const SceneLoadOptions& options, const Camera& camera,
-                                         const std::string& animation) {
+reading::CameraMotion read_camera_animation(const std::filesystem::path& file,
+                                            const SceneLoadOptions& options, const Camera& camera,
+                                            const std::string& animation) {
   Scene scene;
   scene.source = file;
-  SceneFolder folder(file, options.allow_outside);
-  Warnings warnings;
-  AreaLights area_lights(scene);
-  ImportContext context{scene, folder, options, warnings, area_lights, {}};
+  files::SceneFolder folder(file, options.allow_outside);
+  files::Warnings warnings;
+  reading::AreaLights area_lights(scene);
+  reading::ImportContext context{scene, folder, options, warnings, area_lights, {}};
   if (file.extension() != ".gltf" && file.extension() != ".glb") {
     throw context.error("only glTF files have animations; describe the path in a file of its own");
   }
@@ -245,4 +245,4 @@ walk::CameraMotion read_camera_animation(const std::filesystem::path& file,
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

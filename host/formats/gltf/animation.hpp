@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-#include "reading/camera_path.hpp"
 #include "photile/scene.hpp"
+#include "reading/camera_path.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// How a glTF file moves a camera: translation, rotation and scale of its node and of all nodes
 /// above it, STEP, LINEAR or CUBICSPLINE (glTF 2.0, appendix C). The camera keeps the field of view
@@ -16,8 +16,8 @@ namespace photile::scene_io {
 ///   animation   name or index; "" = the first that moves the camera
 /// Errors: InputError naming the file where it is no glTF, has no such animation, or none that
 /// moves the camera; those of load_scene.
-walk::CameraMotion read_camera_animation(const std::filesystem::path& file,
-                                         const SceneLoadOptions& options, const Camera& camera,
-                                         const std::string& animation);
+reading::CameraMotion read_camera_animation(const std::filesystem::path& file,
+                                            const SceneLoadOptions& options, const Camera& camera,
+                                            const std::string& animation);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -6,16 +6,16 @@
 #include "gltf/steps.hpp"
 #include "scene/coordinate_limit.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 bool has_orientation(const glm::dmat4& world) {
   const double area = glm::length(glm::cross(glm::dvec3(world[1]), glm::dvec3(world[2])));
-  return std::isfinite(area) && area > 0.0 && within_limit(glm::dvec3(world[3]));
+  return std::isfinite(area) && area > 0.0 && scene::within_limit(glm::dvec3(world[3]));
 }
 
 void add_camera(const tinygltf::Camera& source, const std::string& name, const glm::dmat4& world,
-                ImportContext& context) {
+                reading::ImportContext& context) {
   if (source.type != "perspective") {
     context.warnings.add("camera", name, "not a perspective camera; skipped");
     return;
@@ -37,7 +37,7 @@ void add_camera(const tinygltf::Camera& source, const std::string& name, const g
 }  // namespace
 
 void add_gltf_cameras(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
-                      ImportContext& context) {
+                      reading::ImportContext& context) {
   for (const NodeVisit& visit : visits) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(visit.node)];
     if (node.camera < 0) continue;
@@ -51,4 +51,4 @@ void add_gltf_cameras(const tinygltf::Model& model, const std::vector<NodeVisit>
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

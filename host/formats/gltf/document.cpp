@@ -10,10 +10,10 @@
 #include <span>
 #include <string_view>
 
-#include "gltf/json_check.hpp"
 #include "files/warnings.hpp"
+#include "gltf/json_check.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 /// The JSON text of a file: all of a .gltf, the first chunk of a .glb.
@@ -28,16 +28,16 @@ std::string_view json_text(std::span<const unsigned char> bytes, bool binary) {
 }
 
 /// tinygltf asks for a file under several folders; SceneFolder alone decides what is read.
-tinygltf::FsCallbacks file_callbacks(SceneFolder& folder) {
+tinygltf::FsCallbacks file_callbacks(files::SceneFolder& folder) {
   tinygltf::FsCallbacks callbacks{};
   callbacks.FileExists = [](const std::string&, void*) { return true; };
   callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
   callbacks.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* error,
                                const std::string& path, void* user) {
     try {
-      *bytes = static_cast<SceneFolder*>(user)->read(path);
+      *bytes = static_cast<files::SceneFolder*>(user)->read(path);
       return true;
-    } catch (const ResourceError& refusal) {
+    } catch (const files::ResourceError& refusal) {
       *error = refusal.what();
       return false;
     }
@@ -63,7 +63,7 @@ std::string first_line(std::string text) {
 
 }  // namespace
 
-tinygltf::Model read_gltf(ImportContext& context) {
+tinygltf::Model read_gltf(reading::ImportContext& context) {
   std::vector<unsigned char> bytes = context.folder.read_scene_file();
   const std::string_view magic(reinterpret_cast<const char*>(bytes.data()),
                                std::min<std::size_t>(bytes.size(), 4));
@@ -152,4 +152,4 @@ std::string decoded_uri(const std::string& uri) {
   return decoded;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

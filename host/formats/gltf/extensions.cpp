@@ -10,7 +10,7 @@
 
 #include "gltf/document.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 constexpr std::array<std::string_view, 11> understood_extensions{
@@ -61,7 +61,7 @@ std::string remedy_for(std::string_view extension, std::string_view otherwise) {
   return std::string(found == remedies.end() ? otherwise : found->second);
 }
 
-void check_required(const std::string& extension, const ImportContext& context) {
+void check_required(const std::string& extension, const reading::ImportContext& context) {
   if (is_understood(extension)) return;
   throw context.error(fmt::format("requires the glTF extension {}, which is not understood; {}",
                                   extension, remedy_for(extension, "export without it")));
@@ -69,7 +69,7 @@ void check_required(const std::string& extension, const ImportContext& context) 
 
 }  // namespace
 
-void check_extensions(const tinygltf::Model& model, ImportContext& context) {
+void check_extensions(const tinygltf::Model& model, reading::ImportContext& context) {
   for (const std::string& extension : model.extensionsRequired) check_required(extension, context);
   for (const std::string& extension : model.extensionsUsed) {
     if (is_understood(extension)) continue;
@@ -78,7 +78,7 @@ void check_extensions(const tinygltf::Model& model, ImportContext& context) {
   }
 }
 
-void check_required_extensions(std::string_view json, const ImportContext& context) {
+void check_required_extensions(std::string_view json, const reading::ImportContext& context) {
   const auto document = nlohmann::json::parse(json, nullptr, /*allow_exceptions=*/false);
   if (!document.is_object() || !document.contains("extensionsRequired")) return;
   for (const nlohmann::json& extension : document["extensionsRequired"]) {
@@ -86,4 +86,4 @@ void check_required_extensions(std::string_view json, const ImportContext& conte
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -1,3 +1,5 @@
+#include "gltf/gltf_import.hpp"
+
 #include "gltf/accessor.hpp"
 #include "gltf/document.hpp"
 #include "gltf/lights.hpp"
@@ -5,11 +7,10 @@
 #include "gltf/meshes.hpp"
 #include "gltf/nodes.hpp"
 #include "gltf/steps.hpp"
-#include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
-void import_gltf(ImportContext& context) {
+void import_gltf(reading::ImportContext& context) {
   const tinygltf::Model model = read_gltf(context);
   const AccessorReader accessors(model, context);
   context.scene.unit = PowerUnit::lumen;
@@ -27,4 +28,4 @@ void import_gltf(ImportContext& context) {
   add_gltf_surroundings(model, accessors, context);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -12,7 +12,7 @@
 
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 /// Where bytes are described: what is no number there would be read as another one.
@@ -176,11 +176,11 @@ class JsonCheck {
 
 }  // namespace
 
-void check_json(std::string_view json, const ImportContext& context) {
+void check_json(std::string_view json, const reading::ImportContext& context) {
   JsonCheck check;
   if (nlohmann::json::sax_parse(json, &check)) return;
   const bool malformed = check.problem.starts_with("malformed");
   throw context.error(check.problem + (malformed ? "; export it again" : ""));
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -9,15 +9,15 @@
 #include "photile/limits.hpp"
 #include "scene/light_names.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 /// The name, or one with a number after it, that no group has.
 std::string unused(const std::string& name, std::unordered_set<std::string>& groups) {
-  std::string result = clean_light_name(name, limits::max_light_name_bytes);
+  std::string result = scene::clean_light_name(name, limits::max_light_name_bytes);
   for (int number = 2; !groups.insert(result).second; ++number) {
     const std::string suffix = fmt::format("_{}", number);
-    result = clean_light_name(name, limits::max_light_name_bytes - suffix.size()) + suffix;
+    result = scene::clean_light_name(name, limits::max_light_name_bytes - suffix.size()) + suffix;
   }
   return result;
 }
@@ -30,12 +30,12 @@ std::string lamp_of(const tinygltf::Node& node, const std::string& extension) {
   return fmt::format("{} {:g}", extension, number_member(*found, "light", -1.0));
 }
 
-void group_instances(std::vector<Light>& lights, std::span<const LightSource> sources) {
+void group_instances(std::vector<Light>& lights, std::span<const reading::LightSource> sources) {
   std::unordered_set<std::string> groups;
-  std::map<LightSource::LampKey, std::vector<std::size_t>> instances;
+  std::map<reading::LightSource::LampKey, std::vector<std::size_t>> instances;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (!lights[i].group.empty()) {
-      groups.insert(clean_light_name(lights[i].group, limits::max_light_name_bytes));
+      groups.insert(scene::clean_light_name(lights[i].group, limits::max_light_name_bytes));
     } else if (!sources[i].lamp.empty()) {
       instances[sources[i].lamp_key()].push_back(i);
     }
@@ -47,4 +47,4 @@ void group_instances(std::vector<Light>& lights, std::span<const LightSource> so
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

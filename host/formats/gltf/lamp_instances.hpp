@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "gltf/tiny_gltf.hpp"
-#include "reading/light_source.hpp"
 #include "photile/scene.hpp"
+#include "reading/light_source.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// LightSource::lamp of the light that an extension of a node refers to; "" where it has none.
 std::string lamp_of(const tinygltf::Node& node, const std::string& extension);
@@ -17,6 +17,6 @@ std::string lamp_of(const tinygltf::Node& node, const std::string& extension);
 /// Makes a group of those lights without one whose lamp is the same, named after the first of them,
 /// so that they share a layer.
 ///   sources   of the lights
-void group_instances(std::vector<Light>& lights, std::span<const LightSource> sources);
+void group_instances(std::vector<Light>& lights, std::span<const reading::LightSource> sources);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

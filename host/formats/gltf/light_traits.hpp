@@ -3,15 +3,16 @@
 
 #include <string>
 
-#include "gltf/tiny_gltf.hpp"
 #include "files/warnings.hpp"
+#include "gltf/tiny_gltf.hpp"
 #include "reading/light_source.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
-/// The traits of the node `name` by the extras `photile_group`, `photile_lumens` and `photile_kelvin`,
-/// which Blender exports as custom properties. Numbers that are none, or out of range, are ignored with a warning.
-LightTraits light_traits(const tinygltf::Value& extras, const std::string& name,
-                         Warnings& warnings);
+/// The traits of the node `name` by the extras `photile_group`, `photile_lumens` and
+/// `photile_kelvin`, which Blender exports as custom properties. Numbers that are none, or out of
+/// range, are ignored with a warning.
+reading::LightTraits light_traits(const tinygltf::Value& extras, const std::string& name,
+                                  files::Warnings& warnings);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

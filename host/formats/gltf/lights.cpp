@@ -8,19 +8,19 @@
 #include <optional>
 
 #include "gltf/document.hpp"
+#include "gltf/lamp_instances.hpp"
 #include "gltf/light_traits.hpp"
 #include "gltf/profiles.hpp"
-#include "gltf/lamp_instances.hpp"
 #include "photile/limits.hpp"
 #include "scene/color_temperature.hpp"
 #include "scene/coordinate_limit.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/photometry.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
-void set_cone(const tinygltf::SpotLight& spot, Light& light, Warnings& warnings) {
+void set_cone(const tinygltf::SpotLight& spot, Light& light, files::Warnings& warnings) {
   constexpr double largest = std::numbers::pi / 2.0;
   const double outer = std::clamp(spot.outerConeAngle, 0.0, largest);
   const double inner = std::clamp(spot.innerConeAngle, 0.0, outer);
@@ -32,15 +32,16 @@ void set_cone(const tinygltf::SpotLight& spot, Light& light, Warnings& warnings)
 }
 
 /// Kind and flux; false for a type that the extension does not have.
-bool set_power(const tinygltf::Light& source, double intensity, Light& light, Warnings& warnings) {
+bool set_power(const tinygltf::Light& source, double intensity, Light& light,
+               files::Warnings& warnings) {
   if (source.type == "point") {
     light.kind = LightKind::point;
-    light.power = point_flux(intensity);
+    light.power = scene::point_flux(intensity);
   } else if (source.type == "spot") {
     light.kind = LightKind::spot;
     set_cone(source.spot, light, warnings);
-    light.power = spot_flux(intensity, static_cast<double>(light.inner_cone_angle),
-                            static_cast<double>(light.outer_cone_angle));
+    light.power = scene::spot_flux(intensity, static_cast<double>(light.inner_cone_angle),
+                                   static_cast<double>(light.outer_cone_angle));
   } else if (source.type == "directional") {
     light.kind = LightKind::directional;
     light.power = intensity;
@@ -67,9 +68,9 @@ bool set_orientation(const glm::dmat4& world, Light& light) {
 }
 
 /// What a node's extras say about its light.
-void apply_traits(const LightTraits& traits, Light& light, Warnings& warnings) {
+void apply_traits(const reading::LightTraits& traits, Light& light, files::Warnings& warnings) {
   if (!traits.group.empty()) light.group = traits.group;
-  if (traits.kelvin > 0.0) light.color = glm::vec3(color_of_temperature(traits.kelvin));
+  if (traits.kelvin > 0.0) light.color = glm::vec3(scene::color_of_temperature(traits.kelvin));
   if (traits.lumens > 0.0 && light.kind == LightKind::directional) {
     warnings.add("light", light.name, "photile_lumens of a directional light is ignored");
   } else if (traits.lumens > 0.0) {
@@ -80,7 +81,7 @@ void apply_traits(const LightTraits& traits, Light& light, Warnings& warnings) {
 class LightImporter {
  public:
   LightImporter(const tinygltf::Model& model, const AccessorReader& accessors,
-                ImportContext& context)
+                reading::ImportContext& context)
       : model_(model), context_(context), profiles_(model, accessors, context) {}
 
   void add(const NodeVisit& visit) {
@@ -92,7 +93,7 @@ class LightImporter {
     light.name = node.name.empty() && source != nullptr ? source->name : node.name;
     if (source != nullptr) light.group = string_member(source->extras, "photile_group");
     if (!set_emission(source, profile, light)) return;
-    Warnings& warnings = context_.warnings;
+    files::Warnings& warnings = context_.warnings;
     apply_traits(light_traits(node.extras, node_name(model_, visit.node), warnings), light,
                  warnings);
     place(visit, light,
@@ -116,13 +117,13 @@ class LightImporter {
   /// emits, but for its colour.
   bool set_emission(const tinygltf::Light* source, const std::optional<NodeProfile>& profile,
                     Light& light) {
-    Warnings& warnings = context_.warnings;
+    files::Warnings& warnings = context_.warnings;
     glm::dvec3 color(1.0);
     if (source != nullptr) color = rgb_of(source->color, color);
     if (profile && profile->colored_by_node) color = profile->color;
     // The colour multiplies the intensity, so a dark colour makes a weak light.
     double color_luminance = 0;
-    set_light_color(color, light, color_luminance);  // a black one leaves no power
+    scene::set_light_color(color, light, color_luminance);  // a black one leaves no power
     if (profile) {
       light.kind = LightKind::point;
       light.distribution = profile->distribution;
@@ -141,7 +142,7 @@ class LightImporter {
 
   void place(const NodeVisit& visit, Light& light, const std::string& lamp) {
     const glm::dvec3 position(visit.world[3]);
-    if (!std::isfinite(light.power) || light.power <= 0.0 || !within_limit(position) ||
+    if (!std::isfinite(light.power) || light.power <= 0.0 || !scene::within_limit(position) ||
         !set_orientation(visit.world, light)) {
       context_.warnings.add("light", light.name,
                             "emits nothing or has no place within reach; dropped");
@@ -153,20 +154,20 @@ class LightImporter {
     }
     context_.scene.lights.push_back(std::move(light));
     context_.light_sources.push_back(
-        {LightSource::Kind::node, static_cast<std::uint32_t>(visit.node), none, lamp});
+        {reading::LightSource::Kind::node, static_cast<std::uint32_t>(visit.node), none, lamp});
   }
 
   const tinygltf::Model& model_;
-  ImportContext& context_;
+  reading::ImportContext& context_;
   GltfProfiles profiles_;
 };
 
 }  // namespace
 
 void add_gltf_lights(const tinygltf::Model& model, const AccessorReader& accessors,
-                     const std::vector<NodeVisit>& visits, ImportContext& context) {
+                     const std::vector<NodeVisit>& visits, reading::ImportContext& context) {
   LightImporter importer(model, accessors, context);
   for (const NodeVisit& visit : visits) importer.add(visit);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -8,7 +8,7 @@
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// Adds the lights without size of all visited nodes. Directional lights get their irradiance as
 /// `power`; load_scene turns it into flux. Black lights are dropped with a warning, `range` (an
@@ -16,6 +16,6 @@ namespace photile::scene_io {
 /// Photometric data at a node (gltf_profiles.hpp) makes a point light; light_traits.hpp says what
 /// else a node's extras tell. Errors: InputError.
 void add_gltf_lights(const tinygltf::Model& model, const AccessorReader& accessors,
-                     const std::vector<NodeVisit>& visits, ImportContext& context);
+                     const std::vector<NodeVisit>& visits, reading::ImportContext& context);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <optional>
 
+#include "files/warnings.hpp"
 #include "gltf/document.hpp"
 #include "gltf/pictures.hpp"
 #include "gltf/texture_reference.hpp"
-#include "pictures/texture_store.hpp"
-#include "files/warnings.hpp"
 #include "photile/limits.hpp"
+#include "pictures/texture_store.hpp"
 #include "scene/surface_models.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 /// From this transmission factor on a surface counts as glass.
@@ -22,7 +22,8 @@ constexpr double glass_transmission = 0.5;
 
 class Converter {
  public:
-  Converter(const tinygltf::Model& model, const AccessorReader& accessors, ImportContext& context)
+  Converter(const tinygltf::Model& model, const AccessorReader& accessors,
+            reading::ImportContext& context)
       : model_(model),
         accessors_(accessors),
         context_(context),
@@ -40,15 +41,15 @@ class Converter {
   void set_opaque(const tinygltf::Material& source, MetallicRoughness model, Material& material);
   void set_opacity(const tinygltf::Material& source, bool emits, Material& material);
   void set_normal_map(const tinygltf::Material& source, Material& material);
-  Emission emission_of(const tinygltf::Material& source);
-  std::uint32_t load_texture(int texture, TextureContent content);
-  std::uint32_t surface_texture(const TextureReference& reference, TextureContent content,
+  reading::Emission emission_of(const tinygltf::Material& source);
+  std::uint32_t load_texture(int texture, pictures::TextureContent content);
+  std::uint32_t surface_texture(const TextureReference& reference, pictures::TextureContent content,
                                 const std::string& what);
 
   const tinygltf::Model& model_;
   const AccessorReader& accessors_;
-  ImportContext& context_;
-  TextureStore textures_;
+  reading::ImportContext& context_;
+  pictures::TextureStore textures_;
   std::string name_;
   std::optional<TextureCoordinates> shared_;  ///< of the material's textures so far
 };
@@ -80,18 +81,20 @@ void Converter::set_opaque(const tinygltf::Material& source, MetallicRoughness m
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   if (reference_of(pbr.baseColorTexture).given() && model.base_color != glm::dvec3(0.0)) {
     material.diffuse_texture = surface_texture(reference_of(pbr.baseColorTexture),
-                                               TextureContent::color, "mid grey (0.5)");
-    if (material.diffuse_texture == none) model.base_color = glm::dvec3(missing_albedo);
+                                               pictures::TextureContent::color, "mid grey (0.5)");
+    if (material.diffuse_texture == none) model.base_color = glm::dvec3(scene::missing_albedo);
   }
-  model.texture = surface_texture(reference_of(pbr.metallicRoughnessTexture), TextureContent::data,
-                                  "the metallic and roughness factor");
+  model.texture =
+      surface_texture(reference_of(pbr.metallicRoughnessTexture), pictures::TextureContent::data,
+                      "the metallic and roughness factor");
   if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
     model.specular_texture = surface_texture(reference_of(*specular, "specularTexture"),
-                                             TextureContent::data, "the specular factor");
-    model.specular_color_texture = surface_texture(reference_of(*specular, "specularColorTexture"),
-                                                   TextureContent::color, "the specular colour");
+                                             pictures::TextureContent::data, "the specular factor");
+    model.specular_color_texture =
+        surface_texture(reference_of(*specular, "specularColorTexture"),
+                        pictures::TextureContent::color, "the specular colour");
   }
-  set_metallic_roughness(model, material);
+  scene::set_metallic_roughness(model, material);
   const bool varies = model.texture != none || model.specular_texture != none ||
                       model.specular_color_texture != none ||
                       (material.diffuse_texture != none && model.metallic > 0.0);
@@ -111,8 +114,8 @@ void Converter::set_opacity(const tinygltf::Material& source, bool emits, Materi
   if (pbr.baseColorFactor.size() == 4 && std::isfinite(pbr.baseColorFactor[3])) {
     opacity = static_cast<float>(std::clamp(pbr.baseColorFactor[3], 0.0, 1.0));
   }
-  std::uint32_t texture = surface_texture(reference_of(pbr.baseColorTexture), TextureContent::color,
-                                          "the alpha factor");
+  std::uint32_t texture = surface_texture(reference_of(pbr.baseColorTexture),
+                                          pictures::TextureContent::color, "the alpha factor");
   if (texture != none && context_.scene.textures[texture].opaque()) texture = none;
   const bool mask = source.alphaMode == "MASK";
   // Above 1 nothing is there, however far above.
@@ -131,8 +134,8 @@ void Converter::set_opacity(const tinygltf::Material& source, bool emits, Materi
 }
 
 void Converter::set_normal_map(const tinygltf::Material& source, Material& material) {
-  material.normal_texture =
-      surface_texture(reference_of(source.normalTexture), TextureContent::data, "no normal map");
+  material.normal_texture = surface_texture(reference_of(source.normalTexture),
+                                            pictures::TextureContent::data, "no normal map");
   const double scale = source.normalTexture.scale;
   if (std::isfinite(scale)) {
     material.normal_scale =
@@ -156,7 +159,7 @@ void Converter::warn_about_glass(const tinygltf::Material& source, const Metalli
                                  const tinygltf::Value* volume) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   // glTF's roughness is 1 where the file does not give any.
-  if (model.roughness > mirror_roughness) {
+  if (model.roughness > scene::mirror_roughness) {
     warn(fmt::format("rough glass (roughness {:.3g}) is treated as smooth", model.roughness));
   }
   if (reference_of(pbr.metallicRoughnessTexture).given()) {
@@ -173,13 +176,14 @@ void Converter::warn_about_glass(const tinygltf::Material& source, const Metalli
   }
 }
 
-std::uint32_t Converter::load_texture(int texture, TextureContent content) {
+std::uint32_t Converter::load_texture(int texture, pictures::TextureContent content) {
   if (texture < 0 || static_cast<std::size_t>(texture) >= model_.textures.size()) {
-    throw ResourceError(fmt::format("there is no texture {}", texture));
+    throw files::ResourceError(fmt::format("there is no texture {}", texture));
   }
   const tinygltf::Texture& source = model_.textures[static_cast<std::size_t>(texture)];
   if (source.source < 0 || static_cast<std::size_t>(source.source) >= model_.images.size()) {
-    throw ResourceError(fmt::format("texture {} has no picture of a format that is read", texture));
+    throw files::ResourceError(
+        fmt::format("texture {} has no picture of a format that is read", texture));
   }
   const auto has_wrap = [&](int mode) {
     if (source.sampler < 0 || static_cast<std::size_t>(source.sampler) >= model_.samplers.size()) {
@@ -198,7 +202,8 @@ std::uint32_t Converter::load_texture(int texture, TextureContent content) {
 
 /// A texture of the surface; `none` where the material has none or it cannot be used. `substitute`
 /// says what is used then.
-std::uint32_t Converter::surface_texture(const TextureReference& reference, TextureContent content,
+std::uint32_t Converter::surface_texture(const TextureReference& reference,
+                                         pictures::TextureContent content,
                                          const std::string& substitute) {
   if (!reference.given()) return none;
   if (shared_ && *shared_ != reference.coordinates) {
@@ -210,7 +215,7 @@ std::uint32_t Converter::surface_texture(const TextureReference& reference, Text
     const std::uint32_t texture = load_texture(reference.index, content);
     shared_ = reference.coordinates;
     return texture;
-  } catch (const ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     warn(std::string(error.what()) + "; " + substitute + " is used instead");
     return none;
   }
@@ -235,15 +240,15 @@ MaterialCoordinates Converter::add(const tinygltf::Material& source, const std::
   set_normal_map(source, material);
   if (reference_of(source.occlusionTexture).given())
     warn("occlusion texture is ignored: light is traced");
-  const Emission emission = emission_of(source);
+  const reading::Emission emission = emission_of(source);
   set_opacity(source, emission.radiance != glm::dvec3(0.0), material);
   context_.scene.materials.push_back(std::move(material));
   context_.emission.push_back(emission);
   return {shared_.value_or(TextureCoordinates()), reference_of(source.emissiveTexture).coordinates};
 }
 
-Emission Converter::emission_of(const tinygltf::Material& source) {
-  Emission emission;
+reading::Emission Converter::emission_of(const tinygltf::Material& source) {
+  reading::Emission emission;
   emission.radiance = rgb_of(source.emissiveFactor, glm::dvec3(0.0));
   if (const auto* strength = find_extension(source.extensions, "KHR_materials_emissive_strength")) {
     emission.radiance *= number_member(*strength, "emissiveStrength", 1.0);
@@ -253,14 +258,14 @@ Emission Converter::emission_of(const tinygltf::Material& source) {
   if (!reference_of(source.emissiveTexture).given() || emission.radiance == glm::dvec3(0.0))
     return emission;
   try {
-    emission.texture = load_texture(source.emissiveTexture.index, TextureContent::color);
-  } catch (const ResourceError& error) {
+    emission.texture = load_texture(source.emissiveTexture.index, pictures::TextureContent::color);
+  } catch (const files::ResourceError& error) {
     warn(std::string(error.what()) + "; the emissive factor is used alone");
   }
   return emission;
 }
 
-void note_blender_units(const tinygltf::Model& model, ImportContext& context) {
+void note_blender_units(const tinygltf::Model& model, reading::ImportContext& context) {
   const bool from_blender =
       model.asset.generator.find("Khronos glTF Blender I/O") != std::string::npos;
   const bool scaled = context.options.emissive_scale != SceneLoadOptions{}.emissive_scale;
@@ -276,7 +281,7 @@ void note_blender_units(const tinygltf::Model& model, ImportContext& context) {
 
 std::vector<MaterialCoordinates> add_gltf_materials(const tinygltf::Model& model,
                                                     const AccessorReader& accessors,
-                                                    ImportContext& context) {
+                                                    reading::ImportContext& context) {
   Converter converter(model, accessors, context);
   std::vector<MaterialCoordinates> coordinates;
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
@@ -295,4 +300,4 @@ std::vector<MaterialCoordinates> add_gltf_materials(const tinygltf::Model& model
   return coordinates;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

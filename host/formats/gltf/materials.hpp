@@ -8,7 +8,7 @@
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// Those of a material's emission, and those that its other textures share.
 struct MaterialCoordinates {
@@ -20,6 +20,6 @@ struct MaterialCoordinates {
 /// coordinates of each material.
 std::vector<MaterialCoordinates> add_gltf_materials(const tinygltf::Model& model,
                                                     const AccessorReader& accessors,
-                                                    ImportContext& context);
+                                                    reading::ImportContext& context);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -9,16 +9,16 @@
 #include <utility>
 
 #include "gltf/document.hpp"
+#include "gltf/lamp_instances.hpp"
 #include "gltf/light_traits.hpp"
 #include "gltf/panels.hpp"
 #include "gltf/primitives.hpp"
 #include "gltf/vertices.hpp"
 #include "reading/instance_recorder.hpp"
-#include "gltf/lamp_instances.hpp"
 #include "reading/plain_material.hpp"
 #include "scene/material_needs.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 bool has_normal_map(const Scene& scene) {
@@ -29,20 +29,20 @@ bool has_normal_map(const Scene& scene) {
 /// What the triangles of a primitive are made of.
 struct Surface {
   std::uint32_t material;
-  Emission emission;
+  reading::Emission emission;
 };
 
 class MeshImporter {
  public:
   MeshImporter(const tinygltf::Model& model, const AccessorReader& accessors,
                const std::vector<NodeVisit>& visits,
-               const std::vector<MaterialCoordinates>& coordinates, ImportContext& context)
+               const std::vector<MaterialCoordinates>& coordinates, reading::ImportContext& context)
       : model_(model),
         accessors_(accessors),
         coordinates_(coordinates),
         context_(context),
-        needs_(needs_of_materials(context.scene.materials)),
-        builder_(context.scene, {needs_.textures, has_emission_texture(context), true,
+        needs_(scene::needs_of_materials(context.scene.materials)),
+        builder_(context.scene, {needs_.textures, reading::has_emission_texture(context), true,
                                  has_normal_map(context.scene)}),
         instances_(context.scene),
         plain_materials_(context.scene) {
@@ -53,7 +53,7 @@ class MeshImporter {
   void add_panel(const NodeVisit& visit, std::uint64_t visit_number);
   void finish() {
     builder_.finish();
-    drop_flat_normals(context_.scene, needs_);
+    scene::drop_flat_normals(context_.scene, needs_);
     instances_.finish();
   }
 
@@ -75,13 +75,13 @@ class MeshImporter {
   const tinygltf::Model& model_;
   const AccessorReader& accessors_;
   const std::vector<MaterialCoordinates>& coordinates_;
-  ImportContext& context_;
+  reading::ImportContext& context_;
   SceneNeeds needs_;
-  MeshBuilder builder_;
-  InstanceRecorder instances_;
+  scene::MeshBuilder builder_;
+  reading::InstanceRecorder instances_;
   std::map<int, std::size_t> uses_;  ///< of each mesh
   std::vector<bool> kept_;           ///< triangles of the visit that the scene took
-  PlainMaterials plain_materials_;
+  reading::PlainMaterials plain_materials_;
   std::uint32_t panel_material_ = none;
 };
 
@@ -122,14 +122,15 @@ void MeshImporter::add_panel(const NodeVisit& visit, std::uint64_t visit_number)
     panel_material_ = static_cast<std::uint32_t>(context_.scene.materials.size());
     context_.scene.materials.emplace_back().name = "panel";  // black
   }
-  LightTraits traits = light_traits(model_.nodes[static_cast<std::size_t>(visit.node)].extras, name,
-                                    context_.warnings);
+  reading::LightTraits traits = light_traits(
+      model_.nodes[static_cast<std::size_t>(visit.node)].extras, name, context_.warnings);
   traits.lumens = 0;  // the panel's own say so
   traits.lamp = lamp_of(model_.nodes[static_cast<std::size_t>(visit.node)], "EXT_lights_area");
-  const std::uint32_t light = context_.area_lights.find_or_add(
-      first_panel_object + visit_number, name, panel_material_, {panel->radiance, false}, traits);
+  const std::uint32_t light =
+      context_.area_lights.find_or_add(reading::first_panel_object + visit_number, name,
+                                       panel_material_, {panel->radiance, false}, traits);
   for (const auto& corners : panel_triangles(*panel, visit.world)) {
-    std::array<Corner, 3> triangle;
+    std::array<scene::Corner, 3> triangle;
     for (std::size_t i = 0; i < 3; ++i) triangle[i].position = corners[i];
     builder_.add(triangle, panel_material_, light);
   }
@@ -155,13 +156,14 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   // A mirrored node turns the winding of its triangles round.
   const bool mirrored = glm::determinant(glm::dmat3(visit.world)) < 0.0;
   const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
-  LightTraits traits = light_traits(node.extras, node_name(model_, visit.node), context_.warnings);
+  reading::LightTraits traits =
+      light_traits(node.extras, node_name(model_, visit.node), context_.warnings);
   traits.lamp = fmt::format("mesh {}", node.mesh);
   const std::uint32_t light = context_.area_lights.find_or_add(
       visit_number, node.name.empty() ? mesh_name : node.name, material, surface.emission, traits);
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
-    const std::array<Corner, 3> triangle{vertices[mirrored ? c : a], vertices[b],
-                                         vertices[mirrored ? a : c]};
+    const std::array<scene::Corner, 3> triangle{vertices[mirrored ? c : a], vertices[b],
+                                                vertices[mirrored ? a : c]};
     kept_.push_back(builder_.add(triangle, surface.material, light));
   }
 }
@@ -235,7 +237,8 @@ PlacedVertices MeshImporter::read_vertices(const tinygltf::Primitive& primitive,
 
 void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accessors,
                      const std::vector<NodeVisit>& visits,
-                     const std::vector<MaterialCoordinates>& coordinates, ImportContext& context) {
+                     const std::vector<MaterialCoordinates>& coordinates,
+                     reading::ImportContext& context) {
   MeshImporter importer(model, accessors, visits, coordinates, context);
   check_panel_names(model, visits, context);
   for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -245,4 +248,4 @@ void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accesso
   importer.finish();
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -9,12 +9,13 @@
 #include "reading/import_context.hpp"
 #include "scene/mesh_builder.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// Adds the triangles of every visited node's mesh to the scene. Morph targets and skins stay in
 /// their rest pose; points and lines are left out; both with a warning. Errors: InputError.
 void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accessors,
                      const std::vector<NodeVisit>& visits,
-                     const std::vector<MaterialCoordinates>& coordinates, ImportContext& context);
+                     const std::vector<MaterialCoordinates>& coordinates,
+                     reading::ImportContext& context);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

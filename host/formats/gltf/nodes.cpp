@@ -13,7 +13,7 @@
 #include "gltf/profiles.hpp"
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 /// The nodes that no other one has as a child.
@@ -44,7 +44,7 @@ std::string scene_list(const tinygltf::Model& model) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::vector<int> root_nodes(const tinygltf::Model& model, ImportContext& context) {
+std::vector<int> root_nodes(const tinygltf::Model& model, reading::ImportContext& context) {
   if (const std::optional<std::size_t> scene = scene_number(model, context)) {
     if (model.scenes.size() > 1 && context.options.scene.empty()) {
       context.warnings.add(
@@ -88,7 +88,7 @@ class VisitCounter {
 };
 
 void check_visit_count(const tinygltf::Model& model, const std::vector<int>& roots,
-                       const ImportContext& context) {
+                       const reading::ImportContext& context) {
   VisitCounter counter(model);
   std::uint64_t visits = 0;
   for (const int root : roots) visits += counter.count(root);
@@ -108,7 +108,7 @@ struct Level {
 
 class Walk {
  public:
-  Walk(const tinygltf::Model& model, const ImportContext& context)
+  Walk(const tinygltf::Model& model, const reading::ImportContext& context)
       : model_(model), context_(context), on_path_(model.nodes.size(), false) {}
 
   void from_root(int root, std::vector<NodeVisit>& visits) {
@@ -147,13 +147,13 @@ class Walk {
   }
 
   const tinygltf::Model& model_;
-  const ImportContext& context_;
+  const reading::ImportContext& context_;
   std::vector<bool> on_path_;
   std::vector<Level> path_;
 };
 
 void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
-                            ImportContext& context) {
+                            reading::ImportContext& context) {
   const auto asked_for = [&](const tinygltf::Node& node) {
     const std::vector<LuminousPanel>& panels = context.options.panels;
     return std::any_of(panels.begin(), panels.end(),
@@ -182,7 +182,7 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
 }  // namespace
 
 std::optional<std::size_t> scene_number(const tinygltf::Model& model,
-                                        const ImportContext& context) {
+                                        const reading::ImportContext& context) {
   if (model.scenes.empty()) return std::nullopt;
   const std::string& wanted = context.options.scene;
   if (!wanted.empty()) {
@@ -222,7 +222,7 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
   return transform;
 }
 
-std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& context) {
+std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, reading::ImportContext& context) {
   std::vector<NodeVisit> visits;
   Walk walk(model, context);
   const std::vector<int> roots = root_nodes(model, context);
@@ -237,4 +237,4 @@ std::string node_name(const tinygltf::Model& model, int node) {
   return name.empty() ? fmt::format("node {}", node) : name;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -9,7 +9,7 @@
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// One appearance of a node in the scene.
 struct NodeVisit {
@@ -21,10 +21,11 @@ struct NodeVisit {
 /// first; or all root nodes when there is no scene), in depth-first order. Empty nodes, which are
 /// what remains of Blender's area lights, are named in a warning. Errors: InputError for cycles,
 /// wrong node numbers and trees beyond the limits; UsageError where there is no such scene.
-std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, ImportContext& context);
+std::vector<NodeVisit> visit_nodes(const tinygltf::Model& model, reading::ImportContext& context);
 
 /// The scene that visit_nodes visits; nothing where the file has none.
-std::optional<std::size_t> scene_number(const tinygltf::Model& model, const ImportContext& context);
+std::optional<std::size_t> scene_number(const tinygltf::Model& model,
+                                        const reading::ImportContext& context);
 
 /// Node to parent space: its matrix, or its translation, rotation and scale.
 glm::dmat4 local_transform(const tinygltf::Node& node);
@@ -32,4 +33,4 @@ glm::dmat4 local_transform(const tinygltf::Node& node);
 /// A node's name, or "node <number>".
 std::string node_name(const tinygltf::Model& model, int node);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -4,10 +4,11 @@
 #include "gltf/steps.hpp"
 #include "reading/scene_origin.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
-void add_triangles(const LocalMesh& local, const glm::dmat4& world, SceneOrigin& origin) {
+void add_triangles(const reading::LocalMesh& local, const glm::dmat4& world,
+                   reading::SceneOrigin& origin) {
   for (const glm::uvec3& triangle : local.triangles) {
     std::array<glm::dvec3, 3> corners;
     for (int c = 0; c < 3; ++c) {
@@ -21,7 +22,7 @@ void add_triangles(const LocalMesh& local, const glm::dmat4& world, SceneOrigin&
 }  // namespace
 
 void move_to_origin(const tinygltf::Model& model, const AccessorReader& accessors,
-                    std::vector<NodeVisit>& visits, ImportContext& context) {
+                    std::vector<NodeVisit>& visits, reading::ImportContext& context) {
   std::map<int, std::vector<const NodeVisit*>> visits_of;  // each mesh is read once
   for (const NodeVisit& visit : visits) {
     const int mesh = model.nodes[static_cast<std::size_t>(visit.node)].mesh;
@@ -29,13 +30,13 @@ void move_to_origin(const tinygltf::Model& model, const AccessorReader& accessor
       visits_of[mesh].push_back(&visit);
     }
   }
-  SceneOrigin origin;
+  reading::SceneOrigin origin;
   for (const auto& [mesh, places] : visits_of) {
-    const LocalMesh local = read_local_mesh(model, mesh, accessors, context);
+    const reading::LocalMesh local = read_local_mesh(model, mesh, accessors, context);
     for (const NodeVisit* visit : places) add_triangles(local, visit->world, origin);
   }
   context.scene.origin = origin.best();
   for (NodeVisit& visit : visits) visit.world[3] -= glm::dvec4(context.scene.origin, 0.0);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -9,12 +9,12 @@
 #include <string_view>
 
 #include "gltf/document.hpp"
-#include "photometry/photometric_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photometry/photometric_text.hpp"
 #include "scene/light_names.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 using std::numbers::pi;
@@ -52,7 +52,7 @@ std::optional<Panel> size_of(const tinygltf::Value& extras) {
 }
 
 std::optional<Panel> panel_of_extras(const tinygltf::Node& node, const std::string& name,
-                                     Warnings& warnings) {
+                                     files::Warnings& warnings) {
   std::optional<Panel> panel = size_of(node.extras);
   const double lumens = number_member(node.extras, "photile_lumens", 0.0);
   if (!panel || !(lumens > 0.0)) {
@@ -67,7 +67,7 @@ std::optional<Panel> panel_of_extras(const tinygltf::Node& node, const std::stri
 
 std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
                                         const tinygltf::Value& reference, const std::string& name,
-                                        ImportContext& context) {
+                                        reading::ImportContext& context) {
   const tinygltf::Value* extension = find_extension(model.extensions, area_extension);
   const tinygltf::Value lights = extension != nullptr && extension->Has("lights")
                                      ? extension->Get("lights")
@@ -105,7 +105,8 @@ std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
 
 bool has_panel(const tinygltf::Node& node) { return node.extras.Has(area_extra); }
 
-std::optional<Panel> panel_of(const tinygltf::Model& model, int number, ImportContext& context) {
+std::optional<Panel> panel_of(const tinygltf::Model& model, int number,
+                              reading::ImportContext& context) {
   const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(number)];
   for (const LuminousPanel& asked : context.options.panels) {
     if (asked.node != node.name) continue;
@@ -150,15 +151,15 @@ std::vector<std::array<glm::dvec3, 3>> panel_triangles(const Panel& panel,
 }
 
 void check_panel_names(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
-                       const ImportContext& context) {
+                       const reading::ImportContext& context) {
   for (const LuminousPanel& panel : context.options.panels) {
     std::vector<std::string> names;
     for (const NodeVisit& visit : visits) names.push_back(node_name(model, visit.node));
     if (std::find(names.begin(), names.end(), panel.node) == names.end()) {
       throw UsageError(fmt::format("panel at node {}: there is no node '{}'; there {}", panel.node,
-                                   panel.node, listed_names(names)));
+                                   panel.node, scene::listed_names(names)));
     }
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -11,7 +11,7 @@
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// A flat lamp around a node's origin, in its xy plane; it shines along -z. The node's scale does
 /// not count.
@@ -24,7 +24,8 @@ struct Panel {
 /// The panel of a node, or nothing; --area-light comes before extras, extras before the extension.
 /// One without a size or light is named in a warning. Errors: InputError for a light of the
 /// extension that does not exist.
-std::optional<Panel> panel_of(const tinygltf::Model& model, int node, ImportContext& context);
+std::optional<Panel> panel_of(const tinygltf::Model& model, int node,
+                              reading::ImportContext& context);
 
 /// Whether a node's extras ask for a panel.
 bool has_panel(const tinygltf::Node& node);
@@ -34,6 +35,6 @@ std::vector<std::array<glm::dvec3, 3>> panel_triangles(const Panel& panel, const
 
 /// Errors: UsageError for a --area-light whose node is not in the file; it lists those there are.
 void check_panel_names(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
-                       const ImportContext& context);
+                       const reading::ImportContext& context);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

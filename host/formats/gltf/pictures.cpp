@@ -5,7 +5,7 @@
 #include "gltf/document.hpp"
 #include "pictures/texture_decoder.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 /// What tells the picture from others, and messages call it.
@@ -16,8 +16,8 @@ std::string name_of(const tinygltf::Image& image, std::size_t number) {
 }  // namespace
 
 std::uint32_t texture_picture(const tinygltf::Model& model, std::size_t number,
-                              const AccessorReader& accessors, TextureContent content,
-                              TextureStore& textures) {
+                              const AccessorReader& accessors, pictures::TextureContent content,
+                              pictures::TextureStore& textures) {
   const tinygltf::Image& image = model.images[number];
   const std::string name = name_of(image, number);
   if (image.bufferView >= 0) {
@@ -27,14 +27,16 @@ std::uint32_t texture_picture(const tinygltf::Model& model, std::size_t number,
   return textures.from_file(decoded_uri(image.uri), content);
 }
 
-RadiancePicture rgbd_picture(const tinygltf::Model& model, std::size_t number,
-                             const AccessorReader& accessors, SceneFolder& folder) {
+pictures::RadiancePicture rgbd_picture(const tinygltf::Model& model, std::size_t number,
+                                       const AccessorReader& accessors,
+                                       files::SceneFolder& folder) {
   const tinygltf::Image& image = model.images[number];
   const std::string name = name_of(image, number);
-  if (image.bufferView >= 0) return decode_rgbd(name, accessors.view(image.bufferView, name));
-  if (!image.image.empty()) return decode_rgbd(name, image.image);
+  if (image.bufferView >= 0)
+    return pictures::decode_rgbd(name, accessors.view(image.bufferView, name));
+  if (!image.image.empty()) return pictures::decode_rgbd(name, image.image);
   const std::string file = decoded_uri(image.uri);
-  return decode_rgbd(file, folder.read(file));
+  return pictures::decode_rgbd(file, folder.read(file));
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -5,21 +5,21 @@
 #include <cstdint>
 #include <string>
 
+#include "files/scene_folder.hpp"
 #include "gltf/accessor.hpp"
 #include "gltf/tiny_gltf.hpp"
 #include "pictures/radiance_picture.hpp"
-#include "files/scene_folder.hpp"
 #include "pictures/texture_store.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// Index in Scene::textures of an image of the file. Errors: ResourceError where it cannot be read.
 std::uint32_t texture_picture(const tinygltf::Model& model, std::size_t image,
-                              const AccessorReader& accessors, TextureContent content,
-                              TextureStore& textures);
+                              const AccessorReader& accessors, pictures::TextureContent content,
+                              pictures::TextureStore& textures);
 
 /// An image whose colours RGBD may stretch: decode_rgbd. Errors: ResourceError.
-RadiancePicture rgbd_picture(const tinygltf::Model& model, std::size_t image,
-                             const AccessorReader& accessors, SceneFolder& folder);
+pictures::RadiancePicture rgbd_picture(const tinygltf::Model& model, std::size_t image,
+                                       const AccessorReader& accessors, files::SceneFolder& folder);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

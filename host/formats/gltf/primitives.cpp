@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 bool has_triangles(int mode) {
   return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
@@ -48,7 +48,7 @@ std::vector<std::array<std::uint32_t, 3>> assemble(const std::vector<std::uint32
 std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
                                         std::size_t corner_count, const std::string& use,
                                         const AccessorReader& accessors,
-                                        const ImportContext& context) {
+                                        const reading::ImportContext& context) {
   if (primitive.indices < 0) {
     std::vector<std::uint32_t> indices(corner_count);
     std::iota(indices.begin(), indices.end(), 0u);
@@ -69,10 +69,11 @@ std::string name_of_mesh(const tinygltf::Model& model, int mesh) {
   return name.empty() ? fmt::format("mesh {}", mesh) : name;
 }
 
-LocalMesh read_local_mesh(const tinygltf::Model& model, int mesh, const AccessorReader& accessors,
-                          const ImportContext& context) {
+reading::LocalMesh read_local_mesh(const tinygltf::Model& model, int mesh,
+                                   const AccessorReader& accessors,
+                                   const reading::ImportContext& context) {
   const std::string use = "mesh '" + name_of_mesh(model, mesh) + "'";
-  LocalMesh local;
+  reading::LocalMesh local;
   for (const tinygltf::Primitive& primitive :
        model.meshes[static_cast<std::size_t>(mesh)].primitives) {
     if (!is_usable(primitive, use, accessors)) continue;
@@ -91,4 +92,4 @@ LocalMesh read_local_mesh(const tinygltf::Model& model, int mesh, const Accessor
   return local;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -11,7 +11,7 @@
 #include "reading/import_context.hpp"
 #include "reading/instance_recorder.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// Whether a primitive's mode makes triangles.
 bool has_triangles(int mode);
@@ -34,13 +34,14 @@ std::vector<std::array<std::uint32_t, 3>> assemble(const std::vector<std::uint32
 std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
                                         std::size_t corner_count, const std::string& use,
                                         const AccessorReader& accessors,
-                                        const ImportContext& context);
+                                        const reading::ImportContext& context);
 
 /// What messages call a mesh.
 std::string name_of_mesh(const tinygltf::Model& model, int mesh);
 
 /// All usable primitives of a mesh, in its own space. Errors: InputError.
-LocalMesh read_local_mesh(const tinygltf::Model& model, int mesh, const AccessorReader& accessors,
-                          const ImportContext& context);
+reading::LocalMesh read_local_mesh(const tinygltf::Model& model, int mesh,
+                                   const AccessorReader& accessors,
+                                   const reading::ImportContext& context);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

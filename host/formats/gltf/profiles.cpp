@@ -4,11 +4,11 @@
 
 #include <vector>
 
+#include "files/warnings.hpp"
 #include "gltf/document.hpp"
 #include "photometry/photometric_file.hpp"
-#include "files/warnings.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 constexpr const char* ies_extension = "EXT_lights_ies";
@@ -22,7 +22,7 @@ std::vector<unsigned char> data_uri_content(const std::string& uri) {
   if (comma == std::string::npos || uri.substr(0, comma).find(";base64") == std::string::npos ||
       !tinygltf::DecodeDataURI(
           &bytes, type, "data:application/octet-stream;base64" + uri.substr(comma), 0, false)) {
-    throw ResourceError("a data: URI that is not in base64");
+    throw files::ResourceError("a data: URI that is not in base64");
   }
   return bytes;
 }
@@ -37,7 +37,8 @@ template <class Read>
 std::uint32_t GltfProfiles::find_or_read(const std::string& key, const Read& read) {
   if (const auto found = index_.find(key); found != index_.end()) return found->second;
   const auto index = static_cast<std::uint32_t>(context_.scene.distributions.size());
-  context_.scene.distributions.push_back(read_photometry(key, read(), context_.warnings));
+  context_.scene.distributions.push_back(
+      photometry::read_photometry(key, read(), context_.warnings));
   return index_.emplace(key, index).first->second;
 }
 
@@ -48,7 +49,7 @@ std::uint32_t GltfProfiles::from_extension(double light, const std::string& node
                                      : tinygltf::Value();
   const std::size_t count = lights.IsArray() ? lights.ArrayLen() : 0;
   if (!(light >= 0.0 && light < static_cast<double>(count))) {
-    throw ResourceError(
+    throw files::ResourceError(
         fmt::format("node '{}': there is no light {} of {}", node, light, ies_extension));
   }
   const tinygltf::Value& profile = lights.Get(static_cast<int>(light));
@@ -83,9 +84,9 @@ std::optional<NodeProfile> GltfProfiles::of(int number) {
     NodeProfile profile;
     profile.distribution = find_or_read(file, [&] { return context_.folder.read(file); });
     return profile;
-  } catch (const ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     throw context_.error(error.what());
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -12,7 +12,7 @@
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// What a node says about the intensities of its light.
 struct NodeProfile {
@@ -27,7 +27,7 @@ class GltfProfiles {
  public:
   /// References are kept.
   GltfProfiles(const tinygltf::Model& model, const AccessorReader& accessors,
-               ImportContext& context)
+               reading::ImportContext& context)
       : model_(model), accessors_(accessors), context_(context) {}
 
   /// The profile of a node's light, or nothing. Errors: InputError for a file that is missing or
@@ -41,11 +41,11 @@ class GltfProfiles {
 
   const tinygltf::Model& model_;
   const AccessorReader& accessors_;
-  ImportContext& context_;
+  reading::ImportContext& context_;
   std::map<std::string, std::uint32_t> index_;
 };
 
 /// Whether a node's extras give it a light of its own.
 bool has_profile(const tinygltf::Node& node);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -7,7 +7,7 @@
 #include "gltf/steps.hpp"
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 /// A triangle takes three indices at least, of a byte each.
@@ -50,7 +50,7 @@ std::uint64_t bytes_of_buffers(const tinygltf::Model& model) {
 }  // namespace
 
 void check_scene_size(const tinygltf::Model& model, const AccessorReader& accessors,
-                      const std::vector<NodeVisit>& visits, const ImportContext& context) {
+                      const std::vector<NodeVisit>& visits, const reading::ImportContext& context) {
   std::vector<std::uint64_t> places(model.meshes.size(), 0);
   for (const NodeVisit& visit : visits) {
     const int mesh = model.nodes[static_cast<std::size_t>(visit.node)].mesh;
@@ -90,4 +90,4 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -6,16 +6,16 @@
 #include <string>
 #include <utility>
 
-#include "pictures/cube_map.hpp"
+#include "files/warnings.hpp"
 #include "gltf/document.hpp"
 #include "gltf/nodes.hpp"
 #include "gltf/pictures.hpp"
 #include "gltf/steps.hpp"
-#include "files/warnings.hpp"
 #include "photile/limits.hpp"
+#include "pictures/cube_map.hpp"
 #include "scene/light_emission.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 constexpr const char* extension_name = "EXT_lights_image_based";
@@ -23,7 +23,8 @@ constexpr const char* extension_name = "EXT_lights_image_based";
 constexpr double largest_rgbd = 255;
 
 /// The definition of the light that the scene names, or nullptr.
-const tinygltf::Value* light_of_scene(const tinygltf::Model& model, const ImportContext& context) {
+const tinygltf::Value* light_of_scene(const tinygltf::Model& model,
+                                      const reading::ImportContext& context) {
   const std::optional<std::size_t> scene = scene_number(model, context);
   if (!scene) return nullptr;
   const tinygltf::Value* reference =
@@ -55,65 +56,65 @@ glm::dquat rotation_of(const tinygltf::Value& light) {
 }
 
 /// Errors: ResourceError.
-CubeMap cube_of(const tinygltf::Value& light, const tinygltf::Model& model,
-                const AccessorReader& accessors, SceneFolder& folder) {
+pictures::CubeMap cube_of(const tinygltf::Value& light, const tinygltf::Model& model,
+                          const AccessorReader& accessors, files::SceneFolder& folder) {
   const bool has_levels = light.Has("specularImages") && light.Get("specularImages").ArrayLen() > 0;
   const tinygltf::Value faces = has_levels ? light.Get("specularImages").Get(0) : tinygltf::Value();
-  CubeMap cube;
+  pictures::CubeMap cube;
   if (faces.ArrayLen() != cube.size()) {
-    throw ResourceError("its specularImages are not six for each size");
+    throw files::ResourceError("its specularImages are not six for each size");
   }
   for (std::size_t i = 0; i < cube.size(); ++i) {
     const tinygltf::Value& image = faces.Get(static_cast<int>(i));
     const double number = image.IsNumber() ? image.GetNumberAsDouble() : -1.0;
     if (!(number >= 0.0 && number < static_cast<double>(model.images.size()))) {
-      throw ResourceError(fmt::format("there is no image {}", number));
+      throw files::ResourceError(fmt::format("there is no image {}", number));
     }
     cube[i] = rgbd_picture(model, static_cast<std::size_t>(number), accessors, folder);
     if (cube[i].width > limits::max_cube_map_side) {
-      throw ResourceError(fmt::format("a face is {} texels wide; the limit is {}", cube[i].width,
-                                      limits::max_cube_map_side));
+      throw files::ResourceError(fmt::format("a face is {} texels wide; the limit is {}",
+                                             cube[i].width, limits::max_cube_map_side));
     }
     if (cube[i].width != cube[0].width || cube[i].height != cube[0].width) {
-      throw ResourceError(fmt::format("its faces are not squares of one size: {} x {}, {} x {}",
-                                      cube[0].width, cube[0].height, cube[i].width,
-                                      cube[i].height));
+      throw files::ResourceError(
+          fmt::format("its faces are not squares of one size: {} x {}, {} x {}", cube[0].width,
+                      cube[0].height, cube[i].width, cube[i].height));
     }
   }
   return cube;
 }
 
 void add_light(const tinygltf::Value& light, const tinygltf::Model& model,
-               const AccessorReader& accessors, ImportContext& context) {
+               const AccessorReader& accessors, reading::ImportContext& context) {
   const double intensity = number_member(light, "intensity", 1.0);
   if (!(intensity > 0.0) || !std::isfinite(static_cast<float>(largest_rgbd * intensity))) {
-    throw ResourceError(fmt::format("its intensity is {}", intensity));
+    throw files::ResourceError(fmt::format("its intensity is {}", intensity));
   }
-  CubeMap cube = cube_of(light, model, accessors, context.folder);
-  for (RadiancePicture& face : cube) {
+  pictures::CubeMap cube = cube_of(light, model, accessors, context.folder);
+  for (pictures::RadiancePicture& face : cube) {
     for (glm::vec3& texel : face.texels) texel *= static_cast<float>(intensity);
   }
-  EnvironmentMap map =
-      environment_of(cube, glm::quat_cast(context.scene.turn) * rotation_of(light), extension_name);
-  if (!(luminance(map.integral()) > 0.0)) throw ResourceError("it is black");
+  EnvironmentMap map = pictures::environment_of(
+      cube, glm::quat_cast(context.scene.turn) * rotation_of(light), extension_name);
+  if (!(luminance(map.integral()) > 0.0)) throw files::ResourceError("it is black");
   const std::string name = string_member(light, "name");
-  add_environment_light(name.empty() ? "environment" : name, std::move(map), context.scene);
-  context.light_sources.push_back({LightSource::Kind::picture, none, none});
+  scene::add_environment_light(name.empty() ? "environment" : name, std::move(map), context.scene);
+  context.light_sources.push_back({reading::LightSource::Kind::picture, none, none});
 }
 
 }  // namespace
 
 void add_gltf_surroundings(const tinygltf::Model& model, const AccessorReader& accessors,
-                           ImportContext& context) {
+                           reading::ImportContext& context) {
   const tinygltf::Value* light = light_of_scene(model, context);
   if (light == nullptr || context.scene.triangles.empty()) return;
   try {
     add_light(*light, model, accessors, context);
-  } catch (const ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     context.warnings.add(
         fmt::format("{}: {}; the surroundings are dark; give them as an environment picture",
                     extension_name, error.what()));
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -4,7 +4,7 @@
 
 #include "gltf/document.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 constexpr const char* transform_name = "KHR_texture_transform";
@@ -49,4 +49,4 @@ TextureReference reference_of(const tinygltf::Value& extension, const std::strin
           coordinates_of(integer_member(info, "texCoord", 0), transform)};
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

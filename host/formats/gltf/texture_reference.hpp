@@ -6,7 +6,7 @@
 
 #include "gltf/tiny_gltf.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// Which texture coordinates a texture takes, and the affine map of KHR_texture_transform on them.
 struct TextureCoordinates {
@@ -33,4 +33,4 @@ TextureReference reference_of(const tinygltf::OcclusionTextureInfo& info);
 /// Of the member `name` of an extension; not given where it is absent.
 TextureReference reference_of(const tinygltf::Value& extension, const std::string& name);
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

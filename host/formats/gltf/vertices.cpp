@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace photile::scene_io {
+namespace photile::gltf {
 namespace {
 
 glm::dvec3 vector_at(const std::vector<float>& values, std::size_t first) {
@@ -28,10 +28,10 @@ PlacedVertices::PlacedVertices(VertexAttributes attributes, const MaterialCoordi
       world_(world),
       normal_matrix_(cofactors(glm::dmat3(world))) {}
 
-Corner PlacedVertices::operator[](std::uint32_t vertex) const {
+scene::Corner PlacedVertices::operator[](std::uint32_t vertex) const {
   const std::size_t i = vertex;
   const auto& [positions, normals, tangents, uv, emission_uv] = attributes_;
-  Corner corner;
+  scene::Corner corner;
   corner.position = glm::dvec3(world_ * glm::dvec4(vector_at(positions, 3 * i), 1.0));
   corner.uv = mapped(uv, i, coordinates_.surface);
   corner.emission_uv = mapped(emission_uv, i, coordinates_.emission);
@@ -43,4 +43,4 @@ Corner PlacedVertices::operator[](std::uint32_t vertex) const {
   return corner;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

@@ -9,7 +9,7 @@
 #include "gltf/materials.hpp"
 #include "scene/mesh_builder.hpp"
 
-namespace photile::scene_io {
+namespace photile::gltf {
 
 /// As the file has them, one after another: 3 floats a vertex, of tangents 4, of coordinates 2. All
 /// but the positions are empty where they are absent or not wanted.
@@ -26,7 +26,7 @@ class PlacedVertices {
                  const glm::dmat4& world);
 
   std::size_t size() const { return attributes_.positions.size() / 3; }
-  Corner operator[](std::uint32_t vertex) const;
+  scene::Corner operator[](std::uint32_t vertex) const;
 
  private:
   VertexAttributes attributes_;
@@ -35,4 +35,4 @@ class PlacedVertices {
   glm::dmat3 normal_matrix_;
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::gltf

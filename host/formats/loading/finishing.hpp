@@ -5,7 +5,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 /// Sets Light::group of the lights that each grouping matches, one grouping after the other. Names
 /// of lights must be final. Errors: UsageError when one matches no light (the message lists those
@@ -18,4 +18,4 @@ void group_lights(Scene& scene, std::span<const LightGrouping> groupings);
 /// the horizon.
 void add_surroundings(Scene& scene, const SceneLoadOptions& options);
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

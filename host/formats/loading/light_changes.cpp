@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "photometry/photometric_file.hpp"
 #include "files/scene_folder.hpp"
 #include "files/warnings.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photometry/photometric_file.hpp"
 #include "scene/color_temperature.hpp"
 #include "scene/light_names.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 namespace {
 
 /// The light called `name` that a `change` is for. Errors: UsageError that lists the lights there
@@ -26,28 +26,30 @@ Light& light_named(const std::string& name, const char* change, Scene& scene) {
   std::vector<std::string> names;
   for (const Light& light : scene.lights) names.push_back(light.name);
   throw UsageError(fmt::format("{} {}: there is no light '{}'; there {}", change, name, name,
-                               names_like(name, std::move(names))));
+                               scene::names_like(name, std::move(names))));
 }
 
 }  // namespace
 
-IntensityDistribution read_user_photometry(const std::filesystem::path& file, Warnings& warnings) {
+IntensityDistribution read_user_photometry(const std::filesystem::path& file,
+                                           files::Warnings& warnings) {
   std::vector<unsigned char> bytes;
   try {
-    bytes = read_regular_file(file, limits::max_photometry_bytes);
-  } catch (const ResourceError& error) {
+    bytes = files::read_regular_file(file, limits::max_photometry_bytes);
+  } catch (const files::ResourceError& error) {
     throw InputError(
         fmt::format("{}: cannot read the photometric file: {}; give an .ies or .ldt file",
                     file.string(), error.what()));
   }
   try {
-    return read_photometry(file.string(), bytes, warnings);
-  } catch (const ResourceError& error) {
+    return photometry::read_photometry(file.string(), bytes, warnings);
+  } catch (const files::ResourceError& error) {
     throw InputError(error.what());
   }
 }
 
-void apply_profiles(Scene& scene, std::span<const LightProfile> profiles, Warnings& warnings) {
+void apply_profiles(Scene& scene, std::span<const LightProfile> profiles,
+                    files::Warnings& warnings) {
   for (const LightProfile& profile : profiles) {
     Light& light = light_named(profile.light, "photometric file for", scene);
     if (light.kind != LightKind::point && light.kind != LightKind::spot) {
@@ -72,8 +74,8 @@ void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperat
           "temperature of {}: its colours come from a picture, which a light mix can tint",
           light.name));
     }
-    light.color = glm::vec3(color_of_temperature(temperature.kelvin));
+    light.color = glm::vec3(scene::color_of_temperature(temperature.kelvin));
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

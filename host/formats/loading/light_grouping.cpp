@@ -20,7 +20,7 @@ LightGrouping LightGrouping::parse(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-namespace scene_io {
+namespace loading {
 namespace {
 
 std::vector<std::string> names_of(const std::vector<Light>& lights) {
@@ -33,13 +33,13 @@ void apply(const LightGrouping& grouping, std::vector<Light>& lights) {
   bool matched = false;
   for (Light& light : lights) {
     if (::fnmatch(grouping.glob.c_str(), light.name.c_str(), 0) != 0) continue;
-    light.group = clean_light_name(grouping.group, limits::max_light_name_bytes);
+    light.group = scene::clean_light_name(grouping.group, limits::max_light_name_bytes);
     matched = true;
   }
   if (!matched) {
     throw UsageError(fmt::format("light group {}={}: no light matches '{}'; there {}",
                                  grouping.glob, grouping.group, grouping.glob,
-                                 listed_names(names_of(lights))));
+                                 scene::listed_names(names_of(lights))));
   }
 }
 
@@ -63,5 +63,5 @@ void group_lights(Scene& scene, std::span<const LightGrouping> groupings) {
   check_names(scene.lights);
 }
 
-}  // namespace scene_io
+}  // namespace loading
 }  // namespace photile

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <utility>
 
-#include "weather/sky_patches.hpp"
-#include "photometry/photometric_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photometry/photometric_text.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile {
 namespace {
@@ -141,7 +141,7 @@ Sky Sky::parse(const std::string& text) {
       return {SkyKind::perez, 0, (*numbers)[0], (*numbers)[1]};
   }
   if (kind == "patches" && illuminance) {
-    for (const int count : daylight::patch_counts) {
+    for (const int count : weather::patch_counts) {
       if (*illuminance == count) return {SkyKind::patches, 0, 0, 0, count};
     }
   }

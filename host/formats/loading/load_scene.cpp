@@ -7,18 +7,19 @@
 #include <utility>
 
 #include "common/ascii_text.hpp"
-#include "reading/area_lights.hpp"
-#include "loading/finishing.hpp"
-#include "reading/import_context.hpp"
+#include "gltf/gltf_import.hpp"
 #include "gltf/lamp_instances.hpp"
+#include "loading/finishing.hpp"
 #include "loading/light_changes.hpp"
-#include "loading/sourced_scene.hpp"
 #include "loading/luminaires.hpp"
 #include "loading/material_changes.hpp"
+#include "loading/sourced_scene.hpp"
 #include "loading/up_axis.hpp"
+#include "obj/obj_import.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
+#include "reading/area_lights.hpp"
 #include "scene/default_camera.hpp"
 #include "scene/light_names.hpp"
 #include "scene/photometry.hpp"
@@ -27,21 +28,19 @@
 namespace photile {
 namespace {
 
-using namespace scene_io;
-
-void import_by_extension(ImportContext& context) {
+void import_by_extension(reading::ImportContext& context) {
   const std::string extension = lower(context.folder.scene_file().extension().string());
   if (extension == ".obj") {
-    import_obj(context);
+    obj::import_obj(context);
   } else if (extension == ".gltf" || extension == ".glb") {
-    import_gltf(context);
+    gltf::import_gltf(context);
   } else {
     throw context.error(
         fmt::format("unknown scene format '{}'; give an .obj, .gltf or .glb file", extension));
   }
 }
 
-void report_dropped_triangles(const ImportReport& report, Warnings& warnings) {
+void report_dropped_triangles(const ImportReport& report, files::Warnings& warnings) {
   if (report.degenerate_triangles > 0) {
     warnings.add(fmt::format("{} triangles without area are dropped", report.degenerate_triangles));
   }
@@ -59,7 +58,7 @@ void report_dropped_triangles(const ImportReport& report, Warnings& warnings) {
 
 /// An error about a scene that lacks something. What the import warned about is often the reason: a
 /// missing material library, lamps that the exporter dropped.
-InputError lacks(const std::string& what, const ImportContext& context) {
+InputError lacks(const std::string& what, const reading::ImportContext& context) {
   constexpr std::size_t warnings_told = 3;
   std::vector<std::string> lines = context.warnings.lines();
   if (lines.size() > warnings_told) lines.resize(warnings_told);
@@ -70,11 +69,11 @@ InputError lacks(const std::string& what, const ImportContext& context) {
 
 /// Importers leave the irradiance of a directional light in `power`, since the size of the scene is
 /// known only now.
-void finish_directional_lights(const ImportContext& context) {
+void finish_directional_lights(const reading::ImportContext& context) {
   const double radius = bounding_sphere(context.scene).radius;
   for (Light& light : context.scene.lights) {
     if (light.kind != LightKind::directional) continue;
-    light.power = directional_flux(light.power, radius);
+    light.power = scene::directional_flux(light.power, radius);
     if (!std::isfinite(light.power)) {
       throw context.error(fmt::format(
           "light '{}': its flux over a scene of {:g} m is beyond any number; give it fewer lux",
@@ -100,42 +99,46 @@ void check_powers(const Scene& scene, double emissive_scale) {
 }
 
 /// Objects of a glTF file are its visits, then its panels; those of an OBJ file have no nodes.
-LightSource source_of(const AreaLights::Origin& origin, const ImportContext& context) {
+reading::LightSource source_of(const reading::AreaLights::Origin& origin,
+                               const reading::ImportContext& context) {
   const std::vector<std::uint32_t>& nodes = context.visited_nodes;
-  if (nodes.empty()) return {LightSource::Kind::surface, none, origin.material, origin.lamp};
+  if (nodes.empty())
+    return {reading::LightSource::Kind::surface, none, origin.material, origin.lamp};
   if (origin.object < nodes.size()) {
-    return {LightSource::Kind::surface, nodes[origin.object], origin.material, origin.lamp};
+    return {reading::LightSource::Kind::surface, nodes[origin.object], origin.material,
+            origin.lamp};
   }
-  return {LightSource::Kind::panel, nodes[origin.object - first_panel_object], none, origin.lamp};
+  return {reading::LightSource::Kind::panel, nodes[origin.object - reading::first_panel_object],
+          none, origin.lamp};
 }
 
 }  // namespace
 
-namespace scene_io {
+namespace loading {
 
 SourcedScene load_sourced_scene(const std::filesystem::path& file,
                                 const SceneLoadOptions& options) {
   Scene scene;
   scene.source = file;
-  scene.turn = turn_upright(options.up);
-  SceneFolder folder(file, options.allow_outside);
-  Warnings warnings;
-  AreaLights area_lights(scene);
-  std::vector<PlacedLuminaires> placed;
-  ImportContext context{scene, folder, options, warnings, area_lights, {}};
+  scene.turn = loading::turn_upright(options.up);
+  files::SceneFolder folder(file, options.allow_outside);
+  files::Warnings warnings;
+  reading::AreaLights area_lights(scene);
+  std::vector<loading::PlacedLuminaires> placed;
+  reading::ImportContext context{scene, folder, options, warnings, area_lights, {}};
   try {
     import_by_extension(context);
     report_dropped_triangles(scene.report, warnings);
     if (scene.triangles.empty()) {
       throw lacks("no triangles with an area; export the scene with its geometry", context);
     }
-    if (options.up.empty()) warn_of_other_up(scene, warnings);
-    for (const AreaLights::Origin& origin : area_lights.finish(warnings)) {
+    if (options.up.empty()) loading::warn_of_other_up(scene, warnings);
+    for (const reading::AreaLights::Origin& origin : area_lights.finish(warnings)) {
       context.light_sources.push_back(source_of(origin, context));
     }
     finish_directional_lights(context);
-    placed = add_luminaires(options, scene, warnings);
-    add_surroundings(scene, options);
+    placed = loading::add_luminaires(options, scene, warnings);
+    loading::add_surroundings(scene, options);
     context.light_sources.resize(scene.lights.size());
     if (scene.lights.empty() && !options.may_be_dark) {
       throw lacks(
@@ -151,14 +154,14 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
     // The importer libraries throw what they like on malformed files.
     throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
   }
-  group_instances(scene.lights, context.light_sources);
-  make_light_names_unique(scene.lights);
-  apply_profiles(scene, options.profiles, warnings);
-  apply_temperatures(scene, options.temperatures);
-  apply_reflectances(scene, options.reflectances);
+  gltf::group_instances(scene.lights, context.light_sources);
+  scene::make_light_names_unique(scene.lights);
+  loading::apply_profiles(scene, options.profiles, warnings);
+  loading::apply_temperatures(scene, options.temperatures);
+  loading::apply_reflectances(scene, options.reflectances);
   check_powers(scene, options.emissive_scale);
-  group_lights(scene, options.light_groups);
-  if (scene.cameras.empty()) scene.cameras.push_back(place_camera(scene));
+  loading::group_lights(scene, options.light_groups);
+  if (scene.cameras.empty()) scene.cameras.push_back(scene::place_camera(scene));
   const bool lit_from_beyond = std::any_of(scene.lights.begin(), scene.lights.end(),
                                            [](const Light& light) { return light.is_distant(); });
   if (lit_from_beyond) scene.portals = trace::portals_asked_for(scene, options.portals);
@@ -166,10 +169,10 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   return {std::move(scene), std::move(context.light_sources), std::move(placed)};
 }
 
-}  // namespace scene_io
+}  // namespace loading
 
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options) {
-  return load_sourced_scene(file, options).scene;
+  return loading::load_sourced_scene(file, options).scene;
 }
 
 }  // namespace photile

@@ -7,7 +7,7 @@
 #include "common/output_file.hpp"
 #include "photile/errors.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 std::string LuminaireList::text() const {
   if (alone && entries.size() == 1) return entries.front().dump() + "\n";
@@ -47,4 +47,4 @@ void write_luminaires(const std::filesystem::path& file, const LuminaireList& li
   write_file(file, list.text());
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 /// Members keep their order and their numbers: what is not edited is written as it was read.
 /// What they mean is read by add_luminaires.
@@ -33,4 +33,4 @@ LuminaireList read_own_luminaires(const std::filesystem::path& file);
 /// Through a temporary name and a rename. Errors: OutputError; the file is then as it was.
 void write_luminaires(const std::filesystem::path& file, const LuminaireList& list);
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

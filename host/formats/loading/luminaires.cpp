@@ -13,20 +13,20 @@
 #include <utility>
 
 #include "common/json_object.hpp"
-#include "gltf/panels.hpp"
-#include "photometry/photometric_file.hpp"
 #include "files/scene_folder.hpp"
-#include "trace/room.hpp"
+#include "gltf/panels.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photometry/photometric_file.hpp"
 #include "scene/default_camera.hpp"
 #include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
+#include "trace/room.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 namespace {
 
 using nlohmann::json;
@@ -85,18 +85,18 @@ double uplight_of(const IntensityDistribution& distribution) {
 }
 
 LampKind kind_of(const std::filesystem::path& file, const JsonObject& object, Shared& shared,
-                 Scene& scene, Warnings& warnings) {
+                 Scene& scene, files::Warnings& warnings) {
   if (const auto found = shared.kinds.find(file); found != shared.kinds.end()) {
     return found->second;
   }
   try {
-    const auto bytes = read_regular_file(file, limits::max_photometry_bytes);
-    auto lamp = read_photometry(file.string(), bytes, warnings);
+    const auto bytes = files::read_regular_file(file, limits::max_photometry_bytes);
+    auto lamp = photometry::read_photometry(file.string(), bytes, warnings);
     const LampKind kind{static_cast<std::uint32_t>(scene.distributions.size()),
                         uplight_of(lamp) > least_uplight};
     scene.distributions.push_back(std::move(lamp));
     return shared.kinds[file] = kind;
-  } catch (const ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     object.refuse(fmt::format("'file': {}: {}", file.string(), error.what()));
   }
 }
@@ -106,7 +106,7 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
   const auto axes = measuring::PlanAxes();
-  const Camera camera = scene.cameras.empty() ? place_camera(scene) : scene.cameras.front();
+  const Camera camera = scene.cameras.empty() ? scene::place_camera(scene) : scene.cameras.front();
   const auto room = measuring::Room::of_camera(rays, axes, camera);
   if (!room) return std::nullopt;
   const glm::dvec2 plan = 0.5 * (room->low() + room->high());
@@ -143,7 +143,7 @@ std::optional<glm::dvec2> size_of(const LuminousOpening& opening) {
 
 LuminaireArray array_of(const json& entry, const JsonObject& object,
                         const std::filesystem::path& folder, Shared& shared, Scene& scene,
-                        Warnings& warnings) {
+                        files::Warnings& warnings) {
   const std::filesystem::path file = folder / object.text("file", "");
   LuminaireArray lamps{{}, kind_of(file, object, shared, scene, warnings)};
   const IntensityDistribution& distribution = scene.distributions[lamps.kind.distribution];
@@ -189,7 +189,7 @@ std::uint32_t black_material(Scene& scene) {
 }
 
 void add_array(const LuminaireArray& lamps, double lumen_per_watt, std::uint32_t material,
-               MeshBuilder& mesh, Scene& scene) {
+               scene::MeshBuilder& mesh, Scene& scene) {
   const PlacedLuminaires& placed = lamps.placed;
   Light light;
   light.kind = LightKind::area;
@@ -209,10 +209,12 @@ void add_array(const LuminaireArray& lamps, double lumen_per_watt, std::uint32_t
     light.name = alone ? placed.name
                        : fmt::format("{}_{}_{}", placed.name, i % columns + 1, i / columns + 1);
     light.triangles.clear();
-    const Panel opening{.width = placed.opening.x, .height = placed.opening.y};
-    for (const auto& corners : panel_triangles(opening, world)) {
+    const gltf::Panel opening{.width = placed.opening.x, .height = placed.opening.y};
+    for (const auto& corners : gltf::panel_triangles(opening, world)) {
       const auto index = static_cast<std::uint32_t>(scene.triangles.size());
-      if (mesh.add({Corner{corners[0]}, Corner{corners[1]}, Corner{corners[2]}}, material, number))
+      if (mesh.add(
+              {scene::Corner{corners[0]}, scene::Corner{corners[1]}, scene::Corner{corners[2]}},
+              material, number))
         light.triangles.push_back(index);
     }
     if (!light.triangles.empty()) scene.lights.push_back(light);
@@ -226,7 +228,7 @@ void add_work_light(double lumen_per_watt, Scene& scene) {
   light.kind = LightKind::point;
   light.power =
       scene.unit == PowerUnit::lumen ? defaults::work_light : defaults::work_light / lumen_per_watt;
-  const Camera camera = scene.cameras.empty() ? place_camera(scene) : scene.cameras.front();
+  const Camera camera = scene.cameras.empty() ? scene::place_camera(scene) : scene.cameras.front();
   light.position = glm::vec3(camera.position);
   scene.lights.push_back(std::move(light));
 }
@@ -255,15 +257,15 @@ glm::dmat3 luminaire_axes(const glm::dvec3& aim, double rotation) {
 }
 
 std::optional<glm::dvec2> stated_opening(const std::filesystem::path& photometry) {
-  Warnings unheard;
-  const auto bytes = read_regular_file(photometry, limits::max_photometry_bytes);
-  return size_of(read_photometry(photometry.string(), bytes, unheard).opening());
+  files::Warnings unheard;
+  const auto bytes = files::read_regular_file(photometry, limits::max_photometry_bytes);
+  return size_of(photometry::read_photometry(photometry.string(), bytes, unheard).opening());
 }
 
 std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
                                              const std::filesystem::path& file,
                                              double lumen_per_watt, Scene& scene,
-                                             Warnings& warnings) {
+                                             files::Warnings& warnings) {
   std::vector<LuminaireArray> arrays;
   Shared shared;
   std::size_t lamps = scene.lights.size();
@@ -282,10 +284,10 @@ std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
   std::vector<PlacedLuminaires> placed;
   if (arrays.empty()) return placed;
   const std::uint32_t material = black_material(scene);
-  MeshBuilder mesh(scene, {.uv = !scene.corner_uv.empty(),
-                           .emission_uv = !scene.corner_emission_uv.empty(),
-                           .normals = !scene.corner_normal.empty(),
-                           .tangents = !scene.corner_tangent.empty()});
+  scene::MeshBuilder mesh(scene, {.uv = !scene.corner_uv.empty(),
+                                  .emission_uv = !scene.corner_emission_uv.empty(),
+                                  .normals = !scene.corner_normal.empty(),
+                                  .tangents = !scene.corner_tangent.empty()});
   for (const LuminaireArray& array : arrays) {
     placed.push_back(array.placed);
     add_array(array, lumen_per_watt, material, mesh, scene);
@@ -294,7 +296,7 @@ std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
 }
 
 std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Scene& scene,
-                                             Warnings& warnings) {
+                                             files::Warnings& warnings) {
   const std::filesystem::path& file = options.luminaires;
   if (file.empty()) return {};
   const bool edited = !options.luminaires_text.empty();
@@ -309,4 +311,4 @@ std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Sc
   return placed;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "loading/luminaire_list.hpp"
 #include "files/warnings.hpp"
+#include "loading/luminaire_list.hpp"
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 /// Where the lamps of an entry are, in the scene's coordinates.
 struct PlacedLuminaires {
@@ -50,10 +50,10 @@ std::optional<glm::dvec2> stated_opening(const std::filesystem::path& photometry
 std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
                                              const std::filesystem::path& file,
                                              double lumen_per_watt, Scene& scene,
-                                             Warnings& warnings);
+                                             files::Warnings& warnings);
 
 /// What add_luminaires makes of the options: of their file, or of the text in its place.
 std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Scene& scene,
-                                             Warnings& warnings);
+                                             files::Warnings& warnings);
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

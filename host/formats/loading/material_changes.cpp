@@ -8,7 +8,7 @@
 #include "photile/errors.hpp"
 #include "scene/material_reflectance.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 namespace {
 
 std::string material_names(const Scene& scene) {
@@ -25,7 +25,7 @@ void apply(Scene& scene, const ReflectanceChange& change) {
   for (Material& material : scene.materials) {
     if (::fnmatch(change.glob.c_str(), material.name.c_str(), 0) != 0) continue;
     found = true;
-    if (set_reflectance(scene, material, change.share)) continue;
+    if (scene::set_reflectance(scene, material, change.share)) continue;
     throw UsageError(fmt::format(
         "reflectance of '{}': {:g} cannot be had by making its colour brighter or darker: it is "
         "glass, its gloss reflects more alone (--lambertian removes that) or a channel exceeds 1",
@@ -43,4 +43,4 @@ void apply_reflectances(Scene& scene, std::span<const ReflectanceChange> changes
   for (const ReflectanceChange& change : changes) apply(scene, change);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -6,10 +6,10 @@
 #include "files/warnings.hpp"
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 /// Gives materials the reflectances that are asked for, in order. Errors: UsageError naming a
 /// pattern that matches no material, or a material that cannot have that reflectance.
 void apply_reflectances(Scene& scene, std::span<const ReflectanceChange> changes);
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -4,28 +4,26 @@
 
 #include <algorithm>
 
+#include "photile/errors.hpp"
 #include "weather/clear_sky.hpp"
 #include "weather/sky_lights.hpp"
 #include "weather/sky_patches.hpp"
 #include "weather/sun_position.hpp"
 #include "weather/weather_file.hpp"
-#include "photile/errors.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 namespace {
 
-using namespace daylight;
-
-SkyIrradiance irradiance_of(SkySituation& situation, const std::optional<Sky>& sky) {
+weather::SkyIrradiance irradiance_of(SkySituation& situation, const std::optional<Sky>& sky) {
   if (!situation.weather.empty()) {
-    const WeatherYear year = read_weather(situation.weather);
+    const weather::WeatherYear year = weather::read_weather(situation.weather);
     if (!situation.site) situation.site = year.site;
-    if (!sky) return hour_at(year, *situation.time).irradiance;
+    if (!sky) return weather::hour_at(year, *situation.time).irradiance;
   }
   if (!situation.site) throw UsageError("--time needs a place; give --site or --weather");
   if (!sky) {
-    const SunPosition sun = sun_position(*situation.site, *situation.time);
-    return clear_sky(sun.elevation, day_of_year(*situation.time));
+    const weather::SunPosition sun = weather::sun_position(*situation.site, *situation.time);
+    return weather::clear_sky(sun.elevation, weather::day_of_year(*situation.time));
   }
   if (sky->kind != SkyKind::perez)
     throw UsageError("--sky: patches take perez=DIRECT,DIFFUSE, such as perez=600,120");
@@ -34,36 +32,36 @@ SkyIrradiance irradiance_of(SkySituation& situation, const std::optional<Sky>& s
 
 }  // namespace
 
-std::vector<SkyPatch> patches_of(const LightMix& mix) {
+std::vector<weather::SkyPatch> patches_of(const LightMix& mix) {
   std::size_t count = 0;
   const auto has = [&](const std::string& name) {
     return std::any_of(mix.lights.begin(), mix.lights.end(),
                        [&](const MixedLight& light) { return light.name == name; });
   };
-  while (has(patch_name(count))) ++count;
-  for (const int known : patch_counts) {
-    if (count == static_cast<std::size_t>(known)) return sky_patches(known);
+  while (has(weather::patch_name(count))) ++count;
+  for (const int known : weather::patch_counts) {
+    if (count == static_cast<std::size_t>(known)) return weather::sky_patches(known);
   }
   return {};
 }
 
 std::string sky_light_name(std::size_t light, std::size_t patches) {
-  return light < patches ? patch_name(light) : "ground";
+  return light < patches ? weather::patch_name(light) : "ground";
 }
 
 std::vector<LightChange> sky_changes(const LightMix& mix, const SkySituation& asked,
                                      const std::optional<Sky>& given) {
   if (!asked.time) throw UsageError("--site, --weather and --sky need an hour; give --time");
-  const std::vector<SkyPatch> patches = patches_of(mix);
+  const std::vector<weather::SkyPatch> patches = patches_of(mix);
   if (patches.empty()) {
     throw UsageError(
         "--time: the picture has no patches of a sky; render it with --sky patches=145");
   }
   SkySituation situation = asked;
-  const SkyIrradiance irradiance = irradiance_of(situation, given);
+  const weather::SkyIrradiance irradiance = irradiance_of(situation, given);
   const std::vector<double> luminance =
-      sky_luminances(patches, sun_position(*situation.site, *situation.time), irradiance,
-                     day_of_year(*situation.time));
+      weather::sky_luminances(patches, weather::sun_position(*situation.site, *situation.time),
+                              irradiance, weather::day_of_year(*situation.time));
   std::vector<LightChange> changes;
   for (std::size_t i = 0; i < luminance.size(); ++i) {
     const std::string name = sky_light_name(i, patches.size());
@@ -77,4 +75,4 @@ std::vector<LightChange> sky_changes(const LightMix& mix, const SkySituation& as
   return changes;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

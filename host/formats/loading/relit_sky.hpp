@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "weather/sky_patches.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/light_options.hpp"
+#include "weather/sky_patches.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 /// The patches that lights of a mix are; none where they are no whole sky.
-std::vector<daylight::SkyPatch> patches_of(const LightMix& mix);
+std::vector<weather::SkyPatch> patches_of(const LightMix& mix);
 
 /// The name of a light of sky_luminances: a patch, or the ground.
 std::string sky_light_name(std::size_t light, std::size_t patches);
@@ -26,4 +26,4 @@ std::string sky_light_name(std::size_t light, std::size_t patches);
 std::vector<LightChange> sky_changes(const LightMix& mix, const SkySituation& situation,
                                      const std::optional<Sky>& sky);
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

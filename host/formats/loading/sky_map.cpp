@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-namespace photile::scene_io {
+namespace photile::loading {
 namespace {
 
 using std::numbers::pi;
@@ -38,7 +38,7 @@ glm::dvec3 direction_to(const Sun& sun) {
 }
 
 EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_sun,
-                       const daylight::PerezSky* perez) {
+                       const weather::PerezSky* perez) {
   const bool by_azimuth = kind == SkyKind::clear || kind == SkyKind::perez;
   const int width = by_azimuth ? columns : even_columns;
   const EnvironmentMap places("sky", width, rows,
@@ -70,4 +70,4 @@ EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_su
   return {"sky", width, rows, std::move(scaled)};
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -3,11 +3,11 @@
 
 #include <glm/glm.hpp>
 
-#include "weather/perez_sky.hpp"
 #include "photile/environment_map.hpp"
 #include "photile/light_options.hpp"
+#include "weather/perez_sky.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 /// A sky that gives `illuminance` on a horizontal surface, black below the horizon, white.
 ///   to_sun  unit; of a clear sky, whose own light includes no disc of the sun
@@ -16,9 +16,9 @@ namespace photile::scene_io {
 /// Perez: see PerezSky.
 ///   perez   of a Perez sky
 EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_sun,
-                       const daylight::PerezSky* perez = nullptr);
+                       const weather::PerezSky* perez = nullptr);
 
 /// Unit direction towards a sun: north is -z, east +x, up +y.
 glm::dvec3 direction_to(const Sun& sun);
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -2,12 +2,12 @@
 
 #include <numbers>
 
-#include "weather/sun_position.hpp"
 #include "loading/sky_map.hpp"
-#include "weather/weather_file.hpp"
 #include "photile/errors.hpp"
+#include "weather/sun_position.hpp"
+#include "weather/weather_file.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
@@ -21,10 +21,10 @@ SceneLoadOptions with_weather(SceneLoadOptions options) {
   if (!situation.time) {
     throw UsageError("--weather says nothing without an hour; give --time, too");
   }
-  const WeatherYear year = read_weather(situation.weather);
+  const weather::WeatherYear year = weather::read_weather(situation.weather);
   if (!situation.site) situation.site = year.site;
   if (!options.sky) {
-    const daylight::SkyIrradiance& irradiance = hour_at(year, *situation.time).irradiance;
+    const weather::SkyIrradiance& irradiance = weather::hour_at(year, *situation.time).irradiance;
     options.sky = Sky{SkyKind::perez, 0, irradiance.direct_normal, irradiance.diffuse_horizontal};
   }
   return options;
@@ -37,7 +37,7 @@ std::optional<Sun> sun_by_time(const SkySituation& situation) {
   if (!situation.site) {
     throw UsageError("--time says nothing without a place; give --site or --weather, too");
   }
-  const daylight::SunPosition position = daylight::sun_position(*situation.site, *situation.time);
+  const weather::SunPosition position = weather::sun_position(*situation.site, *situation.time);
   return Sun{position.azimuth * degrees, position.elevation * degrees, 0};
 }
 
@@ -47,14 +47,14 @@ void add_perez(const Sky& asked, const SkySituation& situation, const std::optio
   if (!place) {
     throw UsageError("a Perez sky needs the sun's place; give --sun, or --site and --time");
   }
-  const int day = situation.time ? daylight::day_of_year(*situation.time) : even_day;
+  const int day = situation.time ? weather::day_of_year(*situation.time) : even_day;
   SkyLight sky{SkyKind::perez};
   sky.perez.emplace(place->elevation_degrees / degrees,
-                    daylight::SkyIrradiance{asked.direct_normal, asked.diffuse_horizontal}, day);
+                    weather::SkyIrradiance{asked.direct_normal, asked.diffuse_horizontal}, day);
   sky.illuminance = sky.perez->diffuse_illuminance();
   Sun shown = *place;
   shown.elevation_degrees =
-      90 - daylight::zenith_of_sun(place->elevation_degrees / degrees) * degrees;
+      90 - weather::zenith_of_sun(place->elevation_degrees / degrees) * degrees;
   sky.to_sun = direction_to(shown);
   if (sky.illuminance > 0) lights.sky = sky;
   const double direct = sky.perez->direct_illuminance();
@@ -107,4 +107,4 @@ SkySituationLights sun_and_sky(const SceneLoadOptions& given) {
   return lights;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

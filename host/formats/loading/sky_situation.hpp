@@ -4,16 +4,16 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "weather/perez_sky.hpp"
 #include "photile/scene.hpp"
+#include "weather/perez_sky.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 struct SkyLight {
   SkyKind kind = SkyKind::overcast;
-  double illuminance = 0;                        ///< lux on open ground
-  glm::dvec3 to_sun{0.0, 1.0, 0.0};              ///< unit, in the scene
-  std::optional<daylight::PerezSky> perez = {};  ///< of a Perez sky
+  double illuminance = 0;                       ///< lux on open ground
+  glm::dvec3 to_sun{0.0, 1.0, 0.0};             ///< unit, in the scene
+  std::optional<weather::PerezSky> perez = {};  ///< of a Perez sky
   int patches = 0;
   double north = 0;  ///< radians clockwise from -z
 };
@@ -26,4 +26,4 @@ struct SkySituationLights {
 /// Errors: UsageError where one option lacks another; those of read_weather.
 SkySituationLights sun_and_sky(const SceneLoadOptions& options);
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -5,16 +5,16 @@
 #include <utility>
 #include <vector>
 
-#include "weather/sky_lights.hpp"
 #include "loading/finishing.hpp"
-#include "pictures/radiance_picture.hpp"
 #include "loading/sky_map.hpp"
 #include "loading/sky_situation.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "pictures/radiance_picture.hpp"
 #include "scene/light_emission.hpp"
+#include "weather/sky_lights.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 namespace {
 
 constexpr const char* fewer_lux = "give fewer lux";
@@ -43,7 +43,7 @@ double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& opt
 }
 
 void add_picture(const EnvironmentPicture& picture, Scene& scene) {
-  RadiancePicture read = read_radiance_picture(picture.file);
+  pictures::RadiancePicture read = pictures::read_radiance_picture(picture.file);
   std::size_t lost = 0;
   bool black = true;
   for (glm::vec3& texel : read.texels) {
@@ -65,7 +65,7 @@ void add_picture(const EnvironmentPicture& picture, Scene& scene) {
   EnvironmentMap map(picture.file.filename().string(), read.width, read.height,
                      std::move(read.texels), picture.rotation_degrees);
   if (!(luminance(map.integral()) > 0.0)) refuse_black();
-  add_environment_light("environment", std::move(map), scene);
+  scene::add_environment_light("environment", std::move(map), scene);
   check_flux<InputError>(scene, picture.file.string(), "give a smaller scale");
 }
 
@@ -77,22 +77,22 @@ void add_sun(const Sun& sun, const SceneLoadOptions& options, Scene& scene) {
   light.kind = LightKind::directional;
   light.direction = -glm::vec3(direction_to(sun));
   light.angular_diameter = static_cast<float>(diameter);
-  light.power = distant_flux(in_scene_unit(sun.illuminance, scene, options), diameter,
-                             bounding_sphere(scene).radius);
+  light.power = scene::distant_flux(in_scene_unit(sun.illuminance, scene, options), diameter,
+                                    bounding_sphere(scene).radius);
   scene.lights.push_back(std::move(light));
   check_flux<UsageError>(scene, fmt::format("sun of {:g} lux", sun.illuminance), fewer_lux);
 }
 
 void add_sky(const SkyLight& sky, const SceneLoadOptions& options, Scene& scene) {
   if (sky.kind == SkyKind::patches) {
-    daylight::add_sky_lights(daylight::sky_patches(sky.patches), sky.north, scene);
+    weather::add_sky_lights(weather::sky_patches(sky.patches), sky.north, scene);
     return;
   }
   check_lux("sky", sky.illuminance);
-  add_environment_light("sky",
-                        sky_map(sky.kind, in_scene_unit(sky.illuminance, scene, options),
-                                sky.to_sun, sky.perez ? &*sky.perez : nullptr),
-                        scene);
+  scene::add_environment_light("sky",
+                               sky_map(sky.kind, in_scene_unit(sky.illuminance, scene, options),
+                                       sky.to_sun, sky.perez ? &*sky.perez : nullptr),
+                               scene);
   check_flux<UsageError>(scene, fmt::format("sky of {:g} lux", sky.illuminance), fewer_lux);
 }
 
@@ -105,4 +105,4 @@ void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
   if (found.sky) add_sky(*found.sky, options, scene);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -10,7 +10,7 @@
 #include "geometry/box.hpp"
 #include "photile/errors.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 namespace {
 
 constexpr double least_cosine = 0.985;  ///< of what faces along an axis: 10 degrees
@@ -70,7 +70,7 @@ glm::dmat3 turn_upright(const std::string& up) {
   return glm::transpose(glm::dmat3(right, upwards, glm::cross(right, upwards)));
 }
 
-void warn_of_other_up(const Scene& scene, Warnings& warnings) {
+void warn_of_other_up(const Scene& scene, files::Warnings& warnings) {
   geometry::BoxOf<double> box;
   for (const glm::vec3& vertex : scene.vertices) box.extend(glm::dvec3(vertex));
   const glm::dvec3 size = box.size();
@@ -84,4 +84,4 @@ void warn_of_other_up(const Scene& scene, Warnings& warnings) {
       z.area, y.area));
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

@@ -7,7 +7,7 @@
 #include "files/warnings.hpp"
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::loading {
 
 /// The rotation after which `up` ("x" to "-z", "" = "y") points along y. With "z", as CAD programs
 /// have it, x stays and the file's y becomes -z, north. Errors: UsageError for another word.
@@ -18,6 +18,6 @@ glm::dmat3 turn_upright(const std::string& up);
 /// surface that faces along z as along y, or one plane along z twice as large as any along y, or
 /// both a little less. A guess: an empty room 4 x 3 m wide and 2.8 m high is the same box as one 4
 /// x 2.8 m wide and 3 m high, so nothing is turned.
-void warn_of_other_up(const Scene& scene, Warnings& warnings);
+void warn_of_other_up(const Scene& scene, files::Warnings& warnings);
 
-}  // namespace photile::scene_io
+}  // namespace photile::loading

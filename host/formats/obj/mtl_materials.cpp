@@ -10,7 +10,7 @@
 #include "photile/limits.hpp"
 #include "scene/surface_models.hpp"
 
-namespace photile::scene_io {
+namespace photile::obj {
 namespace {
 
 constexpr double default_index_of_refraction = 1.5;  // where MTL asks for glass without an Ni
@@ -27,7 +27,7 @@ glm::vec3 reflectance(const tinyobj::real_t (&rgb)[3]) {
   return glm::vec3(glm::clamp(color(rgb), 0.0, 1.0));
 }
 
-void warn_about_ignored(const tinyobj::material_t& source, Warnings& warnings) {
+void warn_about_ignored(const tinyobj::material_t& source, files::Warnings& warnings) {
   const auto warn = [&](const std::string& message) {
     warnings.add("material", source.name, message);
   };
@@ -56,9 +56,9 @@ bool is_glass(const tinyobj::material_t& source) {
   return source.dissolve < 1 && source.ior > 1 && source.alpha_texname.empty();
 }
 
-void set_glass(const tinyobj::material_t& source, Material& material, Warnings& warnings) {
+void set_glass(const tinyobj::material_t& source, Material& material, files::Warnings& warnings) {
   // MTL files have an Ns of 0 or 1 where nobody thought of one.
-  if (source.shininess > 1 && source.shininess < mirror_phong_exponent) {
+  if (source.shininess > 1 && source.shininess < scene::mirror_phong_exponent) {
     warnings.add("material", source.name,
                  fmt::format("rough glass (Ns {:.4g}) is treated as smooth", source.shininess));
   }
@@ -79,7 +79,7 @@ void set_mirror(const glm::vec3& specular, Material& material) {
 }
 
 void set_surface(const tinyobj::material_t& source, bool lambertian, Material& material,
-                 Warnings& warnings) {
+                 files::Warnings& warnings) {
   const bool has_texture = !source.diffuse_texname.empty();
   if (source.roughness > 0 || source.metallic > 0) {
     MetallicRoughness model;
@@ -87,7 +87,7 @@ void set_surface(const tinyobj::material_t& source, bool lambertian, Material& m
     model.metallic = source.metallic;
     model.roughness = source.roughness;
     if (lambertian) model.specular_factor = 0;
-    set_metallic_roughness(model, material);
+    scene::set_metallic_roughness(model, material);
     return;
   }
   if (is_glass(source)) return set_glass(source, material, warnings);
@@ -96,34 +96,34 @@ void set_surface(const tinyobj::material_t& source, bool lambertian, Material& m
   const bool specular_model = source.illum == 2 || reflective_model;
   const bool black_diffuse = diffuse == glm::vec3(0.0f) && !has_texture;
   if (reflective_model && specular != glm::vec3(0.0f) &&
-      (source.shininess >= mirror_phong_exponent || black_diffuse)) {
+      (source.shininess >= scene::mirror_phong_exponent || black_diffuse)) {
     return set_mirror(specular, material);
   }
   material.diffuse = diffuse;
   if (specular_model && !lambertian) {
     material.specular = specular;
-    material.roughness = ggx_alpha_from_phong_exponent(source.shininess);
-    if (conserve_energy(material)) {
+    material.roughness = scene::ggx_alpha_from_phong_exponent(source.shininess);
+    if (scene::conserve_energy(material)) {
       warnings.add("material", source.name, "Kd + Ks exceeds 1; both are scaled");
     }
   }
 }
 
 /// A picture that the library names, as written on Windows or elsewhere. Errors: ResourceError.
-std::uint32_t texture_named(std::string path, TextureStore& textures,
-                            TextureContent content = TextureContent::color) {
+std::uint32_t texture_named(std::string path, pictures::TextureStore& textures,
+                            pictures::TextureContent content = pictures::TextureContent::color) {
   std::replace(path.begin(), path.end(), '\\', '/');
   return textures.from_file(path, content);
 }
 
 /// A texture beside map_Kd; `none` where the material has none or it cannot be had.
-std::uint32_t texture_or_none(const std::string& name, TextureContent content,
+std::uint32_t texture_or_none(const std::string& name, pictures::TextureContent content,
                               const std::string& substitute, const Material& material,
-                              TextureStore& textures, ImportContext& context) {
+                              pictures::TextureStore& textures, reading::ImportContext& context) {
   if (name.empty()) return none;
   try {
     return texture_named(name, textures, content);
-  } catch (const ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     context.warnings.add("material", material.name,
                          std::string(error.what()) + "; " + substitute + " is used instead");
     return none;
@@ -131,8 +131,8 @@ std::uint32_t texture_or_none(const std::string& name, TextureContent content,
 }
 
 /// d, Tr and map_d. Emission knows no holes: what shines stays whole.
-void set_opacity(const tinyobj::material_t& source, bool emits, TextureStore& textures,
-                 Material& material, ImportContext& context) {
+void set_opacity(const tinyobj::material_t& source, bool emits, pictures::TextureStore& textures,
+                 Material& material, reading::ImportContext& context) {
   if (material.interaction == Interaction::glass) return;
   // Some programs write Tr as they write d, and what is not there at all would not be in the file.
   const bool given = source.dissolve > 0 && source.dissolve < 1;
@@ -140,8 +140,8 @@ void set_opacity(const tinyobj::material_t& source, bool emits, TextureStore& te
   if (!(source.dissolve > 0)) {
     context.warnings.add("material", material.name, "d 0 (Tr 1) is treated as opaque");
   }
-  const std::uint32_t texture = texture_or_none(source.alpha_texname, TextureContent::opacity, "d",
-                                                material, textures, context);
+  const std::uint32_t texture = texture_or_none(
+      source.alpha_texname, pictures::TextureContent::opacity, "d", material, textures, context);
   if (texture == none && opacity >= 1.0f) return;
   if (emits) {
     context.warnings.add("material", material.name,
@@ -157,13 +157,14 @@ void set_opacity(const tinyobj::material_t& source, bool emits, TextureStore& te
   }
 }
 
-Emission emission_of(const tinyobj::material_t& source, TextureStore& textures,
-                     ImportContext& context) {
-  Emission emission{color(source.emission) * static_cast<double>(context.options.emissive_scale)};
+reading::Emission emission_of(const tinyobj::material_t& source, pictures::TextureStore& textures,
+                              reading::ImportContext& context) {
+  reading::Emission emission{color(source.emission) *
+                             static_cast<double>(context.options.emissive_scale)};
   if (source.emissive_texname.empty() || emission.radiance == glm::dvec3(0.0)) return emission;
   try {
     emission.texture = texture_named(source.emissive_texname, textures);
-  } catch (const ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     context.warnings.add("material", source.name,
                          std::string(error.what()) + "; its Ke is used alone");
   }
@@ -172,8 +173,8 @@ Emission emission_of(const tinyobj::material_t& source, TextureStore& textures,
 
 }  // namespace
 
-void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
-                      ImportContext& context) {
+void add_mtl_material(const tinyobj::material_t& source, pictures::TextureStore& textures,
+                      reading::ImportContext& context) {
   Material material;
   material.name = source.name;
   set_surface(source, context.options.lambertian, material, context.warnings);
@@ -181,31 +182,31 @@ void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
   if (!source.diffuse_texname.empty() && material.interaction == Interaction::opaque) {
     try {
       material.diffuse_texture = texture_named(source.diffuse_texname, textures);
-    } catch (const ResourceError& error) {
-      use_missing_texture_colour(material);
+    } catch (const files::ResourceError& error) {
+      pictures::use_missing_texture_colour(material);
       context.warnings.add("material", source.name,
                            std::string(error.what()) + "; mid grey (0.5) is used instead");
     }
   }
-  material.normal_texture = texture_or_none(source.normal_texname, TextureContent::data,
+  material.normal_texture = texture_or_none(source.normal_texname, pictures::TextureContent::data,
                                             "no normal map", material, textures, context);
   const double scale = source.normal_texopt.bump_multiplier;
   if (std::isfinite(scale)) {
     material.normal_scale =
         static_cast<float>(std::clamp(scale, -limits::max_normal_scale, limits::max_normal_scale));
   }
-  const Emission emission = emission_of(source, textures, context);
+  const reading::Emission emission = emission_of(source, textures, context);
   set_opacity(source, emission.radiance != glm::dvec3(0.0), textures, material, context);
   context.scene.materials.push_back(std::move(material));
   context.emission.push_back(emission);
 }
 
-void add_missing_material(const std::string& name, ImportContext& context) {
+void add_missing_material(const std::string& name, reading::ImportContext& context) {
   Material material;
   material.name = name;
-  material.diffuse = glm::vec3(missing_albedo);
+  material.diffuse = glm::vec3(scene::missing_albedo);
   context.scene.materials.push_back(std::move(material));
   context.emission.emplace_back();
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

@@ -3,10 +3,10 @@
 
 #include <tiny_obj_loader.h>
 
-#include "reading/import_context.hpp"
 #include "pictures/texture_store.hpp"
+#include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::obj {
 
 /// Appends one material and its emission to the context. OBJ emission is W/(m2 sr), from the front
 /// side only.
@@ -20,10 +20,10 @@ namespace photile::scene_io {
 /// | anything else                                  | Lambertian Kd                             |
 /// | map_d; or d < 1 without Ni                     | opacity: holes, by chance in between      |
 /// | norm                                           | a normal map, -bm its scale               |
-void add_mtl_material(const tinyobj::material_t& source, TextureStore& textures,
-                      ImportContext& context);
+void add_mtl_material(const tinyobj::material_t& source, pictures::TextureStore& textures,
+                      reading::ImportContext& context);
 
 /// Appends a mid-grey material for a name that no library defines.
-void add_missing_material(const std::string& name, ImportContext& context);
+void add_missing_material(const std::string& name, reading::ImportContext& context);
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

@@ -1,3 +1,5 @@
+#include "obj/obj_import.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,24 +7,23 @@
 #include <limits>
 #include <map>
 
-#include "reading/import_context.hpp"
+#include "files/warnings.hpp"
 #include "obj/mtl_materials.hpp"
 #include "obj/obj_libraries.hpp"
 #include "obj/obj_reader.hpp"
 #include "obj/obj_text.hpp"
+#include "photile/limits.hpp"
 #include "reading/plain_material.hpp"
 #include "reading/polygon_triangulator.hpp"
 #include "reading/scene_origin.hpp"
-#include "files/warnings.hpp"
-#include "photile/limits.hpp"
 #include "scene/coordinate_limit.hpp"
 #include "scene/material_needs.hpp"
 #include "scene/mesh_builder.hpp"
 
-namespace photile::scene_io {
+namespace photile::obj {
 namespace {
 
-void report_findings(const ObjTextFindings& findings, Warnings& warnings) {
+void report_findings(const ObjTextFindings& findings, files::Warnings& warnings) {
   if (findings.vertex_colors) warnings.add("vertex colours are ignored");
   for (const auto& [keyword, lines] : findings.ignored_statements) {
     warnings.add("statement", keyword, "not a surface or not understood; ignored");
@@ -33,7 +34,7 @@ void report_findings(const ObjTextFindings& findings, Warnings& warnings) {
 /// more for faces without any.
 std::vector<std::uint32_t> add_materials(const ObjFile& file,
                                          const std::vector<tinyobj::material_t>& defined,
-                                         ImportContext& context) {
+                                         reading::ImportContext& context) {
   if (file.material_names.size() + 1 > limits::max_materials) {
     throw context.error(fmt::format("more than {} materials", limits::max_materials));
   }
@@ -41,7 +42,7 @@ std::vector<std::uint32_t> add_materials(const ObjFile& file,
   for (const tinyobj::material_t& material : defined) {
     library.emplace(material.name, &material);
   }
-  TextureStore textures(context.scene, context.folder);
+  pictures::TextureStore textures(context.scene, context.folder);
   std::vector<std::uint32_t> index;
   for (const std::string& name : file.material_names) {
     index.push_back(static_cast<std::uint32_t>(context.scene.materials.size()));
@@ -62,8 +63,8 @@ std::vector<std::uint32_t> add_materials(const ObjFile& file,
   return index;
 }
 
-Corner corner_of(const ObjFile& file, const tinyobj::index_t& index) {
-  Corner corner;
+scene::Corner corner_of(const ObjFile& file, const tinyobj::index_t& index) {
+  scene::Corner corner;
   corner.position = file.positions[static_cast<std::size_t>(index.vertex_index)];
   if (index.normal_index >= 0) {
     corner.normal = file.normals[static_cast<std::size_t>(index.normal_index)];
@@ -77,8 +78,9 @@ Corner corner_of(const ObjFile& file, const tinyobj::index_t& index) {
 }
 
 void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
-              MeshBuilder& builder, PlainMaterials& plain_materials, ImportContext& context) {
-  std::vector<Corner> corners;
+              scene::MeshBuilder& builder, reading::PlainMaterials& plain_materials,
+              reading::ImportContext& context) {
+  std::vector<scene::Corner> corners;
   std::vector<glm::dvec3> positions;
   bool has_coordinates = true;
   for (std::uint64_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
@@ -86,7 +88,7 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
     positions.push_back(corners.back().position);
     has_coordinates &= file.corners[c].texcoord_index >= 0;
   }
-  Emission emission = context.emission[material];
+  reading::Emission emission = context.emission[material];
   const Material& wanted = context.scene.materials[material];
   const bool is_plain = !has_coordinates && wanted.textured();
   if (is_plain || (!has_coordinates && emission.texture != none)) {
@@ -103,12 +105,12 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
     return;
   }
   ++context.scene.report.polygons_triangulated;
-  if (!std::all_of(positions.begin(), positions.end(), within_limit)) {
+  if (!std::all_of(positions.begin(), positions.end(), scene::within_limit)) {
     // No plane to triangulate in: the whole polygon is lost, as many triangles as it would give.
     context.scene.report.non_finite_triangles += corners.size() - 2;
     return;
   }
-  const Triangulation triangulation = triangulate_polygon(positions);
+  const reading::Triangulation triangulation = reading::triangulate_polygon(positions);
   if (!triangulation.simple) {
     context.warnings.add("object", file.objects[face.object],
                          "a polygon crosses itself; its triangulation may overlap or leave gaps");
@@ -127,7 +129,7 @@ void turn(ObjFile& file, const glm::dmat3& turn) {
 
 /// Chooses Scene::origin (scene_origin.hpp) and counts all positions from there.
 void move_to_origin(ObjFile& file, Scene& scene) {
-  SceneOrigin origin;
+  reading::SceneOrigin origin;
   const auto position = [&](std::uint64_t corner) {
     return file.positions[static_cast<std::size_t>(file.corners[corner].vertex_index)];
   };
@@ -144,7 +146,7 @@ void move_to_origin(ObjFile& file, Scene& scene) {
 
 }  // namespace
 
-void import_obj(ImportContext& context) {
+void import_obj(reading::ImportContext& context) {
   if (!context.options.panels.empty()) {
     throw UsageError(fmt::format("panel at node {}: nodes are what glTF files have; this is an OBJ",
                                  context.options.panels.front().node));
@@ -158,7 +160,7 @@ void import_obj(ImportContext& context) {
   ObjTextFindings findings;
   try {
     findings = examine_obj_text(text);
-  } catch (const ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     throw context.error(error.what());
   }
   report_findings(findings, context.warnings);
@@ -173,15 +175,16 @@ void import_obj(ImportContext& context) {
   context.scene.unit = PowerUnit::watt;
   const std::vector<std::uint32_t> material_index =
       add_materials(file, read_obj_libraries(findings.libraries, context), context);
-  const SceneNeeds needs = needs_of_materials(context.scene.materials);
-  MeshBuilder builder(context.scene, {needs.textures, has_emission_texture(context), true});
-  PlainMaterials plain_materials(context.scene);
+  const SceneNeeds needs = scene::needs_of_materials(context.scene.materials);
+  scene::MeshBuilder builder(context.scene,
+                             {needs.textures, reading::has_emission_texture(context), true});
+  reading::PlainMaterials plain_materials(context.scene);
   for (const ObjFace& face : file.faces) {
     const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;
     add_face(file, face, material_index[name], builder, plain_materials, context);
   }
   builder.finish();
-  drop_flat_normals(context.scene, needs);
+  scene::drop_flat_normals(context.scene, needs);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

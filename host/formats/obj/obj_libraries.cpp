@@ -10,7 +10,7 @@
 #include "common/ascii_text.hpp"
 #include "files/warnings.hpp"
 
-namespace photile::scene_io {
+namespace photile::obj {
 namespace {
 
 /// As written on Windows or elsewhere.
@@ -37,18 +37,18 @@ std::vector<std::string> names_between_blanks(const std::string& statement) {
   return names;
 }
 
-std::vector<std::string> names_in(const std::string& statement, const SceneFolder& folder) {
+std::vector<std::string> names_in(const std::string& statement, const files::SceneFolder& folder) {
   std::string whole = with_slashes(statement);
   if (folder.holds(whole)) return {std::move(whole)};
   return names_between_blanks(statement);
 }
 
 void read_library(const std::string& name, std::vector<tinyobj::material_t>& materials,
-                  ImportContext& context) {
+                  reading::ImportContext& context) {
   const std::vector<unsigned char> bytes = context.folder.read(name);
   std::string text(bytes.begin(), bytes.end());
   if (text.find('\0') != std::string::npos) {
-    throw ResourceError("'" + name + "': NUL bytes: this is no plain text (UTF-16?)");
+    throw files::ResourceError("'" + name + "': NUL bytes: this is no plain text (UTF-16?)");
   }
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a byte-order mark
   std::istringstream stream(std::move(text));
@@ -66,7 +66,7 @@ void read_library(const std::string& name, std::vector<tinyobj::material_t>& mat
 }  // namespace
 
 std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::string>& statements,
-                                                    ImportContext& context) {
+                                                    reading::ImportContext& context) {
   std::vector<tinyobj::material_t> materials;
   std::set<std::string> known;
   for (const std::string& statement : statements) {
@@ -74,7 +74,7 @@ std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::strin
       if (!known.insert(name).second) continue;
       try {
         read_library(name, materials, context);
-      } catch (const ResourceError& error) {
+      } catch (const files::ResourceError& error) {
         context.warnings.add(
             fmt::format("material library {}; its materials become mid grey (0.5)", error.what()));
       }
@@ -86,4 +86,4 @@ std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::strin
   return materials;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

@@ -8,7 +8,7 @@
 
 #include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::obj {
 
 /// The materials of the libraries that mtllib statements name, from the scene's folder, in their
 /// order. A statement may name several files. Names with blanks are written with backslashes before
@@ -16,6 +16,6 @@ namespace photile::scene_io {
 ///   statements   what follows each `mtllib`
 /// Libraries that cannot be read are named in a warning.
 std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::string>& statements,
-                                                    ImportContext& context);
+                                                    reading::ImportContext& context);
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

@@ -9,7 +9,7 @@
 #include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::obj {
 namespace {
 
 /// A stream over bytes that stay where they are.
@@ -23,7 +23,7 @@ class MemoryBuffer : public std::streambuf {
 /// Collects what the callbacks report.
 class Collector {
  public:
-  Collector(ImportContext& context, ObjFile& file) : context_(context), file_(file) {
+  Collector(reading::ImportContext& context, ObjFile& file) : context_(context), file_(file) {
     file_.objects.emplace_back();
   }
 
@@ -72,7 +72,7 @@ class Collector {
 
   const std::string& object_name() const { return file_.objects[object_]; }
 
-  ImportContext& context_;
+  reading::ImportContext& context_;
   ObjFile& file_;
   std::uint32_t object_ = 0, material_ = none;
   std::map<std::string, std::uint32_t> object_index_{{"", 0}}, material_index_;
@@ -111,7 +111,7 @@ tinyobj::callback_t callbacks() {
 }
 
 /// Positive vertex indices may point ahead, so they are checked when all vertices are known.
-void check_corners(ObjFile& file, ImportContext& context) {
+void check_corners(ObjFile& file, reading::ImportContext& context) {
   std::uint64_t bad_normals = 0, bad_texcoords = 0;
   for (std::size_t f = 0; f < file.faces.size(); ++f) {
     const ObjFace& face = file.faces[f];
@@ -144,7 +144,7 @@ void check_corners(ObjFile& file, ImportContext& context) {
 
 }  // namespace
 
-ObjFile read_obj(std::string& text, ImportContext& context) {
+ObjFile read_obj(std::string& text, reading::ImportContext& context) {
   ObjFile file;
   CallbackData data{Collector(context, file), file};
   MemoryBuffer buffer(text);
@@ -156,4 +156,4 @@ ObjFile read_obj(std::string& text, ImportContext& context) {
   return file;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

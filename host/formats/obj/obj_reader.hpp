@@ -11,7 +11,7 @@
 
 #include "reading/import_context.hpp"
 
-namespace photile::scene_io {
+namespace photile::obj {
 
 struct ObjFace {
   std::uint64_t first_corner;
@@ -31,6 +31,6 @@ struct ObjFile {
 
 /// Reads `text`, without the material libraries that it names (obj_libraries.hpp). Errors:
 /// InputError naming the face with an impossible vertex index.
-ObjFile read_obj(std::string& text, ImportContext& context);
+ObjFile read_obj(std::string& text, reading::ImportContext& context);
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

@@ -9,7 +9,7 @@
 #include "common/ascii_text.hpp"
 #include "files/warnings.hpp"
 
-namespace photile::scene_io {
+namespace photile::obj {
 namespace {
 
 constexpr std::string_view blanks = " \t\r";
@@ -51,7 +51,7 @@ void examine_vertex(std::string_view rest, std::uint64_t vertex, ObjTextFindings
 
 ObjTextFindings examine_obj_text(std::string& text) {
   if (text.find('\0') != std::string::npos) {
-    throw ResourceError("NUL bytes: this is no plain text (UTF-16?); save it as UTF-8");
+    throw files::ResourceError("NUL bytes: this is no plain text (UTF-16?); save it as UTF-8");
   }
   join_continued_lines(text);
   constexpr std::array<std::string_view, 7> understood{"vn", "vt", "f", "o", "g", "usemtl", "s"};
@@ -75,4 +75,4 @@ ObjTextFindings examine_obj_text(std::string& text) {
   return findings;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

@@ -7,7 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
-namespace photile::scene_io {
+namespace photile::obj {
 
 struct ObjTextFindings {
   /// Vertices (counted from 0) with a coordinate that is no finite number: "nan", "inf", a word.
@@ -23,4 +23,4 @@ struct ObjTextFindings {
 /// no text.
 ObjTextFindings examine_obj_text(std::string& text);
 
-}  // namespace photile::scene_io
+}  // namespace photile::obj

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <vector>
 
-#include "photometry/photometric_planes.hpp"
-#include "photometry/photometric_text.hpp"
 #include "files/warnings.hpp"
 #include "photile/limits.hpp"
+#include "photometry/photometric_planes.hpp"
+#include "photometry/photometric_text.hpp"
 
-namespace photile::scene_io {
+namespace photile::photometry {
 namespace {
 
 // Lines of the format, counted from 1.
@@ -34,11 +34,13 @@ class Lines {
 
   /// The number in line `line`, counted from 1.
   double number(const std::string& what, std::size_t line) const {
-    if (line > lines_.size()) throw ResourceError(fmt::format("the file ends before the {}", what));
+    if (line > lines_.size())
+      throw files::ResourceError(fmt::format("the file ends before the {}", what));
     std::string text(trimmed(lines_[line - 1]));
     std::replace(text.begin(), text.end(), ',', '.');
     const auto value = parse_signed(text);
-    if (!value) throw ResourceError(fmt::format("line {}: no number, for the {}", line, what));
+    if (!value)
+      throw files::ResourceError(fmt::format("line {}: no number, for the {}", line, what));
     return *value;
   }
 
@@ -54,8 +56,9 @@ class Lines {
     const double value = number(what, line);
     if (value != std::floor(value) || value < static_cast<double>(lowest) ||
         value > static_cast<double>(highest)) {
-      throw ResourceError(fmt::format("line {}: the {} is {}, not a whole number from {} to {}",
-                                      line, what, value, lowest, highest));
+      throw files::ResourceError(
+          fmt::format("line {}: the {} is {}, not a whole number from {} to {}", line, what, value,
+                      lowest, highest));
     }
     return static_cast<std::size_t>(value);
   }
@@ -106,7 +109,7 @@ std::vector<double> ascending_angles(const std::string& what, std::size_t first_
     const double angle = lines.number(what, first_line + i);
     const bool ascends = i == 0 || angle - angles.back() >= least_angle_step;
     if (!(angle >= 0.0 && angle <= highest) || !ascends) {
-      throw ResourceError(fmt::format(
+      throw files::ResourceError(fmt::format(
           "line {}: the {} is {}; angles ascend within 0 and {} degrees, by {:g} at least",
           first_line + i, what, angle, highest, least_angle_step));
     }
@@ -138,7 +141,7 @@ std::vector<MeasuredPlane> planes_about_c90(const std::vector<double>& azimuths)
 }  // namespace
 
 IntensityDistribution read_eulumdat(const std::string& name, std::string_view text,
-                                    Warnings& warnings) {
+                                    files::Warnings& warnings) {
   const Lines lines(text);
   const auto symmetry =
       static_cast<Symmetry>(lines.count("symmetry indicator", symmetry_line, 0, 4));
@@ -147,12 +150,12 @@ IntensityDistribution read_eulumdat(const std::string& name, std::string_view te
   const std::size_t angles = lines.count("number of intensities in a C plane", angle_count_line, 2,
                                          limits::max_photometric_angles);
   if (planes * angles > limits::max_photometric_values) {
-    throw ResourceError(fmt::format("{} C planes x {} angles; the limit is {} values", planes,
-                                    angles, limits::max_photometric_values));
+    throw files::ResourceError(fmt::format("{} C planes x {} angles; the limit is {} values",
+                                           planes, angles, limits::max_photometric_values));
   }
   if ((symmetry == about_c0 && planes % 2 != 0) || (symmetry > about_c0 && planes % 4 != 0)) {
-    throw ResourceError(fmt::format("line {}: {} C planes cannot have symmetry {}",
-                                    plane_count_line, planes, static_cast<int>(symmetry)));
+    throw files::ResourceError(fmt::format("line {}: {} C planes cannot have symmetry {}",
+                                           plane_count_line, planes, static_cast<int>(symmetry)));
   }
   const double conversion = lines.number("conversion factor", conversion_line);
   const std::size_t sets =
@@ -163,7 +166,7 @@ IntensityDistribution read_eulumdat(const std::string& name, std::string_view te
   const std::size_t flux_line = set_count_line + flux_in_set;
   const double factor = conversion * lines.number("flux of the lamps", flux_line) / 1000.0;
   if (!(factor > 0.0)) {
-    throw ResourceError(
+    throw files::ResourceError(
         fmt::format("conversion factor (line {}) times flux of the lamps (line {}) is not above 0",
                     conversion_line, flux_line));
   }
@@ -179,7 +182,8 @@ IntensityDistribution read_eulumdat(const std::string& name, std::string_view te
   for (std::size_t i = 0; i < range.count * angles; ++i) {
     const double value = factor * lines.number("intensity", first_value + i);
     if (!(value >= 0.0) || !std::isfinite(static_cast<float>(value))) {
-      throw ResourceError(fmt::format("line {}: an intensity of {} cd", first_value + i, value));
+      throw files::ResourceError(
+          fmt::format("line {}: an intensity of {} cd", first_value + i, value));
     }
     measured.push_back(static_cast<float>(value));
   }
@@ -197,4 +201,4 @@ IntensityDistribution read_eulumdat(const std::string& name, std::string_view te
   return distribution;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

@@ -7,7 +7,7 @@
 #include "files/warnings.hpp"
 #include "photile/intensity_distribution.hpp"
 
-namespace photile::scene_io {
+namespace photile::photometry {
 
 /// Reads an EULUMDAT file (Stockmar 1990). Intensities, in cd per 1000 lm, are multiplied by the
 /// flux of the first set of lamps and by the file's conversion factor. Decimal commas count as
@@ -15,6 +15,6 @@ namespace photile::scene_io {
 ///   name  of the file, for messages
 /// Errors: ResourceError with the line and what is wrong.
 IntensityDistribution read_eulumdat(const std::string& name, std::string_view text,
-                                    Warnings& warnings);
+                                    files::Warnings& warnings);
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

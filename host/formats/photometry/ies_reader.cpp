@@ -7,12 +7,12 @@
 #include <cmath>
 #include <vector>
 
-#include "photometry/photometric_planes.hpp"
-#include "photometry/photometric_text.hpp"
 #include "files/warnings.hpp"
 #include "photile/limits.hpp"
+#include "photometry/photometric_planes.hpp"
+#include "photometry/photometric_text.hpp"
 
-namespace photile::scene_io {
+namespace photile::photometry {
 namespace {
 
 enum class Photometry { type_c = 1, type_b = 2, type_a = 3 };
@@ -30,11 +30,11 @@ Tilt find_tilt(const std::vector<std::string_view>& lines) {
     line = trimmed(line.substr(4));
     if (line.starts_with('=')) return {trimmed(line.substr(1)), i + 1};
   }
-  throw ResourceError("no line starts with TILT=: this is no LM-63 file");
+  throw files::ResourceError("no line starts with TILT=: this is no LM-63 file");
 }
 
 void skip_tilt(const Tilt& tilt, const std::string& name, NumberReader& reader,
-               Warnings& warnings) {
+               files::Warnings& warnings) {
   if (tilt.value == "NONE") return;
   if (tilt.value != "INCLUDE") {
     warnings.add("photometric file", name, "its tilt file is not read: the lamp is not tilted");
@@ -53,7 +53,8 @@ void skip_tilt(const Tilt& tilt, const std::string& name, NumberReader& reader,
 double positive(const std::string& what, NumberReader& reader) {
   const double value = reader.number(what);
   if (!(value > 0.0)) {
-    throw ResourceError(fmt::format("{}: the {} is {}, not above 0", reader.place(), what, value));
+    throw files::ResourceError(
+        fmt::format("{}: the {} is {}, not above 0", reader.place(), what, value));
   }
   return value;
 }
@@ -64,7 +65,7 @@ std::vector<double> angles(const std::string& what, std::size_t count, double lo
   for (std::size_t i = 0; i < count; ++i) {
     const bool ascends = i == 0 || values[i] - values[i - 1] >= least_angle_step;
     if (values[i] < lowest || values[i] > highest || !ascends) {
-      throw ResourceError(
+      throw files::ResourceError(
           fmt::format("{} {} of {} is {}; angles ascend within {} and {} degrees, by {:g} at least",
                       what, i + 1, count, values[i], lowest, highest, least_angle_step));
     }
@@ -92,8 +93,8 @@ Web read_web(std::size_t vertical, std::size_t horizontal, Photometry type, doub
     const std::string what = "candela value";
     const double value = factor * reader.number(what);
     if (!(value >= 0.0) || !std::isfinite(static_cast<float>(value))) {
-      throw ResourceError(fmt::format("{}: {} {} of {} makes {} cd", reader.place(), what, i + 1,
-                                      vertical * horizontal, value));
+      throw files::ResourceError(fmt::format("{}: {} {} of {} makes {} cd", reader.place(), what,
+                                             i + 1, vertical * horizontal, value));
     }
     web.candela.push_back(static_cast<float>(value));
   }
@@ -168,7 +169,8 @@ bool has_ballast_lamp_factor(std::string_view first_line) {
 
 }  // namespace
 
-IntensityDistribution read_ies(const std::string& name, std::string_view text, Warnings& warnings) {
+IntensityDistribution read_ies(const std::string& name, std::string_view text,
+                               files::Warnings& warnings) {
   const std::vector<std::string_view> lines = lines_of(text);
   const Tilt tilt = find_tilt(lines);
   NumberReader reader(lines, tilt.next);
@@ -189,11 +191,13 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text, W
   if (has_ballast_lamp_factor(trimmed(lines.front())) && next > 0.0) factor *= next;
   reader.number("input watts");
   if (vertical * horizontal > limits::max_photometric_values) {
-    throw ResourceError(fmt::format("{} vertical x {} horizontal angles; the limit is {} values",
-                                    vertical, horizontal, limits::max_photometric_values));
+    throw files::ResourceError(
+        fmt::format("{} vertical x {} horizontal angles; the limit is {} values", vertical,
+                    horizontal, limits::max_photometric_values));
   }
   if (type != Photometry::type_c && horizontal < 2) {
-    throw ResourceError("a file of photometric type A or B has at least 2 horizontal angles");
+    throw files::ResourceError(
+        "a file of photometric type A or B has at least 2 horizontal angles");
   }
   const Web web = read_web(vertical, horizontal, type, factor, reader);
   IntensityDistribution distribution =
@@ -202,4 +206,4 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text, W
   return distribution;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

@@ -7,7 +7,7 @@
 #include "files/warnings.hpp"
 #include "photile/intensity_distribution.hpp"
 
-namespace photile::scene_io {
+namespace photile::photometry {
 
 /// Reads an LM-63 file of photometric type A, B or C. Intensities are the candela values times the
 /// multiplier and the ballast factor, and in files of 1986 and 1991 times the ballast-lamp factor:
@@ -18,6 +18,7 @@ namespace photile::scene_io {
 /// angles 0, is -z; horizontal angle 0 of type C is +x, and 90 is +y.
 ///   name  of the file, for messages
 /// Errors: ResourceError with the line and what is wrong.
-IntensityDistribution read_ies(const std::string& name, std::string_view text, Warnings& warnings);
+IntensityDistribution read_ies(const std::string& name, std::string_view text,
+                               files::Warnings& warnings);
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

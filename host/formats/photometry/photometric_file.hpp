@@ -7,11 +7,11 @@
 #include "files/warnings.hpp"
 #include "photile/intensity_distribution.hpp"
 
-namespace photile::scene_io {
+namespace photile::photometry {
 
 /// Reads EULUMDAT where the file's name ends with .ldt, else LM-63.
 /// Errors: ResourceError naming the file, the line, what is wrong and the remedy.
 IntensityDistribution read_photometry(const std::string& name, std::span<const unsigned char> bytes,
-                                      Warnings& warnings);
+                                      files::Warnings& warnings);
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

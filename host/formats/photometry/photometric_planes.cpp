@@ -6,7 +6,7 @@
 
 #include "files/warnings.hpp"
 
-namespace photile::scene_io {
+namespace photile::photometry {
 namespace {
 
 /// Adds the images of the planes in a mirror at the last one.
@@ -36,7 +36,7 @@ std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths
   } else if (range < 360.0 && range + 1.5 * largest_step >= 360.0) {
     planes.push_back({first + 360.0, 0});
   } else if (range != 360.0) {
-    throw ResourceError(
+    throw files::ResourceError(
         fmt::format("the horizontal angles run from {} to {} degrees; 0, 0 to 90, 0 to 180, 90 to "
                     "270 and 0 to 360 are understood",
                     first, last));
@@ -44,4 +44,4 @@ std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths
   return planes;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace photile::scene_io {
+namespace photile::photometry {
 
 /// Degrees between the angles of a file: mirrored, or turned by right angles, they still differ.
 inline constexpr double least_angle_step = 1e-6;
@@ -20,4 +20,4 @@ struct MeasuredPlane {
 /// of which the last may be missing. Azimuths ascend. Errors: ResourceError for any other range.
 std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths);
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

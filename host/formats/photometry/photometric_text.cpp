@@ -7,7 +7,7 @@
 
 #include "files/warnings.hpp"
 
-namespace photile::scene_io {
+namespace photile::photometry {
 namespace {
 
 constexpr std::string_view separators = " \t\f\v,\x1A";  // old files end with Ctrl-Z
@@ -42,10 +42,10 @@ std::string NumberReader::place() const { return fmt::format("line {}", line_ + 
 
 double NumberReader::number(const std::string& what) {
   const std::string_view text = token();
-  if (text.empty()) throw ResourceError(fmt::format("the file ends before the {}", what));
+  if (text.empty()) throw files::ResourceError(fmt::format("the file ends before the {}", what));
   const auto value = parse_signed(text);
   if (!value) {
-    throw ResourceError(
+    throw files::ResourceError(
         fmt::format("{}: '{}' is no number, for the {}", place(), shown(text), what));
   }
   return *value;
@@ -56,8 +56,8 @@ std::size_t NumberReader::count(const std::string& what, std::uint64_t lowest,
   const double value = number(what);
   if (value != std::floor(value) || value < static_cast<double>(lowest) ||
       value > static_cast<double>(highest)) {
-    throw ResourceError(fmt::format("{}: the {} is {}, not a whole number from {} to {}", place(),
-                                    what, value, lowest, highest));
+    throw files::ResourceError(fmt::format("{}: the {} is {}, not a whole number from {} to {}",
+                                           place(), what, value, lowest, highest));
   }
   return static_cast<std::size_t>(value);
 }
@@ -70,4 +70,4 @@ std::vector<double> NumberReader::numbers(const std::string& what, std::size_t c
   return values;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

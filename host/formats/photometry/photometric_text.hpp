@@ -10,7 +10,7 @@
 
 #include "common/ascii_text.hpp"
 
-namespace photile::scene_io {
+namespace photile::photometry {
 
 /// Reads numbers separated by blanks, commas or ends of lines.
 class NumberReader {
@@ -36,4 +36,4 @@ class NumberReader {
   std::size_t column_ = 0;
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::photometry

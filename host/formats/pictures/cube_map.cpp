@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace photile::scene_io {
+namespace photile::pictures {
 namespace {
 
 constexpr int samples = 4;  ///< of a texel, each way
@@ -67,4 +67,4 @@ EnvironmentMap environment_of(const CubeMap& cube, const glm::dquat& rotation, s
   return {std::move(name), width, height, std::move(texels)};
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::pictures

@@ -6,10 +6,10 @@
 #include <glm/gtc/quaternion.hpp>
 #include <string>
 
-#include "pictures/radiance_picture.hpp"
 #include "photile/environment_map.hpp"
+#include "pictures/radiance_picture.hpp"
 
-namespace photile::scene_io {
+namespace photile::pictures {
 
 /// Faces +x, -x, +y, -y, +z, -z, each as an observer in the middle sees it: with +y at the top; of
 /// +y -z at the top, and of -y +z. All are square and of one size, of a texel at least.
@@ -22,4 +22,4 @@ const glm::vec3& radiance_towards(const CubeMap& cube, const glm::dvec3& directi
 /// texel is the mean over its solid angle, by 4 x 4 samples.
 EnvironmentMap environment_of(const CubeMap& cube, const glm::dquat& rotation, std::string name);
 
-}  // namespace photile::scene_io
+}  // namespace photile::pictures

@@ -6,12 +6,12 @@
 #include <string>
 
 #include "files/scene_folder.hpp"
-#include "pictures/texture_decoder.hpp"
 #include "files/warnings.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "pictures/texture_decoder.hpp"
 
-namespace photile::scene_io {
+namespace photile::pictures {
 namespace {
 
 bool is_radiance(const glm::vec3& texel) {
@@ -29,7 +29,7 @@ void check_texels(const RadiancePicture& picture) {
   if (wrong == 0) return;
   const auto width = static_cast<std::size_t>(picture.width);
   const glm::vec3& texel = picture.texels[first];
-  throw ResourceError(fmt::format(
+  throw files::ResourceError(fmt::format(
       "{} of {} texels are NaN, infinite or negative, the first at column {}, row {}: ({}, {}, {})",
       wrong, picture.texels.size(), first % width, first / width, texel.r, texel.g, texel.b));
 }
@@ -38,15 +38,16 @@ void check_texels(const RadiancePicture& picture) {
 
 RadiancePicture read_radiance_picture(const std::filesystem::path& file) {
   try {
-    const std::vector<unsigned char> bytes = read_regular_file(file, limits::max_external_bytes);
+    const std::vector<unsigned char> bytes =
+        files::read_regular_file(file, limits::max_external_bytes);
     RadiancePicture picture = decode_radiance(file.string(), bytes);
     check_texels(picture);
     return picture;
-  } catch (const ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     throw InputError(
         fmt::format("{}: cannot use the environment: {}; give an equirectangular .hdr or .exr",
                     file.string(), error.what()));
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::pictures

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-namespace photile::scene_io {
+namespace photile::pictures {
 
 struct RadiancePicture {
   int width = 0, height = 0;
@@ -17,4 +17,4 @@ struct RadiancePicture {
 /// NaN, infinite or negative, their number and the first of them.
 RadiancePicture read_radiance_picture(const std::filesystem::path& file);
 
-}  // namespace photile::scene_io
+}  // namespace photile::pictures

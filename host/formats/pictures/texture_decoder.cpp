@@ -10,11 +10,11 @@
 #include <type_traits>
 #include <vector>
 
-#include "image/decoder.hpp"
 #include "files/warnings.hpp"
+#include "image/decoder.hpp"
 #include "photile/errors.hpp"
 
-namespace photile::scene_io {
+namespace photile::pictures {
 namespace {
 
 using image::PictureShape;
@@ -41,7 +41,7 @@ class OpenPicture {
     } catch (const Error&) {  // no picture can be read
       throw;
     } catch (const std::exception& error) {  // a decoder's own, or no memory
-      throw ResourceError(error.what());
+      throw files::ResourceError(error.what());
     }
   }
 
@@ -104,8 +104,8 @@ Texture decode_texture(const std::string& name, std::span<const unsigned char> b
   try {
     OpenPicture picture(name, bytes);
     return Texture(name, picture.shape().width, picture.shape().height, decode(picture, content));
-  } catch (const ResourceError& error) {
-    throw ResourceError(fmt::format("texture '{}': {}", name, error.what()));
+  } catch (const files::ResourceError& error) {
+    throw files::ResourceError(fmt::format("texture '{}': {}", name, error.what()));
   }
 }
 
@@ -113,7 +113,7 @@ RadiancePicture decode_radiance(const std::string& name, std::span<const unsigne
   OpenPicture picture(name, bytes);
   const PictureShape& shape = picture.shape();
   if (shape.sample != image::Sample::real) {
-    throw ResourceError("its pixels are no floating-point numbers");
+    throw files::ResourceError("its pixels are no floating-point numbers");
   }
   const auto pixels = std::get<std::vector<float>>(picture.decode());
   RadiancePicture result{shape.width, shape.height, {}};
@@ -139,4 +139,4 @@ RadiancePicture decode_rgbd(const std::string& name, std::span<const unsigned ch
   return result;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::pictures

@@ -4,10 +4,10 @@
 #include <span>
 #include <string>
 
-#include "pictures/radiance_picture.hpp"
 #include "photile/scene.hpp"
+#include "pictures/radiance_picture.hpp"
 
-namespace photile::scene_io {
+namespace photile::pictures {
 
 /// What the channels of a texture mean.
 enum class TextureContent {
@@ -32,4 +32,4 @@ RadiancePicture decode_radiance(const std::string& name, std::span<const unsigne
 /// ResourceError naming the picture and the reason.
 RadiancePicture decode_rgbd(const std::string& name, std::span<const unsigned char> bytes);
 
-}  // namespace photile::scene_io
+}  // namespace photile::pictures

@@ -4,7 +4,7 @@
 
 #include "scene/surface_models.hpp"
 
-namespace photile::scene_io {
+namespace photile::pictures {
 
 std::uint32_t TextureStore::from_file(const std::string& name, TextureContent content) {
   const Key key(name, content);
@@ -28,8 +28,8 @@ std::uint32_t TextureStore::add(const Key& key, std::span<const unsigned char> b
 }
 
 void use_missing_texture_colour(Material& material) {
-  material.diffuse = glm::vec3(missing_albedo);
+  material.diffuse = glm::vec3(scene::missing_albedo);
   material.diffuse_texture = none;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::pictures

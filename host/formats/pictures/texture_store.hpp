@@ -8,14 +8,14 @@
 #include <utility>
 
 #include "files/scene_folder.hpp"
-#include "pictures/texture_decoder.hpp"
 #include "photile/scene.hpp"
+#include "pictures/texture_decoder.hpp"
 
-namespace photile::scene_io {
+namespace photile::pictures {
 
 class TextureStore {
  public:
-  TextureStore(Scene& scene, SceneFolder& folder) : scene_(scene), folder_(folder) {}
+  TextureStore(Scene& scene, files::SceneFolder& folder) : scene_(scene), folder_(folder) {}
 
   /// Index in Scene::textures of a picture file named by the scene. Errors: ResourceError.
   std::uint32_t from_file(const std::string& name, TextureContent content = TextureContent::color);
@@ -30,11 +30,11 @@ class TextureStore {
   std::uint32_t add(const Key& key, std::span<const unsigned char> bytes);
 
   Scene& scene_;
-  SceneFolder& folder_;
+  files::SceneFolder& folder_;
   std::map<Key, std::uint32_t> index_;
 };
 
 /// Makes the lack of a texture visible but harmless: a mid-grey Lambertian part.
 void use_missing_texture_colour(Material& material);
 
-}  // namespace photile::scene_io
+}  // namespace photile::pictures

@@ -7,7 +7,7 @@
 #include "scene/light_emission.hpp"
 #include "scene/photometry.hpp"
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 std::uint32_t AreaLights::find_or_add(std::uint64_t object, const std::string& object_name,
                                       std::uint32_t material, const Emission& emission,
@@ -33,7 +33,7 @@ std::string AreaLights::name_of(const Pending& light) const {
   return alone ? light.object_name : fmt::format("{}_{}", light.object_name, material);
 }
 
-std::vector<AreaLights::Origin> AreaLights::finish(Warnings& warnings) {
+std::vector<AreaLights::Origin> AreaLights::finish(files::Warnings& warnings) {
   std::vector<double> area(pending_.size(), 0.0);
   std::vector<std::vector<std::uint32_t>> triangles(pending_.size());
   for (std::uint32_t triangle = 0; triangle < scene_.triangles.size(); ++triangle) {
@@ -73,15 +73,15 @@ std::vector<AreaLights::Origin> AreaLights::finish(Warnings& warnings) {
 
 /// Colour, power and texture; false where nothing is emitted.
 bool AreaLights::set_emission(const Pending& pending, double area, Light& light,
-                              Warnings& warnings) const {
+                              files::Warnings& warnings) const {
   const Emission& emission = pending.emission;
   double bright = 0;
   if (light.triangles.empty()) return false;
   if (emission.texture == none) {
-    if (!set_light_color(emission.radiance, light, bright)) return false;
-    light.power = area_flux(bright, area, light.two_sided);
+    if (!scene::set_light_color(emission.radiance, light, bright)) return false;
+    light.power = scene::area_flux(bright, area, light.two_sided);
     if (pending.traits.kelvin > 0) {
-      light.color = glm::vec3(color_of_temperature(pending.traits.kelvin));
+      light.color = glm::vec3(scene::color_of_temperature(pending.traits.kelvin));
     }
     return true;
   }
@@ -90,7 +90,7 @@ bool AreaLights::set_emission(const Pending& pending, double area, Light& light,
   }
   light.emission_texture = emission.texture;
   light.texel_radiance = glm::vec3(glm::max(emission.radiance, glm::dvec3(0.0)));
-  return set_textured_emission(scene_, light);
+  return scene::set_textured_emission(scene_, light);
 }
 
 /// An object's lumens are shared by its lights as their materials say.
@@ -107,4 +107,4 @@ void AreaLights::apply_lumens(std::size_t first_light, const std::vector<const P
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

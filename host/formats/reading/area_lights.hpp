@@ -7,12 +7,12 @@
 #include <tuple>
 #include <vector>
 
-#include "reading/light_source.hpp"
 #include "files/warnings.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
+#include "reading/light_source.hpp"
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 /// Panels count as objects of their own, after all visits of nodes.
 inline constexpr std::uint64_t first_panel_object = limits::max_node_visits;
@@ -45,7 +45,7 @@ class AreaLights {
   /// Lists each light's triangles and computes its power. Lights that got no triangle are dropped
   /// with a warning. Call once, after the last triangle. Returns the origins of the lights that it
   /// appended to the scene.
-  std::vector<Origin> finish(Warnings& warnings);
+  std::vector<Origin> finish(files::Warnings& warnings);
 
  private:
   struct Pending {
@@ -56,7 +56,8 @@ class AreaLights {
     LightTraits traits;
   };
   std::string name_of(const Pending& light) const;
-  bool set_emission(const Pending& pending, double area, Light& light, Warnings& warnings) const;
+  bool set_emission(const Pending& pending, double area, Light& light,
+                    files::Warnings& warnings) const;
   void apply_lumens(std::size_t first_light, const std::vector<const Pending*>& sources);
 
   Scene& scene_;
@@ -66,4 +67,4 @@ class AreaLights {
   std::map<std::uint64_t, int> materials_of_object_;
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

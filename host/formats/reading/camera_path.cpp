@@ -11,7 +11,7 @@
 #include "photile/errors.hpp"
 #include "scene/interpolation.hpp"
 
-namespace photile::walk {
+namespace photile::reading {
 namespace {
 
 using nlohmann::json;
@@ -58,19 +58,21 @@ void add(const JsonObject& keyframe, const Camera& base, Keyframes& all) {
 
 glm::dquat turned(const Keyframes& all, double time) {
   if (all.times.size() < 2) return all.orientations.front();
-  const auto [i, share] = between(all.times, time);
+  const auto [i, share] = scene::between(all.times, time);
   return glm::slerp(all.orientations[i], all.orientations[i + 1], share);
 }
 
 Camera camera_at(const Keyframes& all, const Camera& base, double time) {
   const auto value = [&](const std::vector<glm::dvec3>& values) {
-    return all.smooth ? smooth(all.times, values, time) : linear(all.times, values, time);
+    return all.smooth ? scene::smooth(all.times, values, time)
+                      : scene::linear(all.times, values, time);
   };
   const glm::dvec3 position = value(all.positions);
-  const double fov = linear(all.times, all.fields_of_view, time).x;
+  const double fov = scene::linear(all.times, all.fields_of_view, time).x;
   Camera camera;
   if (!all.targets.empty()) {
-    camera = Camera::look_at(position, value(all.targets), linear(all.times, all.ups, time), fov);
+    camera =
+        Camera::look_at(position, value(all.targets), scene::linear(all.times, all.ups, time), fov);
   } else {
     const glm::dmat3 axes = glm::mat3_cast(turned(all, time));
     camera = Camera::look_at(position, position - axes[2], axes[1], fov);
@@ -112,4 +114,4 @@ CameraMotion read_camera_path(const std::filesystem::path& file, const Camera& b
           [all, base](double time) { return camera_at(*all, base, time); }};
 }
 
-}  // namespace photile::walk
+}  // namespace photile::reading

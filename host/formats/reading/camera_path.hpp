@@ -6,7 +6,7 @@
 
 #include "photile/camera.hpp"
 
-namespace photile::walk {
+namespace photile::reading {
 
 /// A camera at any time in [begin, end], seconds; in the scene file's world.
 struct CameraMotion {
@@ -27,4 +27,4 @@ struct CameraMotion {
 /// Errors: InputError naming the file, the keyframe and the key.
 CameraMotion read_camera_path(const std::filesystem::path& file, const Camera& base);
 
-}  // namespace photile::walk
+}  // namespace photile::reading

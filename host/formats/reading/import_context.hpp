@@ -1,24 +1,24 @@
-// The importers, and what they share while they fill a scene.
+// What the readers of scene files share while they fill a scene.
 #pragma once
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
-#include "reading/area_lights.hpp"
-#include "reading/light_source.hpp"
 #include "files/scene_folder.hpp"
 #include "files/warnings.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
+#include "reading/area_lights.hpp"
+#include "reading/light_source.hpp"
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 struct ImportContext {
   Scene& scene;
-  SceneFolder& folder;
+  files::SceneFolder& folder;
   const SceneLoadOptions& options;
-  Warnings& warnings;
+  files::Warnings& warnings;
   AreaLights& area_lights;
   std::vector<Emission> emission;                 ///< per material of `scene`
   std::vector<std::uint32_t> visited_nodes = {};  ///< of a glTF file, in the order of visits
@@ -36,10 +36,4 @@ inline bool has_emission_texture(const ImportContext& context) {
                      [](const Emission& emission) { return emission.texture != none; });
 }
 
-/// Fills the context's scene from its .gltf or .glb file. Errors: InputError.
-void import_gltf(ImportContext& context);
-
-/// Fills the context's scene from its OBJ file. Errors: InputError.
-void import_obj(ImportContext& context);
-
-}  // namespace photile::scene_io
+}  // namespace photile::reading

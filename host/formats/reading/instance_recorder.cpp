@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace photile::scene_io {
+namespace photile::reading {
 namespace {
 
 /// An instance costs Embree about as much memory as so many triangles, and each ray that meets its
@@ -96,4 +96,4 @@ void InstanceRecorder::finish() {
   meshes_.clear();
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

@@ -9,7 +9,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 /// Triangles as the file has them, in the mesh's own space.
 struct LocalMesh {
@@ -50,4 +50,4 @@ class InstanceRecorder {
   std::map<int, Mesh> meshes_;
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

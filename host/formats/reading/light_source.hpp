@@ -7,7 +7,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 struct LightSource {
   enum class Kind : std::uint8_t {
@@ -35,4 +35,4 @@ struct LightTraits {
   std::string lamp = {};  ///< as LightSource::lamp
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

@@ -5,19 +5,19 @@
 #include "pictures/texture_store.hpp"
 #include "scene/surface_models.hpp"
 
-namespace photile::scene_io {
+namespace photile::reading {
 namespace {
 
 Material without_textures(const Scene& scene, Material material) {
   material.name += " (without textures)";
   const bool colored = material.diffuse_texture != none;
   const std::uint32_t varying = std::exchange(material.metallic_roughness, none);
-  if (colored) use_missing_texture_colour(material);
+  if (colored) pictures::use_missing_texture_colour(material);
   if (varying != none) {
     MetallicRoughness model = scene.metallic_roughness[varying];
     model.texture = model.specular_texture = model.specular_color_texture = none;
-    if (colored) model.base_color = glm::dvec3(missing_albedo);
-    set_metallic_roughness(model, material);
+    if (colored) model.base_color = glm::dvec3(scene::missing_albedo);
+    scene::set_metallic_roughness(model, material);
   }
   material.opacity_texture = none;
   material.normal_texture = none;
@@ -33,4 +33,4 @@ std::uint32_t PlainMaterials::of(std::uint32_t material) {
   return entry->second;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

@@ -6,7 +6,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 /// Materials as surfaces without texture coordinates have them: mid grey in place of a base-colour
 /// texture, as where its file is missing, the factors alone in place of all others, and no normal
@@ -24,4 +24,4 @@ class PlainMaterials {
   std::map<std::uint32_t, std::uint32_t> index_;
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

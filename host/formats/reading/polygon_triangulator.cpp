@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace photile::scene_io {
+namespace photile::reading {
 namespace {
 
 bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
@@ -160,4 +160,4 @@ Triangulation triangulate_polygon(std::span<const glm::dvec3> corners) {
   return result;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

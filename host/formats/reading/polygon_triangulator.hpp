@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 struct Triangulation {
   /// Corner numbers, three for each triangle, wound as the polygon is.
@@ -23,4 +23,4 @@ struct Triangulation {
 /// number of concave corners.
 Triangulation triangulate_polygon(std::span<const glm::dvec3> corners);
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

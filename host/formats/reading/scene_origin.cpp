@@ -5,10 +5,10 @@
 
 #include "scene/coordinate_limit.hpp"
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 void SceneOrigin::add(const std::array<glm::dvec3, 3>& corners) {
-  if (!std::all_of(corners.begin(), corners.end(), within_limit)) return;
+  if (!std::all_of(corners.begin(), corners.end(), scene::within_limit)) return;
   double longest = 0, squares = 0;
   for (int i = 0; i < 3; ++i) {
     const glm::dvec3 edge = corners[(i + 1) % 3] - corners[i];
@@ -35,4 +35,4 @@ glm::dvec3 SceneOrigin::best() const {
   return glm::dvec3(glm::vec3(mean));
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

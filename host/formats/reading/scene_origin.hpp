@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-namespace photile::scene_io {
+namespace photile::reading {
 
 /// Finds the origin of a scene (Scene::origin) from its triangles, before they are rounded to
 /// float.
@@ -32,4 +32,4 @@ class SceneOrigin {
   double squares_ = 0;   ///< weight x squared distance from (0, 0, 0)
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::reading

@@ -53,7 +53,7 @@ static_assert(sizeof(LightMapContents::Place) == 12 && sizeof(LightMapContents::
 
 ContentHash::Digest digest_of(const Scene& scene) {
   ContentHash hash;
-  add_scene(scene, hash);
+  scene::add_scene(scene, hash);
   return hash.digest();
 }
 

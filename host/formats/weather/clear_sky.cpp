@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace photile::daylight {
+namespace photile::weather {
 namespace {
 
 struct Month {
@@ -51,4 +51,4 @@ SkyIrradiance clear_sky(double sun_elevation, int day) {
   return {direct, month.diffuse * direct};
 }
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

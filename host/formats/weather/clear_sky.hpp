@@ -3,7 +3,7 @@
 
 #include "weather/perez_sky.hpp"
 
-namespace photile::daylight {
+namespace photile::weather {
 
 /// Irradiances of a cloudless hour by the clear-sky model of ASHRAE (Handbook of Fundamentals, 1985
 /// to 2005): direct normal A exp(-B / sin(elevation)), diffuse horizontal C times that, with the
@@ -13,4 +13,4 @@ namespace photile::daylight {
 ///   day             of the year, from 1
 SkyIrradiance clear_sky(double sun_elevation, int day);
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace photile::daylight {
+namespace photile::weather {
 namespace {
 
 using std::numbers::pi;
@@ -126,4 +126,4 @@ float PerezSky::indicatrix(float cosine) const {
          static_cast<float>(shape_[4]) * cosine * cosine;
 }
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace photile::daylight {
+namespace photile::weather {
 
 /// What a weather station measures.
 struct SkyIrradiance {
@@ -49,4 +49,4 @@ class PerezSky {
 /// three degrees to the zenith.
 double zenith_of_sun(double sun_elevation);
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

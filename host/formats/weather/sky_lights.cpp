@@ -8,7 +8,7 @@
 #include "photile/defaults.hpp"
 #include "scene/photometry.hpp"
 
-namespace photile::daylight {
+namespace photile::weather {
 namespace {
 
 using std::numbers::pi;
@@ -58,7 +58,7 @@ std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const S
 }
 
 double patch_flux(const Scene& scene, double solid_angle) {
-  return scene_io::directional_flux(solid_angle, bounding_sphere(scene).radius);
+  return scene::directional_flux(solid_angle, bounding_sphere(scene).radius);
 }
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "photile/scene.hpp"
 #include "weather/perez_sky.hpp"
 #include "weather/sky_patches.hpp"
 #include "weather/sun_position.hpp"
-#include "photile/scene.hpp"
 
-namespace photile::daylight {
+namespace photile::weather {
 
 /// "sky_0001" and so on; "ground" is what lies below the horizon.
 std::string patch_name(std::size_t patch);
@@ -29,4 +29,4 @@ std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const S
 /// sphere.
 double patch_flux(const Scene& scene, double solid_angle);
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

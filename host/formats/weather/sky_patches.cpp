@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace photile::daylight {
+namespace photile::weather {
 namespace {
 
 using std::numbers::pi;
@@ -105,4 +105,4 @@ std::vector<PatchShare> SkyInPatches::sun(const SunPosition& sun) const {
   return {shares.begin(), shares.end()};
 }
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

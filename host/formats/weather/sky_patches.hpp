@@ -8,7 +8,7 @@
 #include "weather/perez_sky.hpp"
 #include "weather/sun_position.hpp"
 
-namespace photile::daylight {
+namespace photile::weather {
 
 /// An even piece of the sky between two elevations and two azimuths.
 struct SkyPatch {
@@ -75,4 +75,4 @@ class SkyInPatches {
   std::vector<float> sines_;        ///< of the middles' elevations
 };
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace photile::daylight {
+namespace photile::weather {
 namespace {
 
 using std::numbers::pi;
@@ -51,4 +51,4 @@ int day_of_year(const LocalTime& time) {
   return static_cast<int>((date_of(time) - sys_days(year(time.year) / 1 / 1)).count()) + 1;
 }
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

@@ -3,7 +3,7 @@
 
 #include "photile/light_options.hpp"
 
-namespace photile::daylight {
+namespace photile::weather {
 
 /// True angles, without refraction.
 struct SunPosition {
@@ -19,4 +19,4 @@ SunPosition sun_position(const Site& site, const LocalTime& time);
 /// Days from the start of the year, 1 for the first of January.
 int day_of_year(const LocalTime& time);
 
-}  // namespace photile::daylight
+}  // namespace photile::weather

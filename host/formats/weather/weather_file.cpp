@@ -13,7 +13,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::weather {
 namespace {
 
 constexpr std::size_t header_lines = 8;
@@ -143,4 +143,4 @@ const WeatherHour& hour_at(const WeatherYear& year, const LocalTime& time) {
   return *nearest;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::weather

@@ -4,16 +4,16 @@
 #include <filesystem>
 #include <vector>
 
-#include "weather/perez_sky.hpp"
 #include "photile/light_options.hpp"
+#include "weather/perez_sky.hpp"
 
-namespace photile::scene_io {
+namespace photile::weather {
 
 /// One hour of a typical year.
 struct WeatherHour {
   int month = 1, day = 1;
   double hour = 0.5;  ///< the middle of the hour, standard time
-  daylight::SkyIrradiance irradiance;
+  SkyIrradiance irradiance;
 };
 
 struct WeatherYear {
@@ -34,4 +34,4 @@ WeatherYear read_weather_hours(const std::filesystem::path& file);
 /// The hour of the file in which a moment falls, whatever its year.
 const WeatherHour& hour_at(const WeatherYear& year, const LocalTime& time);
 
-}  // namespace photile::scene_io
+}  // namespace photile::weather

@@ -11,11 +11,11 @@
 #include <set>
 
 #include "common/output_file.hpp"
-#include "writing/light_setting.hpp"
 #include "files/scene_folder.hpp"
 #include "photile/errors.hpp"
+#include "writing/light_setting.hpp"
 
-namespace photile::scene_io {
+namespace photile::writing {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -63,16 +63,16 @@ class Document {
     std::vector<LightSetting> settings(all.begin(), all.end());
     recolor_whole_nodes(settings);
     for (const LightSetting& light : settings) {
-      if (light.source.kind == LightSource::Kind::surface && is_first_instance(light)) {
+      if (light.source.kind == reading::LightSource::Kind::surface && is_first_instance(light)) {
         ++lights_of_[light.source.material];
       }
     }
     seen_.clear();
     for (const LightSetting& light : settings) {
       if (!light.changed()) continue;
-      if (light.source.kind == LightSource::Kind::node) set_node(light);
-      if (light.source.kind == LightSource::Kind::surface) set_surface(light);
-      if (light.source.kind == LightSource::Kind::panel) set_panel(light);
+      if (light.source.kind == reading::LightSource::Kind::node) set_node(light);
+      if (light.source.kind == reading::LightSource::Kind::surface) set_surface(light);
+      if (light.source.kind == reading::LightSource::Kind::panel) set_panel(light);
     }
     set_lumens_of_surfaces(settings);
   }
@@ -224,7 +224,8 @@ class Document {
   void set_lumens_of_surfaces(std::span<const LightSetting> settings) {
     std::map<std::uint32_t, double> power_of;
     for (const LightSetting& light : settings) {
-      if (light.source.kind == LightSource::Kind::surface && extra(light, "photile_lumens")) {
+      if (light.source.kind == reading::LightSource::Kind::surface &&
+          extra(light, "photile_lumens")) {
         power_of[light.source.node] += light.power;
       }
     }
@@ -242,8 +243,8 @@ class Document {
   Json& json_;
   const SceneLoadOptions& options_;
   std::vector<std::string>& left_out_;
-  std::map<std::uint32_t, int> lights_of_;  ///< of each material; instances of one count once
-  std::set<LightSource::LampKey> seen_;     ///< lamps of shared ones
+  std::map<std::uint32_t, int> lights_of_;        ///< of each material; instances of one count once
+  std::set<reading::LightSource::LampKey> seen_;  ///< lamps of shared ones
 };
 
 /// A .glb in its parts: JSON, and all that follows its chunk.
@@ -276,7 +277,7 @@ struct BinaryFile {
 void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::path& copy,
                     std::span<const LightSetting> settings, const SceneLoadOptions& options,
                     std::vector<std::string>& left_out) {
-  const std::vector<unsigned char> file = SceneFolder(scene, true).read_scene_file();
+  const std::vector<unsigned char> file = files::SceneFolder(scene, true).read_scene_file();
   const std::string bytes(file.begin(), file.end());
   const bool binary = bytes.starts_with("glTF");
   try {
@@ -289,4 +290,4 @@ void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::p
   }
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::writing

@@ -9,12 +9,12 @@
 #include <string_view>
 
 #include "common/output_file.hpp"
-#include "writing/light_setting.hpp"
-#include "photometry/photometric_text.hpp"
 #include "files/scene_folder.hpp"
 #include "files/warnings.hpp"
+#include "photometry/photometric_text.hpp"
+#include "writing/light_setting.hpp"
 
-namespace photile::scene_io {
+namespace photile::writing {
 namespace {
 
 /// What follows `keyword` on a line; none where the line begins with another word.
@@ -93,7 +93,7 @@ std::string lit_library(const std::vector<std::string>& lines,
 
 void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::path& copy,
                    std::span<const LightSetting> settings, std::vector<std::string>& left_out) {
-  SceneFolder folder(scene, true);
+  files::SceneFolder folder(scene, true);
   const std::filesystem::path library = std::filesystem::path(copy).replace_extension(".mtl");
   refuse_taken(library);
   std::vector<std::string> libraries;
@@ -113,7 +113,7 @@ void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::pa
     try {
       const auto more = lines_of(folder.read(name));
       lines.insert(lines.end(), more.begin(), more.end());
-    } catch (const ResourceError&) {
+    } catch (const files::ResourceError&) {
       // A library that is missing is a warning when the scene is loaded.
     }
   }
@@ -121,4 +121,4 @@ void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::pa
   write_file(copy, text);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::writing

@@ -6,14 +6,14 @@
 #include <map>
 #include <set>
 
-#include "writing/light_setting.hpp"
 #include "loading/sourced_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_names.hpp"
+#include "writing/light_setting.hpp"
 
-namespace photile::scene_io {
+namespace photile::writing {
 namespace {
 
 /// Whether an option of the command line, and not the file, says what the light emits.
@@ -29,9 +29,9 @@ bool colored_by_option(const Light& light, const SceneLoadOptions& options) {
 }
 
 /// The layers that instances of each lamp are in.
-std::map<LightSource::LampKey, std::set<std::uint32_t>> layers_of_lamps(const SourcedScene& sourced,
-                                                                        const LightGroups& groups) {
-  std::map<LightSource::LampKey, std::set<std::uint32_t>> layers;
+std::map<reading::LightSource::LampKey, std::set<std::uint32_t>> layers_of_lamps(
+    const loading::SourcedScene& sourced, const LightGroups& groups) {
+  std::map<reading::LightSource::LampKey, std::set<std::uint32_t>> layers;
   for (std::size_t i = 0; i < sourced.sources.size(); ++i) {
     layers[sourced.sources[i].lamp_key()].insert(groups.group_of[i]);
   }
@@ -39,8 +39,9 @@ std::map<LightSource::LampKey, std::set<std::uint32_t>> layers_of_lamps(const So
 }
 
 /// What the mix makes of each light.
-std::vector<LightSetting> settings_of(const SourcedScene& sourced, const SceneLoadOptions& options,
-                                      const LightMix& mix, std::vector<std::string>& left_out) {
+std::vector<LightSetting> settings_of(const loading::SourcedScene& sourced,
+                                      const SceneLoadOptions& options, const LightMix& mix,
+                                      std::vector<std::string>& left_out) {
   const Scene& scene = sourced.scene;
   const LightGroups groups = light_groups_of(scene);
   const auto layers = layers_of_lamps(sourced, groups);
@@ -63,13 +64,13 @@ std::vector<LightSetting> settings_of(const SourcedScene& sourced, const SceneLo
     setting.factor = group.power > 0 ? mixed.power / group.power : 0;
     setting.power = light.power * setting.factor * bright;
     setting.recolored = mixed.tint != glm::vec3(1.0f) || colored_by_option(light, options);
-    if (setting.source.kind == LightSource::Kind::surface) {
+    if (setting.source.kind == reading::LightSource::Kind::surface) {
       setting.material = scene.materials[setting.source.material].name;
     }
     setting.textured = light.emission_texture != none;
-    const bool is_picture = setting.source.kind == LightSource::Kind::picture;
-    const bool by_option =
-        setting.source.kind == LightSource::Kind::surroundings || set_by_option(light, options);
+    const bool is_picture = setting.source.kind == reading::LightSource::Kind::picture;
+    const bool by_option = setting.source.kind == reading::LightSource::Kind::surroundings ||
+                           set_by_option(light, options);
     if (!is_picture && !by_option) {
       settings.push_back(setting);
     } else if (setting.changed()) {
@@ -92,13 +93,13 @@ void refuse_taken(const std::filesystem::path& file) {
 EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLoadOptions& options,
                                const LightMix& mix, const std::string& name) {
   EditedScene copy;
-  const std::string clean = clean_light_name(name, limits::max_light_name_bytes);
+  const std::string clean = scene::clean_light_name(name, limits::max_light_name_bytes);
   copy.file = scene;
   copy.file.replace_filename(
       fmt::format("{}.{}{}", scene.stem().string(), clean, scene.extension().string()));
   refuse_taken(copy.file);
   const std::vector<LightSetting> settings =
-      settings_of(load_sourced_scene(scene, options), options, mix, copy.left_out);
+      settings_of(loading::load_sourced_scene(scene, options), options, mix, copy.left_out);
   if (settings.empty()) throw OutputError(fmt::format("{}: has no light to set", scene.string()));
   if (settings.front().source.node == none) {
     write_lit_obj(scene, copy.file, settings, copy.left_out);
@@ -108,4 +109,4 @@ EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLo
   return copy;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::writing

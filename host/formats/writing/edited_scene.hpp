@@ -8,7 +8,7 @@
 #include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::writing {
 
 struct EditedScene {
   std::filesystem::path file;
@@ -30,4 +30,4 @@ struct EditedScene {
 EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLoadOptions& options,
                                const LightMix& mix, const std::string& name);
 
-}  // namespace photile::scene_io
+}  // namespace photile::writing

@@ -9,10 +9,10 @@
 
 #include "reading/light_source.hpp"
 
-namespace photile::scene_io {
+namespace photile::writing {
 
 struct LightSetting {
-  LightSource source;
+  reading::LightSource source;
   std::string name;
   std::string material;    ///< of a surface
   bool textured = false;   ///< its emission has a texture
@@ -45,4 +45,4 @@ void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::pa
 /// Errors: OutputError where there is such a file: no copy is written over another file.
 void refuse_taken(const std::filesystem::path& file);
 
-}  // namespace photile::scene_io
+}  // namespace photile::writing

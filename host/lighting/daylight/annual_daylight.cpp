@@ -16,7 +16,8 @@ constexpr int any_common_year = 2026;  ///< weather files join years
 
 /// Adds the luminances with the sun spread over its patches.
 template <class Number>
-void add_sun(const SkyHour& hour, const std::vector<SkyPatch>& patches, Number* luminance) {
+void add_sun(const SkyHour& hour, const std::vector<weather::SkyPatch>& patches,
+             Number* luminance) {
   for (const auto& [patch, share] : hour.sun_shares) {
     luminance[patch] += static_cast<Number>(share * hour.sun_lux / patches[patch].solid_angle());
   }
@@ -62,12 +63,12 @@ std::vector<std::size_t> patches_that_count(const DaylightMatrix& matrix) {
 
 }  // namespace
 
-std::vector<SkyHour> sky_hours(const scene_io::WeatherYear& weather,
-                               const std::vector<SkyPatch>& patches, double ground) {
-  const SkyInPatches in_patches(patches);
+std::vector<SkyHour> sky_hours(const weather::WeatherYear& weather,
+                               const std::vector<weather::SkyPatch>& patches, double ground) {
+  const weather::SkyInPatches in_patches(patches);
   std::vector<SkyHour> hours(weather.hours.size());
   tbb::parallel_for(std::size_t{0}, hours.size(), [&](std::size_t i) {
-    const scene_io::WeatherHour& from = weather.hours[i];
+    const weather::WeatherHour& from = weather.hours[i];
     SkyHour& hour = hours[i];
     hour.month = from.month;
     hour.day = from.day;
@@ -76,10 +77,10 @@ std::vector<SkyHour> sky_hours(const scene_io::WeatherYear& weather,
     // The 29th of February has the sun of the 28th, all but.
     const bool leap_day = from.month == 2 && from.day == 29;
     const LocalTime time{any_common_year, from.month, leap_day ? 28 : from.day, from.hour};
-    hour.sun = sun_position(weather.site, time);
-    const SkyIrradiance& irradiance = from.irradiance;
+    hour.sun = weather::sun_position(weather.site, time);
+    const weather::SkyIrradiance& irradiance = from.irradiance;
     if (irradiance.direct_normal + irradiance.diffuse_horizontal <= 1e-4) return;
-    const PerezSky sky(hour.sun.elevation, irradiance, day_of_year(time));
+    const weather::PerezSky sky(hour.sun.elevation, irradiance, weather::day_of_year(time));
     hour.diffuse_lux = sky.diffuse_illuminance();
     hour.luminance = in_patches.luminances(sky, hour.sun);
     double on_ground = sky.diffuse_illuminance();
@@ -94,7 +95,7 @@ std::vector<SkyHour> sky_hours(const scene_io::WeatherYear& weather,
 }
 
 std::vector<double> mean_luminances(const std::vector<SkyHour>& hours,
-                                    const std::vector<SkyPatch>& patches) {
+                                    const std::vector<weather::SkyPatch>& patches) {
   std::vector<double> mean(patches.size() + 1, 0.0);
   for (const SkyHour& hour : hours) {
     if (hour.luminance.empty()) continue;
@@ -111,7 +112,8 @@ std::vector<float> sun_profile(const StraightLight& straight, const std::vector<
   tbb::parallel_for(std::size_t{0}, hours.size(), [&](std::size_t h) {
     if (!(hours[h].sun_lux > 0)) return;
     const trace::FlushDenormals flush_denormals;
-    const glm::dvec3 to_sun = direction_of(hours[h].sun.azimuth + north, hours[h].sun.elevation);
+    const glm::dvec3 to_sun =
+        weather::direction_of(hours[h].sun.azimuth + north, hours[h].sun.elevation);
     for (std::size_t sensor = 0; sensor < straight.sensors(); ++sensor) {
       lux[sensor * hours.size() + h] =
           static_cast<float>(maintenance * hours[h].sun_lux * straight.from(to_sun, sensor));
@@ -121,7 +123,7 @@ std::vector<float> sun_profile(const StraightLight& straight, const std::vector<
 }
 
 std::vector<float> annual_profile(const DaylightMatrix& matrix, const std::vector<SkyHour>& hours,
-                                  const std::vector<SkyPatch>& patches,
+                                  const std::vector<weather::SkyPatch>& patches,
                                   const std::vector<float>& sun) {
   const std::vector<std::size_t> counting = patches_that_count(matrix);
   std::vector<float> rows(matrix.sensors * counting.size());

@@ -21,21 +21,21 @@ struct SkyHour {
   int month = 1, day = 1;
   int weekday = 0;    ///< 0 = Monday
   double hour = 0.5;  ///< the middle, standard time
-  SunPosition sun;
+  weather::SunPosition sun;
   double sun_lux = 0;            ///< facing it; 0 below the horizon
   double diffuse_lux = 0;        ///< horizontal
   std::vector<float> luminance;  ///< cd/m2 of the patches, then of the ground, without the sun
-  std::vector<PatchShare> sun_shares;  ///< empty where there is no sun
+  std::vector<weather::PatchShare> sun_shares;  ///< empty where there is no sun
 };
 
 /// The hours of a weather file. Of hours without light the luminances are empty.
 ///   ground   reflectance of the ground, which the sky and the sun light
-std::vector<SkyHour> sky_hours(const scene_io::WeatherYear& weather,
-                               const std::vector<SkyPatch>& patches, double ground);
+std::vector<SkyHour> sky_hours(const weather::WeatherYear& weather,
+                               const std::vector<weather::SkyPatch>& patches, double ground);
 
 /// Mean of the patches' luminances over all hours, the sun spread on the nearest, cd/m2.
 std::vector<double> mean_luminances(const std::vector<SkyHour>& hours,
-                                    const std::vector<SkyPatch>& patches);
+                                    const std::vector<weather::SkyPatch>& patches);
 
 /// Lux straight from the sun, by sensor, then hour.
 ///   north   radians clockwise from -z
@@ -45,7 +45,7 @@ std::vector<float> sun_profile(const StraightLight& straight, const std::vector<
 /// Lux of every hour at every sensor, by sensor, then hour.
 ///   sun   that of sun_profile; empty where the sun is patches
 std::vector<float> annual_profile(const DaylightMatrix& matrix, const std::vector<SkyHour>& hours,
-                                  const std::vector<SkyPatch>& patches,
+                                  const std::vector<weather::SkyPatch>& patches,
                                   const std::vector<float>& sun);
 
 }  // namespace photile::daylight

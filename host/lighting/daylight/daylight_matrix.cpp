@@ -57,7 +57,7 @@ double StraightLight::from(const glm::dvec3& direction, std::size_t sensor) cons
 }
 
 DaylightMatrix daylight_matrix(const Scene& scene, std::span<const Sensor> sensors,
-                               const std::vector<SkyPatch>& patches,
+                               const std::vector<weather::SkyPatch>& patches,
                                const MatrixParameters& parameters, Progress& progress) {
   const MeasuringParameters& measuring = parameters.measuring;
   TransportParameters transported;
@@ -67,7 +67,7 @@ DaylightMatrix daylight_matrix(const Scene& scene, std::span<const Sensor> senso
                      measuring.photons.max_specular_depth};
   transported.mean_luminance = parameters.mean_luminance;
   const RayScene rays(scene);
-  const PatchFinder finder(patches, parameters.north);
+  const weather::PatchFinder finder(patches, parameters.north);
   const LightTransport transport =
       light_transport(rays, all_in_scene(scene, sensors), finder, transported, progress);
   progress.begin("solve for the patches", transport.patches, "patches");

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "weather/sky_patches.hpp"
 #include "photile/illuminance.hpp"
 #include "photile/ray_scene.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile::daylight {
 
@@ -38,7 +38,7 @@ struct MatrixParameters {
 ///   sensors   in the scene file's world
 /// Errors: Interrupted, when `progress` says so.
 DaylightMatrix daylight_matrix(const Scene& scene, std::span<const Sensor> sensors,
-                               const std::vector<SkyPatch>& patches,
+                               const std::vector<weather::SkyPatch>& patches,
                                const MatrixParameters& parameters,
                                Progress& progress = Progress::none());
 

@@ -83,8 +83,8 @@ double median_distance(const std::vector<SeenByRays>& seen) {
 /// Traces generation after generation.
 class Tracer {
  public:
-  Tracer(const RayScene& rays, const PatchFinder& patches, const TransportParameters& parameters,
-         Progress& progress, LightTransport& transport)
+  Tracer(const RayScene& rays, const weather::PatchFinder& patches,
+         const TransportParameters& parameters, Progress& progress, LightTransport& transport)
       : rays_(rays),
         parameters_(parameters),
         progress_(progress),
@@ -171,8 +171,8 @@ class Tracer {
 }  // namespace
 
 LightTransport light_transport(const RayScene& rays, std::span<const Sensor> sensors,
-                               const PatchFinder& patches, const TransportParameters& parameters,
-                               Progress& progress) {
+                               const weather::PatchFinder& patches,
+                               const TransportParameters& parameters, Progress& progress) {
   LightTransport transport;
   transport.patches = patches.patches() + 1;
   transport.batches = parameters.sky.batches;

@@ -46,8 +46,8 @@ struct TransportParameters {
 /// Rays from the sensors end in cells; rays from these ends, in turn, tell what lights them.
 ///   sensors   in the scene's coordinates
 LightTransport light_transport(const RayScene& rays, std::span<const Sensor> sensors,
-                               const PatchFinder& patches, const TransportParameters& parameters,
-                               Progress& progress);
+                               const weather::PatchFinder& patches,
+                               const TransportParameters& parameters, Progress& progress);
 
 /// Lux for each cd/m2, by sensor, then patch: solved for all patches at once.
 std::vector<float> lux_of_patches(const LightTransport& transport);

@@ -9,7 +9,7 @@
 
 namespace photile::daylight {
 
-SkyRays::SkyRays(const RayScene& rays, const PatchFinder& patches,
+SkyRays::SkyRays(const RayScene& rays, const weather::PatchFinder& patches,
                  const SkyRayParameters& parameters)
     : rays_(rays), patches_(patches), parameters_(parameters), portals_(rays.scene()) {}
 

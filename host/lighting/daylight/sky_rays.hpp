@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "weather/sky_patches.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/photometer.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile::daylight {
 
@@ -47,7 +47,8 @@ struct SkyRayParameters {
 class SkyRays {
  public:
   /// References are kept.
-  SkyRays(const RayScene& rays, const PatchFinder& patches, const SkyRayParameters& parameters);
+  SkyRays(const RayScene& rays, const weather::PatchFinder& patches,
+          const SkyRayParameters& parameters);
 
   /// What a place sees, in the order of its rays. Depends on the place, its number and the
   /// parameters only.
@@ -61,7 +62,7 @@ class SkyRays {
               const trace::RandomStream& random, SeenByRays& seen) const;
 
   const RayScene& rays_;
-  const PatchFinder& patches_;
+  const weather::PatchFinder& patches_;
   SkyRayParameters parameters_;
   trace::Portals portals_;
 };

@@ -14,7 +14,7 @@ namespace photile::daylight {
 /// What is the same in all states.
 struct Year {
   std::vector<SkyHour> hours;
-  std::vector<SkyPatch> patches;
+  std::vector<weather::SkyPatch> patches;
   std::vector<Sensor> sensors;  ///< in the scene file's world
   bool suns_by_rays = true;     ///< and not by the nearest patches
   MatrixParameters parameters;

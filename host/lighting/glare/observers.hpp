@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "glare/position_index.hpp"
-#include "trace/room.hpp"
 #include "measuring/sensor_grid.hpp"
+#include "trace/room.hpp"
 
 namespace photile::glare {
 

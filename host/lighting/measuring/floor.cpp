@@ -91,7 +91,7 @@ void measure_room(const RayScene& rays, const PlanAxes& axes, std::vector<Piece>
     const trace::RandomBlock random =
         trace::RandomStream(0, i, 0).block(trace::Purpose::sensor_direction, 0);
     const glm::vec2 weights = trace::sample_triangle(random.uniform(0), random.uniform(1));
-    const TriangleHit where{piece.triangle, weights.x, weights.y};
+    const trace::TriangleHit where{piece.triangle, weights.x, weights.y};
     const auto point = trace::surface_hit(scene, where, -up);
     const auto above = trace::intersect(rays, point.origin_towards(up), up);
     if (!above) {

@@ -5,8 +5,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "trace/room.hpp"
 #include "photile/scene.hpp"
+#include "trace/room.hpp"
 
 namespace photile::measuring {
 

@@ -21,7 +21,7 @@ constexpr double beyond_hit = 1e-4;  // metres
 constexpr int most_crossings = 1000;
 constexpr double off_surface = 1e-3;  // metres
 
-glm::dvec3 place_of(const Scene& scene, const TriangleHit& hit) {
+glm::dvec3 place_of(const Scene& scene, const trace::TriangleHit& hit) {
   const auto corners = scene.corners(hit.triangle);
   const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
   return (1 - u - v) * glm::dvec3(corners[0]) + u * glm::dvec3(corners[1]) +

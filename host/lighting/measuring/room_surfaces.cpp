@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "measuring/floor.hpp"
-#include "trace/room.hpp"
 #include "photile/errors.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
+#include "trace/room.hpp"
 
 namespace photile::measuring {
 namespace {

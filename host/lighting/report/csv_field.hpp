@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// A field as RFC 4180 has it: quoted where it must be.
 inline std::string csv_field(const std::string& text) {
@@ -16,4 +16,4 @@ inline std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

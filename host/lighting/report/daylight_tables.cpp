@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -189,4 +189,4 @@ Json daylight_json(const DaylightResults& results, const DaylightAsked& asked) {
   return all;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

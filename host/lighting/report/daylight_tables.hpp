@@ -10,11 +10,11 @@
 #include "daylight/occupancy.hpp"
 #include "measuring/sensor_grid.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// A grid with its year. Profiles are those of its sensors.
 struct GridDaylight {
-  SensorGrid grid;
+  measuring::SensorGrid grid;
   std::vector<daylight::PointDaylight> points;
   daylight::RoomDaylight room;
   std::vector<float> relative_error;        ///< of each sensor's mean
@@ -53,4 +53,4 @@ std::vector<std::string> daylight_lines(const DaylightResults& results, const Da
 std::string daylight_csv(const DaylightResults& results);
 nlohmann::ordered_json daylight_json(const DaylightResults& results, const DaylightAsked& asked);
 
-}  // namespace photile::measuring
+}  // namespace photile::report

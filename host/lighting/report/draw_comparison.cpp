@@ -10,11 +10,11 @@
 #include "report/picture_comparison.hpp"
 #include "report/sheet.hpp"
 
-namespace photile::image {
+namespace photile::report {
 namespace {
 
 // Sizes in pixels.
-constexpr int gap = 12, title_height = 24, bar_width = 20, legend_width = 90;
+constexpr int legend_width = 90;
 constexpr int legend_numbers = 5;
 constexpr double percentile = 0.99;
 
@@ -121,4 +121,4 @@ Image draw_comparison(const Image& a, const Image& b, const ComparisonDrawing& o
   return sheet.take();
 }
 
-}  // namespace photile::image
+}  // namespace photile::report

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <iterator>
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 /// Part of a step that a band takes, around its middle.
@@ -76,4 +76,4 @@ int ColourScale::levels_below(double value) const {
   return std::isnan(below) ? 0 : static_cast<int>(std::clamp(below, 0.0, steps_ + 0.0));
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

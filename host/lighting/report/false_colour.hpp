@@ -10,7 +10,7 @@
 #include "photile/defaults.hpp"
 #include "report/palette.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// How values are drawn.
 enum class Contours {
@@ -62,7 +62,7 @@ class ColourScale {
   double top_, decades_;
   int steps_;
   bool stepped_;
-  image::Palette palette_;
+  Palette palette_;
 };
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -15,11 +15,11 @@
 #include "report/number_text.hpp"
 #include "report/sheet.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 // Sizes in pixels.
-constexpr int gap = 12, bar_width = 20, title_height = 24, least_step = 16;
+constexpr int least_step = 16;
 
 /// Bars of the legend's steps with the values of their middles, the largest at the top.
 struct Legend {
@@ -34,15 +34,15 @@ struct Legend {
   }
 
   int width() const {
-    int widest = image::Sheet::width_of(label);
+    int widest = Sheet::width_of(label);
     for (const auto& [colour, value] : steps) {
-      widest = std::max(widest, bar_width + gap / 2 + image::Sheet::width_of(value));
+      widest = std::max(widest, bar_width + gap / 2 + Sheet::width_of(value));
     }
     return std::max(widest, bar_width) + gap;
   }
   int least_height() const { return title_height + static_cast<int>(steps.size()) * least_step; }
 
-  void draw(image::Sheet& sheet, int x, int height, int sheet_width) const {
+  void draw(Sheet& sheet, int x, int height, int sheet_width) const {
     sheet.write(x, title_height - 7, sheet_width, label);
     const auto edge = [&](std::size_t step) {
       return title_height +
@@ -55,8 +55,7 @@ struct Legend {
         for (int u = 0; u < bar_width; ++u) sheet.set(x + u, y, colour);
       }
       const int middle = (edge(step) + edge(step + 1)) / 2;
-      sheet.write(x + bar_width + gap / 2, middle + image::Sheet::font_size / 3, sheet_width,
-                  value);
+      sheet.write(x + bar_width + gap / 2, middle + Sheet::font_size / 3, sheet_width, value);
     }
   }
 };
@@ -131,7 +130,7 @@ Image false_colour_picture(std::span<const float> values, const Image& displayed
   const Legend legend(options, ColourScale(options, automatic_top(values)));
   const int left = displayed.width + gap, width = left + legend.width();
   const int height = std::max(displayed.height, legend.least_height());
-  image::Sheet sheet(width, height);
+  Sheet sheet(width, height);
   for (int y = 0; y < displayed.height; ++y) {
     for (int x = 0; x < displayed.width; ++x) {
       const std::size_t texel =
@@ -144,4 +143,4 @@ Image false_colour_picture(std::span<const float> values, const Image& displayed
   return sheet.take();
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -8,7 +8,7 @@
 #include "photile/layered_picture.hpp"
 #include "report/false_colour.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// Illuminance of the surface that each pixel sees, by all lights together: lux, row 0 at the top.
 /// Errors: InputError naming a light whose illuminance is not known; those of `read`.
@@ -33,4 +33,4 @@ void draw_false_colour(std::span<const float> values, int width, const FalseColo
 Image false_colour_picture(std::span<const float> values, const Image& displayed,
                            const FalseColour& options);
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace photile::image {
+namespace photile::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ int Font::width_of(const std::string& text) {
   return end - first;
 }
 
-}  // namespace photile::image
+}  // namespace photile::report

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-namespace photile::image {
+namespace photile::report {
 
 class Font {
  public:
@@ -30,4 +30,4 @@ class Font {
   std::unique_ptr<Face> face_;  ///< null without the font
 };
 
-}  // namespace photile::image
+}  // namespace photile::report

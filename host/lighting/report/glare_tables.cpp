@@ -8,7 +8,7 @@
 
 #include "report/csv_field.hpp"
 
-namespace photile::glare {
+namespace photile::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -27,10 +27,10 @@ std::string plain(const std::optional<double>& value, const char* format, int wi
 
 /// "highest UGR: 19.3, eyes 4", or nothing.
 template <class Value>
-void add_highest(std::span<const ObserverGlare> all, const char* what, const char* format,
+void add_highest(std::span<const glare::ObserverGlare> all, const char* what, const char* format,
                  const Value& value, std::vector<std::string>& lines) {
-  const ObserverGlare* highest = nullptr;
-  for (const ObserverGlare& each : all) {
+  const glare::ObserverGlare* highest = nullptr;
+  for (const glare::ObserverGlare& each : all) {
     if (value(each) && (!highest || *value(each) > *value(*highest))) highest = &each;
   }
   if (!highest) return;
@@ -62,7 +62,7 @@ Json number_json(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json luminaire_json(const SeenLuminaire& seen) {
+Json luminaire_json(const glare::SeenLuminaire& seen) {
   return {{"name", seen.name},
           {"direction", vector_json(seen.direction)},
           {"luminance", seen.luminance},
@@ -72,14 +72,15 @@ Json luminaire_json(const SeenLuminaire& seen) {
           {"illuminance", seen.illuminance}};
 }
 
-Json picture_json(const PictureGlare& picture) {
-  const std::vector<Source> sources = picture.plain_sources();
-  Json json{{"illuminance", picture.illuminance},
-            {"background_luminance", picture.background},
-            {"dgp", dgp(sources, picture.illuminance)},
-            {"ugr", sources.empty() ? Json(nullptr) : Json(ugr(sources, picture.background))},
-            {"sources", Json::array()}};
-  for (const PictureSource& each : picture.sources) {
+Json picture_json(const glare::PictureGlare& picture) {
+  const std::vector<glare::Source> sources = picture.plain_sources();
+  Json json{
+      {"illuminance", picture.illuminance},
+      {"background_luminance", picture.background},
+      {"dgp", glare::dgp(sources, picture.illuminance)},
+      {"ugr", sources.empty() ? Json(nullptr) : Json(glare::ugr(sources, picture.background))},
+      {"sources", Json::array()}};
+  for (const glare::PictureSource& each : picture.sources) {
     json["sources"].push_back({{"direction_right_up_forward", vector_json(each.direction)},
                                {"luminance", each.source.luminance},
                                {"solid_angle", each.source.solid_angle},
@@ -88,12 +89,12 @@ Json picture_json(const PictureGlare& picture) {
   return json;
 }
 
-std::string room_name(const TableRoom& room) {
+std::string room_name(const glare::TableRoom& room) {
   return fmt::format("{:g}H x {:g}H", room.across, room.along);
 }
 
 template <class Use>
-void for_each_value(const UgrTable& table, std::size_t room, const Use& use) {
+void for_each_value(const glare::UgrTable& table, std::size_t room, const Use& use) {
   for (const auto* rows : {&table.crosswise, &table.endwise}) {
     for (const double value : (*rows)[room]) use(value);
   }
@@ -101,10 +102,10 @@ void for_each_value(const UgrTable& table, std::size_t room, const Use& use) {
 
 }  // namespace
 
-std::vector<std::string> glare_lines(std::span<const ObserverGlare> all) {
+std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all) {
   std::size_t width = 8;
   bool ggr = false, pictures = false;
-  for (const ObserverGlare& each : all) {
+  for (const glare::ObserverGlare& each : all) {
     width = std::max(width, each.observer.name.size());
     ggr = ggr || each.ggr;
     pictures = pictures || each.picture;
@@ -113,7 +114,7 @@ std::vector<std::string> glare_lines(std::span<const ObserverGlare> all) {
       fmt::format("{:<{}} {:>16} {:>16} {:>13}{}{}", "observer", width, "Ev/lux", "Lb/(cd/m2)",
                   "UGR", ggr ? fmt::format(" {:>6}", "GGR") : "",
                   pictures ? fmt::format(" {:>15} {:>10} {:>6}", "DGP", "low light", "DGI") : "")};
-  for (const ObserverGlare& each : all) {
+  for (const glare::ObserverGlare& each : all) {
     std::string line = fmt::format("{:<{}} {} {} {}", each.observer.name, width,
                                    with_error(each.illuminance, "{:.4g} +-{:.2g}", 16),
                                    with_error(each.background, "{:.4g} +-{:.2g}", 16),
@@ -135,14 +136,14 @@ std::vector<std::string> glare_lines(std::span<const ObserverGlare> all) {
   return lines;
 }
 
-std::string glare_csv(std::span<const ObserverGlare> all) {
+std::string glare_csv(std::span<const glare::ObserverGlare> all) {
   std::string text =
       "observer,x,y,z,dx,dy,dz,illuminance,illuminance_error,background_luminance,"
       "background_error,ugr,ugr_error,ggr,dgp,dgp_error,dgp_low_light,dgi\n";
-  for (const ObserverGlare& each : all) {
+  for (const glare::ObserverGlare& each : all) {
     const glm::dvec3 &p = each.observer.position, &d = each.observer.forward;
     text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{},{},{},{},{},{},{}\n",
-                        measuring::csv_field(each.observer.name), p.x, p.y, p.z, d.x, d.y, d.z,
+                        csv_field(each.observer.name), p.x, p.y, p.z, d.x, d.y, d.z,
                         csv_measured(each.illuminance), csv_measured(each.background),
                         csv_measured(each.ugr), csv_number(each.ggr), csv_measured(each.dgp),
                         csv_number(value_of(each.dgp_low_light)), csv_number(each.dgi));
@@ -150,9 +151,9 @@ std::string glare_csv(std::span<const ObserverGlare> all) {
   return text;
 }
 
-Json glare_json(std::span<const ObserverGlare> all) {
+Json glare_json(std::span<const glare::ObserverGlare> all) {
   Json list = Json::array();
-  for (const ObserverGlare& each : all) {
+  for (const glare::ObserverGlare& each : all) {
     Json entry{{"name", each.observer.name},
                {"position", vector_json(each.observer.position)},
                {"direction", vector_json(each.observer.forward)},
@@ -162,7 +163,7 @@ Json glare_json(std::span<const ObserverGlare> all) {
                {"ugr", measured_json(each.ugr)},
                {"ggr", number_json(each.ggr)},
                {"luminaires", Json::array()}};
-    for (const SeenLuminaire& seen : each.luminaires) {
+    for (const glare::SeenLuminaire& seen : each.luminaires) {
       entry["luminaires"].push_back(luminaire_json(seen));
     }
     if (each.picture) {
@@ -176,10 +177,10 @@ Json glare_json(std::span<const ObserverGlare> all) {
   return list;
 }
 
-std::vector<std::string> ugr_table_lines(const UgrTable& table) {
+std::vector<std::string> ugr_table_lines(const glare::UgrTable& table) {
   std::string ceiling = "ceiling    ", walls = "walls      ", floor = "floor      ";
   for (int direction = 0; direction < 2; ++direction) {
-    for (const RoomReflectances& each : table_reflectances) {
+    for (const glare::RoomReflectances& each : glare::table_reflectances) {
       ceiling += fmt::format("{:>6.2f}", each.ceiling);
       walls += fmt::format("{:>6.2f}", each.walls);
       floor += fmt::format("{:>6.2f}", each.floor);
@@ -188,29 +189,30 @@ std::vector<std::string> ugr_table_lines(const UgrTable& table) {
   }
   std::vector<std::string> lines{ceiling, walls, floor,
                                  fmt::format("{:<11}{:<32}{}", "room", "  crosswise", "  endwise")};
-  for (std::size_t room = 0; room < table_rooms.size(); ++room) {
-    std::string line = fmt::format("{:<11}", room_name(table_rooms[room]));
+  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
+    std::string line = fmt::format("{:<11}", room_name(glare::table_rooms[room]));
     std::size_t column = 0;
     for_each_value(table, room, [&](double value) {
       line += std::isnan(value) ? fmt::format("{:>6}", "-") : fmt::format("{:>6.1f}", value);
-      if (++column == table_reflectances.size()) line += "  ";
+      if (++column == glare::table_reflectances.size()) line += "  ";
     });
     lines.push_back(std::move(line));
   }
   return lines;
 }
 
-std::string ugr_table_csv(const UgrTable& table) {
+std::string ugr_table_csv(const glare::UgrTable& table) {
   std::string text = "across,along";
   for (const char* view : {"crosswise", "endwise"}) {
-    for (const RoomReflectances& each : table_reflectances) {
+    for (const glare::RoomReflectances& each : glare::table_reflectances) {
       text += fmt::format(",{} {:.0f}/{:.0f}/{:.0f}", view, 100 * each.ceiling, 100 * each.walls,
                           100 * each.floor);
     }
   }
   text += "\n";
-  for (std::size_t room = 0; room < table_rooms.size(); ++room) {
-    text += fmt::format("{:g},{:g}", table_rooms[room].across, table_rooms[room].along);
+  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
+    text +=
+        fmt::format("{:g},{:g}", glare::table_rooms[room].across, glare::table_rooms[room].along);
     for_each_value(table, room, [&](double value) {
       text += std::isnan(value) ? "," : fmt::format(",{:.4g}", value);
     });
@@ -219,13 +221,14 @@ std::string ugr_table_csv(const UgrTable& table) {
   return text;
 }
 
-Json ugr_table_json(const UgrTable& table) {
+Json ugr_table_json(const glare::UgrTable& table) {
   Json json{{"reflectances", Json::array()}, {"rooms", Json::array()}};
-  for (const RoomReflectances& each : table_reflectances) {
+  for (const glare::RoomReflectances& each : glare::table_reflectances) {
     json["reflectances"].push_back({each.ceiling, each.walls, each.floor});
   }
-  for (std::size_t room = 0; room < table_rooms.size(); ++room) {
-    Json entry{{"across", table_rooms[room].across}, {"along", table_rooms[room].along}};
+  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
+    Json entry{{"across", glare::table_rooms[room].across},
+               {"along", glare::table_rooms[room].along}};
     for (const auto& [name, rows] :
          {std::pair{"crosswise", &table.crosswise}, std::pair{"endwise", &table.endwise}}) {
       for (const double value : (*rows)[room]) {
@@ -237,4 +240,4 @@ Json ugr_table_json(const UgrTable& table) {
   return json;
 }
 
-}  // namespace photile::glare
+}  // namespace photile::report

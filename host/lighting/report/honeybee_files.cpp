@@ -8,7 +8,7 @@
 
 #include "photile/errors.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 /// As honeybee cleans identifiers: letters, digits, '.', '_' and '-'.
@@ -24,9 +24,9 @@ std::string identifier_of(const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> honeybee_names(const std::vector<SensorGrid>& grids) {
+std::vector<std::string> honeybee_names(const std::vector<measuring::SensorGrid>& grids) {
   std::vector<std::string> names;
-  for (const SensorGrid& grid : grids) {
+  for (const measuring::SensorGrid& grid : grids) {
     names.push_back(identifier_of(grid.name) + ".res");
     if (std::find(names.begin(), names.end() - 1, names.back()) != names.end() - 1) {
       throw UsageError(fmt::format("two grids are named '{}'; rename one", grid.name));
@@ -35,11 +35,11 @@ std::vector<std::string> honeybee_names(const std::vector<SensorGrid>& grids) {
   return names;
 }
 
-std::map<std::string, std::string> honeybee_files(const Measurement& measurement) {
+std::map<std::string, std::string> honeybee_files(const measuring::Measurement& measurement) {
   std::map<std::string, std::string> files;
   nlohmann::ordered_json grids = nlohmann::ordered_json::array();
   std::string summary = "Sensor Grid,Sensor Grid ID,Mean,Minimum,Maximum,Uniformity Ratio\n";
-  for (const GridValues& values : measurement) {
+  for (const measuring::GridValues& values : measurement) {
     const std::string identifier = identifier_of(values.grid.name);
     std::string lines;
     auto blank = values.grid.blanks.begin();  // lines stay those of the grid's points
@@ -60,7 +60,7 @@ std::map<std::string, std::string> honeybee_files(const Measurement& measurement
                      {"full_id", identifier},
                      {"group", ""},
                      {"count", values.grid.sensors.size() + values.grid.blanks.size()}});
-    const GridStatistics& statistics = values.total().statistics;
+    const measuring::GridStatistics& statistics = values.total().statistics;
     summary += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.4g}\n", identifier, identifier,
                            statistics.mean.value, statistics.minimum.value,
                            statistics.maximum.value, 100 * statistics.uniformity.value);
@@ -71,4 +71,4 @@ std::map<std::string, std::string> honeybee_files(const Measurement& measurement
   return files;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

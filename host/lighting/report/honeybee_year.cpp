@@ -11,7 +11,7 @@
 
 #include "report/honeybee_files.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -105,7 +105,7 @@ std::map<std::string, std::string> annual_files(const DaylightResults& results,
     up.push_back(h);
     files["sun-up-hours.txt"] += fmt::format("{:g}\n", static_cast<double>(h) + 0.5);
   }
-  std::vector<SensorGrid> named;
+  std::vector<measuring::SensorGrid> named;
   for (const GridDaylight& grid : results.grids) named.push_back(grid.grid);
   const std::vector<std::string> names = honeybee_names(named);
   const bool with_blinds = !results.states.empty();
@@ -148,4 +148,4 @@ std::map<std::string, std::string> annual_files(const DaylightResults& results,
   return files;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

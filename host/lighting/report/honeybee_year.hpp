@@ -7,7 +7,7 @@
 
 #include "report/daylight_tables.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// By path in the folder:
 /// - `grids_info.json`, `sun-up-hours.txt` (hours of the year);
@@ -21,4 +21,4 @@ namespace photile::measuring {
 std::map<std::string, std::string> annual_files(const DaylightResults& results,
                                                 const std::vector<daylight::SkyHour>& hours);
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// The values between two illuminances of the scale of EN 12464-1, whose steps are of about 1.5:
 /// 5, 7.5, 10, 15, 20, 30, 50, 75, 100, ..., ascending. Lux, or whatever unit.
@@ -22,4 +22,4 @@ inline std::vector<double> illuminance_steps(double low, double high) {
   return steps;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

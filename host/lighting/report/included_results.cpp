@@ -10,7 +10,7 @@
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 using nlohmann::json;
@@ -52,7 +52,8 @@ ReportTable glare_table(std::vector<json> observers) {
   return table;
 }
 
-void judge_glare(const json& observers, const Requirement& requirement, IncludedResults& results) {
+void judge_glare(const json& observers, const measuring::Requirement& requirement,
+                 IncludedResults& results) {
   if (!(requirement.glare > 0)) return;
   for (const json& each : observers) {
     const std::optional<double> value = ugr_of(each);
@@ -88,7 +89,7 @@ ReportTable daylight_table(const json& grids) {
 }  // namespace
 
 IncludedResults included_results(std::span<const std::filesystem::path> files,
-                                 const std::optional<Requirement>& requirement) {
+                                 const std::optional<measuring::Requirement>& requirement) {
   IncludedResults results;
   for (const std::filesystem::path& file : files) {
     const json content = read_input_json(file);
@@ -110,4 +111,4 @@ IncludedResults included_results(std::span<const std::filesystem::path> files,
   return results;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -9,17 +9,17 @@
 #include "measuring/requirements.hpp"
 #include "report/report.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 struct IncludedResults {
   std::vector<ReportTable> tables;
   /// The highest UGR of all observers, where one is required.
-  std::optional<Judgement> glare = std::nullopt;
+  std::optional<measuring::Judgement> glare = std::nullopt;
 };
 
 /// Reads what `photile glare -o FILE.json` and `photile daylight -o FILE.json` have written. Of
 /// many observers the table has the worst. Errors: InputError naming a file that is neither.
 IncludedResults included_results(std::span<const std::filesystem::path> files,
-                                 const std::optional<Requirement>& requirement);
+                                 const std::optional<measuring::Requirement>& requirement);
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 /// Four neighbouring middles, counter-clockwise from the lowest column and row.
@@ -110,4 +110,4 @@ std::vector<Polygon> isoband(std::span<const double> values, int columns, int ro
   return polygons;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace photile::measuring {
+namespace photile::report {
 
 using Segment = std::array<glm::dvec2, 2>;
 
@@ -24,4 +24,4 @@ using Polygon = std::vector<glm::dvec2>;
 std::vector<Polygon> isoband(std::span<const double> values, int columns, int rows, double low,
                              double high);
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// A value with so many digits that count; large ones are whole numbers in place of powers of ten:
 /// "12500", not "1.25e+04".
@@ -27,4 +27,4 @@ inline std::string text_with_error(double value, double error) {
                      unit * std::round(error / unit), decimals);
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -9,7 +9,7 @@
 #include "photile/errors.hpp"
 #include "report/palette_colours.hpp"
 
-namespace photile::image {
+namespace photile::report {
 namespace {
 
 constexpr int entries = 256;
@@ -32,9 +32,9 @@ Palette::Palette(const std::string& name) {
     const double share = static_cast<double>(i) / (entries - 1);
     const glm::dvec3 rgb =
         is_radiance_palette(name) ? radiance_palette(name, share) : knot_colour(name, share);
-    colours_.push_back({srgb8_from_linear(static_cast<float>(rgb.r)),
-                        srgb8_from_linear(static_cast<float>(rgb.g)),
-                        srgb8_from_linear(static_cast<float>(rgb.b))});
+    colours_.push_back({image::srgb8_from_linear(static_cast<float>(rgb.r)),
+                        image::srgb8_from_linear(static_cast<float>(rgb.g)),
+                        image::srgb8_from_linear(static_cast<float>(rgb.b))});
   }
 }
 
@@ -49,4 +49,4 @@ std::string Palette::hex(double share) const {
   return fmt::format("#{:02x}{:02x}{:02x}", r, g, b);
 }
 
-}  // namespace photile::image
+}  // namespace photile::report

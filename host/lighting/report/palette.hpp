@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace photile::image {
+namespace photile::report {
 
 /// A run of colours from low to high, as OpenImageIO's `color_map` or Radiance's falsecolor has it.
 class Palette {
@@ -28,4 +28,4 @@ class Palette {
   std::vector<std::array<std::uint8_t, 3>> colours_;
 };
 
-}  // namespace photile::image
+}  // namespace photile::report

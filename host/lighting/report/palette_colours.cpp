@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace photile::image {
+namespace photile::report {
 
 namespace {
 
@@ -134,4 +134,4 @@ glm::dvec3 radiance_palette(const std::string& name, double share) {
   return glm::clamp(palettes().at(name)(clip(share)), 0.0, 1.0);
 }
 
-}  // namespace photile::image
+}  // namespace photile::report

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
-namespace photile::image {
+namespace photile::report {
 
 /// Linear RGB in [0, 1] of a share in [0, 1] of "turbo", "viridis", "inferno", "magma", "plasma",
 /// "heat", "spectrum" or "blue-red".
@@ -16,4 +16,4 @@ bool is_radiance_palette(const std::string& name);
 /// Linear RGB in [0, 1] of a share in [0, 1], as falsecolor.pl of Radiance 5 has it.
 glm::dvec3 radiance_palette(const std::string& name, double share);
 
-}  // namespace photile::image
+}  // namespace photile::report

@@ -10,19 +10,19 @@
 #include "photile/light_mix.hpp"
 #include "report/false_colour_picture.hpp"
 
-namespace photile::image {
+namespace photile::report {
 namespace {
 
 /// The layers of a picture by light; none where it has none.
-LayerSet layers_of(const Image& image) {
+image::LayerSet layers_of(const Image& image) {
   try {
-    return find_layers(image);
+    return image::find_layers(image);
   } catch (const InputError&) {
     return {};
   }
 }
 
-std::optional<std::size_t> index_in(const LayerSet& layers, const std::string& light) {
+std::optional<std::size_t> index_in(const image::LayerSet& layers, const std::string& light) {
   const auto& lights = layers.records.mix.lights;
   const auto found = std::find_if(lights.begin(), lights.end(),
                                   [&](const MixedLight& each) { return each.name == light; });
@@ -31,7 +31,7 @@ std::optional<std::size_t> index_in(const LayerSet& layers, const std::string& l
 }
 
 /// A layer as a picture of its own.
-Image layer_picture(const Image& image, const LayerChannels& channels) {
+Image layer_picture(const Image& image, const image::LayerChannels& channels) {
   constexpr std::array names{"R", "G", "B"};
   Image layer;
   layer.width = image.width;
@@ -72,7 +72,7 @@ void add_levels(const std::string& what, const std::string& unit, std::vector<fl
 /// Illuminance of the pixels that see a surface in either picture; empty where it is not known.
 std::vector<float> surface_illuminance(const LayeredPicture& picture) {
   try {
-    return measuring::illuminance_of(picture);
+    return illuminance_of(picture);
   } catch (const InputError&) {
     return {};
   }
@@ -86,8 +86,7 @@ LevelComparison compare_levels(const LayeredPicture& a, const LayeredPicture& b,
     throw UsageError("the pictures differ in size; render them with the same --size");
   }
   LevelComparison result;
-  add_levels("luminance", "cd/m2", measuring::luminance_of(a.root()),
-             measuring::luminance_of(b.root()), result);
+  add_levels("luminance", "cd/m2", luminance_of(a.root()), luminance_of(b.root()), result);
   add_levels("illuminance", "lux", surface_illuminance(a), surface_illuminance(b), result);
   const LightMix of_a = read_light_mix(header_a), of_b = read_light_mix(header_b);
   for (const MixedLight& light : of_a.lights) {
@@ -118,7 +117,7 @@ bool lights_differ(const PictureHeader& a, const PictureHeader& b) {
 PictureComparison compare_pictures(const Image& a, const Image& b) {
   PictureComparison result;
   result.parts.push_back({"", picture_error(a, b)});
-  const LayerSet of_a = layers_of(a), of_b = layers_of(b);
+  const image::LayerSet of_a = layers_of(a), of_b = layers_of(b);
   for (std::size_t i = 0; i < of_a.channels.size(); ++i) {
     const std::string& light = of_a.records.mix.lights[i].name;
     const auto other = index_in(of_b, light);
@@ -140,4 +139,4 @@ PictureComparison compare_pictures(const Image& a, const Image& b) {
   return result;
 }
 
-}  // namespace photile::image
+}  // namespace photile::report

@@ -9,7 +9,7 @@
 #include "photile/layered_picture.hpp"
 #include "photile/picture_error.hpp"
 
-namespace photile::image {
+namespace photile::report {
 
 /// One picture against another, or one layer of both.
 struct ComparedPart {
@@ -75,4 +75,4 @@ struct ComparisonDrawing {
 /// DejaVu Sans is installed. Errors: as above.
 Image draw_comparison(const Image& a, const Image& b, const ComparisonDrawing& options);
 
-}  // namespace photile::image
+}  // namespace photile::report

@@ -13,7 +13,7 @@
 #include "report/isolines.hpp"
 #include "report/number_text.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 // Sizes in pixels.
@@ -27,7 +27,7 @@ constexpr double title_baseline = 20, title_size = 14;
 constexpr double letter_width = 0.6;
 constexpr std::size_t most_numbered_cells = 400;
 
-std::vector<float> illuminances(const LightValues& light) {
+std::vector<float> illuminances(const measuring::LightValues& light) {
   std::vector<float> values;
   for (const Measured& sensor : light.sensors) values.push_back(static_cast<float>(sensor.value));
   return values;
@@ -36,8 +36,8 @@ std::vector<float> illuminances(const LightValues& light) {
 /// One drawing under way.
 class Plan {
  public:
-  Plan(const GridValues& values, const LightValues& light, const FalseColour& options,
-       PlanSize size, const PlanSurroundings& surroundings)
+  Plan(const measuring::GridValues& values, const measuring::LightValues& light,
+       const FalseColour& options, PlanSize size, const PlanSurroundings& surroundings)
       : layout_(*values.grid.layout),
         options_(options),
         surroundings_(surroundings),
@@ -287,7 +287,7 @@ class Plan {
     }
   }
 
-  const PlaneLayout& layout_;
+  const measuring::PlaneLayout& layout_;
   const FalseColour& options_;
   const PlanSurroundings& surroundings_;
   const bool small_;
@@ -302,9 +302,10 @@ class Plan {
 
 }  // namespace
 
-std::string plan_svg(const GridValues& values, const LightValues& light, const FalseColour& options,
-                     PlanSize size, const PlanSurroundings& surroundings) {
+std::string plan_svg(const measuring::GridValues& values, const measuring::LightValues& light,
+                     const FalseColour& options, PlanSize size,
+                     const PlanSurroundings& surroundings) {
   return Plan(values, light, options, size, surroundings).draw();
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

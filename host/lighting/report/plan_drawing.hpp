@@ -7,7 +7,7 @@
 #include "report/false_colour.hpp"
 #include "report/plan_surroundings.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 enum class PlanSize {
   whole,  ///< with the values of isolines and, where they are few, of cells; and the plane's name
@@ -18,7 +18,8 @@ enum class PlanSize {
 /// of their values, isolines at the steps of EN 12464-1, a legend, a scale in metres, coordinates
 /// of two corners, and what surrounds the plane. `light` is one of values.lights. Needs
 /// values.grid.layout.
-std::string plan_svg(const GridValues& values, const LightValues& light, const FalseColour& options,
-                     PlanSize size = PlanSize::whole, const PlanSurroundings& surroundings = {});
+std::string plan_svg(const measuring::GridValues& values, const measuring::LightValues& light,
+                     const FalseColour& options, PlanSize size = PlanSize::whole,
+                     const PlanSurroundings& surroundings = {});
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -10,7 +10,7 @@
 #include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 constexpr double shown_around = 1.0;  ///< metres
@@ -21,7 +21,7 @@ constexpr int looks_along = 300;  ///< that find furniture, along the longer sid
 /// The plane in the scene's coordinates, with places in cells.
 class Frame {
  public:
-  explicit Frame(const PlaneLayout& layout)
+  explicit Frame(const measuring::PlaneLayout& layout)
       : corner_(layout.origin),
         u_(layout.u),
         v_(layout.v),
@@ -99,7 +99,7 @@ std::vector<Segment> walls_of(const Scene& scene, const Frame& frame) {
   return walls;
 }
 
-glm::dvec3 point_of(const Scene& scene, const TriangleHit& hit) {
+glm::dvec3 point_of(const Scene& scene, const trace::TriangleHit& hit) {
   const auto corners = scene.corners(hit.triangle);
   const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
   return (1 - u - v) * glm::dvec3(corners[0]) + u * glm::dvec3(corners[1]) +
@@ -124,7 +124,7 @@ std::vector<double> depths_below(const RayScene& rays, const Frame& frame, int c
   return depths;
 }
 
-std::vector<Segment> furniture_of(const RayScene& rays, const PlaneLayout& layout,
+std::vector<Segment> furniture_of(const RayScene& rays, const measuring::PlaneLayout& layout,
                                   const Frame& frame) {
   const glm::dvec2 metres(glm::length(layout.u) + 2 * shown_around,
                           glm::length(layout.v) + 2 * shown_around);
@@ -169,10 +169,10 @@ std::optional<glm::dvec3> place_of(const Scene& scene, const Light& light) {
   return sum / total;
 }
 
-PlanSurroundings surroundings_of(const RayScene& rays, const PlaneLayout& in_file) {
+PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLayout& in_file) {
   constexpr double least_cosine = 0.999;
   const Scene& scene = rays.scene();
-  const PlaneLayout layout = in_scene(scene, in_file);
+  const measuring::PlaneLayout layout = measuring::in_scene(scene, in_file);
   if (layout.normal().y < least_cosine) return {};
   const Frame frame(layout);
   PlanSurroundings around{
@@ -185,4 +185,4 @@ PlanSurroundings surroundings_of(const RayScene& rays, const PlaneLayout& in_fil
   return around;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

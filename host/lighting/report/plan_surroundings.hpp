@@ -11,7 +11,7 @@
 #include "photile/ray_scene.hpp"
 #include "report/isolines.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// A lamp of the schedule.
 struct LampMark {
@@ -31,6 +31,6 @@ struct PlanSurroundings {
 std::optional<glm::dvec3> place_of(const Scene& scene, const Light& light);
 
 /// None but reach 0 for a plane that is not horizontal (y is up).
-PlanSurroundings surroundings_of(const RayScene& rays, const PlaneLayout& layout);
+PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLayout& layout);
 
-}  // namespace photile::measuring
+}  // namespace photile::report

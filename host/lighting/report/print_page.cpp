@@ -9,7 +9,7 @@
 #include "photile/errors.hpp"
 #include "report/scratch_folder.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 /// In quotes for the shell.
@@ -41,4 +41,4 @@ std::string pdf_of(const std::string& html) {
   return pdf;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

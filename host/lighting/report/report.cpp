@@ -11,7 +11,7 @@
 #include "report/number_text.hpp"
 #include "report/plan_drawing.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 constexpr std::size_t most_light_plans = 6;  ///< more do not fit on a page
@@ -67,23 +67,23 @@ std::string ratio_cell(const Measured& ratio) {
   return cell(fmt::format("{:.3f}", ratio.value), ratio);
 }
 
-std::string table_row(const LightValues& light) {
-  const GridStatistics& s = light.statistics;
+std::string table_row(const measuring::LightValues& light) {
+  const measuring::GridStatistics& s = light.statistics;
   return fmt::format("<tr><td>{}</td>{}{}{}{}{}</tr>\n",
                      light.light.empty() ? "all lights" : escaped_xml(light.light),
                      lux_cell(s.mean), lux_cell(s.minimum), lux_cell(s.maximum),
                      ratio_cell(s.uniformity), ratio_cell(s.diversity));
 }
 
-std::string grid_heading(const SensorGrid& grid) {
+std::string grid_heading(const measuring::SensorGrid& grid) {
   std::string text = fmt::format("{}: {} points", escaped_xml(grid.name), grid.sensors.size());
   if (!grid.layout) return text;
-  const PlaneLayout& layout = *grid.layout;
+  const measuring::PlaneLayout& layout = *grid.layout;
   return text + fmt::format(", {:.2f} x {:.2f} m, {:.2f} m apart", glm::length(layout.u),
                             glm::length(layout.v), layout.spacing());
 }
 
-std::string judgement_row(const Judgement& judgement) {
+std::string judgement_row(const measuring::Judgement& judgement) {
   const bool lux = judgement.figure == "Em";
   const std::string value = lux ? lux_cell(judgement.measured)
                             : judgement.figure == "Uo"
@@ -96,16 +96,17 @@ std::string judgement_row(const Judgement& judgement) {
 }
 
 /// What is required, and whether it is met.
-std::string target_section(const Measurement& measurement, const Requirement& requirement,
-                           const std::optional<Judgement>& glare) {
+std::string target_section(const measuring::Measurement& measurement,
+                           const measuring::Requirement& requirement,
+                           const std::optional<measuring::Judgement>& glare) {
   std::string text = fmt::format(
       "<h2>Target: {}</h2>\n<p>{}</p>\n<table class=\"target\">\n<tr><th></th><th></th>"
       "<th>required</th><th>measured</th><th></th></tr>\n",
       escaped_xml(requirement.name),
       escaped_xml(requirement.reference.empty() ? ""
                                                 : requirement.reference + ", " + requirement.what));
-  for (const GridValues& values : measurement) {
-    for (const Judgement& judgement : judge(values, requirement)) {
+  for (const measuring::GridValues& values : measurement) {
+    for (const measuring::Judgement& judgement : measuring::judge(values, requirement)) {
       text += judgement_row(judgement);
     }
   }
@@ -183,14 +184,14 @@ std::string table_section(const ReportTable& table) {
   return text + "</table>\n";
 }
 
-std::string section(const GridValues& values, const FalseColour& colours,
+std::string section(const measuring::GridValues& values, const FalseColour& colours,
                     const PlanSurroundings& surroundings) {
   std::string text = fmt::format(
       "<h2>{}</h2>\n<table>\n<tr><th></th><th>E<sub>m</sub> lux</th><th>E<sub>min</sub></th>"
       "<th>E<sub>max</sub></th><th>U<sub>o</sub></th><th>U<sub>d</sub></th></tr>\n",
       grid_heading(values.grid));
-  for (const LightValues& light : values.lights) text += table_row(light);
-  const GridStatistics& s = values.total().statistics;
+  for (const measuring::LightValues& light : values.lights) text += table_row(light);
+  const measuring::GridStatistics& s = values.total().statistics;
   text += fmt::format(
       "</table>\n<p class=\"error\">Noise pulls the least value down: the true E<sub>min</sub> is "
       "expected between {} and {} lux, up to the errors above.</p>\n",
@@ -211,7 +212,7 @@ std::string section(const GridValues& values, const FalseColour& colours,
 
 }  // namespace
 
-std::string report_html(const Measurement& measurement, const ReportText& text,
+std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
                         const FalseColour& colours,
                         const std::vector<PlanSurroundings>& surroundings) {
   std::string page = fmt::format(
@@ -234,4 +235,4 @@ std::string report_html(const Measurement& measurement, const ReportText& text,
   return page + "</body>\n</html>\n";
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -11,7 +11,7 @@
 #include "report/false_colour.hpp"
 #include "report/plan_surroundings.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// A table of texts; the first column is aligned to the left.
 struct ReportTable {
@@ -36,9 +36,10 @@ struct ReportProject {
 struct ReportText {
   std::string title;                                       ///< name of the scene
   std::vector<std::pair<std::string, std::string>> facts;  ///< name and value, in order
-  std::optional<Requirement> requirement = std::nullopt;
+  std::optional<measuring::Requirement> requirement = std::nullopt;
   std::vector<ReportTable> tables = {};
-  std::optional<Judgement> glare = std::nullopt;  ///< the highest UGR, beside the requirement
+  std::optional<measuring::Judgement> glare =
+      std::nullopt;  ///< the highest UGR, beside the requirement
   ReportProject project = {};
   std::vector<ReportPicture> pictures = {};
 };
@@ -48,8 +49,8 @@ struct ReportText {
 /// and of each, the tables, the facts and, where a project is named, lines to sign on. Well-formed
 /// XML; prints on A4.
 ///   surroundings   of each grid's plane, in the order of the grids
-std::string report_html(const Measurement& measurement, const ReportText& text,
+std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
                         const FalseColour& colours,
                         const std::vector<PlanSurroundings>& surroundings);
 
-}  // namespace photile::measuring
+}  // namespace photile::report

@@ -6,7 +6,7 @@
 
 #include "photile/errors.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 ScratchFolder::ScratchFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "photile-XXXXXX").string();
@@ -22,4 +22,4 @@ ScratchFolder::~ScratchFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

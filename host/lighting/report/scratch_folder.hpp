@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// Among the system's temporary files; removed with what it holds at the end.
 class ScratchFolder {
@@ -20,4 +20,4 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace photile::measuring
+}  // namespace photile::report

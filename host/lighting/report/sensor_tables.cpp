@@ -8,7 +8,7 @@
 #include "report/csv_field.hpp"
 #include "report/number_text.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -19,7 +19,7 @@ Json measured_json(const Measured& measured) {
   return {{"value", measured.value}, {"standard_error", measured.standard_error}};
 }
 
-Json statistics_json(const GridStatistics& statistics) {
+Json statistics_json(const measuring::GridStatistics& statistics) {
   Json minimum = measured_json(statistics.minimum), maximum = measured_json(statistics.maximum);
   minimum["at_most"] = statistics.minimum_at_most;
   maximum["at_least"] = statistics.maximum_at_least;
@@ -30,7 +30,7 @@ Json statistics_json(const GridStatistics& statistics) {
           {"Ud", measured_json(statistics.diversity)}};
 }
 
-Json plane_json(const PlaneLayout& layout) {
+Json plane_json(const measuring::PlaneLayout& layout) {
   return {{"origin", vector_json(layout.origin)},
           {"u", vector_json(layout.u)},
           {"v", vector_json(layout.v)},
@@ -39,7 +39,7 @@ Json plane_json(const PlaneLayout& layout) {
           {"cells", layout.cells}};
 }
 
-Json sensor_json(const GridValues& values, std::size_t sensor) {
+Json sensor_json(const measuring::GridValues& values, std::size_t sensor) {
   const Sensor& place = values.grid.sensors[sensor];
   const Measured& total = values.total().sensors[sensor];
   Json entry{{"position", vector_json(place.position)},
@@ -65,19 +65,19 @@ std::string ratio_with_error(const Measured& measured) {
 
 }  // namespace
 
-std::string measurement_csv(const Measurement& measurement, const std::string& unit) {
+std::string measurement_csv(const measuring::Measurement& measurement, const std::string& unit) {
   std::string text = fmt::format("grid,point,x,y,z,dx,dy,dz,{},standard_error", csv_field(unit));
   const auto& lights = measurement.front().lights;
   const bool any_blank =
       std::any_of(measurement.begin(), measurement.end(),
-                  [](const GridValues& values) { return !values.grid.blanks.empty(); });
+                  [](const measuring::GridValues& values) { return !values.grid.blanks.empty(); });
   for (std::size_t i = 1; i < lights.size(); ++i) {
     text += fmt::format(",{},{}", csv_field("lux " + lights[i].light),
                         csv_field("standard_error " + lights[i].light));
   }
   if (any_blank) text += ",blank";
   text += "\n";
-  for (const GridValues& values : measurement) {
+  for (const measuring::GridValues& values : measurement) {
     std::size_t point = 0;
     const auto start = [&](const Sensor& sensor) {
       const glm::dvec3 &p = sensor.position, &n = sensor.normal;
@@ -92,7 +92,7 @@ std::string measurement_csv(const Measurement& measurement, const std::string& u
       }
       if (sensor == values.grid.sensors.size()) break;
       start(values.grid.sensors[sensor]);
-      for (const LightValues& light : values.lights) {
+      for (const measuring::LightValues& light : values.lights) {
         text += fmt::format(",{:.6g},{:.3g}", light.sensors[sensor].value,
                             light.sensors[sensor].standard_error);
       }
@@ -102,9 +102,9 @@ std::string measurement_csv(const Measurement& measurement, const std::string& u
   return text;
 }
 
-Json measurement_json(const Measurement& measurement) {
+Json measurement_json(const measuring::Measurement& measurement) {
   Json grids = Json::array();
-  for (const GridValues& values : measurement) {
+  for (const measuring::GridValues& values : measurement) {
     Json grid{{"name", values.grid.name}, {"points", values.grid.sensors.size()}};
     if (values.grid.layout) grid["plane"] = plane_json(*values.grid.layout);
     grid["statistics"] = statistics_json(values.total().statistics);
@@ -115,7 +115,7 @@ Json measurement_json(const Measurement& measurement) {
     for (std::size_t sensor = 0; sensor < values.grid.sensors.size(); ++sensor) {
       grid["sensors"].push_back(sensor_json(values, sensor));
     }
-    for (const BlankPoint& blank : values.grid.blanks) {
+    for (const measuring::BlankPoint& blank : values.grid.blanks) {
       grid["blank"].push_back({{"position", vector_json(blank.sensor.position)},
                                {"direction", vector_json(blank.sensor.normal)},
                                {"reason", blank.reason},
@@ -126,16 +126,16 @@ Json measurement_json(const Measurement& measurement) {
   return grids;
 }
 
-std::vector<std::string> measurement_lines(const Measurement& measurement,
+std::vector<std::string> measurement_lines(const measuring::Measurement& measurement,
                                            const std::string& unit) {
   std::size_t width = 12;
-  for (const LightValues& light : measurement.front().lights) {
+  for (const measuring::LightValues& light : measurement.front().lights) {
     width = std::max(width, light.light.size() + 2);
   }
   std::vector<std::string> lines{fmt::format("{:<{}}{:>9}{:11}{:>9}{:11}{:>9}{:11}{:>6}{:9}{:>6}",
                                              unit, width, "Em", "", "Emin", "", "Emax", "", "Uo",
                                              "", "Ud")};
-  for (const GridValues& values : measurement) {
+  for (const measuring::GridValues& values : measurement) {
     std::string heading =
         fmt::format("{}: {} points", values.grid.name, values.grid.sensors.size());
     if (values.grid.layout) {
@@ -145,8 +145,8 @@ std::vector<std::string> measurement_lines(const Measurement& measurement,
       heading += fmt::format(", and {} blank", values.grid.blanks.size());
     }
     lines.push_back(heading);
-    for (const LightValues& light : values.lights) {
-      const GridStatistics& s = light.statistics;
+    for (const measuring::LightValues& light : values.lights) {
+      const measuring::GridStatistics& s = light.statistics;
       std::string line =
           fmt::format("  {:<{}}", light.light.empty() ? "all lights" : light.light, width - 2);
       for (const Measured& value : {s.mean, s.minimum, s.maximum}) line += lux_with_error(value);
@@ -158,4 +158,4 @@ std::vector<std::string> measurement_lines(const Measurement& measurement,
   return lines;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::report

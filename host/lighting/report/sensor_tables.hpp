@@ -7,18 +7,19 @@
 
 #include "measuring/measurement.hpp"
 
-namespace photile::measuring {
+namespace photile::report {
 
 /// A line for each sensor, with a heading: grid, point (from 0), x, y, z, dx, dy, dz, lux,
 /// standard_error; with several lights also `lux <light>` and `standard_error <light>` of each.
-std::string measurement_csv(const Measurement& measurement, const std::string& unit = "lux");
+std::string measurement_csv(const measuring::Measurement& measurement,
+                            const std::string& unit = "lux");
 
 /// Array of grids, each with `name`, `points`, `plane` (where it is one), `statistics` and
 /// `sensors`.
-nlohmann::ordered_json measurement_json(const Measurement& measurement);
+nlohmann::ordered_json measurement_json(const measuring::Measurement& measurement);
 
 /// A line for each grid and light, with a heading: Em, Emin, Emax, Uo, Ud with standard errors.
-std::vector<std::string> measurement_lines(const Measurement& measurement,
+std::vector<std::string> measurement_lines(const measuring::Measurement& measurement,
                                            const std::string& unit = "lux");
 
-}  // namespace photile::measuring
+}  // namespace photile::report

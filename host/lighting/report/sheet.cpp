@@ -6,7 +6,7 @@
 #include "image/srgb.hpp"
 #include "report/font.hpp"
 
-namespace photile::image {
+namespace photile::report {
 
 Sheet::Sheet(int width, int height) {
   image_.width = width;
@@ -26,7 +26,7 @@ void Sheet::set(int x, int y, const std::array<float, 3>& linear) {
 void Sheet::set(int x, int y, const std::array<std::uint8_t, 3>& srgb) {
   std::array<float, 3> linear{};
   for (std::size_t c = 0; c < 3; ++c) {
-    linear[c] = static_cast<float>(linear_from_srgb(srgb[c] / 255.0));
+    linear[c] = static_cast<float>(image::linear_from_srgb(srgb[c] / 255.0));
   }
   set(x, y, linear);
 }
@@ -45,4 +45,4 @@ int Sheet::width_of(const std::string& text) { return Font::dejavu(font_size).wi
 
 Image Sheet::take() { return std::move(image_); }
 
-}  // namespace photile::image
+}  // namespace photile::report

@@ -7,7 +7,10 @@
 
 #include "photile/image.hpp"
 
-namespace photile::image {
+namespace photile::report {
+
+/// Pixels between the parts of a sheet, of its title, and of the bar of a legend.
+inline constexpr int gap = 12, title_height = 24, bar_width = 20;
 
 /// White, of display-referred linear values. Places are pixels from its top left corner.
 class Sheet {
@@ -36,4 +39,4 @@ class Sheet {
   Image image_;
 };
 
-}  // namespace photile::image
+}  // namespace photile::report

@@ -4,7 +4,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::gathering {
+namespace photile::cache {
 
 BatchSums::BatchSums(const SceneNeeds& needs, int batches, bool caustics,
                      GatheredIrradiance& result)
@@ -82,4 +82,4 @@ void BatchSums::write(std::uint32_t layer) {
   }
 }
 
-}  // namespace photile::gathering
+}  // namespace photile::cache

@@ -12,7 +12,7 @@
 #include "photile/scene.hpp"
 #include "photile/scene_needs.hpp"
 
-namespace photile::gathering {
+namespace photile::cache {
 
 /// Writes points one after another. Sums run in the order of the calls.
 class BatchSums {
@@ -77,4 +77,4 @@ class BatchSums {
   std::vector<std::uint16_t> lit_;
 };
 
-}  // namespace photile::gathering
+}  // namespace photile::cache

@@ -10,7 +10,7 @@
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 namespace {
 
 using surface::MeshEdge;
@@ -180,4 +180,4 @@ ChartGrowth grow_charts(const Scene& scene, double spacing, double angle_degrees
   return growth;
 }
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

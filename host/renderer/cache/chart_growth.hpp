@@ -6,7 +6,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 
 struct ChartGrowth {
   /// Per sided triangle; none where the material stores no photons. Numbered in the order in which
@@ -24,4 +24,4 @@ struct ChartGrowth {
 ///   angle_degrees   largest angle between the normals of neighbours on a sheet
 ChartGrowth grow_charts(const Scene& scene, double spacing, double angle_degrees);
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

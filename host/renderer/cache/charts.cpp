@@ -10,7 +10,7 @@
 
 #include "cache/chart_growth.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 namespace {
 
 /// Tiles of the coarsest level of a scene: 4 bytes each, whether they are filled or not.
@@ -218,4 +218,4 @@ std::uint64_t Charts::bytes() const {
          charts_.size() * (sizeof(Chart) + sizeof(ChartPlace));
 }
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

@@ -12,7 +12,7 @@
 #include "photile/scene.hpp"
 #include "trace/triangle_hit.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 
 /// A plane with a lattice over the sided triangles of a chart. Lattice places are counted in cells
 /// of the coarsest level; the triangles' projections lie in [0, columns] x [0, rows].
@@ -70,7 +70,7 @@ class Charts {
   void prepare(std::uint32_t chart);
 
   struct Owner {
-    TriangleHit where;
+    trace::TriangleHit where;
     std::uint32_t side;
   };
   /// The surface that a node stands for: the triangle of the chart whose projection is nearest to
@@ -105,4 +105,4 @@ class Charts {
   std::uint32_t roots_ = 0;
 };
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

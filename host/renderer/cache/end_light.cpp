@@ -13,7 +13,7 @@
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
 
-namespace photile::gathering {
+namespace photile::cache {
 namespace {
 
 /// What is known of the cells of the light maps.
@@ -85,11 +85,11 @@ void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uin
     const glm::vec3 direction = light.rays.direction_of(hit.pixel);
     if (light.own_of[end] != none) {
       const EndEstimates& own = light.own;
-      for_each_estimate(
+      estimate::for_each_estimate(
           own.estimates, light.own_of[end], lights, [&](std::size_t layer, std::size_t i) {
             sums.add_surface(static_cast<std::uint32_t>(layer), batch,
-                             light.weight[end] *
-                                 reflected_radiance(own.hits, light.own_of[end], own.estimates, i),
+                             light.weight[end] * estimate::reflected_radiance(
+                                                     own.hits, light.own_of[end], own.estimates, i),
                              direction);
           });
       continue;
@@ -98,10 +98,11 @@ void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uin
     for (std::size_t corner = 0; corner < blend.node.size(); ++corner) {
       if (blend.weight[corner] == 0.0f) continue;
       const glm::vec3 weight = blend.weight[corner] * light.weight[end];
-      for_each_estimate(values, blend.node[corner], lights, [&](std::size_t layer, std::size_t i) {
-        sums.add_surface(static_cast<std::uint32_t>(layer), batch, weight * values.irradiance[i],
-                         direction);
-      });
+      estimate::for_each_estimate(values, blend.node[corner], lights,
+                                  [&](std::size_t layer, std::size_t i) {
+                                    sums.add_surface(static_cast<std::uint32_t>(layer), batch,
+                                                     weight * values.irradiance[i], direction);
+                                  });
     }
   }
 }
@@ -180,4 +181,4 @@ EndEstimates EndLight::estimates_at(const trace::EyeRecord& ends,
   return {std::move(hits), std::move(estimates)};
 }
 
-}  // namespace photile::gathering
+}  // namespace photile::cache

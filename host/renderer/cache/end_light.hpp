@@ -10,14 +10,14 @@
 
 #include "cache/batch_sums.hpp"
 #include "cache/node_sight.hpp"
+#include "estimate/light_at_points.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
-#include "estimate/light_at_points.hpp"
 #include "trace/hemisphere_rays.hpp"
 
-namespace photile::gathering {
+namespace photile::cache {
 
 /// Photon estimates at some of the ends of rays.
 struct EndEstimates {
@@ -43,8 +43,8 @@ class EndLight : private PointSource {
   ///             but where several processes have the photons. What a point gets does not depend on
   ///             the points beside it.
   ///   maps      of one level: a cell is known by its first node
-  EndLight(const RayScene& rays, LightAtPoints& photons, LightAtPoints& of_nodes,
-           const LightMapParameters& maps)
+  EndLight(const RayScene& rays, estimate::LightAtPoints& photons,
+           estimate::LightAtPoints& of_nodes, const LightMapParameters& maps)
       : rays_(rays), photons_(photons), of_nodes_(of_nodes), parameters_(maps) {}
 
   /// Finds an estimate for each end.
@@ -61,7 +61,7 @@ class EndLight : private PointSource {
   const Estimates& values() const { return maps_->maps.values(); }
 
   /// That have the photon maps, and make the same calls; null: this one alone.
-  Communicator* processes() const { return parameters_.processes; }
+  auto* processes() const { return parameters_.processes; }
 
   /// Metres, from node to node: as wide as the estimates that value them.
   double spacing() const { return parameters_.spacing; }
@@ -89,8 +89,8 @@ class EndLight : private PointSource {
                             const Progress& progress);
 
   const RayScene& rays_;
-  LightAtPoints& photons_;
-  LightAtPoints& of_nodes_;
+  estimate::LightAtPoints& photons_;
+  estimate::LightAtPoints& of_nodes_;
   /// What nodes of a cell must differ by to be looked at where something stands in it.
   static constexpr double any_contrast = 0;
 
@@ -98,7 +98,7 @@ class EndLight : private PointSource {
     Maps(const RayScene& rays, const LightMapParameters& parameters)
         : maps(rays.scene(), parameters), sight(rays, maps, any_contrast) {}
     LightMaps maps;
-    light_maps::NodeSight sight;
+    NodeSight sight;
     /// By the first node of a cell: whether its middle sees all nodes, once an end asked.
     mutable std::vector<std::uint8_t> cells;
   };
@@ -107,4 +107,4 @@ class EndLight : private PointSource {
   Costs costs_;
 };
 
-}  // namespace photile::gathering
+}  // namespace photile::cache

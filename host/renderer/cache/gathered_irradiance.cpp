@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "photile/scene.hpp"
 #include "estimate/reflected_radiance.hpp"
+#include "photile/scene.hpp"
 
-namespace photile {
+namespace photile::cache {
 namespace {
 
 /// Of the mean of independent values.
@@ -53,13 +53,16 @@ GatheredIrradiance::Total GatheredIrradiance::total(std::size_t point,
   const auto count = static_cast<std::size_t>(batches);
   std::vector<double> sums(count, 0.0);
   double luminance_sum = 0, shared = 0;
-  for_each_estimate(mean, point, layer_powers.size(), [&](std::size_t layer, std::size_t i) {
-    const double power = layer_powers[layer];
-    luminance_sum += power * luminance(glm::dvec3(mean.irradiance[i]));
-    for (std::size_t b = 0; b < count; ++b) sums[b] += power * double{batch[i * count + b]};
-    // The same photons, or neighbours, may err in all lights alike.
-    if (!shared_variance.empty()) shared += power * std::sqrt(double{shared_variance[i]});
-  });
+  estimate::for_each_estimate(mean, point, layer_powers.size(),
+                              [&](std::size_t layer, std::size_t i) {
+                                const double power = layer_powers[layer];
+                                luminance_sum += power * luminance(glm::dvec3(mean.irradiance[i]));
+                                for (std::size_t b = 0; b < count; ++b)
+                                  sums[b] += power * double{batch[i * count + b]};
+                                // The same photons, or neighbours, may err in all lights alike.
+                                if (!shared_variance.empty())
+                                  shared += power * std::sqrt(double{shared_variance[i]});
+                              });
   return {luminance_sum,
           std::sqrt(squared_error_of_mean(std::span<const double>(sums)) + shared * shared)};
 }
@@ -104,7 +107,7 @@ GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance&
     const std::size_t first = sum.mean.irradiance.size();
     place.assign(lights, first + lights);  // of none
     for (const GatheredIrradiance* part : {&a, &b}) {
-      for_each_estimate(part->mean, point, lights, [&](std::size_t layer, std::size_t i) {
+      estimate::for_each_estimate(part->mean, point, lights, [&](std::size_t layer, std::size_t i) {
         if (place[layer] == first + lights) {
           place[layer] = sum.mean.irradiance.size();
           sum.mean.irradiance.emplace_back(0.0f);
@@ -127,4 +130,4 @@ GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance&
   return sum;
 }
 
-}  // namespace photile
+}  // namespace photile::cache

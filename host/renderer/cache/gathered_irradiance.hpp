@@ -8,7 +8,7 @@
 
 #include "photile/estimator.hpp"
 
-namespace photile {
+namespace photile::cache {
 
 /// Each value is the mean of batches that are independent of each other. They are kept, so that the
 /// error of any mix of lights is known, and that of what is averaged over points.
@@ -47,4 +47,4 @@ struct GatheredIrradiance {
 GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance& b,
                           std::size_t lights);
 
-}  // namespace photile
+}  // namespace photile::cache

@@ -11,7 +11,7 @@
 #include "cache/irradiance_gather.hpp"
 #include "photile/light_maps.hpp"
 
-namespace photile {
+namespace photile::cache {
 
 /// Rays and looks at lamps of a node.
 struct NodeRays {
@@ -75,4 +75,4 @@ class GatheredNodes : public NodeSource {
   GatheredParts nodes_;
 };
 
-}  // namespace photile
+}  // namespace photile::cache

@@ -8,7 +8,7 @@
 #include "cache/gathered_irradiance.hpp"
 #include "cache/likeness.hpp"
 
-namespace photile {
+namespace photile::cache {
 
 /// Which points are neighbours on one surface, in compressed sparse rows: point i is linked to
 /// to[first[i] .. first[i + 1]). Who links says what one surface is.
@@ -37,4 +37,4 @@ GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointL
                                      std::span<const double> layer_powers,
                                      const IrradianceFilterParameters& parameters = {});
 
-}  // namespace photile
+}  // namespace photile::cache

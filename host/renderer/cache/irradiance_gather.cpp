@@ -9,26 +9,26 @@
 #include <string>
 #include <utility>
 
+#include "cache/batch_sums.hpp"
 #include "common/byte_stream.hpp"
 #include "estimate/map_order.hpp"
-#include "cache/batch_sums.hpp"
+#include "estimate/neighbour_choice.hpp"
+#include "estimate/reflected_radiance.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/shard.hpp"
 #include "photile/statistics.hpp"
-#include "estimate/neighbour_choice.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hemisphere_rays.hpp"
 #include "trace/hit_point.hpp"
 
-namespace photile {
+namespace photile::cache {
 namespace {
 
-using gathering::BatchSums;
-using gathering::EndLight;
-using gathering::IndirectLight;
+using cache::BatchSums;
+using cache::EndLight;
+using cache::IndirectLight;
 
 /// Enough to fill a device with new nodes, little enough to stay in the processor's caches.
 constexpr std::size_t rays_at_a_time = std::size_t{1} << 16;
@@ -71,11 +71,11 @@ struct RunLight {
       add_seen_lamps(i, sums);
     }
     if (caustics.irradiance.empty()) return;
-    for_each_estimate(caustics, point, rays.needs().light_count,
-                      [&](std::size_t layer, std::size_t estimate) {
-                        sums.add_to_all(static_cast<std::uint32_t>(layer),
-                                        caustics.irradiance[estimate], caustic_relative_variance);
-                      });
+    estimate::for_each_estimate(
+        caustics, point, rays.needs().light_count, [&](std::size_t layer, std::size_t estimate) {
+          sums.add_to_all(static_cast<std::uint32_t>(layer), caustics.irradiance[estimate],
+                          caustic_relative_variance);
+        });
   }
   /// Harmonic mean, metres.
   float distance(std::size_t i) const {
@@ -200,7 +200,7 @@ void put(const GatheredIrradiance& part, ByteWriter& bytes) {
   bytes.put(part.shared_variance);
 }
 
-Communicator::Bytes bytes_of(const GatheredParts& parts) {
+std::vector<std::byte> bytes_of(const GatheredParts& parts) {
   ByteWriter bytes;
   put(parts.indirect, bytes);
   put(parts.direct, bytes);
@@ -236,16 +236,17 @@ void check_range(const char* what, int value, int low, int high) {
 
 }  // namespace
 
-IrradianceGather::IrradianceGather(const RayScene& rays, LightAtPoints& photons,
-                                   LightAtPoints& of_nodes, const LightMapParameters& ends,
-                                   LightAtPoints* caustics,
+IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
+                                   estimate::LightAtPoints& of_nodes,
+                                   const LightMapParameters& ends,
+                                   estimate::LightAtPoints* caustics,
                                    const IrradianceGatherParameters& parameters)
     : rays_(rays),
       caustics_(caustics),
       parameters_(parameters),
       lamps_(rays.scene()),
       emitted_(emitted_radiance_at_unit_power(rays.scene())),
-      layer_powers_(layer_powers(rays.scene())),
+      layer_powers_(estimate::layer_powers(rays.scene())),
       ends_(rays, photons, of_nodes, ends) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
   check_range("looks at lamps from a point", parameters.looks, 0, limits::max_direct_rays);
@@ -255,7 +256,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, LightAtPoints& photons,
 GatheredParts IrradianceGather::gather(const PrimaryHits& points,
                                        std::span<const std::uint64_t> number, int rays, int looks,
                                        const Progress& progress) {
-  Communicator* const processes = ends_.processes();
+  auto* const processes = ends_.processes();
   if (!processes) return gather_own(points, number, rays, looks, points.size(), progress);
   const Shard shard{processes->rank(), processes->size()};
   const std::uint64_t begin = shard.begin(points.size()), end = shard.end(points.size());
@@ -267,7 +268,7 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
                  looks, most, progress);
   GatheredParts all;
   all.indirect.batches = all.direct.batches = parameters_.batches;
-  for (const Communicator::Bytes& bytes : processes->gather(bytes_of(part))) append(bytes, all);
+  for (const auto& bytes : processes->gather(bytes_of(part))) append(bytes, all);
   return all;
 }
 
@@ -345,4 +346,4 @@ GatheredIrradiance IrradianceGather::gather(const PrimaryHits& points,
   return sum_of(parts.indirect, parts.direct, rays_.needs().light_count);
 }
 
-}  // namespace photile
+}  // namespace photile::cache

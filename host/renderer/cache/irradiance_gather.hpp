@@ -8,13 +8,13 @@
 
 #include "cache/end_light.hpp"
 #include "cache/gathered_irradiance.hpp"
+#include "estimate/light_at_points.hpp"
 #include "photile/defaults.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
-#include "estimate/light_at_points.hpp"
 #include "trace/light_sampler.hpp"
 
-namespace photile {
+namespace photile::cache {
 
 struct IrradianceGatherParameters {
   /// From each point to the surfaces around; 0 = indirect light is left out.
@@ -64,9 +64,9 @@ class IrradianceGather {
   ///   ends       light maps for these photons
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
-  IrradianceGather(const RayScene& rays, LightAtPoints& photons, LightAtPoints& of_nodes,
-                   const LightMapParameters& ends, LightAtPoints* caustics,
-                   const IrradianceGatherParameters& parameters);
+  IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
+                   estimate::LightAtPoints& of_nodes, const LightMapParameters& ends,
+                   estimate::LightAtPoints* caustics, const IrradianceGatherParameters& parameters);
 
   /// Irradiance at points, in their order. What a point gets depends on itself and its number.
   ///   points   position, sided_triangle, diffuse_albedo and, in glossy scenes, outgoing and lobe
@@ -83,7 +83,7 @@ class IrradianceGather {
                             const Progress& progress = Progress::none());
 
   /// What rays find where they end.
-  gathering::EndLight& ends() { return ends_; }
+  cache::EndLight& ends() { return ends_; }
 
   /// Of the light maps where rays end; `forget` empties them.
   std::uint64_t bytes() const { return ends_.bytes(); }
@@ -106,13 +106,13 @@ class IrradianceGather {
                            int rays, int looks, std::size_t most, const Progress& progress);
 
   const RayScene& rays_;
-  LightAtPoints* caustics_;
+  estimate::LightAtPoints* caustics_;
   IrradianceGatherParameters parameters_;
   trace::LightSampler lamps_;
   std::vector<glm::vec3> emitted_;  ///< per light
   std::vector<double> layer_powers_;
-  gathering::EndLight ends_;
+  cache::EndLight ends_;
   Costs costs_;
 };
 
-}  // namespace photile
+}  // namespace photile::cache

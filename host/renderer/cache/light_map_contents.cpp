@@ -11,9 +11,9 @@
 
 namespace photile {
 
-using light_maps::NodePlace;
-using light_maps::Tile;
-using light_maps::Tiles;
+using cache::NodePlace;
+using cache::Tile;
+using cache::Tiles;
 
 namespace {
 
@@ -153,7 +153,7 @@ void LightMaps::restore(LightMapContents contents) {
     places.push_back({chart, x, y});
   }
   const PrimaryHits points =
-      light_maps::node_points(impl_->scene, impl_->charts, places, impl_->levels, false);
+      cache::node_points(impl_->scene, impl_->charts, places, impl_->levels, false);
   impl_->append(std::move(contents.values), points, places);
   impl_->error = std::move(contents.error);
   impl_->distance = std::move(contents.distance);
@@ -168,7 +168,7 @@ void LightMaps::restore(LightMapContents contents) {
         (y & 7) == 0 && (split & ~known) == 0);
     std::uint32_t index = none;
     if (level == 0) {
-      const light_maps::Chart& lattice = impl_->charts[chart];
+      const cache::Chart& lattice = impl_->charts[chart];
       fit(x / 8 < lattice.root_columns() && y / 8 < lattice.root_rows());
       index =
           tiles.tile_of({lattice.first_root + y / 8 * lattice.root_columns() + x / 8, 0, false});

@@ -20,7 +20,7 @@
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
 
-namespace photile {
+namespace photile::cache {
 namespace {
 
 /// Pixels of a packet of rays and of a block, whose packets one task traces, on each side.
@@ -279,7 +279,7 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   trace::SurfacePoint point;  // its place in textures: all that is asked of it
   point.where = {triangle, u, v};
   point.side = side;
-  const scene_io::Reflectance reflectance = trace::reflectance(scene_, point);
+  const scene::Reflectance reflectance = trace::reflectance(scene_, point);
   glm::vec3 radiance = (reflectance.albedo + reflectance.f0) * glm::one_over_pi<float>() * light;
   if (surface.kind == Surface::lamp && trace::emits(scene_, point)) {
     const std::uint32_t lamp = scene_.triangle_light[triangle];
@@ -317,8 +317,8 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_trian
   };
   const glm::vec3 sum(blended(light));
   if (mixed_.by_normal().empty()) return sum;
-  return light_maps::turned(sum, blended(mixed_.by_normal()),
-                            trace::shading_normal(scene_, sided_triangle, position));
+  return cache::turned(sum, blended(mixed_.by_normal()),
+                       trace::shading_normal(scene_, sided_triangle, position));
 }
 
 /// A ray that goes on: traced anew, with all that it meets.
@@ -355,4 +355,4 @@ glm::vec3 LightMapFrames::background(const glm::vec3& direction) const {
   return radiance;
 }
 
-}  // namespace photile
+}  // namespace photile::cache

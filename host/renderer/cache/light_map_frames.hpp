@@ -16,7 +16,7 @@
 #include "photile/scene_renderer.hpp"
 #include "trace/distant_light.hpp"
 
-namespace photile {
+namespace photile::cache {
 
 /// Draws frames from light maps. Rays through the same places of each pixel; mirrors, glass and
 /// holes are followed; a specular lobe is taken for matt reflection of the same strength, and
@@ -51,7 +51,7 @@ class LightMapFrames {
   };
   /// Where a cell is seen whose nodes are not valued.
   struct MissingPlace {
-    light_maps::MissingCell cell;
+    cache::MissingCell cell;
     bool empty;      ///< without a coarser level
     float distance;  ///< from the eye, metres
     glm::vec3 position;
@@ -84,7 +84,7 @@ class LightMapFrames {
   std::vector<std::uint32_t> layer_of_;  ///< per light
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1
   trace::DistantLights distant_;
-  light_maps::NodeMix mixed_;
+  cache::NodeMix mixed_;
   std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none
   std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
   mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell
@@ -92,4 +92,4 @@ class LightMapFrames {
   double seconds_per_place_;                 ///< of valuing, learned from what it took
 };
 
-}  // namespace photile
+}  // namespace photile::cache

@@ -14,7 +14,7 @@
 #include "photile/statistics.hpp"
 
 namespace photile {
-namespace light_maps {
+namespace cache {
 
 namespace {
 
@@ -42,21 +42,6 @@ int levels_that_fit(const Charts& charts, int wanted) {
   return wanted;
 }
 
-/// Cells that some process misses, the same on all of them.
-std::vector<MissingCell> missing_of_all(Communicator* processes, std::vector<MissingCell> own) {
-  if (!processes) return own;
-  std::vector<MissingCell> all;
-  for (const Communicator::Bytes& bytes :
-       processes->gather(std::as_bytes(std::span<const MissingCell>(own)))) {
-    const std::size_t before = all.size();
-    all.resize(before + bytes.size() / sizeof(MissingCell));
-    if (!bytes.empty()) std::memcpy(all.data() + before, bytes.data(), bytes.size());
-  }
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  return all;
-}
-
 void check(const LightMapParameters& parameters, std::size_t layers) {
   if (!(parameters.spacing > 0) || !std::isfinite(parameters.spacing)) {
     throw UsageError(
@@ -73,7 +58,7 @@ void check(const LightMapParameters& parameters, std::size_t layers) {
 }
 
 }  // namespace
-}  // namespace light_maps
+}  // namespace cache
 
 std::string_view name_of(LightMapMode mode) {
   switch (mode) {
@@ -87,18 +72,18 @@ std::string_view name_of(LightMapMode mode) {
   return "unknown";
 }
 
-using light_maps::Charts;
-using light_maps::MissingCell;
-using light_maps::NodePlace;
-using light_maps::Tile;
-using light_maps::Tiles;
+using cache::Charts;
+using cache::MissingCell;
+using cache::NodePlace;
+using cache::Tile;
+using cache::Tiles;
 
 LightMaps::Impl::Impl(const Scene& from, const LightMapParameters& given)
     : scene(from),
       needs(needs_of(from)),
       parameters(given),
       charts(scene, parameters.spacing, parameters.angle_degrees),
-      levels(light_maps::levels_that_fit(charts, parameters.levels)),
+      levels(cache::levels_that_fit(charts, parameters.levels)),
       tiles(charts) {
   clear();
 }
@@ -124,12 +109,12 @@ std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
     std::vector<std::uint32_t> hits;
   };
   const std::size_t tasks =
-      (pending.size() + light_maps::hits_per_lookup_task - 1) / light_maps::hits_per_lookup_task;
+      (pending.size() + cache::hits_per_lookup_task - 1) / cache::hits_per_lookup_task;
   std::vector<Found> found(tasks);
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
     Found& own = found[task];
-    const std::size_t end = std::min(pending.size(), (task + 1) * light_maps::hits_per_lookup_task);
-    for (std::size_t i = task * light_maps::hits_per_lookup_task; i < end; ++i) {
+    const std::size_t end = std::min(pending.size(), (task + 1) * cache::hits_per_lookup_task);
+    for (std::size_t i = task * cache::hits_per_lookup_task; i < end; ++i) {
       const std::uint32_t hit = pending[i];
       NodeBlend blend;
       const auto missing = tiles.find(charts.chart_of()[hits.sided_triangle[hit]],
@@ -185,10 +170,9 @@ std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(std::span<const No
                                                               NodeSource& source,
                                                               const Progress& progress) {
   const auto batch_of = [&](std::span<const NodePlace> places) {
-    return light_maps::node_batch(scene, charts, places, levels, needs.glossy,
-                                  source.surroundings());
+    return cache::node_batch(scene, charts, places, levels, needs.glossy, source.surroundings());
   };
-  for (const auto& places : light_maps::unknown_parents(nodes, levels, source)) {
+  for (const auto& places : cache::unknown_parents(nodes, levels, source)) {
     // For the source: they have their values here.
     if (!places.empty()) source.value(batch_of(places), progress);
   }
@@ -229,17 +213,17 @@ bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes, double s
   const double least = together[*low], most = together[*high];
   if (error.empty()) return differ_by_photons(most, least);
   const double noise = std::hypot(error[*low], error[*high]);
-  if (most - least > most * parameters.contrast + light_maps::doubted_errors * noise) return true;
+  if (most - least > most * parameters.contrast + cache::doubted_errors * noise) return true;
   const auto [near, far] =
       std::minmax({distance[nodes[0]], distance[nodes[1]], distance[nodes[2]], distance[nodes[3]]});
-  if (is_dark(most) && far < light_maps::near_of_spacing * spacing) return true;
+  if (is_dark(most) && far < cache::near_of_spacing * spacing) return true;
   const double nearest = near;
   return spacing > parameters.near * nearest &&
          most - least > 0.25 * most * parameters.contrast + noise;
 }
 
 bool LightMaps::Impl::is_dark(double light) const {
-  return light <= light_maps::dark_of_sparse * parameters.sparse_irradiance;
+  return light <= cache::dark_of_sparse * parameters.sparse_irradiance;
 }
 
 bool LightMaps::Impl::differ_by_photons(double high, double low) const {
@@ -250,7 +234,7 @@ bool LightMaps::Impl::differ_by_photons(double high, double low) const {
 }
 
 LightMaps::LightMaps(const Scene& scene, const LightMapParameters& parameters) {
-  light_maps::check(parameters, needs_of(scene).light_count);
+  cache::check(parameters, needs_of(scene).light_count);
   const Stopwatch stopwatch;
   impl_ = std::make_unique<Impl>(scene, parameters);
   impl_->chart_seconds = stopwatch.seconds();
@@ -266,8 +250,12 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
   Tiles& tiles = impl_->tiles;
   for (int round = 0; round < rounds; ++round) {
     progress.throw_if_cancelled();
-    const std::vector<MissingCell> missing = light_maps::missing_of_all(
-        impl_->parameters.processes, impl_->missing_cells(hits, pending, levels));
+    std::vector<MissingCell> missing = impl_->missing_cells(hits, pending, levels);
+    if (impl_->parameters.processes) {  // cells that some process misses, the same on all of them
+      missing = impl_->parameters.processes->gather_values<MissingCell>(missing);
+      std::sort(missing.begin(), missing.end());
+      missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+    }
     if (missing.empty()) return;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
     for (const MissingCell& cell : missing) cells.emplace_back(tiles.tile_of(cell), cell.cell);

@@ -5,10 +5,10 @@
 #include <glm/glm.hpp>
 #include <utility>
 
-#include "photile/scene.hpp"
 #include "estimate/reflected_radiance.hpp"
+#include "photile/scene.hpp"
 
-namespace photile {
+namespace photile::cache {
 namespace {
 
 using Total = GatheredIrradiance::Total;
@@ -37,10 +37,12 @@ void KnownLight::read(const GatheredIrradiance& irradiance, std::size_t point) {
   lit_.clear();
   irradiance_ = &irradiance;
   point_ = point;
-  for_each_estimate(irradiance.mean, point, layers_.size(), [&](std::size_t layer, std::size_t i) {
-    layers_[layer] = {luminance(glm::dvec3(irradiance.mean.irradiance[i])), irradiance.error(i)};
-    lit_.push_back(static_cast<std::uint16_t>(layer));
-  });
+  estimate::for_each_estimate(
+      irradiance.mean, point, layers_.size(), [&](std::size_t layer, std::size_t i) {
+        layers_[layer] = {luminance(glm::dvec3(irradiance.mean.irradiance[i])),
+                          irradiance.error(i)};
+        lit_.push_back(static_cast<std::uint16_t>(layer));
+      });
   all_ = at_powers(layer_powers_);
 }
 
@@ -69,4 +71,4 @@ void Likeness::compare(const KnownLight& a, const KnownLight& b, const NoiseTole
   of_others_ = errors * std::exp(-squared);
 }
 
-}  // namespace photile
+}  // namespace photile::cache

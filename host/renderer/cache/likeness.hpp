@@ -10,7 +10,7 @@
 #include "cache/gathered_irradiance.hpp"
 #include "photile/defaults.hpp"
 
-namespace photile {
+namespace photile::cache {
 
 /// What may be noise.
 struct NoiseTolerance {
@@ -73,4 +73,4 @@ class Likeness {
   double of_others_ = 1;
 };
 
-}  // namespace photile
+}  // namespace photile::cache

@@ -10,7 +10,7 @@
 
 #include "trace/surface.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 
 PrimaryHits node_points(const Scene& scene, Charts& charts, std::span<const NodePlace> nodes,
                         int levels, bool glossy) {
@@ -218,4 +218,4 @@ NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodePla
   return batch;
 }
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

@@ -11,7 +11,7 @@
 #include "photile/light_maps.hpp"
 #include "photile/primary_hits.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 
 /// Point i is that which owns node i, seen from straight above, matt.
 ///   glossy   whether hits of the scene have lobes
@@ -40,4 +40,4 @@ int level_of(const NodePlace& node, int levels);
 std::vector<std::vector<NodePlace>> unknown_parents(std::span<const NodePlace> nodes, int levels,
                                                     const NodeSource& source);
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

@@ -10,7 +10,7 @@
 #include "photile/scene.hpp"
 #include "photile/scene_needs.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
@@ -166,4 +166,4 @@ void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const gl
   });
 }
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

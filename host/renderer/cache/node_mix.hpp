@@ -8,7 +8,7 @@
 
 #include "photile/estimator.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 
 /// Irradiance of the lights together, linear RGB, at their powers and tints.
 class NodeMix {
@@ -35,4 +35,4 @@ class NodeMix {
   std::vector<glm::vec4> light_, by_normal_;
 };
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

@@ -5,7 +5,7 @@
 #include "trace/ray_query.hpp"
 #include "trace/surface_sight.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 namespace {
 
 using trace::place_on;
@@ -81,4 +81,4 @@ bool NodeSight::sees(std::uint32_t sided_triangle, const glm::vec3& from,
                         place_on(scene, sided_triangle, to));
 }
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

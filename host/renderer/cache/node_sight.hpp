@@ -8,7 +8,7 @@
 #include "photile/light_maps.hpp"
 #include "photile/ray_scene.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 
 /// A chart goes on under things that stand on it, and behind what is let into it. Nodes there hold
 /// the light of where they are, which is none of what the eye sees beside them.
@@ -43,4 +43,4 @@ class NodeSight {
   double contrast_;
 };
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

@@ -12,7 +12,7 @@
 #include "photile/scene.hpp"
 #include "trace/by_pixel.hpp"
 
-namespace photile {
+namespace photile::cache {
 namespace {
 
 /// Hits of a pixel that are compared with each other, at most.
@@ -64,8 +64,8 @@ std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHi
     if (pixel >= first && pixel < first + pixels)
       seen_weight[pixel - first] += weight_of(seen, hit);
   }
-  const ByPixel by_pixel(reflected.size(), first, pixels,
-                         [&](std::size_t i) { return reflected.pixel[i] / count; });
+  const trace::ByPixel by_pixel(reflected.size(), first, pixels,
+                                [&](std::size_t i) { return reflected.pixel[i] / count; });
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, pixels, pixels_per_task),
       [&](const tbb::blocked_range<std::size_t>& range) {
@@ -85,4 +85,4 @@ std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHi
   return suits;
 }
 
-}  // namespace photile
+}  // namespace photile::cache

@@ -6,7 +6,7 @@
 
 #include "photile/primary_hits.hpp"
 
-namespace photile {
+namespace photile::cache {
 
 /// What photon estimates show of their noise.
 struct PhotonBlotches {
@@ -25,4 +25,4 @@ struct PhotonBlotches {
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
                                         int runs, const PhotonBlotches& blotches);
 
-}  // namespace photile
+}  // namespace photile::cache

@@ -9,19 +9,19 @@
 #include <numeric>
 #include <vector>
 
-#include "estimate/estimate_writer.hpp"
-#include "estimate/map_order.hpp"
 #include "cache/charts.hpp"
 #include "cache/turned_light.hpp"
+#include "estimate/estimate_writer.hpp"
+#include "estimate/map_order.hpp"
+#include "estimate/reflected_radiance.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/statistics.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/surface.hpp"
 
-namespace photile {
+namespace photile::cache {
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
@@ -157,10 +157,10 @@ class Blend {
     const auto for_each_corner = [&](const auto& visit) {
       for (std::size_t i = 0; i < blend.node.size(); ++i) {
         if (blend.weight[i] == 0.0f) continue;
-        for_each_estimate(nodes_, blend.node[i], needs_.light_count,
-                          [&](std::size_t layer, std::size_t value) {
-                            visit(layers[layer], layer, value, blend.weight[i]);
-                          });
+        estimate::for_each_estimate(nodes_, blend.node[i], needs_.light_count,
+                                    [&](std::size_t layer, std::size_t value) {
+                                      visit(layers[layer], layer, value, blend.weight[i]);
+                                    });
       }
     };
     for_each_corner([&](ByNormal& light, std::size_t, std::size_t value, float weight) {
@@ -173,7 +173,7 @@ class Blend {
     for_each_corner([&](ByNormal& light, std::size_t layer, std::size_t, float) {
       if (light.irradiance == glm::vec3(0.0f)) return;
       writer.add(static_cast<std::uint32_t>(layer), light.irradiance,
-                 reflects * light_maps::turned(light.irradiance, light.by_normal, normal));
+                 reflects * cache::turned(light.irradiance, light.by_normal, normal));
       light = {};
     });
   }
@@ -184,22 +184,23 @@ class Blend {
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
     for (std::size_t i = 0; i < blend.node.size(); ++i) {
       if (blend.weight[i] == 0.0f) continue;
-      for_each_estimate(nodes, blend.node[i], needs_.light_count,
-                        [&](std::size_t layer, std::size_t value) {
-                          const glm::vec3 light = blend.weight[i] * nodes.irradiance[value];
-                          writer.add(static_cast<std::uint32_t>(layer), light, reflects * light);
-                        });
+      estimate::for_each_estimate(
+          nodes, blend.node[i], needs_.light_count, [&](std::size_t layer, std::size_t value) {
+            const glm::vec3 light = blend.weight[i] * nodes.irradiance[value];
+            writer.add(static_cast<std::uint32_t>(layer), light, reflects * light);
+          });
     }
   }
 
   void add_alone(std::size_t hit, std::uint32_t place, estimate::EstimateWriter& writer) const {
-    for_each_estimate(alone_, place, needs_.light_count, [&](std::size_t layer, std::size_t value) {
-      const glm::vec3& light = alone_.irradiance[value];
-      writer.add(static_cast<std::uint32_t>(layer), light,
-                 alone_.radiance.empty()
-                     ? hits_.diffuse_albedo[hit] * glm::one_over_pi<float>() * light
-                     : alone_.radiance[value]);
-    });
+    estimate::for_each_estimate(
+        alone_, place, needs_.light_count, [&](std::size_t layer, std::size_t value) {
+          const glm::vec3& light = alone_.irradiance[value];
+          writer.add(static_cast<std::uint32_t>(layer), light,
+                     alone_.radiance.empty()
+                         ? hits_.diffuse_albedo[hit] * glm::one_over_pi<float>() * light
+                         : alone_.radiance[value]);
+        });
   }
 
   const Scene& scene_;
@@ -244,7 +245,8 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 }
 
 SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-                           LightAtPoints& elsewhere, NodeSource& source, gathering::EndLight* ends)
+                           estimate::LightAtPoints& elsewhere, NodeSource& source,
+                           cache::EndLight* ends)
     : scene_(rays.scene()),
       needs_(rays.needs()),
       shared_(parameters.processes != nullptr),
@@ -384,4 +386,4 @@ bool SurfaceCache::serves(const PrimaryHits& hits, std::size_t hit) const {
   return !has_lobe && material.normal_texture == none;
 }
 
-}  // namespace photile
+}  // namespace photile::cache

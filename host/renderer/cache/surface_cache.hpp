@@ -8,15 +8,15 @@
 
 #include "cache/end_light.hpp"
 #include "cache/node_sight.hpp"
+#include "cache/reflection_noise.hpp"
+#include "estimate/light_at_points.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/statistics.hpp"
-#include "estimate/light_at_points.hpp"
-#include "cache/reflection_noise.hpp"
 
-namespace photile {
+namespace photile::cache {
 
 /// A sum of squared relative standard errors.
 struct ErrorSum {
@@ -41,13 +41,13 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 /// Values nodes by what another says of their points.
 class ValuedBy : public PointSource {
  public:
-  explicit ValuedBy(LightAtPoints& light) : light_(light) {}
+  explicit ValuedBy(estimate::LightAtPoints& light) : light_(light) {}
   Estimates irradiance(const PrimaryHits& nodes) override {
     return light_.at(nodes, Progress::none());
   }
 
  private:
-  LightAtPoints& light_;
+  estimate::LightAtPoints& light_;
 };
 
 /// What the light of hits is read from.
@@ -57,7 +57,7 @@ struct HitReading {
   std::vector<NodeBlend> blends;  ///< of nodes or ends
 };
 
-class SurfaceCache : public LightAtPoints {
+class SurfaceCache : public estimate::LightAtPoints {
  public:
   /// References are kept.
   ///   elsewhere   answers for points that no node serves: those with a specular lobe or a normal
@@ -67,8 +67,8 @@ class SurfaceCache : public LightAtPoints {
   ///   ends        where rays value nodes, the light that they find where they end, which is read
   ///               where PrimaryHits::coarse says that it suffices; null where photons value nodes:
   ///               the coarsest nodes are read there
-  SurfaceCache(const RayScene& rays, const LightMapParameters& parameters, LightAtPoints& elsewhere,
-               NodeSource& source, gathering::EndLight* ends);
+  SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
+               estimate::LightAtPoints& elsewhere, NodeSource& source, cache::EndLight* ends);
 
   /// Of points in any order.
   Estimates at(const PrimaryHits& points, const Progress& progress) override;
@@ -85,7 +85,7 @@ class SurfaceCache : public LightAtPoints {
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
   NodeSource& source() { return source_; }
-  const light_maps::NodeSight& sight() const { return sight_; }
+  const cache::NodeSight& sight() const { return sight_; }
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
@@ -111,14 +111,14 @@ class SurfaceCache : public LightAtPoints {
   const SceneNeeds needs_;
   const bool shared_;        ///< with other processes, which make the same calls
   const double neighbours_;  ///< of a photon estimate
-  LightAtPoints& elsewhere_;
+  estimate::LightAtPoints& elsewhere_;
   NodeSource& source_;
-  gathering::EndLight* ends_;
+  cache::EndLight* ends_;
   LightMaps maps_;
-  light_maps::NodeSight sight_;
+  cache::NodeSight sight_;
   std::uint64_t hits_alone_ = 0;
   ErrorSum errors_read_;
   TimeTaken fill_time_;
 };
 
-}  // namespace photile
+}  // namespace photile::cache

@@ -1,6 +1,6 @@
 #include "cache/tiles.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 namespace {
 
 /// The chart of a root: the last whose first root is not beyond it.
@@ -49,4 +49,4 @@ std::uint32_t Tiles::add(std::uint32_t chart, std::uint32_t level, std::uint32_t
   return static_cast<std::uint32_t>(tiles_.size() - 1);
 }
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

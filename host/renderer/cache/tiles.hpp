@@ -12,7 +12,7 @@
 #include "cache/charts.hpp"
 #include "photile/light_maps.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 
 /// Cells of one level of a chart. Corner (x, y) of the tile is node[y * 9 + x].
 struct Tile {
@@ -114,4 +114,4 @@ class Tiles {
   std::vector<Tile> tiles_;
 };
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

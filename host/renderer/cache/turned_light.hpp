@@ -6,7 +6,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::light_maps {
+namespace photile::cache {
 
 /// Irradiance of a plane of unit normal n, in the colour of that of the surface.
 ///   by_normal   as Estimates has it
@@ -17,4 +17,4 @@ inline glm::vec3 turned(const glm::vec3& irradiance, const glm::vec4& by_normal,
   return std::max(0.0f, glm::dot(glm::vec3(by_normal), normal) + by_normal.w) / light * irradiance;
 }
 
-}  // namespace photile::light_maps
+}  // namespace photile::cache

@@ -16,7 +16,7 @@
 #include "cache/likeness.hpp"
 #include "estimate/reflected_radiance.hpp"
 
-namespace photile::gathering {
+namespace photile::cache {
 
 /// Weighted means of points, written one after another.
 class WeightedPoints {
@@ -40,23 +40,24 @@ class WeightedPoints {
   template <class Weight>
   void add(const GatheredIrradiance& from, std::size_t point, double of_none,
            const Weight& weight_of) {
-    for_each_estimate(from.mean, point, sums_.size(),
-                      [&](std::size_t layer, std::size_t) { light(layer); });
+    estimate::for_each_estimate(from.mean, point, sums_.size(),
+                                [&](std::size_t layer, std::size_t) { light(layer); });
     smooth_ = smooth_ || !from.mean.by_normal.empty();
     for (const std::uint16_t layer : lit_) {
       sums_[layer].weight = weight_of(layer);
       sums_[layer].weights += sums_[layer].weight;
     }
-    for_each_estimate(from.mean, point, sums_.size(), [&](std::size_t layer, std::size_t i) {
-      Sums& sums = sums_[layer];
-      sums.irradiance += sums.weight * glm::dvec3(from.mean.irradiance[i]);
-      if (smooth_) sums.by_normal += sums.weight * glm::dvec4(from.mean.by_normal[i]);
-      for (std::size_t b = 0; b < batches_; ++b) {
-        batch_[layer * batches_ + b] += sums.weight * double{from.batch[i * batches_ + b]};
-      }
-      // Photons of caustics may be the same at all points: errors add up.
-      if (shared_) sums.error += sums.weight * std::sqrt(double{from.shared_variance[i]});
-    });
+    estimate::for_each_estimate(
+        from.mean, point, sums_.size(), [&](std::size_t layer, std::size_t i) {
+          Sums& sums = sums_[layer];
+          sums.irradiance += sums.weight * glm::dvec3(from.mean.irradiance[i]);
+          if (smooth_) sums.by_normal += sums.weight * glm::dvec4(from.mean.by_normal[i]);
+          for (std::size_t b = 0; b < batches_; ++b) {
+            batch_[layer * batches_ + b] += sums.weight * double{from.batch[i * batches_ + b]};
+          }
+          // Photons of caustics may be the same at all points: errors add up.
+          if (shared_) sums.error += sums.weight * std::sqrt(double{from.shared_variance[i]});
+        });
     of_none_ += of_none;
   }
 
@@ -165,4 +166,4 @@ GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
   return all;
 }
 
-}  // namespace photile::gathering
+}  // namespace photile::cache

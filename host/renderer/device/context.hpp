@@ -1,5 +1,5 @@
-// What host/renderer/maps and host/renderer/estimate use of OpenCL. No OpenCL header is included here: handles are
-// opaque, so that host/renderer/device stays the only folder that knows OpenCL.
+// What host/renderer/maps and host/renderer/estimate use of OpenCL. No OpenCL header is included
+// here: handles are opaque, so that host/renderer/device stays the only folder that knows OpenCL.
 #pragma once
 
 #include <atomic>

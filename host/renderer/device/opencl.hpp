@@ -1,4 +1,5 @@
-// The OpenCL C API as host/renderer/device uses it: version, owning handles, status checks, queries.
+// The OpenCL C API as host/renderer/device uses it: version, owning handles, status checks,
+// queries.
 #pragma once
 
 #define CL_TARGET_OPENCL_VERSION 120

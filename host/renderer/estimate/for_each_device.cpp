@@ -9,7 +9,7 @@
 
 #include "photile/errors.hpp"
 
-namespace photile {
+namespace photile::estimate {
 namespace {
 
 /// What one of several devices sees of the progress: only the first tells, all are stopped.
@@ -91,4 +91,4 @@ void for_each_device(std::span<Device> devices, Progress& progress,
   if (failed) rethrow_cause(errors);
 }
 
-}  // namespace photile
+}  // namespace photile::estimate

@@ -8,7 +8,7 @@
 #include "photile/device.hpp"
 #include "photile/progress.hpp"
 
-namespace photile {
+namespace photile::estimate {
 
 /// Calls work(i, progress) for every device i, each on a thread of its own, and returns once all
 /// have ended. The first device tells `progress` of its stages, all of them hear of a wish to stop.
@@ -17,4 +17,4 @@ namespace photile {
 void for_each_device(std::span<Device> devices, Progress& progress,
                      const std::function<void(std::size_t, Progress&)>& work);
 
-}  // namespace photile
+}  // namespace photile::estimate

@@ -33,13 +33,14 @@ void put_lobes(device::Context& context, device::Buffer<float>& buffer, const Pr
   put(context, buffer, floats(values, 0, count), what);
 }
 
-std::vector<DiffusePart> diffuse_of(const PrimaryHits& hits, std::size_t first, std::size_t count) {
-  std::vector<DiffusePart> parts(count);
+std::vector<trace::DiffusePart> diffuse_of(const PrimaryHits& hits, std::size_t first,
+                                           std::size_t count) {
+  std::vector<trace::DiffusePart> parts(count);
   for (std::size_t i = 0; i < count; ++i) {
     const HitLobe& lobe = hits.lobe[first + i];
-    parts[i] =
-        diffuse_part({hits.diffuse_albedo[first + i], lobe.specular, lobe.f90, lobe.roughness},
-                     glm::dot(lobe.normal, hits.outgoing[first + i]));
+    parts[i] = trace::diffuse_part(
+        {hits.diffuse_albedo[first + i], lobe.specular, lobe.f90, lobe.roughness},
+        glm::dot(lobe.normal, hits.outgoing[first + i]));
   }
   return parts;
 }
@@ -47,8 +48,9 @@ std::vector<DiffusePart> diffuse_of(const PrimaryHits& hits, std::size_t first, 
 std::vector<glm::vec4> bumps_of(const PrimaryHits& hits, std::size_t first, std::size_t count) {
   std::vector<glm::vec4> bumps(count);
   for (std::size_t i = 0; i < count; ++i) {
-    bumps[i] = glm::vec4(hits.lobe[first + i].smooth_normal,
-                         most_bump(hits.diffuse_albedo[first + i] + hits.lobe[first + i].specular));
+    bumps[i] =
+        glm::vec4(hits.lobe[first + i].smooth_normal,
+                  trace::most_bump(hits.diffuse_albedo[first + i] + hits.lobe[first + i].specular));
   }
   return bumps;
 }
@@ -97,7 +99,7 @@ void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t 
   if (!needs.glossy) return;
   put(context, buffers.outgoing, floats(hits.outgoing, first, count), "hit directions");
   put_lobes(context, buffers.normal, hits, first, count, &HitLobe::normal, "hit shading normals");
-  const std::vector<DiffusePart> diffuse = diffuse_of(hits, first, count);
+  const std::vector<trace::DiffusePart> diffuse = diffuse_of(hits, first, count);
   put(context, buffers.diffuse, std::span<const float>(&diffuse[0][0].x, 9 * count),
       "hit diffuse parts");
   put_lobes(context, buffers.f0, hits, first, count, &HitLobe::specular, "hit F0");

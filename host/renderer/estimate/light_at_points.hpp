@@ -5,7 +5,7 @@
 #include "photile/primary_hits.hpp"
 #include "photile/progress.hpp"
 
-namespace photile {
+namespace photile::estimate {
 
 /// Tells the irradiance and the reflected radiance of every light at points of opaque surfaces.
 /// The photon estimate answers by photons, rays that gather by asking another where they end, a
@@ -20,4 +20,4 @@ class LightAtPoints {
   virtual Estimates at(const PrimaryHits& points, const Progress& progress) = 0;
 };
 
-}  // namespace photile
+}  // namespace photile::estimate

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace photile {
+namespace photile::estimate {
 namespace {
 
 /// Hits of the first rounds, for each device: launches that cost more than what they launch, but
@@ -59,4 +59,4 @@ std::vector<double> LoadBalance::shares() const {
   return shares;
 }
 
-}  // namespace photile
+}  // namespace photile::estimate

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace photile {
+namespace photile::estimate {
 
 /// Shares hits by the throughput that each device has shown so far. The first hits are shared
 /// evenly: a few that are not measured, since they wait for kernels to be compiled, then a probe.
@@ -39,4 +39,4 @@ class LoadBalance {
   std::size_t rounds_ = 0;
 };
 
-}  // namespace photile
+}  // namespace photile::estimate

@@ -7,7 +7,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile {
+namespace photile::estimate {
 namespace {
 
 /// Levels differ by this factor in k.
@@ -106,4 +106,4 @@ std::vector<double> layer_powers(const Scene& scene) {
   return powers;
 }
 
-}  // namespace photile
+}  // namespace photile::estimate

@@ -7,7 +7,7 @@
 #include "photile/estimator.hpp"
 #include "photile/light_groups.hpp"
 
-namespace photile {
+namespace photile::estimate {
 
 /// The k that hits choose from: `most`, and quarters of it down to `least`. Ascending.
 std::vector<int> neighbour_levels(int least, int most);
@@ -29,4 +29,4 @@ Estimates estimates_of_least_error(std::vector<Estimates> levels, std::span<cons
 /// The powers of a scene's layers; all 1 where every lamp is off.
 std::vector<double> layer_powers(const Scene& scene);
 
-}  // namespace photile
+}  // namespace photile::estimate

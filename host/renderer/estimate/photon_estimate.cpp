@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimate/for_each_device.hpp"
 #include "estimate/map_order.hpp"
+#include "estimate/neighbour_choice.hpp"
 #include "geometry/radix_sort.hpp"
 #include "photile/statistics.hpp"
-#include "estimate/for_each_device.hpp"
-#include "estimate/neighbour_choice.hpp"
 
-namespace photile {
+namespace photile::estimate {
 namespace {
 
 /// Lists of neighbours at a time: 26 MB of them at k = 100.
@@ -138,4 +138,4 @@ void PhotonEstimate::estimate_round(Level& level, const PrimaryHits& points, std
   level.balance.end_round();
 }
 
-}  // namespace photile
+}  // namespace photile::estimate

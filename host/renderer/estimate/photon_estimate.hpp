@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "photile/estimator.hpp"
-#include "photile/photon_maps.hpp"
 #include "estimate/light_at_points.hpp"
 #include "estimate/load_balance.hpp"
 #include "estimate/seen_photons.hpp"
+#include "photile/estimator.hpp"
+#include "photile/photon_maps.hpp"
 #include "trace/hit_order.hpp"
 
-namespace photile {
+namespace photile::estimate {
 
 /// Builds the same maps on every device, all at once; for one alone, photons are given back on the
 /// way. Errors: as PhotonMaps, see for_each_device.
@@ -74,4 +74,4 @@ class PhotonEstimate : public LightAtPoints {
   std::shared_ptr<const SeenPhotons> seen_;
 };
 
-}  // namespace photile
+}  // namespace photile::estimate

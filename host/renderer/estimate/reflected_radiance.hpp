@@ -8,7 +8,7 @@
 #include "photile/estimator.hpp"
 #include "photile/primary_hits.hpp"
 
-namespace photile {
+namespace photile::estimate {
 
 /// Radiance that a hit sends against the ray that arrived, of the light of estimate `index`.
 inline glm::vec3 reflected_radiance(const PrimaryHits& hits, std::size_t hit,
@@ -32,4 +32,4 @@ void for_each_estimate(const Estimates& estimates, std::size_t hit, std::size_t 
   }
 }
 
-}  // namespace photile
+}  // namespace photile::estimate

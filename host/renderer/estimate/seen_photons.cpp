@@ -4,13 +4,13 @@
 
 #include <cmath>
 
+#include "estimate/reflected_radiance.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/surface_sight.hpp"
 
-namespace photile {
+namespace photile::estimate {
 SeenPhotons::SeenPhotons(const RayScene& rays, const Photons& photons)
     : rays_(rays),
       position_(photons.position),
@@ -68,4 +68,4 @@ void SeenPhotons::leave_out_hidden(const PrimaryHits& hits, std::span<const std:
   });
 }
 
-}  // namespace photile
+}  // namespace photile::estimate

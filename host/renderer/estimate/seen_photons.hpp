@@ -12,7 +12,7 @@
 #include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
 
-namespace photile {
+namespace photile::estimate {
 
 /// Where the wall of a ring stands on a floor, photons inside it lie close to hits outside, and
 /// would show as a bright rim there. Caustics end abruptly at what casts them, so that of these it
@@ -42,4 +42,4 @@ class SeenPhotons {
   std::vector<std::uint16_t> light_;  ///< empty for one alone
 };
 
-}  // namespace photile
+}  // namespace photile::estimate

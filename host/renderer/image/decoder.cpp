@@ -8,8 +8,8 @@
 #include "common/ascii_text.hpp"
 #include "common/module.hpp"
 #include "image/exr_decoder.hpp"
-#include "image/picture_checks.hpp"
 #include "image/openimageio_decoder.hpp"
+#include "image/picture_checks.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::image {

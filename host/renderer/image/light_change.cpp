@@ -107,7 +107,7 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
   }
   if (const auto* temperature = std::get_if<SetTemperature>(&request)) {
     const glm::dvec3 own(light.color);
-    const glm::dvec3 wanted = scene_io::color_of_temperature(temperature->kelvin);
+    const glm::dvec3 wanted = scene::color_of_temperature(temperature->kelvin);
     for (int c = 0; c < 3; ++c) {
       if (own[c] > 0.0 || wanted[c] == 0.0) continue;
       throw UsageError(fmt::format(
@@ -141,7 +141,7 @@ std::size_t index_of(const LightMix& mix, const std::string& name) {
   std::vector<std::string> names;
   for (const MixedLight& light : mix.lights) names.push_back(light.name);
   throw UsageError(
-      fmt::format("there is no light '{}'; there {}", name, scene_io::names_like(name, names)));
+      fmt::format("there is no light '{}'; there {}", name, scene::names_like(name, names)));
 }
 
 }  // namespace image

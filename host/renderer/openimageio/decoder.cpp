@@ -1,5 +1,3 @@
-#include "image/openimageio_decoder.hpp"
-
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -7,36 +5,37 @@
 #include <memory>
 #include <string>
 
+#include "image/openimageio_decoder.hpp"
 #include "openimageio/silence.hpp"
 #include "photile/limits.hpp"
 
-namespace photile::image {
+namespace photile::openimageio {
 namespace {
 
-const char* reader_of(PictureFormat format) {
+const char* reader_of(image::PictureFormat format) {
   switch (format) {
-    case PictureFormat::png:
+    case image::PictureFormat::png:
       return "png";
-    case PictureFormat::jpeg:
+    case image::PictureFormat::jpeg:
       return "jpeg";
-    case PictureFormat::radiance:
+    case image::PictureFormat::radiance:
       return "hdr";
-    case PictureFormat::tiff:
+    case image::PictureFormat::tiff:
       return "tiff";
-    case PictureFormat::webp:
+    case image::PictureFormat::webp:
       return "webp";
-    case PictureFormat::bmp:
+    case image::PictureFormat::bmp:
       return "bmp";
-    case PictureFormat::gif:
+    case image::PictureFormat::gif:
       return "gif";
-    case PictureFormat::targa:
+    case image::PictureFormat::targa:
       return "targa";
-    case PictureFormat::pnm:
+    case image::PictureFormat::pnm:
       return "pnm";
-    case PictureFormat::exr:
+    case image::PictureFormat::exr:
       break;  // photile's own
   }
-  throw DecodeError("not a picture format that is read");
+  throw image::DecodeError("not a picture format that is read");
 }
 
 /// For the process, once.
@@ -50,9 +49,9 @@ void set_up() {
   static_cast<void>(done);
 }
 
-Sample sample_of(OIIO::TypeDesc stored) {
-  if (stored.is_floating_point()) return Sample::real;
-  return stored.size() == 1 ? Sample::byte : Sample::word;
+image::Sample sample_of(OIIO::TypeDesc stored) {
+  if (stored.is_floating_point()) return image::Sample::real;
+  return stored.size() == 1 ? image::Sample::byte : image::Sample::word;
 }
 
 /// What the reader says first: the lines behind it say the same again, or name its options.
@@ -62,32 +61,32 @@ std::string reason_of(const OIIO::ImageInput& input) {
   return reason.empty() ? "damaged, or of a kind that is not read" : reason;
 }
 
-class OpenImageIODecoder : public Decoder {
+class OpenImageIODecoder : public image::Decoder {
  public:
-  OpenImageIODecoder(PictureFormat format, Encoded bytes)
+  OpenImageIODecoder(image::PictureFormat format, image::Encoded bytes)
       : memory_(bytes.data(), bytes.size()), input_(OIIO::ImageInput::create(reader_of(format))) {
-    if (!input_) throw DecodeError("OpenImageIO has no reader for it");
+    if (!input_) throw image::DecodeError("OpenImageIO has no reader for it");
     const Silence silence;
     OIIO::ImageSpec options, spec;
     options["oiio:UnassociatedAlpha"] = 1;
     options["bmp:monochrome_detect"] = 0;
     input_->set_ioproxy(&memory_);
-    if (!input_->open("the file", spec, options)) throw DecodeError(reason_of(*input_));
+    if (!input_->open("the file", spec, options)) throw image::DecodeError(reason_of(*input_));
     shape_ = {spec.width, spec.height, spec.nchannels, sample_of(spec.format)};
     const bool alpha = spec.alpha_channel >= 0;
-    if (format == PictureFormat::tiff && alpha && spec["compression"].get() == "jpeg") {
-      throw DecodeError("alpha beside JPEG's compression is not read; save it with another");
+    if (format == image::PictureFormat::tiff && alpha && spec["compression"].get() == "jpeg") {
+      throw image::DecodeError("alpha beside JPEG's compression is not read; save it with another");
     }
-    associated_ = format == PictureFormat::webp && alpha;
+    associated_ = format == image::PictureFormat::webp && alpha;
   }
 
-  Pixels decode() override {
+  image::Pixels decode() override {
     switch (shape_.sample) {
-      case Sample::byte:
+      case image::Sample::byte:
         return values<std::uint8_t>(OIIO::TypeDesc::UINT8);
-      case Sample::word:
+      case image::Sample::word:
         return values<std::uint16_t>(OIIO::TypeDesc::UINT16);
-      case Sample::real:
+      case image::Sample::real:
         break;
     }
     return values<float>(OIIO::TypeDesc::FLOAT);
@@ -99,7 +98,7 @@ class OpenImageIODecoder : public Decoder {
     const Silence silence;
     std::vector<T> values(shape_.values());
     const bool read = input_->read_image(0, 0, 0, shape_.channels, type, values.data());
-    if (!read || input_->has_error()) throw DecodeError(reason_of(*input_));
+    if (!read || input_->has_error()) throw image::DecodeError(reason_of(*input_));
     if constexpr (std::is_same_v<T, std::uint8_t>) {
       if (associated_) divide_by_alpha(values);
     }
@@ -122,10 +121,10 @@ class OpenImageIODecoder : public Decoder {
 };
 
 }  // namespace
-}  // namespace photile::image
+}  // namespace photile::openimageio
 
 photile::image::Decoder* photile_openimageio_decoder(photile::image::PictureFormat format,
                                                      photile::image::Encoded bytes) {
-  photile::image::set_up();
-  return new photile::image::OpenImageIODecoder(format, bytes);
+  photile::openimageio::set_up();
+  return new photile::openimageio::OpenImageIODecoder(format, bytes);
 }

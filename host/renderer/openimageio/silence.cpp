@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <mutex>
 
-namespace photile::image {
+namespace photile::openimageio {
 namespace {
 
 thread_local int silences = 0;  ///< of this thread
@@ -45,4 +45,4 @@ Silence::~Silence() {
   stderr = standard_error;
 }
 
-}  // namespace photile::image
+}  // namespace photile::openimageio

@@ -1,7 +1,7 @@
 // What a library prints to standard error though nobody asked.
 #pragma once
 
-namespace photile::image {
+namespace photile::openimageio {
 
 /// While it lives, what its thread prints to C's `stderr` is dropped. libpng prints there what
 /// OpenImageIO returns as an error, and warnings about pictures that are sound.
@@ -13,4 +13,4 @@ class Silence {
   Silence& operator=(const Silence&) = delete;
 };
 
-}  // namespace photile::image
+}  // namespace photile::openimageio

@@ -1,10 +1,18 @@
 #include "render/exchange.hpp"
 
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "common/byte_stream.hpp"
 #include "estimate/map_order.hpp"
+#include "photile/shard.hpp"
+#include "render/pass_count.hpp"
 
 namespace photile {
 namespace {
@@ -67,6 +75,66 @@ void append_estimates(std::span<const std::byte> bytes, Estimates& estimates) {
   part.first = reader.take<std::uint64_t>();
   part.light = reader.take<std::uint16_t>();
   estimates.append(std::move(part));
+}
+
+/// Rows [first, first + count) of planes and sparse rows.
+struct Rows {
+  std::size_t first, count;
+};
+
+Rows rows_of(const LightLayers& layers, const Shard& shard) {
+  const auto height = static_cast<std::uint64_t>(layers.height);
+  return {shard.begin(height), shard.end(height) - shard.begin(height)};
+}
+
+template <class T>
+void put(const std::vector<T>& plane, const Rows& rows, std::size_t width, ByteWriter& bytes) {
+  if (plane.empty()) return;
+  bytes.put(std::span<const T>(plane).subspan(rows.first * width, rows.count * width));
+}
+
+template <class T>
+void take(std::vector<T>& plane, const Rows& rows, std::size_t width, ByteReader& reader) {
+  if (plane.empty()) return;
+  const std::vector<T> values = reader.take<T>();
+  std::copy(values.begin(), values.end(),
+            plane.begin() + static_cast<std::ptrdiff_t>(rows.first * width));
+}
+
+Communicator::Bytes bytes_of(const LightLayers& layers, const Rows& rows) {
+  ByteWriter bytes;
+  const auto width = static_cast<std::size_t>(layers.width);
+  for (const LightLayers::Layer& layer : layers.layers) {
+    put(layer.radiance, rows, width, bytes);
+    put(layer.illuminance, rows, width, bytes);
+  }
+  if (!layers.sparse()) return bytes.take();
+  for (std::size_t y = rows.first; y < rows.first + rows.count; ++y) {
+    const LightLayers::Row& row = layers.rows[y];
+    bytes.put(row.first);
+    bytes.put(row.light);
+    bytes.put(row.radiance);
+    bytes.put(row.illuminance);
+  }
+  return bytes.take();
+}
+
+void set_rows(std::span<const std::byte> bytes, const Rows& rows, LightLayers& layers) {
+  ByteReader reader(bytes);
+  const auto width = static_cast<std::size_t>(layers.width);
+  for (LightLayers::Layer& layer : layers.layers) {
+    take(layer.radiance, rows, width, reader);
+    take(layer.illuminance, rows, width, reader);
+  }
+  if (!layers.sparse()) return;
+  for (std::size_t y = rows.first; y < rows.first + rows.count; ++y) {
+    LightLayers::Row row;
+    row.first = reader.take<std::uint32_t>();
+    row.light = reader.take<std::uint16_t>();
+    row.radiance = reader.take<glm::vec3>();
+    row.illuminance = reader.take<float>();
+    layers.rows[y] = std::move(row);
+  }
 }
 
 }  // namespace
@@ -136,6 +204,84 @@ Estimates Exchange::at_common(const PrimaryHits& points, const Progress& progres
       own.empty() ? Communicator::Bytes()
                   : bytes_of(here_->at(estimate::reordered(points, 0, own), progress));
   return in_order(places, processes_.gather(bytes), points.size());
+}
+
+void bring_rows(Communicator& processes, LightLayers& layers) {
+  const std::uint32_t ranks = processes.size();
+  std::vector<Communicator::Bytes> to_each(ranks);
+  if (processes.rank() > 0) {
+    to_each[0] = bytes_of(layers, rows_of(layers, {processes.rank(), ranks}));
+  }
+  const std::vector<Communicator::Bytes> got = processes.exchange(std::move(to_each));
+  if (processes.rank() > 0) return;
+  for (std::uint32_t rank = 1; rank < ranks; ++rank) {
+    set_rows(got[rank], rows_of(layers, {rank, ranks}), layers);
+  }
+}
+
+std::uint64_t host_bytes_of_all(Communicator* processes) {
+  if (!processes) return installed_host_bytes();
+  constexpr std::uint64_t most = std::uint64_t{1} << 56;  // where nothing is known
+  std::uint64_t bytes = std::min(most, installed_host_bytes()) / processes->on_this_machine();
+  processes->sum(std::span(&bytes, 1));
+  return bytes;
+}
+
+void add_processes(Communicator& all, RenderCosts& costs) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+  const Communicator::Traffic traffic = all.traffic();
+  const std::array own{costs.references,
+                       costs.maps,
+                       costs.mixed_maps,
+                       costs.largest_map,
+                       costs.rays,
+                       costs.hit_count,
+                       costs.photons_sent,
+                       costs.photon_bytes_sent,
+                       costs.photons_held,
+                       costs.points_sent.points,
+                       costs.points_sent.bytes,
+                       traffic.bytes,
+                       memory,
+                       std::bit_cast<std::uint64_t>(costs.light_map_errors.squares),
+                       costs.light_map_errors.hits};
+  using Counts = std::array<std::uint64_t, own.size()>;
+  const auto of_ranks = all.gather_values<Counts>(std::span<const Counts>(&own, 1));
+  const auto sum = [&](std::size_t i) {
+    std::uint64_t total = 0;
+    for (const auto& rank : of_ranks) total += rank[i];
+    return total;
+  };
+  const auto most = [&](std::size_t i) {
+    std::uint64_t largest = 0;
+    for (const auto& rank : of_ranks) largest = std::max(largest, rank[i]);
+    return largest;
+  };
+  costs.references = sum(0), costs.maps = sum(1), costs.mixed_maps = sum(2),
+  costs.largest_map = most(3);
+  costs.rays = sum(4), costs.hit_count = sum(5);
+  costs.light_map_errors = {0, sum(14)};
+  for (const auto& rank : of_ranks)
+    costs.light_map_errors.squares += std::bit_cast<double>(rank[13]);
+  const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+  const auto ratio = [](std::uint64_t a, std::uint64_t b) {
+    return static_cast<double>(a) / static_cast<double>(std::max<std::uint64_t>(1, b));
+  };
+  costs.processes = {
+      {"processes", number(all.size())},
+      {"photons sent", number(sum(6))},
+      {"bytes sent per stored photon", ratio(sum(7), costs.stored_photons)},
+      {"photons held, largest over mean", ratio(most(8) * all.size(), sum(8))},
+      {"photons held over stored", ratio(sum(8), costs.stored_photons + costs.caustic_photons)},
+      {"hits sent", number(sum(9))},
+      {"bytes per hit sent", ratio(sum(10), sum(9))},
+      {"bytes sent", number(sum(11))},
+      {"calls", number(traffic.calls)},
+      {"seconds waited", traffic.seconds},
+      {"host bytes of a process, most", number(most(12))},
+      {"host bytes of a process, mean", ratio(sum(12), all.size())}};
 }
 
 }  // namespace photile

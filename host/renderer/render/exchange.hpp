@@ -1,4 +1,4 @@
-// Light at points by the processes that hold the photon maps.
+// What processes that share a picture send each other: points and their light, rows, statistics.
 #pragma once
 
 #include <cstddef>
@@ -7,20 +7,17 @@
 #include <span>
 #include <vector>
 
-#include "photile/communicator.hpp"
 #include "estimate/light_at_points.hpp"
+#include "photile/communicator.hpp"
+#include "photile/light_layers.hpp"
 #include "render/map_owners.hpp"
+#include "render/render_costs.hpp"
 
 namespace photile {
 
-/// Points and estimates that went to other processes.
-struct PointTraffic {
-  std::uint64_t points = 0, bytes = 0;
-};
-
 /// Sends points to the owners of their maps, and brings their estimates back. What a point gets
 /// must not depend on the points beside it. Collective: all processes ask at the same time.
-class Exchange : public LightAtPoints {
+class Exchange : public estimate::LightAtPoints {
  public:
   enum class Points {
     own,    ///< each process asks for points of its own, or for none
@@ -33,8 +30,8 @@ class Exchange : public LightAtPoints {
   ///   many_lights   estimates have the form of many lights
   ///   traffic       is added to
   Exchange(Communicator& processes, std::shared_ptr<const MapOwners> owners,
-           std::shared_ptr<LightAtPoints> here, Points points, std::size_t lights, bool many_lights,
-           PointTraffic& traffic)
+           std::shared_ptr<estimate::LightAtPoints> here, Points points, std::size_t lights,
+           bool many_lights, PointTraffic& traffic)
       : processes_(processes),
         owners_(std::move(owners)),
         here_(std::move(here)),
@@ -58,11 +55,22 @@ class Exchange : public LightAtPoints {
 
   Communicator& processes_;
   std::shared_ptr<const MapOwners> owners_;
-  std::shared_ptr<LightAtPoints> here_;
+  std::shared_ptr<estimate::LightAtPoints> here_;
   Points points_;
   std::size_t lights_;
   bool many_;
   PointTraffic& traffic_;
 };
+
+/// Brings the rows of each process, its Shard of them all, to rank 0. The layers of the others stay
+/// as they are. Collective.
+void bring_rows(Communicator& processes, LightLayers& layers);
+
+/// The memory of all machines; of this one where there is one process. Collective.
+std::uint64_t host_bytes_of_all(Communicator* processes);
+
+/// Replaces counts by those of all processes, and fills in their figures. Times stay those of this
+/// process. Collective.
+void add_processes(Communicator& all, RenderCosts& costs);
 
 }  // namespace photile

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "trace/by_pixel.hpp"
 #include "estimate/reflected_radiance.hpp"
+#include "trace/by_pixel.hpp"
 
 namespace photile {
 namespace {
@@ -66,7 +66,8 @@ void add_hit(const PrimaryHits& hits, std::size_t hit, const Estimates& estimate
              float sample_weight, PixelSums& sums) {
   const float weight = illuminance_weight(hits, hit, sample_weight);
   for (std::uint64_t i = estimates.first[hit]; i < estimates.first[hit + 1]; ++i) {
-    sums.add(estimates.light[i], hits.throughput[hit] * reflected_radiance(hits, hit, estimates, i),
+    sums.add(estimates.light[i],
+             hits.throughput[hit] * estimate::reflected_radiance(hits, hit, estimates, i),
              weight * static_cast<float>(luminance(estimates.irradiance[i])));
   }
 }
@@ -86,10 +87,10 @@ void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
   const auto width = static_cast<std::size_t>(layers.width);
   const std::size_t first_row = lowest / width, end_row = highest / width + 1;
   const std::size_t first_pixel = first_row * width, pixels = (end_row - first_row) * width;
-  const ByPixel hits(batch.hits.size(), first_pixel, pixels,
-                     [&](std::size_t i) { return batch.hits.pixel[i]; });
-  const ByPixel emission(batch.emission.size(), first_pixel, pixels,
-                         [&](std::size_t i) { return batch.emission[i].pixel; });
+  const trace::ByPixel hits(batch.hits.size(), first_pixel, pixels,
+                            [&](std::size_t i) { return batch.hits.pixel[i]; });
+  const trace::ByPixel emission(batch.emission.size(), first_pixel, pixels,
+                                [&](std::size_t i) { return batch.emission[i].pixel; });
   tbb::enumerable_thread_specific<PixelSums> sums_of_threads(layers.layers.size());
   tbb::parallel_for(first_row, end_row, [&](std::size_t y) {
     PixelSums& sums = sums_of_threads.local();
@@ -126,7 +127,7 @@ void add_hits(LightLayers& layers, std::size_t first, std::size_t last, const Pr
       const std::size_t index = hit * light_count + light;
       LightLayers::Layer& layer = layers.layers[light];
       layer.radiance[pixel] +=
-          hits.throughput[hit] * reflected_radiance(hits, hit, estimates, index);
+          hits.throughput[hit] * estimate::reflected_radiance(hits, hit, estimates, index);
       layer.illuminance[pixel] +=
           weight * static_cast<float>(luminance(estimates.irradiance[index]));
     }

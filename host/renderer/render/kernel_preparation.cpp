@@ -5,13 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "estimate/photon_estimate.hpp"
 #include "estimate/plane_sample.hpp"
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/settings.hpp"
-#include "estimate/photon_estimate.hpp"
 
 namespace photile {
 namespace {

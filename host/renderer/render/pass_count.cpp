@@ -63,17 +63,8 @@ int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t byt
   return static_cast<int>(std::clamp(passes, 1.0, 1.0 + limits::max_passes));
 }
 
-/// Of all machines.
-std::uint64_t host_bytes_of_all(Communicator* processes) {
-  if (!processes) return installed_host_bytes();
-  constexpr std::uint64_t most = std::uint64_t{1} << 56;  // where nothing is known
-  std::uint64_t bytes = std::min(most, installed_host_bytes()) / processes->on_this_machine();
-  processes->sum(std::span(&bytes, 1));
-  return bytes;
-}
-
 int automatic_passes(const RayScene& rays, const PhotonTracerParameters& parameters,
-                     Progress& progress, Communicator* processes) {
+                     Progress& progress, std::uint64_t memory) {
   constexpr std::uint64_t few = 10'000;
   if (parameters.emitted_photons <= 10 * few) return 1;  // fits wherever a scene does
   PhotonTracerParameters sample = parameters;
@@ -82,7 +73,6 @@ int automatic_passes(const RayScene& rays, const PhotonTracerParameters& paramet
   const double stored_per_path =
       static_cast<double>(traced.photons.size() + traced.caustics.size()) /
       static_cast<double>(few);
-  const std::uint64_t memory = host_bytes_of_all(processes);
   const int passes = passes_within(parameters.emitted_photons, stored_per_path,
                                    bytes_per_stored_photon(rays.needs()), memory);
   if (passes > limits::max_passes) {

@@ -23,11 +23,10 @@ std::uint64_t bytes_per_stored_photon(const SceneNeeds& needs);
 int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t bytes_per_photon,
                   std::uint64_t memory_bytes);
 
-/// Passes for the memory that the host has. Traces a few paths to know what one leaves; says so
-/// in one line where there is more than one pass. Errors: UsageError where there would be more than
-/// limits::max_passes.
-///   processes   that share the photons and the memory of their machines; null: this one alone
+/// Passes for `memory` bytes of all hosts together. Traces a few paths to know what one leaves;
+/// says so in one line where there is more than one pass. Errors: UsageError where there would be
+/// more than limits::max_passes.
 int automatic_passes(const RayScene& rays, const PhotonTracerParameters& parameters,
-                     Progress& progress, Communicator* processes = nullptr);
+                     Progress& progress, std::uint64_t memory);
 
 }  // namespace photile

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "render/exchange.hpp"
 #include "estimate/neighbour_choice.hpp"
+#include "render/exchange.hpp"
 #include "render/setting.hpp"
 #include "render/shared_photons.hpp"
 
@@ -19,9 +19,9 @@ namespace {
 constexpr double inset_of_spacing = 1.0 / 512;
 
 /// Light that is made when it is first asked for.
-class LazyLight : public LightAtPoints {
+class LazyLight : public estimate::LightAtPoints {
  public:
-  using Make = std::function<std::shared_ptr<LightAtPoints>()>;
+  using Make = std::function<std::shared_ptr<estimate::LightAtPoints>()>;
   explicit LazyLight(Make make) : make_(std::move(make)) {}
 
   Estimates at(const PrimaryHits& points, const Progress& progress) override {
@@ -32,22 +32,22 @@ class LazyLight : public LightAtPoints {
 
  private:
   Make make_;
-  std::shared_ptr<LightAtPoints> light_;
+  std::shared_ptr<estimate::LightAtPoints> light_;
 };
 
 }  // namespace
 
 PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons)
-    : photons_(std::move(photons)), layer_powers_(layer_powers(rays.scene())) {
+    : photons_(std::move(photons)), layer_powers_(estimate::layer_powers(rays.scene())) {
   if (!plan.reads_light_maps()) return;
-  LightAtPoints& of_points = *photons_.all.of_points;
-  LightAtPoints& of_nodes = *photons_.all.of_nodes;
+  estimate::LightAtPoints& of_points = *photons_.all.of_points;
+  estimate::LightAtPoints& of_nodes = *photons_.all.of_nodes;
   if (plan.gathers_at_nodes()) {
     gather_.emplace(rays, of_points, of_nodes, photons_.ends, photons_.caustics.of_points.get(),
                     plan.node_gathering(photons_.pass, photons_.first_radius));
     gathered_.emplace(rays.scene(), *gather_, layer_powers_,
-                      rays_of_nodes(rays.scene(), plan.used().light_map_rays,
-                                    inset_of_spacing * photons_.maps.spacing));
+                      cache::rays_of_nodes(rays.scene(), plan.used().light_map_rays,
+                                           inset_of_spacing * photons_.maps.spacing));
   } else {
     by_photons_.emplace(of_nodes);
   }
@@ -72,7 +72,7 @@ PhotonPasses::PhotonPasses(const RayScene& rays, std::span<Device> devices, cons
       devices_(devices),
       plan_(plan),
       costs_(costs),
-      layer_powers_(layer_powers(scene_)),
+      layer_powers_(estimate::layer_powers(scene_)),
       paths_before_(scene_.lights.size()) {}
 
 std::string PhotonPasses::light_map_settings() const {
@@ -148,14 +148,16 @@ PassPhotons PhotonPasses::facts(const Photons& photons) const {
   return facts;
 }
 
-std::shared_ptr<PhotonEstimate> PhotonPasses::estimate_of(
-    std::vector<PhotonMaps> maps, std::shared_ptr<const SeenPhotons> seen) const {
-  PhotonEstimate::Parts parts{std::move(maps), plan_.estimates(pass_, surface_), std::move(seen)};
-  return std::make_shared<PhotonEstimate>(devices_, scene_, std::move(parts), layer_powers_);
+std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(
+    std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::SeenPhotons> seen) const {
+  estimate::PhotonEstimate::Parts parts{std::move(maps), plan_.estimates(pass_, surface_),
+                                        std::move(seen)};
+  return std::make_shared<estimate::PhotonEstimate>(devices_, scene_, std::move(parts),
+                                                    layer_powers_);
 }
 
-PhotonLight PhotonPasses::shared(std::shared_ptr<PhotonEstimate> estimate) {
-  Communicator* const processes = plan_.used().processes;
+PhotonLight PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estimate) {
+  auto* const processes = plan_.used().processes;
   if (!processes) return {estimate, estimate, estimate};
   const auto by = [&](Exchange::Points points) {
     return std::make_shared<Exchange>(*processes, owners_, estimate, points, layer_powers_.size(),
@@ -176,7 +178,7 @@ PhotonTracerResult PhotonPasses::trace(PreparedPhotons* prepared, const KeepPhot
     traced = trace_photons(rays_, plan_.tracing(pass_, paths_before_), progress);
   }
   costs_.trace.add(trace_watch.taken(), traced.photons.bytes() + traced.caustics.bytes());
-  if (Communicator* const processes = plan_.used().processes) {
+  if (auto* const processes = plan_.used().processes) {
     const Stopwatch stopwatch;
     traced.photons.of_all = photons_of_all(*processes, traced.photons);
     if (plan_.keeps_caustics()) {
@@ -208,7 +210,7 @@ PhotonTracerResult PhotonPasses::trace(PreparedPhotons* prepared, const KeepPhot
 
 void PhotonPasses::move_to_owners(PhotonTracerResult& traced, Progress& progress) {
   const Stopwatch stopwatch;
-  Communicator& processes = *plan_.used().processes;
+  auto& processes = *plan_.used().processes;
   progress.begin("exchange photons", 0, "");
   owners_ = std::make_shared<const MapOwners>(scene_, groups_.patches,
                                               traced.photons.of_all->landed, processes.size());
@@ -239,7 +241,7 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(PreparedPhotons* prepared, cons
   costs_.map_sizes = built.map_sizes;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
   if (traced.caustics.total() > 0) {
-    maps.seen_caustics = std::make_shared<const SeenPhotons>(rays_, traced.caustics);
+    maps.seen_caustics = std::make_shared<const estimate::SeenPhotons>(rays_, traced.caustics);
     maps.caustics = build(std::move(traced.caustics), parameters, progress);
   }
   const Stopwatch release_watch;
@@ -254,8 +256,8 @@ std::vector<PhotonMaps> PhotonPasses::build(Photons photons, const PhotonMapPara
   kernels_->wait();
   std::vector<std::uint8_t> own;
   if (owners_) own = owners_->maps_of(plan_.used().processes->rank());
-  std::vector<PhotonMaps> maps =
-      build_maps_on_each(devices_, scene_, std::move(photons), groups_, parameters, progress, own);
+  std::vector<PhotonMaps> maps = estimate::build_maps_on_each(devices_, scene_, std::move(photons),
+                                                              groups_, parameters, progress, own);
   std::uint64_t device_bytes = 0, spilled_bytes = 0;
   for (const PhotonMaps& one : maps) {
     device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;

@@ -8,24 +8,24 @@
 
 #include "cache/gathered_nodes.hpp"
 #include "cache/irradiance_gather.hpp"
+#include "cache/surface_cache.hpp"
+#include "estimate/photon_estimate.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/scene_renderer.hpp"
 #include "photile/surface_index.hpp"
 #include "render/kernel_preparation.hpp"
 #include "render/map_owners.hpp"
-#include "estimate/photon_estimate.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
-#include "cache/surface_cache.hpp"
 
 namespace photile {
 
 /// The photon estimate, as points ask for it.
 struct PhotonLight {
-  std::shared_ptr<LightAtPoints> of_points;
+  std::shared_ptr<estimate::LightAtPoints> of_points;
   /// Of points that all processes ask for together; the same where there is one process.
-  std::shared_ptr<LightAtPoints> of_nodes;
-  std::shared_ptr<const PhotonEstimate>
+  std::shared_ptr<estimate::LightAtPoints> of_nodes;
+  std::shared_ptr<const estimate::PhotonEstimate>
       estimate;  ///< null where maps are built when they are needed
 };
 
@@ -49,17 +49,17 @@ class PassLight {
   PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons);
 
   /// All light at points: the end of the chain.
-  LightAtPoints& light() {
-    return cache_ ? static_cast<LightAtPoints&>(*cache_) : *photons_.all.of_points;
+  estimate::LightAtPoints& light() {
+    return cache_ ? static_cast<estimate::LightAtPoints&>(*cache_) : *photons_.all.of_points;
   }
 
   /// Null where light maps are not read.
-  SurfaceCache* cache() { return cache_ ? &*cache_ : nullptr; }
-  const SurfaceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
+  cache::SurfaceCache* cache() { return cache_ ? &*cache_ : nullptr; }
+  const cache::SurfaceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
   /// What values the nodes of the cache.
   NodeSource& nodes() { return gathered_ ? static_cast<NodeSource&>(*gathered_) : *by_photons_; }
   /// Where rays value nodes; else null.
-  const GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
+  const cache::GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
 
   /// The order in which the light is found fastest: per sided triangle, the map of a hit; empty
   /// where the order does not matter.
@@ -70,10 +70,10 @@ class PassLight {
  private:
   const PassPhotons photons_;
   const std::vector<double> layer_powers_;
-  std::optional<IrradianceGather> gather_;  ///< where rays value nodes
-  std::optional<GatheredNodes> gathered_;
-  std::optional<ValuedBy> by_photons_;  ///< where photons value nodes
-  std::optional<SurfaceCache> cache_;
+  std::optional<cache::IrradianceGather> gather_;  ///< where rays value nodes
+  std::optional<cache::GatheredNodes> gathered_;
+  std::optional<cache::ValuedBy> by_photons_;  ///< where photons value nodes
+  std::optional<cache::SurfaceCache> cache_;
 };
 
 /// Traces the photons of one pass after another, and builds their maps. The first pass says the
@@ -103,7 +103,7 @@ class PhotonPasses {
   struct Maps {
     std::vector<PhotonMaps> photons;
     std::vector<PhotonMaps> caustics;  ///< for rays that gather, where there are any
-    std::shared_ptr<const SeenPhotons> seen_caustics;
+    std::shared_ptr<const estimate::SeenPhotons> seen_caustics;
     PassPhotons facts;  ///< without their light
   };
 
@@ -113,10 +113,10 @@ class PhotonPasses {
   Maps trace_and_build(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   std::vector<PhotonMaps> build(Photons photons, const PhotonMapParameters& parameters,
                                 Progress& progress);
-  std::shared_ptr<PhotonEstimate> estimate_of(std::vector<PhotonMaps> maps,
-                                              std::shared_ptr<const SeenPhotons> seen) const;
+  std::shared_ptr<estimate::PhotonEstimate> estimate_of(
+      std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::SeenPhotons> seen) const;
   /// As it is asked for where several processes have the maps.
-  PhotonLight shared(std::shared_ptr<PhotonEstimate> estimate);
+  PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
   /// What follows from the photons of the pass.
   PassPhotons facts(const Photons& photons) const;
   /// Where several processes share the rendering: brings photons to the owners of their maps.

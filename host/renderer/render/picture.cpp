@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/exchange.hpp"
 #include "render/film.hpp"
 #include "render/pooled_estimates.hpp"
-#include "render/row_exchange.hpp"
 #include "render/sample_errors.hpp"
 
 namespace photile {
@@ -70,14 +70,14 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
   if (errors && film_.pass == film_.passes) {
     add_sample_errors(*errors, runs_);
     runs_ = {};
-    if (Communicator* const processes = plan_.used().processes) bring_rows(*processes, *errors);
+    if (auto* const processes = plan_.used().processes) bring_rows(*processes, *errors);
   }
   const std::vector<double> shares = light.shares();
   for (std::size_t i = 0; i < shares.size(); ++i) shares_[i] += shares[i] / film_.passes;
 }
 
 RenderResult Picture::finish(double radius) {
-  if (Communicator* const processes = plan_.used().processes) bring_rows(*processes, layers_);
+  if (auto* const processes = plan_.used().processes) bring_rows(*processes, layers_);
   // Looks at lamps may take more off a surface than light maps, which blur, hold there.
   if (plan_.used().gloss == GlossMode::rays) raise_to_zero(layers_);
   RenderCosts costs = costs_;
@@ -91,7 +91,7 @@ RenderResult Picture::finish(double radius) {
   RenderParameters used = plan_.used();
   used.film = {film_.width, film_.height, film_.samples_per_pixel};
   used.radius = radius;
-  if (used.processes) costs.add_processes(*used.processes);
+  if (used.processes) add_processes(*used.processes, costs);
   return {.layers = std::move(layers_),
           .statistics = costs.statistics(),
           .used = used,
@@ -107,7 +107,7 @@ double Picture::compile_seconds() const {
 }
 
 Shard Picture::own_rows() const {
-  const Communicator* const processes = plan_.used().processes;
+  const auto* const processes = plan_.used().processes;
   return processes ? Shard{processes->rank(), processes->size()} : Shard{};
 }
 
@@ -155,7 +155,7 @@ void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatc
   PrimaryHitBatch reflected;
   if (batch.reflected.size() > 0 && light.cache()) {
     batch.reflected.coarse =
-        suits_photons(batch.hits, batch.reflected, film_.runs, light.cache()->blotches());
+        cache::suits_photons(batch.hits, batch.reflected, film_.runs, light.cache()->blotches());
   }
   reflected.hits = std::move(batch.reflected);
   add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel));
@@ -167,7 +167,7 @@ Estimates Picture::light_at(PassLight& light, const PrimaryHits& hits, const Pro
   const Stopwatch stopwatch;
   const double compiled = compile_seconds();
   const TimeTaken built = costs_.build.time;  // maps may be built when they are first needed
-  SurfaceCache* const cache = light.cache();
+  cache::SurfaceCache* const cache = light.cache();
   if (!cache) {
     Estimates estimates = light.light().at(hits, progress);
     costs_.estimate.add(stopwatch.taken() - (costs_.build.time - built));

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "photile/scene_needs.hpp"
 #include "estimate/reflected_radiance.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile {
 namespace {
@@ -30,13 +30,15 @@ struct Sums {
 
 void sum_hit(const LightPooling& pooling, const Estimates& estimates, std::size_t hit, Sums& sums) {
   sums.clear();
-  for_each_estimate(estimates, hit, pooling.layer_of.size(), [&](std::size_t light, std::size_t i) {
-    const std::uint32_t layer = pooling.layer_of[light];
-    const float scale = pooling.scale[light];
-    sums.irradiance[layer] += scale * estimates.irradiance[i];
-    if (!estimates.radiance.empty()) sums.radiance[layer] += scale * estimates.radiance[i];
-    sums.is_lit[layer] = 1;
-  });
+  estimate::for_each_estimate(estimates, hit, pooling.layer_of.size(),
+                              [&](std::size_t light, std::size_t i) {
+                                const std::uint32_t layer = pooling.layer_of[light];
+                                const float scale = pooling.scale[light];
+                                sums.irradiance[layer] += scale * estimates.irradiance[i];
+                                if (!estimates.radiance.empty())
+                                  sums.radiance[layer] += scale * estimates.radiance[i];
+                                sums.is_lit[layer] = 1;
+                              });
 }
 
 template <class Work>

@@ -1,12 +1,8 @@
 #include "render/render_costs.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -63,59 +59,6 @@ void RenderCosts::start_picture() {
   points_sent = {};
   rays = light_map_nodes = hit_count = 0;
   estimate_compile_seconds = 0;
-}
-
-void RenderCosts::add_processes(Communicator& all) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
-  const Communicator::Traffic traffic = all.traffic();
-  const std::array own{references,
-                       maps,
-                       mixed_maps,
-                       largest_map,
-                       rays,
-                       hit_count,
-                       photons_sent,
-                       photon_bytes_sent,
-                       photons_held,
-                       points_sent.points,
-                       points_sent.bytes,
-                       traffic.bytes,
-                       memory,
-                       std::bit_cast<std::uint64_t>(light_map_errors.squares),
-                       light_map_errors.hits};
-  std::vector<std::array<std::uint64_t, own.size()>> of_ranks;
-  for (const Communicator::Bytes& bytes : all.gather(std::as_bytes(std::span(own)))) {
-    std::memcpy(&of_ranks.emplace_back(), bytes.data(), sizeof own);
-  }
-  const auto sum = [&](std::size_t i) {
-    std::uint64_t total = 0;
-    for (const auto& rank : of_ranks) total += rank[i];
-    return total;
-  };
-  const auto most = [&](std::size_t i) {
-    std::uint64_t largest = 0;
-    for (const auto& rank : of_ranks) largest = std::max(largest, rank[i]);
-    return largest;
-  };
-  references = sum(0), maps = sum(1), mixed_maps = sum(2), largest_map = most(3);
-  rays = sum(4), hit_count = sum(5);
-  light_map_errors = {0, sum(14)};
-  for (const auto& rank : of_ranks) light_map_errors.squares += std::bit_cast<double>(rank[13]);
-  const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
-  processes = {{"processes", number(all.size())},
-               {"photons sent", number(sum(6))},
-               {"bytes sent per stored photon", ratio(sum(7), stored_photons)},
-               {"photons held, largest over mean", ratio(most(8) * all.size(), sum(8))},
-               {"photons held over stored", ratio(sum(8), stored_photons + caustic_photons)},
-               {"hits sent", number(sum(9))},
-               {"bytes per hit sent", ratio(sum(10), sum(9))},
-               {"bytes sent", number(sum(11))},
-               {"calls", number(traffic.calls)},
-               {"seconds waited", traffic.seconds},
-               {"host bytes of a process, most", number(most(12))},
-               {"host bytes of a process, mean", ratio(sum(12), all.size())}};
 }
 
 RunStatistics RenderCosts::statistics() const {

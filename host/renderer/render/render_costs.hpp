@@ -6,10 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "photile/communicator.hpp"
-#include "photile/statistics.hpp"
 #include "cache/surface_cache.hpp"
-#include "render/exchange.hpp"
+#include "photile/statistics.hpp"
 
 namespace photile {
 
@@ -29,6 +27,11 @@ StageStatistics stage(const char* name, const StageCost& cost,
 /// Adds time to the row of a stage; to a new one at the end where there is none.
 void add_time(RunStatistics& stages, const char* name, const TimeTaken& time);
 
+/// Points and estimates that went to other processes.
+struct PointTraffic {
+  std::uint64_t points = 0, bytes = 0;
+};
+
 /// Counts add up over passes.
 struct RenderCosts {
   StageCost structure, trace, exchange, radius, group, surface, build, estimators, hits, light_maps,
@@ -37,7 +40,7 @@ struct RenderCosts {
   std::uint64_t group_members = 0, groups = 0, patches = 0;
   std::uint64_t sheets = 0, surface_leaves = 0;
   std::uint64_t light_map_nodes = 0;
-  ErrorSum light_map_errors;               ///< of what was read from nodes that gather
+  cache::ErrorSum light_map_errors;        ///< of what was read from nodes that gather
   std::uint64_t maps = 0, mixed_maps = 0;  ///< of the last pass
   std::vector<std::uint32_t> map_sizes;    ///< of the last pass, as PhotonMapStatistics
   std::uint64_t references = 0, largest_map = 0;
@@ -50,10 +53,6 @@ struct RenderCosts {
   std::uint64_t photons_sent = 0, photon_bytes_sent = 0, photons_held = 0;
   PointTraffic points_sent;                               ///< of the picture
   std::vector<std::pair<std::string, double>> processes;  ///< figures of all
-
-  /// Replaces counts by those of all processes, and fills in their figures. Times stay those of
-  /// this one. Collective.
-  void add_processes(Communicator& all);
 
   /// Forgets what the picture before has cost, and not the maps.
   void start_picture();

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 
+#include "cache/surface_cache.hpp"
+#include "estimate/neighbour_choice.hpp"
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/neighbour_groups.hpp"
-#include "estimate/neighbour_choice.hpp"
+#include "render/exchange.hpp"
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
 #include "render/setting.hpp"
-#include "cache/surface_cache.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile {
@@ -92,7 +93,8 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
   if (!nodes_gather(asked)) used_.light_map_rays = 0;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
   if (asked.passes == 0) {
-    used_.passes = automatic_passes(rays, all_photons(used_), progress, asked.processes);
+    used_.passes =
+        automatic_passes(rays, all_photons(used_), progress, host_bytes_of_all(asked.processes));
   }
   if (asked.light_maps == LightMapMode::on && passes() > 1) {
     throw SettingError(
@@ -172,7 +174,7 @@ std::vector<EstimateParameters> RenderPlan::estimates(
   const int most = estimate_of_pass(pass, {0, used_.neighbours}).neighbours;
   const int least = used_.least_neighbours > 0 ? std::min(used_.least_neighbours, most) : most;
   std::vector<EstimateParameters> levels;
-  for (const int neighbours : neighbour_levels(least, most)) {
+  for (const int neighbours : estimate::neighbour_levels(least, most)) {
     levels.push_back({.neighbours = neighbours,
                       .compiled_neighbours = used_.neighbours,
                       .area = used_.area,
@@ -187,8 +189,8 @@ LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const S
                                           std::span<const double> powers) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
   LightMapParameters parameters =
-      light_map_parameters(scene, photons, estimate.neighbours, estimate.radius,
-                           used_.angle_degrees, used_.light_map_detail, powers);
+      cache::light_map_parameters(scene, photons, estimate.neighbours, estimate.radius,
+                                  used_.angle_degrees, used_.light_map_detail, powers);
   parameters.processes = used_.processes;
   return parameters;
 }
@@ -196,7 +198,7 @@ LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const S
 LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& scene,
                                     const Photons& photons, std::span<const double> powers) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
-  LightMapParameters parameters = light_map_parameters(
+  LightMapParameters parameters = cache::light_map_parameters(
       scene, photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0, powers);
   // A point sees many ends: what their nodes are wrong by between each other cancels out.
   parameters.spacing *= 2;
@@ -205,7 +207,7 @@ LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& 
   return parameters;
 }
 
-IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {
+cache::IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
   return {.rays = used_.light_map_rays,
           .looks = used_.light_map_rays,

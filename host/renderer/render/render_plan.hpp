@@ -71,7 +71,7 @@ class RenderPlan {
                           std::span<const double> powers) const;
   /// At nodes of light maps.
   ///   first_radius   of the first pass, metres
-  IrradianceGatherParameters node_gathering(int pass, double first_radius) const;
+  cache::IrradianceGatherParameters node_gathering(int pass, double first_radius) const;
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.

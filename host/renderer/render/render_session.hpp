@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "cache/light_map_frames.hpp"
 #include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
-#include "cache/light_map_frames.hpp"
 #include "render/photon_passes.hpp"
 
 namespace photile {
@@ -40,7 +40,7 @@ class RenderSession {
   /// The light of the scene; where light maps are read there is one pass.
   PassLight& light() { return *passes_.front(); }
   /// Quick pictures, where light maps are read.
-  LightMapFrames& frames() { return *frames_; }
+  cache::LightMapFrames& frames() { return *frames_; }
   /// What the light maps hold; none where they are not read, or not yet.
   std::optional<LightMapContents> light_map_contents() const;
 
@@ -51,7 +51,7 @@ class RenderSession {
   RenderCosts costs_;
   PhotonPasses photons_;
   std::vector<std::unique_ptr<PassLight>> passes_;
-  std::optional<LightMapFrames> frames_;
+  std::optional<cache::LightMapFrames> frames_;
 };
 
 }  // namespace photile

@@ -68,11 +68,7 @@ struct Placed {
 std::vector<glm::vec3> filled(Communicator& processes, std::span<const Placed> own,
                               std::uint64_t count) {
   std::vector<glm::vec3> all(count);
-  for (const Communicator::Bytes& bytes : processes.gather(std::as_bytes(own))) {
-    std::vector<Placed> placed(bytes.size() / sizeof(Placed));
-    if (!bytes.empty()) std::memcpy(placed.data(), bytes.data(), bytes.size());
-    for (const Placed& one : placed) all[one.place] = one.position;
-  }
+  for (const Placed& one : processes.gather_values(own)) all[one.place] = one.position;
   return all;
 }
 
@@ -178,17 +174,6 @@ std::uint64_t bytes_of_photon(const Photons& photons) {
          (photons.light.empty() ? 0 : sizeof(std::uint16_t));
 }
 
-/// Of all ranks.
-std::uint64_t largest(Communicator& processes, std::uint64_t own) {
-  std::uint64_t most = 0;
-  for (const Communicator::Bytes& bytes : processes.gather(std::as_bytes(std::span(&own, 1)))) {
-    std::uint64_t other = 0;
-    std::memcpy(&other, bytes.data(), sizeof other);
-    most = std::max(most, other);
-  }
-  return most;
-}
-
 void set_first_of(Photons& photons, std::size_t sides) {
   photons.first_of.assign(sides + 1, 0);
   for (const std::uint32_t s : photons.sided_triangle) ++photons.first_of[s + 1];
@@ -243,7 +228,10 @@ Photons to_owners(Communicator& processes, const Scene& scene, const NeighbourGr
   // Where one process has no photons it does not know what others send.
   const std::size_t in_round =
       std::max<std::size_t>(1, defaults::exchange_round_bytes / (each * ranks));
-  const std::uint64_t rounds = largest(processes, (most + in_round - 1) / in_round);
+  const std::uint64_t own_rounds = (most + in_round - 1) / in_round;
+  const auto of_ranks =
+      processes.gather_values<std::uint64_t>(std::span<const std::uint64_t>(&own_rounds, 1));
+  const std::uint64_t rounds = *std::max_element(of_ranks.begin(), of_ranks.end());
   std::vector<Photons> from(ranks);
   for (std::uint64_t round = 0; round < rounds; ++round) {
     std::vector<Communicator::Bytes> to_each(ranks);

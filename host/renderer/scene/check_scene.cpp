@@ -84,7 +84,7 @@ class SceneCheck {
   void check_vertices() const {
     const auto& vertices = scene_.vertices;
     const std::size_t vertex = first_wrong(vertices.size(), [&](std::size_t i) {
-      return !scene_io::within_limit(glm::dvec3(vertices[i]));
+      return !scene::within_limit(glm::dvec3(vertices[i]));
     });
     if (vertex == vertices.size()) return;
     const glm::vec3& p = vertices[vertex];
@@ -209,7 +209,7 @@ class SceneCheck {
     const glm::dvec3 direction(light.direction);
     if (!std::isfinite(numbers) || !std::isfinite(glm::length(direction)) ||
         !std::isfinite(glm::length(glm::dvec3(light.x_axis))) ||
-        !scene_io::within_limit(glm::dvec3(light.position))) {
+        !scene::within_limit(glm::dvec3(light.position))) {
       refuse(scene_, owner + " has a colour, place, direction or angle that is no number");
     }
     check_index(light.emission_texture, scene_.textures.size(), "emission texture", owner);

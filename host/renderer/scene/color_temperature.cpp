@@ -4,7 +4,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 namespace {
 
 /// Krystek, "An algorithm to calculate correlated colour temperature", 1985.
@@ -40,4 +40,4 @@ glm::dvec3 color_of_temperature(double kelvin) {
   return inside / luminance(inside);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

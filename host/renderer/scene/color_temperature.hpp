@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// CIE 1931 chromaticity (x, y) of light of a correlated colour temperature in kelvin, from
 /// limits::min_color_temperature to limits::max_color_temperature: the reference illuminants of
@@ -15,4 +15,4 @@ glm::dvec2 chromaticity_of_temperature(double kelvin);
 /// and is 0.
 glm::dvec3 color_of_temperature(double kelvin);
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

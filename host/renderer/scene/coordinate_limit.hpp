@@ -6,7 +6,7 @@
 
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// Neither NaN, infinite nor beyond limits::max_coordinate.
 inline bool within_limit(const glm::dvec3& position) {
@@ -15,4 +15,4 @@ inline bool within_limit(const glm::dvec3& position) {
          std::abs(position.z) <= most;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

@@ -8,7 +8,7 @@
 #include "geometry/box.hpp"
 #include "photile/defaults.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 namespace {
 
 using Box = geometry::BoxOf<double>;
@@ -129,4 +129,4 @@ Camera place_camera(const Scene& scene) {
   return camera;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace photile::scene_io {
+namespace photile::scene {
 namespace {
 
 constexpr std::size_t most_cells = std::size_t{1} << 22;
@@ -133,4 +133,4 @@ double EmissionCells::density(const Place& place) const {
          (weight_up_to_.back() * triangle.cell_area);
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

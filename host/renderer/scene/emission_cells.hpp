@@ -7,7 +7,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// Triangles of an area light with an emission texture, each cut into congruent triangles about as
 /// large as a texel. A cell's light is the mean of a few lookups in it.
@@ -50,4 +50,4 @@ class EmissionCells {
 glm::dvec3 textured_radiance(const Scene& scene, const Light& light,
                              const EmissionCells::Place& place);
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace photile::walk {
+namespace photile::scene {
 namespace {
 
 /// Velocity at a keyframe: that of the parabola's chord between its neighbours.
@@ -36,4 +36,4 @@ glm::dvec3 linear(std::span<const double> times, std::span<const glm::dvec3> val
   return glm::mix(values[i], values[i + 1], share);
 }
 
-}  // namespace photile::walk
+}  // namespace photile::scene

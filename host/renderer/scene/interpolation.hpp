@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-namespace photile::walk {
+namespace photile::scene {
 
 /// Keyframes `index` and index + 1 around a time, and how far it lies between them.
 struct Between {
@@ -30,4 +30,4 @@ glm::dvec3 smooth(std::span<const double> times, std::span<const glm::dvec3> val
 /// Straight lines between them.
 glm::dvec3 linear(std::span<const double> times, std::span<const glm::dvec3> values, double time);
 
-}  // namespace photile::walk
+}  // namespace photile::scene

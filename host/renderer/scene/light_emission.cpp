@@ -6,7 +6,7 @@
 #include "scene/emission_cells.hpp"
 #include "scene/photometry.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_rgb) {
   const glm::dvec3 positive = glm::max(rgb, glm::dvec3(0.0));
@@ -43,4 +43,4 @@ void add_environment_light(const std::string& name, EnvironmentMap map, Scene& s
   scene.lights.push_back(std::move(light));
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

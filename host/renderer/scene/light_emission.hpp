@@ -5,7 +5,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// `light.color` and the luminance of `rgb`, which may be any radiometric colour; false if black.
 bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_rgb);
@@ -22,4 +22,4 @@ double distant_flux(double irradiance, double angular_diameter, double radius);
 /// Adds a light that is a map of all that surrounds the scene, which must have its triangles.
 void add_environment_light(const std::string& name, EnvironmentMap map, Scene& scene);
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

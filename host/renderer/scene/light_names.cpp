@@ -11,7 +11,7 @@
 #include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 namespace {
 
 /// Names that a message lists before it only counts the rest.
@@ -109,4 +109,4 @@ std::string listed_names(std::span<const std::string> names) {
   return list;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

@@ -8,7 +8,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// `name` with every byte that separates things elsewhere ('.' in EXR channel names, '=' in
 /// `--light NAME=POWER`, blanks, ...) or is not valid UTF-8 replaced by '_', cut to at most
@@ -27,4 +27,4 @@ std::string listed_names(std::span<const std::string> names);
 /// correcting deletions, insertions and reversals", 1966; small and capital letters are alike).
 std::string names_like(std::string_view name, std::vector<std::string> names);
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

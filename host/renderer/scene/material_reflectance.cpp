@@ -5,7 +5,7 @@
 
 #include "photile/device/bsdf.h"
 
-namespace photile::scene_io {
+namespace photile::scene {
 namespace {
 
 constexpr int cosines = 64;  // of the light's directions
@@ -118,4 +118,4 @@ bool set_reflectance(Scene& scene, Material& material, double share) {
   return true;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

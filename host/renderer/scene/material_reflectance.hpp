@@ -6,7 +6,7 @@
 #include "photile/scene.hpp"
 #include "scene/surface_models.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// The share of light from all directions that an opaque surface sends back, per channel: the
 /// reflectance of lighting tables. Within 2% of what the BSDF scatters, by the fits of its albedo.
@@ -28,4 +28,4 @@ std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Mate
 /// that would exceed 1 in a channel.
 bool set_reflectance(Scene& scene, Material& material, double share);
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

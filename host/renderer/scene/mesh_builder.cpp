@@ -12,7 +12,7 @@
 #include "photile/limits.hpp"
 #include "scene/coordinate_limit.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 namespace {
 
 /// Rounded to float, with -0 made +0 so that equal positions have equal bits.
@@ -193,4 +193,4 @@ void MeshBuilder::finish() {
   if (!any_tangent_) scene_.corner_tangent.clear();
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

@@ -10,7 +10,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// One corner as the file gives it, in world space.
 struct Corner {
@@ -75,4 +75,4 @@ class MeshBuilder {
       distinct_;
 };
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

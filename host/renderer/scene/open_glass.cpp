@@ -5,7 +5,7 @@
 #include "geometry/triangle_bvh.hpp"
 #include "geometry/triangle_distance.hpp"
 
-namespace photile {
+namespace photile::scene {
 
 std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene) {
   std::vector<std::uint32_t> glass;
@@ -41,4 +41,4 @@ std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene) {
   return open;
 }
 
-}  // namespace photile
+}  // namespace photile::scene

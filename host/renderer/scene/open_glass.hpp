@@ -6,7 +6,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile {
+namespace photile::scene {
 
 /// Per material: edges of its triangles that no other triangle of solid glass touches, so that the
 /// glass ends in the open there. 0 for all but solid glass. Solids may consist of several meshes
@@ -14,4 +14,4 @@ namespace photile {
 /// is, to a millionth of the scene's size.
 std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene);
 
-}  // namespace photile
+}  // namespace photile::scene

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 using std::numbers::pi;
 
@@ -25,4 +25,4 @@ double directional_flux(double irradiance, double radius) {
   return irradiance * pi * radius * radius;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

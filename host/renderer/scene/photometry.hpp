@@ -2,7 +2,7 @@
 // metre and steradian, intensity per steradian, irradiance per square metre; lengths in metres.
 #pragma once
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// Flux of a surface of `area` that emits `radiance` uniformly over the hemisphere of each side.
 double area_flux(double radiance, double area, bool two_sided);
@@ -18,4 +18,4 @@ double spot_flux(double intensity, double inner_cone_angle, double outer_cone_an
 /// Flux of parallel light of `irradiance` through a disc of `radius` that faces it.
 double directional_flux(double irradiance, double radius);
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

@@ -16,8 +16,8 @@
 
 namespace photile {
 
-using scene_io::Corner;
-using scene_io::MeshBuilder;
+using scene::Corner;
+using scene::MeshBuilder;
 
 struct SceneBuilder::Impl {
   /// What a light from beyond the scene gives to a surface: its flux follows from the scene's size.
@@ -93,7 +93,7 @@ void SceneBuilder::Impl::check(const MeshArrays& arrays) const {
   check_length("lights", arrays.lights.size(), triangles);
   for (std::size_t i = 0; i < vertices; ++i) {
     const glm::vec3& p = arrays.vertices[i];
-    if (!scene_io::within_limit(glm::dvec3(p))) {
+    if (!scene::within_limit(glm::dvec3(p))) {
       refuse(
           fmt::format("vertex {} of a mesh lies at ({}, {}, {}); coordinates must be numbers up "
                       "to {:g} m",
@@ -136,15 +136,15 @@ std::uint32_t SceneBuilder::Impl::add_triangle(const std::array<Corner, 3>& corn
 /// Turns a copy of `scene`, or `scene` itself, into what stages take.
 void SceneBuilder::Impl::finish(Scene& built) const {
   if (built.triangles.empty()) refuse("no triangle has an area; add a mesh");
-  const SceneNeeds needs = scene_io::needs_of_materials(built.materials);
+  const SceneNeeds needs = scene::needs_of_materials(built.materials);
   if (!needs.textures) built.corner_uv.clear();
-  scene_io::drop_flat_normals(built, needs);
+  scene::drop_flat_normals(built, needs);
   if (!needs.normal_maps) built.corner_tangent.clear();
   const double radius = bounding_sphere(built).radius;
   for (const auto& [light, irradiance] : distant_lights) {
     Light& distant = built.lights[light];
     distant.power =
-        scene_io::distant_flux(irradiance, static_cast<double>(distant.angular_diameter), radius);
+        scene::distant_flux(irradiance, static_cast<double>(distant.angular_diameter), radius);
   }
   for (std::uint32_t i = 0; i < built.lights.size(); ++i) {
     Light& light = built.lights[i];
@@ -153,13 +153,13 @@ void SceneBuilder::Impl::finish(Scene& built) const {
     }
     if (light.emission_texture == none) continue;
     const double power = light.power;
-    if (!scene_io::set_textured_emission(built, light)) {
+    if (!scene::set_textured_emission(built, light)) {
       refuse(light_name(i) + " has a texture that is black where its triangles lie");
     }
     light.power = power;
   }
-  scene_io::make_light_names_unique(built.lights);
-  if (built.cameras.empty()) built.cameras.push_back(scene_io::place_camera(built));
+  scene::make_light_names_unique(built.lights);
+  if (built.cameras.empty()) built.cameras.push_back(scene::place_camera(built));
   check_scene(built);
 }
 
@@ -205,7 +205,7 @@ std::uint32_t SceneBuilder::add(Light light) {
   const glm::vec3 tint = light.color;
   double bright = 0;
   if (std::min({tint.x, tint.y, tint.z}) < 0 ||
-      !scene_io::set_light_color(glm::dvec3(tint), light, bright)) {
+      !scene::set_light_color(glm::dvec3(tint), light, bright)) {
     refuse("has no colour; it must be positive in a channel and negative in none");
   }
   if (light.emission_texture != none) {

@@ -1,6 +1,6 @@
 #include "scene/scene_hash.hpp"
 
-namespace photile {
+namespace photile::scene {
 namespace {
 
 /// Each function names all members, so that it does not compile once there is another.
@@ -138,4 +138,4 @@ void add_scene(const Scene& scene, ContentHash& hash) {
   }
 }
 
-}  // namespace photile
+}  // namespace photile::scene

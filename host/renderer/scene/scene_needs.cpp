@@ -62,13 +62,13 @@ SceneNeeds needs_of(const Scene& scene) {
   return needs;
 }
 
-SceneNeeds scene_io::needs_of_materials(std::span<const Material> materials) {
+SceneNeeds scene::needs_of_materials(std::span<const Material> materials) {
   SceneNeeds needs;
   for (const Material& material : materials) add_needs(material, needs);
   return needs;
 }
 
-void scene_io::drop_flat_normals(Scene& scene, const SceneNeeds& of_materials) {
+void scene::drop_flat_normals(Scene& scene, const SceneNeeds& of_materials) {
   if (of_materials.glossy || of_materials.specular_paths || any_smooth_shading(scene)) return;
   scene.corner_normal.clear();
 }

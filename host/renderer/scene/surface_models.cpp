@@ -5,7 +5,7 @@
 
 #include "photile/device/bsdf.h"
 
-namespace photile::scene_io {
+namespace photile::scene {
 namespace {
 
 constexpr double min_alpha = PHOTILE_MIN_GGX_ALPHA;
@@ -70,4 +70,4 @@ bool conserve_energy(Material& material) {
   return largest > tolerance;
 }
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

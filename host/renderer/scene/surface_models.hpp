@@ -3,7 +3,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene_io {
+namespace photile::scene {
 
 /// At or below this glTF roughness a metal counts as a perfect mirror.
 inline constexpr double mirror_roughness = 0.05;
@@ -47,4 +47,4 @@ void set_metallic_roughness(const MetallicRoughness& model, Material& material);
 /// Scales diffuse and specular together where their sum exceeds 1 in a channel. True if it did.
 bool conserve_energy(Material& material);
 
-}  // namespace photile::scene_io
+}  // namespace photile::scene

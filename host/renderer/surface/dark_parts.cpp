@@ -105,20 +105,6 @@ class PartFinder {
   double least_area_;
 };
 
-/// Those that each process has found, in the order of the sided triangles.
-std::vector<DarkPart> parts_of_all(Communicator& processes, std::span<const DarkPart> own) {
-  std::vector<DarkPart> all;
-  for (const Communicator::Bytes& bytes : processes.gather(std::as_bytes(own))) {
-    const std::size_t before = all.size();
-    all.resize(before + bytes.size() / sizeof(DarkPart));
-    if (!bytes.empty()) std::memcpy(all.data() + before, bytes.data(), bytes.size());
-  }
-  std::stable_sort(all.begin(), all.end(), [](const DarkPart& a, const DarkPart& b) {
-    return a.sided_triangle < b.sided_triangle;
-  });
-  return all;
-}
-
 }  // namespace
 
 std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
@@ -138,7 +124,12 @@ std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& ph
   });
   std::vector<DarkPart> parts;
   for (const auto& more : of_side) parts.insert(parts.end(), more.begin(), more.end());
-  return photons.of_all ? parts_of_all(*photons.of_all->processes, parts) : parts;
+  if (!photons.of_all) return parts;
+  parts = photons.of_all->processes->gather_values<DarkPart>(parts);
+  std::stable_sort(parts.begin(), parts.end(), [](const DarkPart& a, const DarkPart& b) {
+    return a.sided_triangle < b.sided_triangle;
+  });
+  return parts;
 }
 
 }  // namespace photile::surface

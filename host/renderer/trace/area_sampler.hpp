@@ -39,9 +39,9 @@ class AreaSampler {
 
   const Scene* scene_;
   const Light* light_;
-  std::vector<Front> fronts_;                     ///< of the triangles; none of a textured light
-  std::vector<double> area_up_to_;                ///< area of the triangles up to and with this one
-  std::optional<scene_io::EmissionCells> cells_;  ///< of a textured light
+  std::vector<Front> fronts_;                  ///< of the triangles; none of a textured light
+  std::vector<double> area_up_to_;             ///< area of the triangles up to and with this one
+  std::optional<scene::EmissionCells> cells_;  ///< of a textured light
 };
 
 }  // namespace photile::trace

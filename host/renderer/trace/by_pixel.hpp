@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace photile {
+namespace photile::trace {
 
 /// Which elements belong to each of a range of pixels, in their order.
 struct ByPixel {
@@ -28,4 +28,4 @@ struct ByPixel {
   }
 };
 
-}  // namespace photile
+}  // namespace photile::trace

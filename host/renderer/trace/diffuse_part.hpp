@@ -9,14 +9,14 @@
 #include "photile/device/bsdf.h"
 #include "scene/surface_models.hpp"
 
-namespace photile {
+namespace photile::trace {
 
 /// The three parts of photile_set_diffuse, each of all channels.
 using DiffusePart = std::array<glm::vec3, 3>;
 
 /// `n_dot_o`: cosine of the direction in which light leaves to the shading normal; the BSDF is
 /// reciprocal but for normal maps, so that it may as well be the one in which light comes.
-inline DiffusePart diffuse_part(const scene_io::Reflectance& surface, float n_dot_o) {
+inline DiffusePart diffuse_part(const scene::Reflectance& surface, float n_dot_o) {
   PhotileAlbedoFit fit;
   photile_albedo_fit(surface.alpha, &fit);
   float o[2], mean[2];
@@ -45,4 +45,4 @@ inline float most_bump(const glm::vec3& reflectance) {
   return 1.0f / std::clamp(std::max({reflectance.r, reflectance.g, reflectance.b}), 1e-3f, 1.0f);
 }
 
-}  // namespace photile
+}  // namespace photile::trace

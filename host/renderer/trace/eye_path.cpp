@@ -68,7 +68,7 @@ void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scatt
 
 void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
                 EyeRecord& record) {
-  const scene_io::Reflectance surface = reflectance(*rays.scene, point);
+  const scene::Reflectance surface = reflectance(*rays.scene, point);
   record.hits.push_back({point.position, point.sided_triangle(), ray.pixel, ray.radiance_weight(),
                          surface.albedo, ray.share});
   if (!rays.needs.glossy) return;

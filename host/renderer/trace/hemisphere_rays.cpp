@@ -175,8 +175,8 @@ EndReflection reflection_of(const EyeRecord& ends, std::size_t end) {
   const glm::vec3& albedo = ends.hits[end].diffuse_albedo;
   if (ends.glossy.empty() || ends.glossy[end].lobe.f90 == 0.0f) return {albedo, false};
   const GlossyEyeHit& glossy = ends.glossy[end];
-  const scene_io::Reflectance surface{albedo, glossy.lobe.specular, glossy.lobe.f90,
-                                      glossy.lobe.roughness};
+  const scene::Reflectance surface{albedo, glossy.lobe.specular, glossy.lobe.f90,
+                                   glossy.lobe.roughness};
   const float cosine = std::max(glm::dot(glossy.lobe.normal, glossy.outgoing), 1e-6f);
   PhotileAlbedoFit fit;
   photile_albedo_fit(surface.alpha, &fit);

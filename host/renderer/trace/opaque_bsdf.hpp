@@ -94,7 +94,7 @@ class OpaqueBsdf {
   float bump_at(const glm::vec3& out) const;
   Lobe lobe_of(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) const;
 
-  scene_io::Reflectance surface_;
+  scene::Reflectance surface_;
   glm::vec3 normal_;
   glm::vec3 base_normal_;  ///< that the base weighs light by
   PathStart start_;

@@ -56,8 +56,8 @@ RayScene::Impl::Impl(const Scene& scene)
 
 RayScene::Impl::~Impl() { release(); }
 
-std::optional<TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
-                                                     const glm::vec3& direction) const {
+std::optional<trace::TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
+                                                            const glm::vec3& direction) const {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   if (!finite(origin, direction)) return std::nullopt;
 
@@ -72,7 +72,7 @@ std::optional<TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
   if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
     const std::uint32_t triangle =
         single_triangles.empty() ? query.hit.primID : single_triangles[query.hit.primID];
-    return TriangleHit{triangle, query.hit.u, query.hit.v};
+    return trace::TriangleHit{triangle, query.hit.u, query.hit.v};
   }
   const std::uint32_t first = scene->instances[query.hit.instID[0]].first_triangle;
   // Weights of an instance's own triangle would not do: its corners may come in another order.

@@ -24,7 +24,8 @@ struct RayScene::Impl {
   Impl& operator=(const Impl&) = delete;
 
   /// Nearest hit of the ray, or nothing. Thread-safe. A ray with a NaN or infinity hits nothing.
-  std::optional<TriangleHit> intersect(const glm::vec3& origin, const glm::vec3& direction) const;
+  std::optional<trace::TriangleHit> intersect(const glm::vec3& origin,
+                                              const glm::vec3& direction) const;
 
   /// Whether anything lies on the straight line between two points. Thread-safe. A line with a NaN
   /// or infinity meets nothing.

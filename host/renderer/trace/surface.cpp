@@ -134,11 +134,11 @@ glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
   return texel * static_cast<float>(glm::pi<double>() * sides * intensity / cosine);
 }
 
-scene_io::Reflectance reflectance(const Scene& scene, const SurfacePoint& point) {
+scene::Reflectance reflectance(const Scene& scene, const SurfacePoint& point) {
   const Material& material = material_of(scene, point);
   const bool textured_here = material.textured() && !scene.corner_uv.empty();
   if (textured_here && material.metallic_roughness != none) {
-    return scene_io::reflectance_of(
+    return scene::reflectance_of(
         textured(scene, scene.metallic_roughness[material.metallic_roughness],
                  material.diffuse_texture, texture_coordinates(scene, point)));
   }

@@ -69,7 +69,7 @@ glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
                            const glm::vec3& direction);
 
 /// What an opaque surface reflects there, textured. Without a specular lobe F0 and F90 are 0.
-scene_io::Reflectance reflectance(const Scene& scene, const SurfacePoint& point);
+scene::Reflectance reflectance(const Scene& scene, const SurfacePoint& point);
 
 /// Share of the surface that is there, in [0, 1]; 1 where its material has no holes.
 float opacity(const Scene& scene, const SurfacePoint& point);

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace photile {
+namespace photile::trace {
 
 /// A point of a triangle of the scene.
 struct TriangleHit {
@@ -11,4 +11,4 @@ struct TriangleHit {
   float u, v;  ///< barycentric weights of the second and third corner
 };
 
-}  // namespace photile
+}  // namespace photile::trace
