@@ -18,7 +18,9 @@
 #include "photile/light_mix.hpp"
 #include "photile/light_options.hpp"
 #include "photile/scene_builder.hpp"
+#include "render/setting.hpp"
 #include "test_scenes.hpp"
+#include "tools/command/setting_options.hpp"
 #include "tools/command/validators.hpp"
 #include "tools/view/moods.hpp"
 #include "tools/walk/frame_names.hpp"
@@ -106,9 +108,12 @@ void parse_option(unsigned char option, const std::string& text) {
     case 0:
       validate(app::count_between(1, 1'000'000), text);
       break;
-    case 1:
-      validate(app::byte_size(), text);
+    case 1: {
+      RenderParameters parameters;
+      app::assign_named(app::rendering_settings(parameters), text);
+      check(parameters);
       break;
+    }
     case 2:
       validate(app::share_up_to(1), text);
       break;

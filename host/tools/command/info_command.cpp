@@ -10,6 +10,7 @@
 #include "tools/command/commands.hpp"
 #include "tools/command/scene_options.hpp"
 #include "tools/command/scene_report.hpp"
+#include "tools/command/setting_options.hpp"
 
 namespace photile::app {
 namespace {
@@ -59,6 +60,7 @@ void add_info_command(CLI::App& photile) {
       ->required()
       ->type_name("");
   command->add_flag("--json", options->json, "print JSON");
+  add_set_option(*command, {scene_settings(options->load)});
   add_scene_options(*command, options->load, "Scene");
   add_light_options(*command, options->load, "Lights");
   command->callback([options] { run_info(*options); });

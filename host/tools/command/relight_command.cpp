@@ -15,6 +15,7 @@
 #include "tools/command/output_files.hpp"
 #include "tools/command/picture_outputs.hpp"
 #include "tools/command/scene_options.hpp"
+#include "tools/command/setting_options.hpp"
 #include "tools/command/signals.hpp"
 #include "tools/command/terminal_progress.hpp"
 
@@ -88,6 +89,8 @@ void add_relight_command(CLI::App& photile) {
       ->type_name("perez=DIRECT,DIFFUSE")
       ->group("Sky of patches");
   add_picture_options(*command, options->pictures);
+  add_false_colour_options(*command, options->pictures.false_colour);
+  add_set_option(*command, {display_settings(options->pictures.tone_mapping)});
   command->callback([options] { run_relight(*options); });
 }
 
