@@ -79,9 +79,9 @@ def consistency(photile, scenes):
             reference = picture_error.read_picture(reference_file)
         for photons in PHOTONS:
             k = neighbours(photons)
-            picture = render(photile, scene, size, out / "picture.exr", "--light-maps", "off",
+            picture = render(photile, scene, size, out / "picture.exr", "--set", "light_maps=off",
                              "--photons", str(photons),
-                             "-k", str(k), "--samples", "16", "--quota", "power")
+                             "-k", str(k), "--samples", "16", "--set", "quota=power")
             error = picture_error.measure(picture, reference)
             results.append({"view": name, "photons": photons, "k": k, **error})
             print(name, photons, k, error["rel_mse"], error["rel_mse_without_worst"], flush=True)

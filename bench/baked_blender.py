@@ -19,7 +19,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WIDTH, HEIGHT, SAMPLES = 256, 192, 64
-LIGHT = ("--photons", "1M", "-k", "250", "--quota", "power")
+LIGHT = ("--photons", "1M", "-k", "250", "--set", "quota=power")
 
 
 def render_in_blender(baked, view, picture):
@@ -71,7 +71,7 @@ def row(given, name, folder):
     baked, own, shown = folder / f"{name}.gltf", folder / f"{name}.exr", folder / "blender.exr"
     subprocess.run([given.photile, "bake", scene, "-o", baked, *LIGHT, "--quiet"], check=True)
     subprocess.run([given.photile, "render", scene, "-o", own, "--size", f"{WIDTH}x{HEIGHT}",
-                    "--quality", "draft", "--samples", "16", "--light-maps", "on", *LIGHT,
+                    "--quality", "draft", "--samples", "16", "--set", "light_maps=on", *LIGHT,
                     "--quiet"], check=True)
     _, view = read_gltf(scene)
     place = folder / "view.json"

@@ -33,7 +33,7 @@ from quality_mitsuba import mitsuba_scene, seen_scene
 
 WIDTH, HEIGHT, SAMPLES = 256, 192, 16
 APART = 5e-5  # metres
-LIGHT = ("--photons", "1M", "-k", "250", "--quota", "power")
+LIGHT = ("--photons", "1M", "-k", "250", "--set", "quota=power")
 
 
 def baked_mesh(file, binary, primitive):
@@ -119,7 +119,7 @@ def row(given, name, folder):
     baked, own = folder / f"{name}.gltf", folder / f"{name}.exr"
     subprocess.run([given.photile, "bake", scene, "-o", baked, *LIGHT, "--quiet"], check=True)
     subprocess.run([given.photile, "render", scene, "-o", own, "--size", f"{WIDTH}x{HEIGHT}",
-                    "--quality", "draft", "--samples", str(SAMPLES), "--light-maps", "on", *LIGHT,
+                    "--quality", "draft", "--samples", str(SAMPLES), "--set", "light_maps=on", *LIGHT,
                     "--quiet"], check=True)
     pictures = {"Mitsuba": shown(baked, scene), "photile": picture_error.read_picture(own)}
     reference = picture_error.read_picture(reference)

@@ -30,7 +30,7 @@ ROWS = tuple((scene, options) for scene in ("classroom", "kitchen") for options 
 def measured(given, scene, options, folder):
     """A row of the table."""
     file, reference_file = scene_arguments.interior(given.scenes, scene, SIZE)
-    _, seconds, _ = timed([given.photile, "render", file, "--size", SIZE, "--quota", "power",
+    _, seconds, _ = timed([given.photile, "render", file, "--size", SIZE, "--set", "quota=power",
                            *options.split(), "--quiet", "-o", folder / "picture.exr",
                            "--stats", folder / "stats.json"])
     picture = picture_error.read_picture(folder / "picture.exr")

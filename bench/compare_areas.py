@@ -34,8 +34,8 @@ def rows(given, name, folder):
     picture = pathlib.Path(folder) / "picture.exr"
     text = ""
     for area, kernel, k in CASES:
-        subprocess.run([given.photile, "render", scene, "--size", SIZE, "--area", area,
-                        "--kernel", kernel, "-k", str(k), "--quality", "draft", "--light-maps", "off", "-q",
+        subprocess.run([given.photile, "render", scene, "--size", SIZE, "--set", f"area={area}",
+                        "--set", f"kernel={kernel}", "-k", str(k), "--quality", "draft", "--set", "light_maps=off", "-q",
                         "-o", picture], check=True)
         error = picture_error.measure(picture_error.read_picture(picture), reference)
         text += (f"| {name} | {area} | {kernel} | {k} | {error['mean_ratio']:.3f} "

@@ -24,8 +24,8 @@ import picture_error
 ROOT = scene_arguments.ROOT
 SCENES = ("kitchen", "classroom")
 SIZE = "512x384"
-SETTINGS = ("--photons", "1M", "--neighbours", "50", "--quota", "power", "--samples", "16",
-            "--light-maps", "off")
+SETTINGS = ("--photons", "1M", "--neighbours", "50", "--set", "quota=power", "--samples", "16",
+            "--set", "light_maps=off")
 
 
 def arguments():

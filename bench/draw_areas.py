@@ -24,8 +24,8 @@ import picture_error
 ROOT = scene_arguments.ROOT
 AREAS = ("disc", "clipped")
 # Many neighbours: what is seen is the bias at borders, not the noise.
-SETTINGS = ("--photons", "2M", "-k", "300", "--quota", "power", "--samples", "16",
-            "--light-maps", "off")
+SETTINGS = ("--photons", "2M", "-k", "300", "--set", "quota=power", "--samples", "16",
+            "--set", "light_maps=off")
 REFERENCE_SAMPLES = "512"
 
 
@@ -37,7 +37,7 @@ def render(photile, scene, size, picture, *options):
 
 def draw(photile, name, scene, size, reference, folder):
     for area in AREAS:
-        picture = render(photile, scene, size, folder / f"{area}.exr", "--area", area, *SETTINGS)
+        picture = render(photile, scene, size, folder / f"{area}.exr", "--set", f"area={area}", *SETTINGS)
         error = picture_error.measure(picture, reference)
         print(name, area, " ".join(f"{key}={value:.4f}" for key, value in error.items()), flush=True)
         picture_error.write_png(

@@ -30,7 +30,7 @@ from gltf_meshes import View, read_gltf
 
 SIZE = (256, 192)
 DEGREES = 0.1  # a frame: half a pixel
-PHOTILE = ("--quality draft", "--quality draft --light-maps off", "--quality good")
+PHOTILE = ("--quality draft", "--quality draft --set light_maps=off", "--quality good")
 PATHS = 16  # of a pixel of the path tracer
 FRAMES_PER_SECOND = 10
 
@@ -83,7 +83,7 @@ def photile_frames(given, scene, views, options, folder):
     for frame in folder.glob("frame.*"):
         frame.unlink()
     _, seconds, _ = timed([given.photile, "walk", scene, "-o", folder / "frame.###.exr", "--size",
-                           "{}x{}".format(*SIZE), "--quota", "power", "--fps", str(FRAMES_PER_SECOND),
+                           "{}x{}".format(*SIZE), "--set", "quota=power", "--fps", str(FRAMES_PER_SECOND),
                            "--camera-path", path, "--quiet", *options.split()])
     return [picture_error.read_picture(frame) @ picture_error.LUMINANCE
             for frame in sorted(folder.glob("frame.*"))], seconds

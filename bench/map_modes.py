@@ -41,7 +41,7 @@ def figures(row: dict) -> dict:
                       for stage in ("primary hits", "the estimate"))
     return {
         "photons": f"{row['photons'] / 1e6:.2f} M",
-        "`--maps`": row["maps"],
+        "`maps`": row["maps"],
         "references a photon": row["references per photon"],
         "maps": row["number of maps"],
         "groups, MiB": row["groups bytes"] / 2**20,

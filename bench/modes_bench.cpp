@@ -1,5 +1,5 @@
-// A frame of a scene with maps of triangles, of patches, and of both (--maps). Modes take turns,
-// and a frame is also told in processor time, which other programs disturb less.
+// A frame of a scene with maps of triangles, of patches, and of both (the setting maps). Modes take
+// turns, and a frame is also told in processor time, which other programs disturb less.
 #include <sys/resource.h>
 
 #include "photile/estimator.hpp"

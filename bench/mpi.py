@@ -50,9 +50,9 @@ def picture(file):
 def measured(scene, paths, quality, ranks, folder):
     """A run; 0 ranks: photile on its own."""
     record, file = folder / "record.json", folder / f"{quality}.{ranks}.exr"
-    words = [str(PHOTILE), "render", str(ROOT / scene), "-o", str(file), "--photons", paths, "--passes", "1",
+    words = [str(PHOTILE), "render", str(ROOT / scene), "-o", str(file), "--photons", paths, "--set", "passes=1",
              "--size", "256x192", "--stats", str(record), "-q"]
-    words += ["--quality", "draft", "--light-maps", "off"] if quality == "hits" else ["--quality", quality]
+    words += ["--quality", "draft", "--set", "light_maps=off"] if quality == "hits" else ["--quality", quality]
     cores = len(os.sched_getaffinity(0))
     words += ["--threads", str(max(1, cores // max(1, ranks)))]
     if ranks > 0:

@@ -118,14 +118,14 @@ def compile_kernels(command, scene, folder, options):
 def photile(command, scene, size, folder, options):
     """A picture and its costs. What nodes gather is no cost of a further frame: none is told."""
     if "--integrator" not in options:
-        options = ["--quota", "power", *options]
+        options = ["--set", "quota=power", *options]
         compile_kernels(command, scene, folder, options)
     picture, stats = folder / "photile.exr", folder / "photile.json"
     first, frame_processor = run_photile(
         [command, "render", scene, "--size", size, "-o", picture, "--stats", stats, *options])
     stages = {stage["stage"]: stage["seconds"] for stage in json.loads(stats.read_text())["stages"]}
     costs = {"first": first}
-    if frame_processor is not None and "--light-maps" in options:
+    if frame_processor is not None and any(word.startswith("light_maps=") for word in options):
         costs["frame"] = {"processor": frame_processor,
                           "seconds": sum(stages.get(stage, 0) for stage in
                                          ("primary hits", "radiance estimate", "film"))}
@@ -149,9 +149,9 @@ def rival(script, scene, size, folder, options):
 
 def photon_settings(photons, passes=1):
     """Options of passes of so many photons, which are estimated at each hit."""
-    return ["--quality", "draft", "--light-maps", "off", "--photons", str(photons * passes),
-            "--passes", str(passes), "-k", str(neighbours(photons)),
-            "--least-neighbours", LEAST_NEIGHBOURS]
+    return ["--quality", "draft", "--set", "light_maps=off", "--photons", str(photons * passes),
+            "--set", f"passes={passes}", "-k", str(neighbours(photons)),
+            "--set", f"least_neighbours={LEAST_NEIGHBOURS}"]
 
 
 def path_settings(paths):

@@ -127,7 +127,7 @@ def build_kernels(result):
         f"{workload} {next(r for r in rows if r['workload'] == workload)['references']:,}"
         for workload in workloads)
     text = (f"The build, kernel by kernel, k = {k}: milliseconds, GB/s of what it must move at least, "
-            f"and that beside copying. References: {references}. Maps are those of `--maps auto`, the "
+            f"and that beside copying. References: {references}. Maps are those of `--set maps=auto`, the "
             "default.")
     header = ["kernel"]
     for workload in workloads:

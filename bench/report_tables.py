@@ -28,7 +28,7 @@ def knn_text():
 Microseconds a query; all hardware threads, the same queries, in the order of the renderer: by sided
 triangle, then along a Morton curve. All find the k nearest photons within R (`automatic_radius`,
 twice the median distance to the k-th) on surfaces whose normals agree, and sum the flux of k - 1 over
-the disc, per light. Maps are those of `--maps auto`, the default.
+the disc, per light. Maps are those of `--set maps=auto`, the default.
 
 - Times on the device are those of `Estimator::estimate`: transfers in and out are in them.
 - `nanoflann` is a 3D tree over all photons with leaves of 10 and its own result set,
@@ -43,7 +43,7 @@ the disc, per light. Maps are those of `--maps auto`, the default.
 The ratio is nanoflann's time over that of the row: more is better, below 1 is slower."""
 
 
-PRODUCT_MAPS = "auto"  # of --maps; other rows show what it saves
+PRODUCT_MAPS = "auto"  # of the setting maps; other rows show what it saves
 
 
 def maps_label(row, key="maps of"):
@@ -110,7 +110,7 @@ def paper(result):
             "*kNN* is another kernel, which only searches and writes out what it found, and "
             "*integration* the difference, where there is one: only *total* is the paper's frame. "
             "Maps of each triangle are the paper's; the other grids are those of the default, "
-            "`--maps auto`. "
+            "`--set maps=auto`. "
             "*With transfers* is what a caller waits for.")
     header = ["", "kNN", "integration", "total", "with transfers", "build", "groups"]
     return text + "\n\n" + table(header, rows)
@@ -130,7 +130,7 @@ def build(result):
     text = (f"Milliseconds, R for k = {result['settings']['k']}. References are entries of the "
             "uniform grids a photon, duplicates in neighbouring maps included; groups, in which "
             "finding and joining patches is counted, come before all maps but the structures over all photons. "
-            "Maps are those of `--maps auto`, the default, unless a row says otherwise. nanoflann "
+            "Maps are those of `--set maps=auto`, the default, unless a row says otherwise. nanoflann "
             "builds on one thread; uniform and hashed grids are built on the device, the trees of photile on "
             "the host. naive tests each photon with all triangles, on all threads of the host, and is "
             "scaled from a sample of the photons.")

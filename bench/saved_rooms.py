@@ -31,9 +31,9 @@ from gltf_meshes import read_gltf
 
 SIZE = "256x192"
 ROWS = (("classroom", "--quality draft --photons 1M -k 250"),
-        ("classroom", "--photons 500k -k 100 --light-map-rays 32"),
+        ("classroom", "--photons 500k -k 100 --set light_map_rays=32"),
         ("kitchen", "--quality draft --photons 1M -k 250"),
-        ("kitchen", "--photons 500k -k 100 --light-map-rays 32"))
+        ("kitchen", "--photons 500k -k 100 --set light_map_rays=32"))
 FRAMES = 24
 REPEATS = 5
 
@@ -65,7 +65,7 @@ def row(given, name, options, folder):
         for frame in folder.glob("frame.*"):
             frame.unlink()
         return timed([given.photile, "walk", scene, "-o", folder / frames, "--quick", "--size", size,
-                      "--samples", str(samples), "--quota", "power", "--fps", str(FRAMES),
+                      "--samples", str(samples), "--set", "quota=power", "--fps", str(FRAMES),
                       "--camera-path", paths[path], *options.split(), *more])
 
     def without_photons(*arguments):

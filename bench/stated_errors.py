@@ -47,7 +47,7 @@ def rms(values):
 def rendered(given, scene, options, seed, folder):
     """Lights, their stated errors, the stated error of the picture in percent, its pixels, what it took."""
     picture, errors, stats = (folder / name for name in ("a.exr", "errors.exr", "a.json"))
-    _, seconds, _ = timed([given.photile, "render", scene, "--size", given.size, "--quota", "power",
+    _, seconds, _ = timed([given.photile, "render", scene, "--size", given.size, "--set", "quota=power",
                     *options.split(), "--seed", str(seed), "--quiet", "-o", picture, "--errors",
                     errors, "--stats", stats])
     stages = json.loads(stats.read_text())["stages"]

@@ -34,11 +34,11 @@ def arguments():
 def subjects(scenes):
     """Name, scene file and further options of each view."""
     views = [("cornell-box", ROOT / "scenes/cornell-box/cornell-box.obj", []),
-             ("living-room", ROOT / "scenes/living-room/living-room.gltf", ["--quota", "power"])]
+             ("living-room", ROOT / "scenes/living-room/living-room.gltf", ["--set", "quota=power"])]
     classroom = pathlib.Path(scenes) / "classroom/classroom-diffuse.gltf"
     if classroom.is_file():
         reference = pathlib.Path(scenes) / "references/classroom-diffuse-512x384.exr"
-        views.append(("classroom", classroom, ["--quota", "power", "--size", "512x384",
+        views.append(("classroom", classroom, ["--set", "quota=power", "--size", "512x384",
                                                "--reference", str(reference)]))
     return views
 

@@ -18,7 +18,7 @@ STEPS = (
     Step("What does the file hold, and which lamps?",
          "photile info living-room.gltf", {}, ("scene", "extents", "light:")),
     Step("Render it once, a layer for each lamp.",
-         "photile render living-room.gltf --size 960x640 -o room.exr --png day.png",
+         "photile render living-room.gltf --size 960x640 -o room.exr -o day.png",
          {"day.png": "By day, every lamp on"}, ()),
     Step("How much light is there to read and work by? Points in or just over furniture are left out.",
          "photile measure living-room.gltf --plane floor+0.75 --clearance 0.1 --maintenance 0.8 "
@@ -26,9 +26,9 @@ STEPS = (
          {"plan.svg": "Illuminance on the working plane"}, ("working plane", "lux", "all lights")),
     Step("A mood for work after dark: the ceiling in neutral white, the floor lamp off.",
          "photile relight room.exr --light daylight=off --light floor_lamp=off "
-         "--light ceiling_panel=4000K -o work.exr --png work.png", {}, ()),
+         "--light ceiling_panel=4000K -o work.exr -o work.png", {}, ()),
     Step("And one for the evening: the floor lamp, warm, and the ceiling off.",
-         f"photile relight room.exr {EVENING} -o evening.exr --png evening.png",
+         f"photile relight room.exr {EVENING} -o evening.exr -o evening.png",
          {"evening.png": "In the evening"}, ()),
     Step("How do they differ? Red is where work is brighter, blue where the evening is.",
          "photile compare work.exr evening.exr -o moods.png",

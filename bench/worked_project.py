@@ -77,7 +77,7 @@ STEPS = (
          "than 250 hours of sun a year (ASE): these windows need blinds, and glare by daylight is to be rated with "
          "`--ratings dgp`.\n\n## Moods\n\nThe room on an afternoon in March:",
          f"photile render office.gltf {LAMPS} --weather year.epw --time 2026-03-10T15:00 --size 960x640 "
-         "-o day.exr --png day.png",
+         "-o day.exr -o day.png",
          {"day.png": "An afternoon in March, all lamps on"}),
     Step("`photile relight day.exr --light sun=off --light sky=off` shows the room after dark. A picture of its own has "
          "less noise, for all its rays look for lamps. It has a layer for each row of them.",

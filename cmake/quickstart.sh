@@ -8,5 +8,5 @@ cmake/setup.sh
 cmake/build.sh release photile_command  # tests and benches take twice as long again
 mkdir -p out
 build/release/photile render scenes/living-room/living-room.gltf \
-  -o out/living-room.exr --png out/living-room.png "$@"
+  -o out/living-room.exr -o out/living-room.png "$@"
 echo "out/living-room.exr and out/living-room.png are ready"

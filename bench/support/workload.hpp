@@ -44,7 +44,7 @@ void make_diffuse(Scene& scene);
 
 /// The maps that the renderer builds unless told otherwise, and those of the paper.
 struct NamedMapMode {
-  const char* name;  ///< of --maps
+  const char* name;  ///< of the setting maps
   MapMode mode;
 };
 inline constexpr NamedMapMode product_maps{"auto", MapMode::automatic};

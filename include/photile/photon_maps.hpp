@@ -33,7 +33,7 @@ enum class MapStructure {
 /// What is known of a structure by its name.
 struct MapStructureRow {
   MapStructure structure;
-  std::string_view name;  ///< of --structure
+  std::string_view name;  ///< of the setting structure
   /// One for all photons, filtered by normal, in place of one for each triangle or patch.
   bool global;
 };

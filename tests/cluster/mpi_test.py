@@ -102,7 +102,7 @@ def light_maps():
 
 def hits():
     """Estimates at hits: the same bits for any ranks, and those of photile on its own but for roundings."""
-    arguments = [*SMALL, "--quality", "draft", "--light-maps", "off"]
+    arguments = [*SMALL, "--quality", "draft", "--set", "light_maps=off"]
     shared = same_pictures([2, 3], arguments, by=1)
     alone = same_pictures([], arguments)
     check(np.allclose(shared, alone, rtol=1e-4, atol=1e-6 * alone.max()),
@@ -111,7 +111,7 @@ def hits():
 
 def nodes():
     """Nodes that gather light by rays, the default."""
-    same_pictures([2, 3], [*SMALL[:-4], "--samples", "1", "--light-map-rays", "8"])
+    same_pictures([2, 3], [*SMALL[:-4], "--samples", "1", "--set", "light_map_rays=8"])
 
 
 def readings(ranks, folder, arguments=()):
@@ -171,9 +171,9 @@ def ranks():
     for arguments in ([*SMALL, "--quality", "draft"], SMALL):
         same_pictures([1, 4, 7], arguments)
         same_pictures([3], [*arguments, "--threads", "1"])
-    same_pictures([4, 7], [*SMALL, "--quality", "draft", "--light-maps", "off"], by=1)
-    same_pictures([3], [*SMALL, "--quality", "draft", "--maps", "triangle"])
-    same_pictures([3], [*SMALL, "--quality", "draft", "--maps", "naive", "--light-maps", "on"])
+    same_pictures([4, 7], [*SMALL, "--quality", "draft", "--set", "light_maps=off"], by=1)
+    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "maps=triangle"])
+    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "maps=naive", "--set", "light_maps=on"])
 
 
 def walk():
@@ -203,9 +203,9 @@ def walk():
 
 def passes():
     """Several photon passes, in light maps and in the mean of pictures."""
-    same_pictures([3], [*SMALL, "--quality", "draft", "--light-maps", "on"])
-    same_pictures([2], [*SMALL[:4], "--samples", "4", "--light-map-rays", "8"])
-    same_pictures([3], [*SMALL, "--quality", "draft", "--passes", "2"], by=1)
+    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "light_maps=on"])
+    same_pictures([2], [*SMALL[:4], "--samples", "4", "--set", "light_map_rays=8"])
+    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "passes=2"], by=1)
 
 
 def many_lights():
@@ -224,7 +224,7 @@ def many_lights():
             content["nodes"].append({"translation": [0.05 + 0.45 * i / count, 0.4 + 0.003 * i, 0.1],
                                      "extensions": {"KHR_lights_punctual": {"light": i}}})
         scene.write_text(json.dumps(content))
-        for more in (["--quality", "draft"], ["--light-map-rays", "8"]):
+        for more in (["--quality", "draft"], ["--set", "light_map_rays=8"]):
             same_pictures([3], [*SMALL[:4], "--samples", "1", *more], scene)
 
 
@@ -232,8 +232,8 @@ def glossy():
     """Lobes and several lights."""
     small = ["--photons", "50k", "--size", "48x36", "--samples", "2"]
     same_pictures([3], [*small, "--quality", "draft"], ROOM)
-    same_pictures([2], [*small, "--light-map-rays", "8"], ROOM)
-    same_pictures([2, 3], [*small, "--quality", "draft", "--light-maps", "off"], ROOM, by=1)
+    same_pictures([2], [*small, "--set", "light_map_rays=8"], ROOM)
+    same_pictures([2, 3], [*small, "--quality", "draft", "--set", "light_maps=off"], ROOM, by=1)
 
 
 def children_of(process):
@@ -247,7 +247,7 @@ def signals():
         folder = pathlib.Path(name)
         picture = folder / "old.exr"
         picture.write_text("old")
-        arguments = ["render", BOX, "-o", picture, "--photons", "100M", "--passes", "1"]
+        arguments = ["render", BOX, "-o", picture, "--photons", "100M", "--set", "passes=1"]
         for what in ("job", "rank", "killed rank"):
             job = subprocess.Popen(command(3, arguments), env=os.environ | SETTINGS, text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)

@@ -39,7 +39,7 @@ std::string write_layered_picture(const FileFolder& folder) {
 }  // namespace
 
 TEST_CASE("an output in a folder that does not exist is refused before the work") {
-  const std::string option = GENERATE("-o", "--png", "--stats");
+  const std::string option = GENERATE("-o", "--illuminance", "--stats");
   const std::string file = "/nonexistent-folder/out.png";
   CHECK_THAT(refusal({"-o", "/nonexistent-folder/out.png", option, file}, failure),
              Contains("/nonexistent-folder/out.png"));
@@ -72,12 +72,12 @@ TEST_CASE("statistics to a device that is always full are refused before the wor
 TEST_CASE("an output of an unknown format is a usage error") {
   const FileFolder folder;
   CHECK_THAT(refusal({"-o", folder / "out.jpg"}, usage), Contains("out.jpg") && Contains(".exr"));
-  CHECK_THAT(refusal({"--png", folder / "out.exr"}, usage), Contains(".png"));
+  CHECK_THAT(refusal({"--luminance", folder / "out.exr"}, usage), Contains(".png"));
 }
 
 TEST_CASE("an output named twice is a usage error") {
   const FileFolder folder;
-  CHECK_THAT(refusal({"-o", folder / "out.png", "--png", folder / "./out.png"}, usage),
+  CHECK_THAT(refusal({"-o", folder / "out.png", "-o", folder / "./out.png"}, usage),
              Contains("twice"));
 }
 

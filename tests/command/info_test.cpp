@@ -75,7 +75,7 @@ TEST_CASE("info applies the emissive scale and the lumens per watt that it is gi
   const FileFolder folder;
   const std::string scene = write_box(folder);
   const double plain = info(scene)["lights"][0]["watts"];
-  const auto scaled = info(scene, {"--emissive-scale", "10", "--lumen-per-watt", "179"});
+  const auto scaled = info(scene, {"--set", "emissive_scale=10", "--set", "lumen_per_watt=179"});
   CHECK(scaled["lights"][0]["watts"].get<double>() == Approx(10 * plain).epsilon(1e-6));
   CHECK(scaled["lights"][0]["lumens"].get<double>() == Approx(1790 * plain).epsilon(1e-6));
 }

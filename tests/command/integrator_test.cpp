@@ -48,18 +48,18 @@ TEST_CASE("paths need no OpenCL device and give layers that can be relit") {
 
 TEST_CASE("options of photon maps are usage errors beside --integrator path") {
   const auto option = GENERATE(values<std::vector<std::string>>({{"--photons", "10"},
-                                                                 {"--passes", "2"},
-                                                                 {"--quota", "power"},
+                                                                 {"--set", "passes=2"},
+                                                                 {"--set", "quota=power"},
                                                                  {"-k", "20"},
-                                                                 {"--radius", "0.1"},
-                                                                 {"--angle", "30"},
-                                                                 {"--maps", "auto"},
-                                                                 {"--structure", "kdtree-2d"},
-                                                                 {"--photons-per-cell", "2"},
+                                                                 {"--set", "radius=0.1"},
+                                                                 {"--set", "angle_degrees=30"},
+                                                                 {"--set", "maps=auto"},
+                                                                 {"--set", "structure=kdtree-2d"},
+                                                                 {"--set", "photons_per_cell=2"},
                                                                  {"--device", "cpu"},
-                                                                 {"--memory", "1GiB"},
-                                                                 {"--no-cache"},
-                                                                 {"--profile"}}));
+                                                                 {"--set", "device_memory=1"},
+                                                                 {"--set", "program_cache=off"},
+                                                                 {"--set", "profile=on"}}));
   const FileFolder folder;
   std::vector<std::string> options{"-o", folder / "a.exr"};
   options.insert(options.end(), option.begin(), option.end());

@@ -40,7 +40,7 @@ TEST_CASE("killed a hundred times at any moment, a render leaves the old picture
   const FileFolder folder;
   const std::vector<std::string> arguments{
       "render", write_box(folder),  "-o",        folder / "out.exr",
-      "--png",  folder / "out.png", "--photons", "20k",
+      "-o",     folder / "out.png", "--photons", "20k",
       "--size", "200x150",          "--quality", "draft"};
   const auto begin = Clock::now();
   REQUIRE(run_photile(arguments).exit_code == 0);

@@ -77,8 +77,6 @@ TEST_CASE("a malformed option of a light is one line") {
   refused({"--ies", "left=" + lamp}, 2, "neither a point nor a spot light");
   refused({"--area-light", "Area=1x1"}, 2, "NAME=WxH,LUMENS");
   refused({"--area-light", "Area=1x1,100"}, 2, "glTF");
-  refused({"--light-temperature", "left=9"}, 2, "between 1000 and 40000 kelvin");
-  refused({"--light-temperature", "middle=2700"}, 2, "there are 'right', 'left'");
   refused({"--environment", folder / "gone.exr"}, 3, "gone.exr");
   refused({"--environment", lamp}, 3, "lamp.ies");
 }

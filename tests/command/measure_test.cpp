@@ -252,11 +252,11 @@ TEST_CASE("a scene that lies on its side is measured at the places of its file")
     REQUIRE(outcome.exit_code == 0);
     return nlohmann::json::parse(folder.read("a.json"))["grids"][0]["sensors"];
   };
-  const auto expected = record(upright, points, {}), seen = record(lying, same, {"--up", "z"});
+  const auto expected = record(upright, points, {}), seen = record(lying, same, {"--set", "up=z"});
   REQUIRE(seen.size() == 2);
   CHECK(seen[0]["position"] == nlohmann::json({0.3, -0.2, -0.5}));
   for (std::size_t i = 0; i < 2; ++i) CHECK(seen[i]["lux"] == expected[i]["lux"]);  // to the bit
-  CHECK(run_photile(measure(lying, {"--up", "u", "--points", same})).exit_code == 2);
+  CHECK(run_photile(measure(lying, {"--set", "up=u", "--points", same})).exit_code == 2);
 }
 
 TEST_CASE("a point beyond the walls is blank in every file, and the others keep their places") {

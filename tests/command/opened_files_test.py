@@ -111,8 +111,8 @@ def main():
             usual = opened(photile, write(folder, "inside"))
             if str(folder / "inside") not in usual:
                 fail(f"{kind}: not even a file in the scene's folder is seen to be opened")
-            if str(secret) not in opened(photile, write(folder, "../secret"), "--allow-outside"):
-                fail(f"{kind}: with --allow-outside, the file outside is not seen to be opened")
+            if str(secret) not in opened(photile, write(folder, "../secret"), "--set", "allow_outside=on"):
+                fail(f"{kind}: with --set allow_outside=on, the file outside is not seen to be opened")
             for name in tried:
                 for path in sorted(opened(photile, write(folder, name)) - usual):
                     if pathlib.Path(path).parent != folder:

@@ -123,7 +123,7 @@ TEST_CASE("render keeps the scene and the files that it names") {
       return Arguments{"render", write_textured_box(folder), "-o", folder / "out.exr", option};
     };
   };
-  check_refused(textured("--png"), "rug.png", ".png");
+  check_refused(textured("--luminance"), "rug.png", ".png");
   check_refused(textured("--stats"), "box.mtl", ".mtl");
   check_refused(textured("--save-maps"), "box.obj", ".obj");
   check_refused(textured("--illuminance"), "rug.png", ".png");
@@ -244,7 +244,7 @@ TEST_CASE("two outputs that are one file are refused, also where it does not exi
        {std::pair("new.png", "dangling.png"), std::pair("dangling.png", "new.png"),
         std::pair("a.png", "b.png")}) {
     const auto outcome =
-        run_photile({"render", scene, "-o", folder / first, "--png", folder / second});
+        run_photile({"render", scene, "-o", folder / first, "-o", folder / second});
     CHECK_THAT(only_error(outcome, usage),
                Contains(first) && Contains(second) && Contains("twice"));
     CHECK(folder.read("a.png") == "kept");

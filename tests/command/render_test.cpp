@@ -60,7 +60,7 @@ std::vector<std::string> checked_stages(const nlohmann::json& record) {
 TEST_CASE("the same seed gives the same bits on one and on two threads") {
   const std::string maps = GENERATE("auto", "patch", "triangle", "naive");
   const FileFolder folder;
-  const std::vector<std::string> options{"--size", "32x24", "--seed", "7", "--maps", maps};
+  const std::vector<std::string> options{"--size", "32x24", "--seed", "7", "--set", "maps=" + maps};
   const auto with = [&](const char* threads, const char* name) {
     auto all = options;
     all.insert(all.end(), {"--threads", threads, "-o", folder / name});
@@ -105,7 +105,7 @@ TEST_CASE("the layers of an EXR sum to the picture") {
 
 TEST_CASE("naive maps take whole discs, and the EXR says so") {
   const FileFolder folder;
-  render(folder, {"--size", "16x12", "--maps", "naive", "-o", folder / "out.exr"});
+  render(folder, {"--size", "16x12", "--set", "maps=naive", "-o", folder / "out.exr"});
   const Image picture = read_image(folder / "out.exr");
   CHECK(picture.attributes.at("photile.maps") == "naive");
   CHECK(picture.attributes.at("photile.area") == "disc");
@@ -113,8 +113,8 @@ TEST_CASE("naive maps take whole discs, and the EXR says so") {
 
 TEST_CASE("an EXR tells how it was made") {
   const FileFolder folder;
-  render(folder, {"--size", "16x12", "--seed", "9", "-k", "30", "--radius", "0.25", "--angle", "45",
-                  "--lumen-per-watt", "179", "-o", folder / "out.exr"});
+  render(folder, {"--size", "16x12", "--seed", "9", "-k", "30", "--set", "radius=0.25", "--set",
+                  "angle_degrees=45", "--set", "lumen_per_watt=179", "-o", folder / "out.exr"});
   const Image picture = read_image(folder / "out.exr");
   const auto attribute = [&](const char* name) { return picture.attributes.at(name); };
   CHECK(attribute("photile.scene") == "box.obj");
@@ -139,7 +139,7 @@ TEST_CASE("an EXR tells how it was made") {
 
 TEST_CASE("a render writes every output that it is asked for, in the size asked for") {
   const FileFolder folder;
-  render(folder, {"--size", "20x10", "-o", folder / "a.exr", "-o", folder / "b.png", "--png",
+  render(folder, {"--size", "20x10", "-o", folder / "a.exr", "-o", folder / "b.png", "-o",
                   folder / "c.png"});
   for (const char* name : {"a.exr", "b.png", "c.png"}) {
     const Image picture = read_image(folder / name);
@@ -193,7 +193,7 @@ TEST_CASE("the stages add up with maps that are kept, with reflections and by pa
 TEST_CASE("naive maps are darker than those of neighbour groups at borders, hence in the mean") {
   const FileFolder folder;
   render(folder, {"--size", "32x24", "-o", folder / "neighbour-groups.exr"});
-  render(folder, {"--size", "32x24", "-o", folder / "naive.exr", "--maps", "naive"});
+  render(folder, {"--size", "32x24", "-o", folder / "naive.exr", "--set", "maps=naive"});
   CHECK(mean(read_image(folder / "naive.exr"), "G") <
         mean(read_image(folder / "neighbour-groups.exr"), "G"));
 }
@@ -202,7 +202,7 @@ TEST_CASE("a profiled render lists the time of each kernel") {
   const FileFolder folder;
   const Outcome outcome =
       run_photile({"render", write_box(folder), "--photons", "10k", "--size", "16x12", "-o",
-                   folder / "a.png", "--quality", "draft", "--profile"});
+                   folder / "a.png", "--quality", "draft", "--set", "profile=on"});
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors, Contains("\nkernel ") && Contains("launches"));
 }

@@ -27,7 +27,7 @@ TEST_CASE("saved photons give the picture again, in other powers and sizes as we
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
   const auto [option, value] = GENERATE(table<std::string, std::string>(
-      {{"--light-maps", "auto"}, {"--light-maps", "off"}, {"--light-map-rays", "8"}}));
+      {{"--set", "light_maps=auto"}, {"--set", "light_maps=off"}, {"--set", "light_map_rays=8"}}));
   const auto render = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.end(), {option, value});
     return run_photile(arguments_of(folder, name, more));
@@ -49,9 +49,9 @@ TEST_CASE("rays that gather refuse saved photons without caustics, and say what 
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
   REQUIRE(run_photile(arguments_of(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
-  const Outcome outcome =
-      run_photile(arguments_of(folder, "b.exr", {"--load-maps", maps, "--light-map-rays", "4"}));
-  CHECK_THAT(only_error(outcome, 2), Contains("--light-map-rays") && Contains("save them again"));
+  const Outcome outcome = run_photile(
+      arguments_of(folder, "b.exr", {"--load-maps", maps, "--set", "light_map_rays=4"}));
+  CHECK_THAT(only_error(outcome, 2), Contains("light_map_rays") && Contains("save them again"));
 }
 
 TEST_CASE("photons of other settings or scenes, and broken files, are refused by name") {

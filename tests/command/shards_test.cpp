@@ -63,7 +63,7 @@ TEST_CASE("merged shards are the file of one process, byte for byte, and render 
   completed(render("loaded.exr", {"--load-maps", folder / "all.photons"}));
   CHECK(read_image(folder / "own.exr").channels == read_image(folder / "loaded.exr").channels);
   // Photons alone fit any settings of groups.
-  completed(render("wide.exr", {"--radius", "0.3", "--load-maps", folder / "all.photons"}));
+  completed(render("wide.exr", {"--set", "radius=0.3", "--load-maps", folder / "all.photons"}));
   const std::string other = only_error(
       run_photile(render("seed.exr", {"--seed", "5", "--load-maps", folder / "all.photons"})), 3);
   CHECK_THAT(other, Contains("seed 1") && Contains("seed 5"));

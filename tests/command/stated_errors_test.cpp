@@ -19,22 +19,14 @@ constexpr int seeds = 6;
 
 void render_picture(const FileFolder& folder, const std::string& file, const std::string& seed,
                     const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"render",
-                                     write_box(folder),
-                                     "-o",
-                                     file,
-                                     "--size",
-                                     "24x18",
-                                     "--samples",
-                                     "4",
-                                     "--photons",
-                                     "50k",
-                                     "-k",
-                                     "50",
-                                     "--light-map-rays",
-                                     "16",
-                                     "--seed",
-                                     seed};
+  std::vector<std::string> arguments{"render",    write_box(folder),
+                                     "-o",        file,
+                                     "--size",    "24x18",
+                                     "--samples", "4",
+                                     "--photons", "50k",
+                                     "-k",        "50",
+                                     "--set",     "light_map_rays=16",
+                                     "--seed",    seed};
   arguments.insert(arguments.end(), more.begin(), more.end());
   const Outcome outcome = run_photile(arguments);
   INFO(outcome.errors);

@@ -78,8 +78,8 @@ TEST_CASE("pictures are made until one states the wanted error, which its settin
     return outcome;
   };
   const Outcome outcome =
-      photile({"-o", folder / "box.exr", "--light-map-rays", "8", "--photons", "20k", "--samples",
-               "2", "--target-error", "0.9%", "--stats", folder / "box.json"});
+      photile({"-o", folder / "box.exr", "--set", "light_map_rays=8", "--photons", "20k",
+               "--samples", "2", "--target-error", "0.9%", "--stats", folder / "box.json"});
   CHECK_THAT(outcome.errors, Contains("picture 1: standard error") && Contains("picture 2: "));
   const auto record = nlohmann::json::parse(text_of(folder / "box.json"));
   const auto maps = std::find_if(record["stages"].begin(), record["stages"].end(),
@@ -90,7 +90,7 @@ TEST_CASE("pictures are made until one states the wanted error, which its settin
 
   const auto& used = record["parameters"];
   CHECK(used["light_map_rays"] > 8);
-  photile({"-o", folder / "again.exr", "--light-map-rays", used["light_map_rays"].dump(),
+  photile({"-o", folder / "again.exr", "--set", "light_map_rays=" + used["light_map_rays"].dump(),
            "--photons", used["photons_emitted"].dump(), "--samples",
            used["samples_per_pixel"].dump(), "-q"});
   const Image made = read_image(folder / "box.exr"), again = read_image(folder / "again.exr");
@@ -116,7 +116,7 @@ TEST_CASE("pictures are made for a time; that needs nodes that gather") {
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors,
              Contains("picture 1: ") &&
-                 Contains("--photons 125000 -k 100 --samples 4 --light-map-rays 16") &&
+                 Contains("--photons 125000 -k 100 --samples 4 --set light_map_rays=16") &&
                  !Contains("picture 2"));
   CHECK_FALSE(text_of(folder / "box.exr").empty());
   const std::string goal = GENERATE("--for=1s", "--target-error=2%");
@@ -126,7 +126,7 @@ TEST_CASE("pictures are made for a time; that needs nodes that gather") {
     return only_error(run_photile(all), 2);
   };
   const std::string name = goal.substr(0, goal.find('='));
-  CHECK_THAT(refused({"--light-maps", "off"}), Contains(name) && Contains("--quality good"));
+  CHECK_THAT(refused({"--set", "light_maps=off"}), Contains(name) && Contains("--quality good"));
   CHECK_THAT(refused({"--quality", "draft"}), Contains(name) && Contains("--quality good"));
   CHECK_THAT(refused({"--integrator", "path"}), Contains(name));
   CHECK_THAT(refused({"--glare", folder / "glare.png"}), Contains(name));

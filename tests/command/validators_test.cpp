@@ -61,21 +61,4 @@ TEST_CASE("times are read with their units") {
   CHECK_FALSE(parse_duration(text).has_value());
 }
 
-TEST_CASE("byte sizes are read with binary and decimal units") {
-  CHECK(parse_bytes("4096") == 4'096u);
-  CHECK(parse_bytes("512MiB") == 536'870'912u);
-  CHECK(parse_bytes("1.5GiB") == 1'610'612'736u);
-  CHECK(parse_bytes("16KiB") == 16'384u);
-  CHECK(parse_bytes("1TiB") == 1'099'511'627'776u);
-  CHECK(parse_bytes("100MB") == 100'000'000u);
-  CHECK(parse_bytes("2.5kB") == 2'500u);
-}
-
-TEST_CASE("what is no byte size is none") {
-  const std::string text = GENERATE("", "MiB", "-1MiB", "1 MiB", "1mib", "1Mi", "0.3", "nan", "1XB",
-                                    "17179869184GiB", "1e30");
-  INFO(text);
-  CHECK_FALSE(parse_bytes(text).has_value());
-}
-
 }  // namespace photile::test

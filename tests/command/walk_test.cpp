@@ -131,9 +131,9 @@ TEST_CASE("a walk that is killed keeps its whole frames, and loses the one in pr
 
 TEST_CASE("saved photons are those of one pass, and the refusal says so") {
   const FileFolder folder;
-  const std::vector<std::string> more{"--passes", "2", "--save-maps", folder / "room.maps"};
+  const std::vector<std::string> more{"--set", "passes=2", "--save-maps", folder / "room.maps"};
   const std::string error = last_error(run_photile(walk(folder, more)), 2);
-  CHECK_THAT(error, Contains("photons of one pass") && Contains("--passes"));
+  CHECK_THAT(error, Contains("photons of one pass") && Contains("leave out passes"));
   CHECK_FALSE(std::filesystem::exists(folder / "room.maps"));
 }
 
@@ -141,7 +141,7 @@ TEST_CASE("frames of other settings are not taken for finished") {
   const FileFolder folder;
   done(walk(folder));
   const std::string change = GENERATE("--seed=2", "--neighbours=40", "--light=left=x2",
-                                      "--radius=0.3", "--samples=2", "--quota=equal");
+                                      "--set=radius=0.3", "--samples=2", "--set=quota=equal");
   INFO(change);
   CHECK_THAT(done(walk(folder, {change})).errors, !Contains("finished"));
 }
@@ -191,7 +191,7 @@ TEST_CASE("quick frames as EXR hold R, G, B, and are not made twice") {
 TEST_CASE("a walk from saved maps draws the same frames, without a photon") {
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
-  const std::vector<std::string> rays{"--quick", "--light-map-rays", "4"};
+  const std::vector<std::string> rays{"--quick", "--set", "light_map_rays=4"};
   const auto frames = [&](const std::string& option) {
     std::vector<std::string> arguments = walk(folder, rays);
     arguments.insert(arguments.end(), {option, maps});
@@ -216,8 +216,9 @@ TEST_CASE("walk refuses what it cannot do with one line and the right exit code"
   const std::string box = write_box(folder);
   CHECK_THAT(error({"walk", box, "-o", folder / "##-##.exr"}, 2), Contains("####"));
   CHECK_THAT(error({"walk", box, "-o", folder / "a##.jpg"}, 2), Contains(".exr"));
-  CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quick", "--light-maps", "off"}, 2),
-             Contains("--light-maps"));
+  CHECK_THAT(
+      error({"walk", box, "-o", folder / "a##.exr", "--quick", "--set", "light_maps=off"}, 2),
+      Contains("light_maps"));
   CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quiet"}, 3),
              Contains("--camera-path"));
   CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quiet", "--camera-path",

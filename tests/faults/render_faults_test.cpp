@@ -168,14 +168,13 @@ TEST_CASE("a device that allocates next to nothing is reported once") {
       Catch::Contains("CL_MEM_OBJECT_ALLOCATION_FAILURE") && Catch::Contains("use fewer photons"));
 }
 
-TEST_CASE("a render in a small --memory is the same; in too small a one it says what to do") {
+TEST_CASE("a render in a small device_memory is the same; in too small a one it says what to do") {
   const FileFolder folder;
-  for (const char* const memory : {"300kB", "150kB"}) {
+  for (const char* const memory : {"device_memory=300e-6", "device_memory=150e-6"}) {
     CAPTURE(memory);
-    CHECK(picture_of(folder, small_render(folder, {}, {"--memory", memory})) ==
-          undisturbed_picture());
+    CHECK(picture_of(folder, small_render(folder, {}, {"--set", memory})) == undisturbed_picture());
   }
-  const Outcome outcome = run_photile(small_render(folder, {}, {"--memory", "300"}));
+  const Outcome outcome = run_photile(small_render(folder, {}, {"--set", "device_memory=3e-7"}));
   CHECK_THAT(last_error(outcome, device_error), Catch::Contains("use a larger memory limit"));
 }
 
@@ -185,7 +184,7 @@ TEST_CASE("PoCL with 256 MiB a buffer renders the same picture", "[slow]") {
   const auto render_many = [&](std::map<std::string, std::string> environment) {
     Run run = small_render(folder, std::move(environment));
     run.arguments[3] = "8M";
-    run.arguments.insert(run.arguments.end(), {"--passes", "1"});
+    run.arguments.insert(run.arguments.end(), {"--set", "passes=1"});
     return picture_of(folder, run);
   };
   const auto expected = render_many({});

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "command/setting_options.hpp"
 #include "command/validators.hpp"
 #include "daylight/blinds.hpp"
 #include "daylight/occupancy.hpp"
@@ -18,6 +19,7 @@
 #include "photile/light_mix.hpp"
 #include "photile/light_options.hpp"
 #include "photile/scene_builder.hpp"
+#include "render/setting.hpp"
 #include "test_scenes.hpp"
 #include "view/moods.hpp"
 #include "walk/frame_names.hpp"
@@ -106,9 +108,12 @@ void parse_option(unsigned char option, const std::string& text) {
     case 0:
       validate(app::count_between(1, 1'000'000), text);
       break;
-    case 1:
-      validate(app::byte_size(), text);
+    case 1: {
+      RenderParameters parameters;
+      app::assign_named(app::rendering_settings(parameters), text);
+      check(parameters);
       break;
+    }
     case 2:
       validate(app::share_up_to(1), text);
       break;

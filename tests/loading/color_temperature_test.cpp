@@ -41,7 +41,7 @@ TEST_CASE("6504 K is white, 2700 K is warm, and luminances are 1", "[temperature
   }
 }
 
-TEST_CASE("photile_kelvin and --light-temperature colour a light and keep its flux",
+TEST_CASE("photile_kelvin and the option of the library colour a light and keep its flux",
           "[temperature]") {
   nlohmann::json document = square_document();
   document["nodes"][0]["extras"]["photile_kelvin"] = 2700;

@@ -90,7 +90,7 @@ TEST_CASE("reflectances that cannot be are refused with the remedy", "[reflectan
     }
     FAIL(text);
   };
-  refused("*=0", "--lambertian");  // the lobe reflects more
+  refused("*=0", "--set lambertian=on");  // the lobe reflects more
   refused("*=0.95", "exceeds 1");
   refused("nothing=0.5", "no such material");
   refused("wall=1.5", "0 to 1");

@@ -131,7 +131,7 @@ TEST_CASE("a room that lies on its side is told with the remedy, and is not turn
   };
   const auto told = warnings({6, 2.8, 5}, worlds[1], "");
   REQUIRE(told.size() == 1);
-  CHECK_THAT(told.front(), Contains("--up z") && Contains("60"));  // m2 of floor and ceiling
+  CHECK_THAT(told.front(), Contains("--set up=z") && Contains("60"));  // m2 of floor and ceiling
   CHECK(warnings({6, 2.8, 5}, worlds[1], "z").empty());
   CHECK(warnings({6, 2.8, 5}, worlds[1], "y").empty());
   // What stands upright: a room, a corridor, and a wall alone.

@@ -59,7 +59,7 @@ inside "apt-get update; apt-get install --yes --no-install-recommends pocl-openc
   ./photile_*.deb ./python3-photile_*.deb" > "$scratch/install.log" 2>&1 ||
   { tail -n 20 "$scratch/install.log"; fail "the packages do not install"; }
 inside "photile --version" | grep -q '^photile [0-9.]* (commit ' || fail "no version is told"
-inside "photile render cornell-box/cornell-box.obj -o box.exr --png box.png --size 64x48 \
+inside "photile render cornell-box/cornell-box.obj -o box.exr -o box.png --size 64x48 \
   --quality draft --photons 20000 --quiet; photile relight box.exr" | grep -q '^light: lamp' ||
   fail "no picture is rendered and relit"
 inside "printf 'P6 1 1 255\\n\\377\\377\\377' > white.ppm

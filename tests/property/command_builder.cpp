@@ -105,15 +105,14 @@ void CommandBuilder::light_changes(double probability) {
 void CommandBuilder::lights() {
   maybe(0.04,
         {"--light-group", dice_.one_of({"*=all", "lamp*=lamps", "bulb*=bulbs", "[=x", "=y"})});
-  maybe(0.04, {"--light-temperature", light() + dice_.one_of({"=2700", "=1", "=nan", "=6500K"})});
   maybe(0.05, {"--sun", dice_.one_of({"135,40,80000", "0,-10,5", "0,90,1e31", "1,2", "nan,1,1",
                                       "10,20,1000,5"})});
   sky();
   maybe(0.02, {"--environment", dice_.chance(0.5) ? place_.picture.string() : "/dev/null"});
-  maybe(0.04, {"--emissive-scale", dice_.one_of({"2", "683", "1e38", "0", "1e-30"})});
-  maybe(0.03, {"--lumen-per-watt", dice_.one_of({"683", "100", "0", "nan", "1e30"})});
-  maybe(0.02, {"--environment-scale", dice_.one_of({"2", "0", "1e30", "-1"})});
-  maybe(0.02, {"--environment-rotation", dice_.one_of({"90", "-720", "nan"})});
+  maybe(0.04, {"--set", "emissive_scale=" + dice_.one_of({"2", "683", "1e38", "0", "1e-30"})});
+  maybe(0.03, {"--set", "lumen_per_watt=" + dice_.one_of({"683", "100", "0", "nan", "1e30"})});
+  maybe(0.02, {"--set", "environment_scale=" + dice_.one_of({"2", "0", "1e30", "-1"})});
+  maybe(0.02, {"--set", "environment_rotation=" + dice_.one_of({"90", "-720", "nan"})});
   maybe(0.02, {"--ies", light() + "=/dev/null"});
   scene_changes();
   maybe(0.02, {"--area-light", light() + dice_.one_of({"=1x0.5,800", "=1x,3", "=0x1,1"})});
@@ -123,7 +122,7 @@ void CommandBuilder::film() {
   add({"--size", dice_.chance(0.03) ? dice_.one_of({"0x4", "4", "20000x1", "x", "-1x3"})
                                     : fmt::format("{}x{}", dice_.whole(1, 9), dice_.whole(1, 9))});
   maybe(0.03, {"--camera", dice_.one_of({"0", "1", "default", "nobody"})});
-  maybe(0.04, {"--direct", dice_.one_of({"rays", "photons"})});
+  maybe(0.04, {"--set", "direct_rays=" + dice_.one_of({"1", "3", "0", "-1"})});
   add({"--quality", dice_.chance(0.7) ? "draft" : "good"});
 }
 
@@ -144,7 +143,7 @@ void CommandBuilder::tone_mapping() {
 void CommandBuilder::run() {
   maybe(0.1, {"--threads", dice_.one_of({"1", "2", "3"})});
   maybe(0.1, {"-q"});
-  maybe(0.05, {"--memory", dice_.one_of({"1MiB", "64MiB", "1GiB", "1B"})});
+  maybe(0.05, {"--set", "device_memory=" + dice_.one_of({"0.001", "0.06", "1", "1e-9", "0"})});
   maybe(0.01, {"--device", "nowhere"});
 }
 
@@ -153,7 +152,7 @@ void CommandBuilder::drawings(double probability) {
   if (dice_.chance(probability)) output("--luminance", "luminance.png");
   false_colour();
   tone_mapping();
-  maybe(0.1, {"--no-auto-exposure"});
+  maybe(0.1, {"--set", "auto_exposure=off"});
 }
 
 std::filesystem::path CommandBuilder::input(const std::string& name, const std::string& content) {
@@ -183,7 +182,7 @@ void CommandBuilder::sky() {
     add({"--weather", weather().string()});
     maybe(0.9, {"--time", dice_.one_of({"2026-06-21T14:00", "2026-12-21T02:00"})});
   }
-  maybe(0.03, {"--north", dice_.one_of({"90", "-360", "361", "nan"})});
+  maybe(0.03, {"--set", "north=" + dice_.one_of({"90", "-360", "361", "nan"})});
   maybe(0.03, {"--portals", dice_.one_of({"off", "auto", "glass*", "*", "stuff*", "["})});
 }
 
@@ -225,8 +224,8 @@ void CommandBuilder::mood() {
 void CommandBuilder::scene_changes() {
   maybe(0.05, {"--reflectance", dice_.one_of({"*=0.5", "wall=80%", "stuff*=0", "glow*=20%",
                                               "nobody=0.5", "*=2", "[=0.5"})});
-  maybe(0.04, {"--lambertian"});
-  maybe(0.05, {"--up", dice_.one_of({"y", "z", "x", "-y", "w"})});
+  maybe(0.04, {"--set", "lambertian=on"});
+  maybe(0.05, {"--set", "up=" + dice_.one_of({"y", "z", "x", "-y", "w"})});
   if (dice_.chance(0.05)) luminaires();
 }
 

@@ -44,11 +44,11 @@ class Generator : CommandBuilder {
     add({"render"});
     scene();
     if (dice_.chance(0.97)) output("-o", "picture.exr");
-    if (dice_.chance(0.3)) output("--png", "picture.png");
+    if (dice_.chance(0.3)) output("-o", "picture.png");
     if (dice_.chance(0.15)) output("--stats", "stats.json");
     if (dice_.chance(0.05)) output("--glare", "glare.png");
     if (dice_.chance(0.1)) output("--errors", "errors.exr");
-    maybe(0.03, {"--glare-limit", dice_.one_of({"1000", "0", "nan"})});
+    maybe(0.03, {"--set", "glare_limit=" + dice_.one_of({"1000", "0", "nan"})});
     drawings(0.1);
     film();
     maybe(0.06, {"--projection", dice_.one_of({"fisheye", "angular", "equirectangular",

@@ -1,4 +1,4 @@
-// Light straight from lamps by rays, the rest by photons: --direct rays.
+// Light straight from lamps by rays, the rest by photons: --set direct_rays=1.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

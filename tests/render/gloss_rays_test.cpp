@@ -1,4 +1,4 @@
-// Light that lobes reflect, by rays: --gloss rays.
+// Light that lobes reflect, by rays: --set gloss=rays.
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
 #include <tbb/global_control.h>
 

@@ -18,10 +18,10 @@ BUNDLED = ("living-room/living-room.gltf", "cornell-box/cornell-box-specular.glt
            "gallery/glass-sphere.gltf")
 SHARED = ("classroom/classroom.gltf", "kitchen/kitchen.gltf")
 # Light maps; an estimate at each hit; a map for each triangle; a tree; groups by area.
-WAYS = ((), ("--light-maps", "off"),
-        ("--light-maps", "off", "--maps", "triangle", "--direct", "rays"),
-        ("--light-maps", "off", "--structure", "kdtree-3d", "--least-neighbours", "20"),
-        ("--light-maps", "off", "--maps", "naive", "--passes", "3"))
+WAYS = ((), ("--set", "light_maps=off"),
+        ("--set", "light_maps=off", "--set", "maps=triangle", "--set", "direct_rays=1"),
+        ("--set", "light_maps=off", "--set", "structure=kdtree-3d", "--set", "least_neighbours=20"),
+        ("--set", "light_maps=off", "--set", "maps=naive", "--set", "passes=3"))
 
 
 def fail(text):

@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "command/scene_options.hpp"
-#include "command/validators.hpp"
 
 namespace photile::app {
 namespace {
@@ -61,27 +60,10 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
                   "lamps to place, by their photometric files, alone or in arrays")
       ->type_name("FILE.json")
       ->group(group);
-  add_repeatable(command, "--light-temperature", "NAME=KELVIN",
-                 "colour of a light, whose flux stays; repeatable", options.temperatures)
-      ->group(group);
   command
       .add_option("--environment", options.environment.file,
                   "surroundings: an equirectangular picture of radiance, .hdr or .exr")
       ->type_name("FILE")
-      ->group(group);
-  command
-      .add_option("--environment-scale", options.environment.scale,
-                  "multiplies the picture, which is in cd/m2, or W/(m2 sr) for OBJ")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str()
-      ->group(group);
-  command
-      .add_option("--environment-rotation", options.environment.rotation_degrees,
-                  "clockwise as seen from above; at 0 the picture's middle lies towards -z")
-      ->type_name("DEGREES")
-      ->transform(number_between(-360, 360))
-      ->capture_default_str()
       ->group(group);
   command
       .add_option_function<std::string>(
@@ -100,13 +82,6 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
       ->type_name("KIND=LUX|perez=DIRECT,DIFFUSE|patches=N")
       ->group(group);
   add_situation_options(command, options.situation, group);
-  command
-      .add_option("--north", options.situation.north_degrees,
-                  "where north lies, clockwise from -z as seen from above")
-      ->type_name("DEGREES")
-      ->transform(number_between(-360, 360))
-      ->capture_default_str()
-      ->group(group);
   command
       .add_option("--portals", options.portals,
                   "windows that photons of suns and skies start through: auto finds them, off, or "

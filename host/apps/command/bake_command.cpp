@@ -32,7 +32,7 @@ void run_bake(BakeOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
   render.parameters.light_maps = LightMapMode::on;
-  check_settings(render);
+  check(render.parameters);
   note_inputs_of(render);
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);

@@ -26,13 +26,6 @@ namespace {
 
 void define(CLI::App& photile) {
   photile.set_version_flag("--version", version_text());
-  photile.add_flag_callback(
-      "--settings-table",
-      [] {
-        std::cout << settings_table();
-        throw CLI::Success();
-      },
-      "print the settings of a rendering as a table of Markdown");
   photile.require_subcommand(1);
   add_render_command(photile);
   add_relight_command(photile);
@@ -43,6 +36,7 @@ void define(CLI::App& photile) {
   add_trade_command(photile);
   add_devices_command(photile);
   add_info_command(photile);
+  add_settings_command(photile);
   add_ies_command(photile);
   add_validate_command(photile);
   add_walk_command(photile);
@@ -79,6 +73,11 @@ ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const*
   } catch (const CLI::ExtrasError&) {
     // CLI11 tells them from the last to the first.
     const std::vector<std::string> extra = photile.remaining(true);
+    for (std::size_t i = 0; i < extra.size(); ++i) {
+      const std::string remedy =
+          remedy_for_option(extra[i], i + 1 < extra.size() ? extra[i + 1] : std::string());
+      if (!remedy.empty()) throw UsageError(remedy + "; photile settings lists all");
+    }
     throw UsageError(fmt::format("{} not expected: {}; see {}",
                                  extra.size() > 1 ? "these arguments were" : "this argument was",
                                  fmt::join(extra, " "), help_command(photile)));

@@ -15,6 +15,7 @@ void add_measure_command(CLI::App& photile);
 void add_daylight_command(CLI::App& photile);
 void add_glare_command(CLI::App& photile);
 void add_ies_command(CLI::App& photile);
+void add_settings_command(CLI::App& photile);
 void add_trade_command(CLI::App& photile);
 void add_devices_command(CLI::App& photile);
 void add_info_command(CLI::App& photile);

@@ -142,7 +142,7 @@ std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year
 void run_daylight(DaylightOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  check_settings(render);
+  check(render.parameters);
   check_lights(options);
   options.asked.occupancy.set_hours(options.occupied);
   options.asked.occupancy.set_days(options.days);

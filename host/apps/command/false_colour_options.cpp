@@ -30,9 +30,7 @@ report::FalseColour FalseColourOptions::of(const std::string& unit) const {
   return result;
 }
 
-void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
-  report::FalseColour& colours = options.colours;
-  const char* group = "False colour";
+void add_scale_option(CLI::App& command, FalseColourOptions& options, const std::string& group) {
   command
       .add_option("-s,--scale", options.scale,
                   "top of the scale, or auto: 98% of the values lie below")
@@ -40,6 +38,12 @@ void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
       ->check(top_of_scale())
       ->capture_default_str()
       ->group(group);
+}
+
+void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
+  report::FalseColour& colours = options.colours;
+  const char* group = "False colour";
+  add_scale_option(command, options, group);
   command.add_option("-l,--label", colours.label, "text of the legend; default: the unit")
       ->type_name("TEXT")
       ->group(group);

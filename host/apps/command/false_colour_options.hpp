@@ -22,7 +22,10 @@ struct FalseColourOptions {
   report::FalseColour of(const std::string& unit) const;
 };
 
-/// Adds the options to a subcommand.
+/// Adds --scale.
+void add_scale_option(CLI::App& command, FalseColourOptions& options, const std::string& group);
+
+/// Adds all of them to a subcommand.
 void add_false_colour_options(CLI::App& command, FalseColourOptions& options);
 
 }  // namespace photile::app

@@ -166,7 +166,7 @@ void write_outputs(const GlareOptions& options, const Scene& scene, const LightM
 void run_glare(const CLI::App& command, GlareOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  check_settings(render);
+  check(render.parameters);
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   if (!options.target.empty()) measuring::parse_requirement(options.target);
   if (options.observers.empty() && options.cameras.empty() && options.plane.height.empty()) {

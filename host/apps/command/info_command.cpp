@@ -8,6 +8,7 @@
 #include "command/commands.hpp"
 #include "command/scene_options.hpp"
 #include "command/scene_report.hpp"
+#include "command/setting_options.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
 
@@ -59,6 +60,7 @@ void add_info_command(CLI::App& photile) {
       ->required()
       ->type_name("");
   command->add_flag("--json", options->json, "print JSON");
+  add_set_option(*command, {scene_settings(options->load)});
   add_scene_options(*command, options->load, "Scene");
   add_light_options(*command, options->load, "Lights");
   command->callback([options] { run_info(*options); });

@@ -127,7 +127,7 @@ void warn(const Scene& scene, const std::vector<measuring::SensorGrid>& grids, P
 void run_measure(const CLI::App& command, MeasureOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  check_settings(render);
+  check(render.parameters);
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   share_rendering(render);
   if (options.places.empty() && !options.of_room()) {

@@ -20,17 +20,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group("Output");
-  command.add_option("--png", options.png, "tone-mapped picture to write")
-      ->type_name("FILE.png")
-      ->check(file_ending_in({".png"}))
-      ->allow_extra_args(false)
-      ->group("Output");
   add_tone_mapping_options(command, options.tone_mapping, "Output");
-  command
-      .add_flag_callback(
-          "--no-auto-exposure", [&options] { options.tone_mapping.automatic_exposure = false; },
-          "1 cd/m2 or 1 W/(m2 sr) becomes white, before --exposure")
-      ->group("Output");
   const auto add_drawing = [&](const char* name, std::string& file, const char* what) {
     command.add_option(name, file, what)
         ->type_name("FILE.png")
@@ -40,7 +30,6 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   add_drawing("--illuminance", options.illuminance,
               "lux on the surfaces that are seen, in false colour with a legend");
   add_drawing("--luminance", options.luminance, "cd/m2, in false colour with a legend");
-  add_false_colour_options(command, options.false_colour);
 }
 
 PictureOutputs::PictureOutputs(const PictureOptions& options)
@@ -55,7 +44,6 @@ PictureOutputs::PictureOutputs(const PictureOptions& options)
     }
     (exr ? exr_ : hdr ? hdr_ : png_).emplace_back(file);
   }
-  png_.insert(png_.end(), options.png.begin(), options.png.end());
 }
 
 std::vector<std::filesystem::path> PictureOutputs::files() const {

@@ -17,15 +17,13 @@ namespace photile::app {
 
 struct PictureOptions {
   std::vector<std::string> outputs;  ///< -o: .exr, .png or .hdr
-  std::vector<std::string> png;      ///< --png
   std::string illuminance;           ///< .png in false colour, "" = none
   std::string luminance;             ///< the same
   FalseColourOptions false_colour;   ///< of both
   ToneMapping tone_mapping;
 };
 
-/// Adds -o, --png, --exposure, --view, --no-auto-exposure, --illuminance, --luminance and the
-/// options of false colour to a subcommand.
+/// Adds -o, --exposure, --view, --illuminance and --luminance to a subcommand.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
 /// Files to be written, each with its format.

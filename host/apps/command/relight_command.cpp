@@ -11,6 +11,7 @@
 #include "command/output_files.hpp"
 #include "command/picture_outputs.hpp"
 #include "command/scene_options.hpp"
+#include "command/setting_options.hpp"
 #include "command/signals.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/run_files.hpp"
@@ -88,6 +89,8 @@ void add_relight_command(CLI::App& photile) {
       ->type_name("perez=DIRECT,DIFFUSE")
       ->group("Sky of patches");
   add_picture_options(*command, options->pictures);
+  add_false_colour_options(*command, options->pictures.false_colour);
+  add_set_option(*command, {display_settings(options->pictures.tone_mapping)});
   command->callback([options] { run_relight(*options); });
 }
 

@@ -204,7 +204,7 @@ void write_glare(const RenderOptions& options, const LightLayers& layers,
 ///   elapsed   seconds of the process so far
 Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRecord& record,
                           const std::function<double()>& elapsed, Progress& progress) {
-  check_settings(options);
+  check(options.parameters);
   if (options.integrator == Integrator::path) refuse_photon_map_options(command);
   share_rendering(options);
   const bool knows_errors =

@@ -57,17 +57,6 @@ void add_device_group(CLI::App& command, RenderOptions& options) {
                   "default: the environment's PHOTILE_DEVICE, else the best")
       ->type_name("SELECTOR")
       ->group("Device");
-  command
-      .add_option("--memory", options.device.memory_bytes,
-                  "bound on the device's buffers together; default: all its memory")
-      ->type_name("SIZE")
-      ->transform(byte_size())
-      ->group("Device");
-  command
-      .add_flag_callback(
-          "--no-cache", [&options] { options.device.use_program_cache = false; },
-          "compile the kernels anew")
-      ->group("Device");
 }
 
 }  // namespace
@@ -82,34 +71,26 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
 }
 
 void add_setting_options(CLI::App& command, RenderOptions& options,
-                         std::initializer_list<std::string_view> without) {
+                         std::initializer_list<std::string_view> without,
+                         const NamedSettings& more) {
   command.add_option("SCENE", options.scene, "scene file: .obj, .gltf or .glb")
       ->required()
       ->type_name("");
   add_lights(command, options);
   add_mood_options(command, options.mood, "Picture");
   add_settings(command, options.parameters, without);
+  add_set_option(command, {rendering_settings(options.parameters, without),
+                           scene_settings(options.load), device_settings(options.device), more});
   add_scene_options(command, options.load, "Scene");
   add_light_options(command, options.load, "Lights");
   add_device_group(command, options);
   add_run_group(command, options);
 }
 
-void add_picture_settings(CLI::App& command, RenderOptions& options,
-                          std::initializer_list<std::string_view> without) {
+void add_picture_settings(CLI::App& command, RenderOptions& options, const NamedSettings& more) {
   add_quality_preset(command, options.quality_options());  // before the settings that override it
-  add_setting_options(command, options, without);
+  add_setting_options(command, options, {}, more);
   add_view_group(command, options);
-  add_direct_option(command, options);
-}
-
-void add_direct_option(CLI::App& command, RenderOptions& options) {
-  command
-      .add_option("--direct", options.direct,
-                  "what finds light straight from lamps; rays: sharp shadows")
-      ->type_name("photons|rays")
-      ->transform(within(Words{{"photons", "rays"}}))
-      ->group("Estimate");
 }
 
 void add_integrator_option(CLI::App& command, RenderOptions& options) {
@@ -155,13 +136,14 @@ void add_projection_options(CLI::App& command, RenderOptions& options) {
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
   add_picture_options(command, options.pictures);
+  add_scale_option(command, options.pictures.false_colour, "Output");
   set_quality(options.quality_options(), Quality::good);
   add_goal_options(command, options.goal);
-  add_picture_settings(command, options);
+  NamedSettings more = display_settings(options.pictures.tone_mapping);
+  for (NamedSetting& setting : glare_settings(options.glare_limit)) more.push_back(setting);
+  add_picture_settings(command, options, more);
   add_projection_options(command, options);
   add_integrator_option(command, options);
-  command.add_flag("--profile", options.device.profile, "print the time of every kernel")
-      ->group("Device");
   command.add_option("--stats", options.statistics, "write the summary as JSON")
       ->type_name("FILE")
       ->group("Run");
@@ -186,13 +168,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
                   "picture in which reflections above a limit are marked, in a colour per light")
       ->type_name("FILE.png")
       ->check(file_ending_in({".png"}))
-      ->group("Output");
-  command
-      .add_option("--glare-limit", options.glare_limit,
-                  "above 100: luminance in cd/m2; else times the mean luminance of the picture")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str()
       ->group("Output");
 }
 
@@ -240,23 +215,13 @@ void share_rendering(RenderOptions& options) {
   }
 }
 
-void check_settings(RenderOptions& options) {
-  RenderParameters& parameters = options.parameters;
-  if (options.direct == "photons") {
-    if (parameters.direct_rays > 0) {
-      throw UsageError(
-          fmt::format("{} finds the light straight from lamps by rays; leave out --direct photons",
-                      option_of(setting_named("direct_rays"))));
-    }
-  }
-  if (options.direct == "rays" && parameters.direct_rays == 0) {
-    parameters.direct_rays = defaults::direct_rays;
-  }
-  check(parameters);
-}
-
 void refuse_photon_map_options(const CLI::App& command) {
   const std::set<std::string> groups{"Photons", "Estimate", "Device", "Quality"};
+  for (const std::string& name : names_set(command)) {
+    if (!is_of_photon_maps(name)) continue;
+    throw UsageError(
+        fmt::format("--set {}: only photon maps use it; leave it out, or --integrator path", name));
+  }
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || groups.count(option->get_group()) == 0) continue;
     throw UsageError(fmt::format("{}: only photon maps use it; leave it out, or --integrator path",

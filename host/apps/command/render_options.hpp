@@ -9,6 +9,7 @@
 #include "command/mood_options.hpp"
 #include "command/picture_outputs.hpp"
 #include "command/quality_options.hpp"
+#include "command/setting_options.hpp"
 #include "photile/camera.hpp"
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
@@ -34,7 +35,6 @@ struct RenderOptions {
   PictureOptions pictures;
   RenderParameters parameters;
   Integrator integrator = Integrator::photon_map;
-  std::string direct;  ///< "photons" or "rays" bring the light straight from lamps; "" = any
   Quality quality = Quality::draft;  ///< the settings are its own but for those given
   RefinementGoal goal;               ///< pictures are made until it is met
   std::string camera;
@@ -61,15 +61,14 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 /// Adds those that say how light is found, but not what a camera makes of it: what commands that
 /// measure take, too.
 ///   without   names of settings that the command does without
+///   more      that --set reaches, too
 void add_setting_options(CLI::App& command, RenderOptions& options,
-                         std::initializer_list<std::string_view> without = {});
+                         std::initializer_list<std::string_view> without = {},
+                         const NamedSettings& more = {});
 
 /// Adds these and those that say what a camera makes of it, but not what becomes of the picture.
 void add_picture_settings(CLI::App& command, RenderOptions& options,
-                          std::initializer_list<std::string_view> without = {});
-
-/// Adds --direct.
-void add_direct_option(CLI::App& command, RenderOptions& options);
+                          const NamedSettings& more = {});
 
 /// Adds --threads and --quiet.
 void add_run_group(CLI::App& command, RenderOptions& options);
@@ -87,9 +86,6 @@ void add_integrator_option(CLI::App& command, RenderOptions& options);
 
 /// "photon-map", "path".
 const char* name_of(Integrator integrator);
-
-/// Brings --direct into the settings and checks them. Errors: UsageError, SettingError.
-void check_settings(RenderOptions& options);
 
 /// Has the processes that were started together share the rendering. Errors: UsageError for what
 /// one process alone can do.

@@ -23,7 +23,7 @@ struct KernelRecord {
   std::string device;                      ///< its id
   std::uint64_t compiled = 0, cached = 0;  ///< programs, and those that were compiled before
   double compile_seconds = 0;
-  std::vector<device::KernelTime> times;  ///< with --profile
+  std::vector<device::KernelTime> times;  ///< with profile=on
 };
 
 struct RunRecord {

@@ -39,7 +39,7 @@ std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions
                                          Progress& progress) {
   if (options.parameters.passes > 1 && !(options.load_maps.empty() && options.save_maps.empty())) {
     throw SettingError(setting_named("passes"),
-                       "saved maps hold the photons of one pass; leave out --passes");
+                       "saved maps hold the photons of one pass; leave out passes");
   }
   if (options.load_maps.empty()) return std::nullopt;
   progress.begin("load photons", 0, "");

@@ -28,8 +28,9 @@ std::string reflectance_text(const Scene& scene, const Material& material) {
   if (!material.glossy()) return text;
   const bool changed = std::abs(reflectance->whole - reflectance->matt) >= 0.005;
   if (!changed || !(reflectance->matt > 0)) return text;
-  return text + fmt::format(" ({:.3g} entered, and {:.2g} specular; --lambertian removes that)",
-                            reflectance->matt, luminance(glm::dvec3(material.specular)));
+  return text +
+         fmt::format(" ({:.3g} entered, and {:.2g} specular; --set lambertian=on removes that)",
+                     reflectance->matt, luminance(glm::dvec3(material.specular)));
 }
 
 /// "1 camera", "2 cameras"

@@ -1,11 +1,18 @@
-// The table of settings (render/setting.hpp) as options, as text for records, and as documentation.
+// Settings of the command: those with an option of their own, and those that --set reaches by their
+// names. Most are rows of the table of settings (render/setting.hpp); a few say how scenes are read
+// and how devices are used.
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "photile/device.hpp"
+#include "photile/image.hpp"
+#include "photile/scene.hpp"
 #include "render/setting.hpp"
 
 namespace CLI {
@@ -14,8 +21,47 @@ class App;
 
 namespace photile::app {
 
-/// Adds the options of all settings but those named in `without`. Defaults are what `parameters`
-/// hold.
+/// What --set reaches, bound to where a command keeps its value.
+struct NamedSetting {
+  std::string_view name, group;
+  ValueRange range;
+  std::string_view help;
+  std::string initial;  ///< its default, or what holds where it is not given
+  std::string_view unit = {};
+  std::string_view reader = {};                  ///< the stage that reads it
+  std::function<void(const SettingValue&)> set;  ///< to a value within the range
+};
+using NamedSettings = std::vector<NamedSetting>;
+
+/// Those of the table, but for those with an option of their own and those named in `without`.
+NamedSettings rendering_settings(RenderParameters& parameters,
+                                 std::initializer_list<std::string_view> without = {});
+NamedSettings scene_settings(SceneLoadOptions& options);
+NamedSettings device_settings(DeviceOptions& options);
+NamedSettings display_settings(ToneMapping& tone_mapping);
+NamedSettings glare_settings(double& limit);
+
+/// Sets what "NAME=VALUE" names. Errors: UsageError of one line, with a remedy, for a name that is
+/// none of these and for a value out of its range.
+void assign_named(const NamedSettings& settings, const std::string& assignment);
+
+/// Adds --set NAME=VALUE, whose errors are those of assign_named.
+void add_set_option(CLI::App& command, std::initializer_list<NamedSettings> settings);
+
+/// Names that were given to --set.
+std::vector<std::string> names_set(const CLI::App& command);
+
+/// Whether photon maps alone have a use for the setting.
+bool is_of_photon_maps(std::string_view name);
+
+/// What to type in place of an option that is a setting: "--radius is a setting: --set radius=0.1".
+/// "" where there is no such setting.
+///   argument   "--radius" or "--radius=0.1"
+///   next       the argument after it, or ""
+std::string remedy_for_option(const std::string& argument, const std::string& next);
+
+/// Adds the options of settings that have one (but --size), without those named. Defaults are what
+/// `parameters` hold.
 void add_settings(CLI::App& command, RenderParameters& parameters,
                   std::initializer_list<std::string_view> without = {});
 
@@ -29,11 +75,14 @@ std::string option_of(const Setting& setting);
 ///   all   or those that paths have, too
 nlohmann::json settings_json(const RenderParameters& parameters, bool all);
 
-/// What to type for these parameters: "--photons 1000000 -k 50 --samples 4", and all options whose
+/// What to type for these parameters: "--photons 1000000 -k 50 --samples 4", and all settings whose
 /// values are not the defaults.
 std::string options_text(const RenderParameters& parameters);
 
-/// The table as docs/command-line.md holds it, Markdown.
-std::string settings_table();
+/// What `photile settings` prints: all that --set reaches.
+std::string settings_text();
+
+/// The same as docs/settings.md holds it, Markdown, and what qualities set.
+std::string settings_markdown();
 
 }  // namespace photile::app

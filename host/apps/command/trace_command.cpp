@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -37,7 +39,7 @@ void run_trace(TraceOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
   render.parameters.passes = 1;  // a file holds the photons of one
-  check_settings(render);
+  check(render.parameters);
   note_inputs_of(render);
   check_outputs(std::vector<std::filesystem::path>{options.output});
   const ThreadLimit threads(render.threads);
@@ -89,11 +91,15 @@ void add_trace_command(CLI::App& photile) {
       ->type_name("");
   set_quality(render.quality_options(), Quality::good);
   add_quality_preset(*command, render.quality_options());
-  for (const char* name : {"photons_emitted", "quota", "seed", "maps", "direct_rays", "light_maps",
-                           "light_map_rays"}) {
+  for (const char* name : {"photons_emitted", "seed"}) {
     add_setting(*command, render.parameters, name);
   }
-  add_direct_option(*command, render);
+  NamedSettings of_photons = rendering_settings(render.parameters);
+  std::erase_if(of_photons, [](const NamedSetting& setting) {
+    constexpr std::array kept{"quota", "maps", "direct_rays", "light_maps", "light_map_rays"};
+    return std::find(kept.begin(), kept.end(), setting.name) == kept.end();
+  });
+  add_set_option(*command, {of_photons, scene_settings(render.load)});
   add_shard_option(*command, options->shard, "of the paths", "Photons");
   add_scene_options(*command, render.load, "Scene");
   add_light_options(*command, render.load, "Lights");

@@ -156,7 +156,7 @@ void warn_of_noise(const Reference& reference, std::span<const trade::TradePoint
 void run_trade(TradeOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  check_settings(render);
+  check(render.parameters);
   const std::filesystem::path folder = options.folder;
   const auto csv = folder / "trade.csv", json = folder / "trade.json",
              traced = folder / "reference.exr";

@@ -50,20 +50,6 @@ std::optional<std::uint64_t> parse_count(std::string_view text) {
   return number ? whole(*number) : std::nullopt;
 }
 
-std::optional<std::uint64_t> parse_bytes(std::string_view text) {
-  static constexpr std::array<Unit, 9> units{{{"KiB", 0x1p10},
-                                              {"MiB", 0x1p20},
-                                              {"GiB", 0x1p30},
-                                              {"TiB", 0x1p40},
-                                              {"kB", 1e3},
-                                              {"MB", 1e6},
-                                              {"GB", 1e9},
-                                              {"TB", 1e12},
-                                              {"", 1}}};
-  const auto number = parse_with_unit(text, units);
-  return number ? whole(*number) : std::nullopt;
-}
-
 std::optional<double> parse_share(std::string_view text) {
   const bool percent = text.ends_with('%');
   if (percent) text.remove_suffix(1);
@@ -101,16 +87,6 @@ std::optional<Shard> parse_shard(std::string_view text) {
 
 CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest) {
   return within(WholeNumbers{lowest, highest});
-}
-
-CLI::Validator byte_size() {
-  const auto check = [](std::string& text) -> std::string {
-    const auto bytes = parse_bytes(text);
-    if (!bytes || *bytes == 0) return fmt::format("'{}' is no size such as 512MiB or 2GiB", text);
-    text = std::to_string(*bytes);
-    return {};
-  };
-  return {check, ""};
 }
 
 CLI::Validator share_up_to(double highest) {

@@ -17,10 +17,6 @@ namespace photile::app {
 /// A whole number: "500000", "5e5", "500k", "0.5M", "1G". Nothing if it is none, or beyond 64 bits.
 std::optional<std::uint64_t> parse_count(std::string_view text);
 
-/// A number of bytes: "512MiB", "2GiB", "1.5GiB", "100MB", "4096". Nothing if it is none, is no
-/// whole number of bytes, or is beyond 64 bits.
-std::optional<std::uint64_t> parse_bytes(std::string_view text);
-
 /// A part of a whole above 0: "2%", "0.02". Nothing if it is none.
 std::optional<double> parse_share(std::string_view text);
 
@@ -46,9 +42,6 @@ CLI::Validator within(const ValueRange& range);
 
 /// A count as `parse_count` reads it, in [lowest, highest].
 CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest);
-
-/// A number of bytes as `parse_bytes` reads it, above zero.
-CLI::Validator byte_size();
 
 /// A share as `parse_share` reads it, at most `highest`.
 CLI::Validator share_up_to(double highest);

@@ -43,7 +43,7 @@ LightMix mix_again(const Scene& scene, const RenderOptions& options) {
 void run_view(ViewOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
-  check_settings(render);
+  check(render.parameters);
   if (!std::filesystem::is_directory(options.outputs)) {
     throw UsageError(
         fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
@@ -114,7 +114,7 @@ void add_view_command(CLI::App& photile) {
       ->capture_default_str()
       ->group("Window");
   add_view_option(*command, options->view, "Window");
-  add_picture_settings(*command, options->render, {});
+  add_picture_settings(*command, options->render);
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_view(*options); });
 }

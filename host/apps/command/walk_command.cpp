@@ -320,7 +320,7 @@ class Walk {
 void check_quick(WalkOptions& options, bool off) {
   const bool to_exr = options.output.ends_with(".exr");
   if (options.quick && off) {
-    throw UsageError("--quick draws light maps; leave out --light-maps off");
+    throw UsageError("--quick draws light maps; leave out light_maps=off");
   }
   if (options.quick) options.render.parameters.light_maps = LightMapMode::on;
   if (!to_exr && !options.png.empty()) {
@@ -354,7 +354,7 @@ void run_walk(WalkOptions& options) {
   handle_signals();
   check_share(options);
   RenderOptions& render = options.render;
-  check_settings(render);
+  check(render.parameters);
   share_rendering(render);
   check_names(options);
 
@@ -433,9 +433,8 @@ void add_walk_command(CLI::App& photile) {
   set_quality(options->render.quality_options(), Quality::good);
   add_picture_settings(*command, options->render);
   add_saved_maps_options(*command, options->render);
-  command->callback([options, command] {
-    const bool given = command->count("--light-maps") > 0;
-    check_quick(*options, given && options->render.parameters.light_maps == LightMapMode::off);
+  command->callback([options] {
+    check_quick(*options, options->render.parameters.light_maps == LightMapMode::off);
     run_walk(*options);
   });
 }

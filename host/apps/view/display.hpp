@@ -37,12 +37,11 @@ struct DisplayedFrame {
   std::vector<std::uint8_t> rgb;  ///< row 0 at the top
 };
 
-/// Mixes and colours a frame: the picture is what `photile render --png` gives at that exposure
-/// and view.
-/// Errors: UsageError for an unknown palette.
+/// Mixes and colours a frame: the picture is what `photile render -o FILE.png` gives at that
+/// exposure and view. Errors: UsageError for an unknown palette.
 DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings);
 
-/// Stops by which `render --png` scales this picture of its own accord.
+/// Stops by which `render -o FILE.png` scales this picture of its own accord.
 double automatic_stops(const Frame& frame, const LightMix& mix);
 
 /// Illuminance of the surface that each pixel sees, lux.

@@ -28,7 +28,8 @@ void apply(Scene& scene, const ReflectanceChange& change) {
     if (scene::set_reflectance(scene, material, change.share)) continue;
     throw UsageError(fmt::format(
         "reflectance of '{}': {:g} cannot be had by making its colour brighter or darker: it is "
-        "glass, its gloss reflects more alone (--lambertian removes that) or a channel exceeds 1",
+        "glass, its gloss reflects more alone (--set lambertian=on removes that) or a channel "
+        "exceeds 1",
         material.name, change.share));
   }
   if (!found) {

@@ -78,10 +78,10 @@ void warn_of_other_up(const Scene& scene, files::Warnings& warnings) {
   const auto [x, y, z] = facings_of(scene);
   const double by_area = z.area / y.area, by_plane = z.widest() / y.widest();
   if (!(by_area >= 1 && by_plane >= 1 && by_area * by_plane >= least_evidence)) return;
-  warnings.add(fmt::format(
-      "z seems to point up: {:.3g} m2 face along z, {:.3g} along y, which is taken for up; --up z "
-      "turns the scene, --up y leaves this line out",
-      z.area, y.area));
+  warnings.add(
+      fmt::format("z seems to point up: {:.3g} m2 face along z, {:.3g} along y, which is taken for "
+                  "up; --set up=z turns the scene, --set up=y leaves this line out",
+                  z.area, y.area));
 }
 
 }  // namespace photile::loading

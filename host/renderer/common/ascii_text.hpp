@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -25,6 +26,9 @@ std::vector<std::string_view> lines_of(std::string_view text);
 
 /// A text in one line: control characters are blanks, but for line ends at its end, which go.
 std::string one_line(std::string text);
+
+/// The word that the fewest letters make of `text`: put in, left out, or changed. "" of none.
+std::string_view nearest_word(std::string_view text, std::span<const std::string_view> words);
 
 /// The number that all of a text spells, with a decimal point, in digits of `base` where it is a
 /// whole one. Nothing for NaN, infinities and all else.

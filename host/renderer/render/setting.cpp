@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "photile/limits.hpp"
@@ -67,12 +69,10 @@ using Kept = decltype(Setting::kept);
 
 /// A row whose value is a field of the parameters, or of one of their parts.
 template <auto... members>
-Setting row(std::string_view name, std::string_view option, std::string_view reader,
-            ValueRange range, std::string_view help, Kept kept, std::string_view otherwise = {},
-            std::string_view unit = {}) {
+Setting row(std::string_view name, std::string_view reader, ValueRange range, std::string_view help,
+            Kept kept, std::string_view otherwise = {}, std::string_view unit = {}) {
   return {.name = name,
           .unit = unit,
-          .option = option,
           .reader = reader,
           .help = help,
           .otherwise = otherwise,
@@ -120,24 +120,32 @@ std::string kept_for_direct_light(const Setting& setting, const RenderParameters
   return setting.is_given(parameters) ? "direct light by rays" : std::string();
 }
 
+/// Options of the command, by the settings that they set. All other settings go by their names.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> options{
+    {{"width", "size"},
+     {"height", "size"},
+     {"samples_per_pixel", "samples"},
+     {"seed", "seed"},
+     {"photons_emitted", "photons"},
+     {"neighbours", "k,neighbours"}}};
+
 constexpr std::uint64_t most_int = std::numeric_limits<int>::max();
 constexpr std::uint64_t most_seed = std::numeric_limits<std::uint64_t>::max();
 
 std::vector<Setting> picture_rows() {
   constexpr std::string_view hits = "primary hits";
   return {
-      row<&P::film, &Film::width>("width", "", hits, WholeNumbers{1, limits::max_image_side},
+      row<&P::film, &Film::width>("width", hits, WholeNumbers{1, limits::max_image_side},
                                   "of the picture", not_kept, "", "pixels"),
-      row<&P::film, &Film::height>("height", "", hits, WholeNumbers{1, limits::max_image_side},
+      row<&P::film, &Film::height>("height", hits, WholeNumbers{1, limits::max_image_side},
                                    "of the picture", not_kept, "", "pixels"),
-      by_quality(
-          row<&P::film, &Film::samples_per_pixel>(
-              "samples_per_pixel", "samples", hits, WholeNumbers{1, limits::max_samples_per_pixel},
-              "primary rays per pixel, over all passes; at least one in each", not_kept),
-          16, 64),
-      row<&P::seed>("seed", "seed", "all", WholeNumbers{0, most_seed},
+      by_quality(row<&P::film, &Film::samples_per_pixel>(
+                     "samples_per_pixel", hits, WholeNumbers{1, limits::max_samples_per_pixel},
+                     "primary rays per pixel, over all passes; at least one in each", not_kept),
+                 16, 64),
+      row<&P::seed>("seed", "all", WholeNumbers{0, most_seed},
                     "the same seed gives the same picture", kept_as_it_is),
-      row<&P::max_specular_depth>("max_specular_depth", "", hits,
+      row<&P::max_specular_depth>("max_specular_depth", hits,
                                   WholeNumbers{0, limits::max_specular_depth},
                                   "mirrors and glass that a ray from the eye follows", not_kept),
   };
@@ -147,20 +155,20 @@ std::vector<Setting> photon_rows() {
   constexpr std::string_view paths = "trace photons";
   return {
       by_quality(row<&P::photons, &PhotonPaths::emitted_photons>(
-                     "photons_emitted", "photons", paths,
+                     "photons_emitted", paths,
                      WholeNumbers{limits::min_photons, limits::max_emitted_photons},
                      "paths over all lights", kept_as_it_is),
                  500'000, 2'000'000),
       row<&P::photons, &PhotonPaths::quota>(
-          "quota", "quota", paths, words_of(all_photon_quotas),
+          "quota", paths, words_of(all_photon_quotas),
           "how the lights share the paths: by power, equally, or half by each", kept_as_it_is),
       row<&P::photons, &PhotonPaths::max_path_length>(
-          "max_path_length", "", paths, WholeNumbers{1, most_int},
+          "max_path_length", paths, WholeNumbers{1, most_int},
           "surfaces that a photon meets at most", kept_as_it_is),
       row<&P::photons, &PhotonPaths::roulette_start>(
-          "roulette_start", "", paths, WholeNumbers{1, most_int},
+          "roulette_start", paths, WholeNumbers{1, most_int},
           "first bounce at which a path may end by chance", kept_as_it_is),
-      row<&P::passes>("passes", "passes", "all", WholeNumbers{1, limits::max_passes},
+      row<&P::passes>("passes", "all", WholeNumbers{1, limits::max_passes},
                       "photon passes, each of its share of the paths", not_kept,
                       "as many as the host's memory needs"),
   };
@@ -170,52 +178,49 @@ std::vector<Setting> estimate_rows() {
   constexpr std::string_view estimate = "radiance estimate", groups = "neighbour groups",
                              build = "build photon maps";
   return {
-      by_quality(of_groups(row<&P::neighbours>("neighbours", "k,neighbours", estimate,
+      by_quality(of_groups(row<&P::neighbours>("neighbours", estimate,
                                                WholeNumbers{1, limits::max_neighbours},
                                                "photons of an estimate", kept_for_radius)),
                  100, 100),
       row<&P::least_neighbours>(
-          "least_neighbours", "least-neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
+          "least_neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
           "each hit has its own number of neighbours, from this one up, as its bias allows",
           not_kept, "all hits have the same"),
-      of_groups(row<&P::radius>("radius", "radius", groups, PositiveNumbers{},
+      of_groups(row<&P::radius>("radius", groups, PositiveNumbers{},
                                 "photons farther away do not count", kept_if_given,
                                 "twice the median distance to the k-th photon", "m")),
-      of_groups(row<&P::angle_degrees>("angle_degrees", "angle", groups, Numbers{0, 180},
+      of_groups(row<&P::angle_degrees>("angle_degrees", groups, Numbers{0, 180},
                                        "largest angle between the normals of a group",
                                        kept_as_it_is, "", "degrees")),
-      row<&P::area>("area", "area", "surface index", words_of(all_area_modes),
+      row<&P::area>("area", "surface index", words_of(all_area_modes),
                     "area by which photons are divided; disc: dark borders and corners, the only "
                     "one of naive maps",
                     not_kept),
-      row<&P::kernel>("kernel", "kernel", estimate, words_of(all_density_kernels),
+      row<&P::kernel>("kernel", estimate, words_of(all_density_kernels),
                       "weights of photons; cone, epanechnikov: less blur, more noise", not_kept),
-      of_groups(row<&P::maps>("maps", "maps", groups, words_of(all_map_modes),
+      of_groups(row<&P::maps>("maps", groups, words_of(all_map_modes),
                               "naive: dark edges; patch: triangles share maps", kept_as_it_is)),
-      of_groups(row<&P::structure>("structure", "structure", build, words_of(all_map_structures),
+      of_groups(row<&P::structure>("structure", build, words_of(all_map_structures),
                                    "how photons are found; same neighbours", kept_for_structure)),
-      row<&P::photons_per_cell>("photons_per_cell", "photons-per-cell", build, PositiveNumbers{},
+      row<&P::photons_per_cell>("photons_per_cell", build, PositiveNumbers{},
                                 "fineness of the grids", not_kept),
-      row<&P::direct_rays>("direct_rays", "direct-rays", "primary hits",
-                           WholeNumbers{1, limits::max_direct_rays},
+      row<&P::direct_rays>("direct_rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
                            "looks at lamps from a hit, which replace photons straight from lamps",
                            kept_for_direct_light, "photons bring it"),
-      row<&P::gloss>("gloss", "gloss", "primary hits", words_of(all_gloss_modes),
+      row<&P::gloss>("gloss", "primary hits", words_of(all_gloss_modes),
                      "what finds the light that lobes reflect; auto: rays where light maps are "
                      "read, else photons",
                      not_kept),
-      row<&P::light_maps>("light_maps", "light-maps", "light maps", words_of(all_light_map_modes),
+      row<&P::light_maps>("light_maps", "light maps", words_of(all_light_map_modes),
                           "matt surfaces are read between nodes; auto: not with naive maps or "
                           "several passes; off: an estimate at each hit",
                           not_kept),
       by_quality(row<&P::light_map_rays>(
-                     "light_map_rays", "light-map-rays", "light maps",
-                     WholeNumbers{1, limits::max_gathering_rays},
+                     "light_map_rays", "light maps", WholeNumbers{1, limits::max_gathering_rays},
                      "rays, and looks at lamps, by which nodes of light maps gather light",
                      not_kept, "the photon estimate values nodes"),
                  64, 256),
-      row<&P::light_map_detail>("light_map_detail", "light-map-detail", "light maps",
-                                PositiveNumbers{},
+      row<&P::light_map_detail>("light_map_detail", "light maps", PositiveNumbers{},
                                 "largest distance between the finest nodes of light maps", not_kept,
                                 "an eighth of the coarsest, by the photons", "m"),
   };
@@ -248,6 +253,11 @@ std::span<const Setting> settings() {
     append("Picture", picture_rows());
     append("Photons", photon_rows());
     append("Estimate", estimate_rows());
+    for (Setting& setting : rows) {
+      for (const auto& [name, option] : options) {
+        if (setting.name == name) setting.option = option;
+      }
+    }
     return rows;
   }();
   return table;

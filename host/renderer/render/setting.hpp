@@ -17,7 +17,7 @@ namespace photile {
 struct Setting {
   std::string_view name = {};    ///< in records and refusals, such as "photons_emitted"
   std::string_view unit = {};    ///< "" = none
-  std::string_view option = {};  ///< "k,neighbours"; "" = no option of its own
+  std::string_view option = {};  ///< of the command, "k,neighbours"; "" = set by its name
   std::string_view group = {};   ///< of options: Picture, Photons or Estimate
   std::string_view reader = {};  ///< the stage that reads it
   std::string_view help = {};

@@ -42,7 +42,7 @@ def render_command(command, scene, file, picture):
     chosen = scene.photile
     arguments = [command, "render", str(file), "-o", str(picture), "--size", size_of(scene),
                  "--quality", chosen.quality, "--seed", str(chosen.seed),
-                 "--emissive-scale", f"{chosen.efficacy:g}"]
+                 "--set", f"emissive_scale={chosen.efficacy:g}"]
     if scene.camera:
         arguments += ["--camera", scene.camera.name]
     for name, colour in scene_export.tints(scene):
@@ -121,7 +121,7 @@ class PHOTILE_OT_view(bpy.types.Operator):
         try:
             file, _ = export_files(context.scene)
             arguments = [command_of(context), "view", str(file),
-                         "--emissive-scale", f"{context.scene.photile.efficacy:g}"]
+                         "--set", f"emissive_scale={context.scene.photile.efficacy:g}"]
             for name, colour in scene_export.tints(context.scene):
                 arguments += ["--light", f"{name}={colour}"]
             subprocess.Popen(arguments)
