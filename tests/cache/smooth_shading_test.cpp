@@ -128,7 +128,7 @@ TEST_CASE(
   REQUIRE(needs_of(scene).many_lights() == are_drawn);
   const std::vector<SmoothMesh::Place> places = sphere.places();
   const LightLayers layers = by_nodes(scene, sensors_of(places));
-  const std::vector<double> of_all = radiance_of(scene, layers), powers = layer_powers(scene);
+  const std::vector<double> of_all = radiance_of(scene, layers), powers = estimate::layer_powers(scene);
   REQUIRE(layers.layers.size() == to_sun.size());
   std::vector<double> lit(to_sun.size(), 0.0), ratios = lit;
   for (std::size_t i = 0; i < places.size(); ++i) {
