@@ -6,7 +6,7 @@
 
 #include "photile/sensors.hpp"
 #include "support/bench_record.hpp"
-#include "tools/validation/room.hpp"
+#include "validation/room.hpp"
 
 namespace {
 

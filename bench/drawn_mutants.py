@@ -5,7 +5,7 @@
                            [--part I/N --work FOLDER] [--results FILE] [--list] [--page]
 
 Each changes one operator, bound, constant or truth value of a line (mutant_sites.py) of kernels/ or of
-the folders groups, surface and trace of host/. Mutants of kernels are copies of the folder that
+the folders groups, surface and trace of host/renderer. Mutants of kernels are copies of the folder that
 PHOTILE_KERNEL_DIR names; those of the host are in one build (mutant_schemata.py), linked with the objects
 of the build at hand. Tests that noticed most in the least time come first, and the first that fails
 ends a mutant; one that does not compile does not count. With --quick N only steps that together take N
@@ -94,15 +94,15 @@ FURTHER_TESTS = {
                 ("estimate", "clipped_surfaces")),
     "trace": (("reference", "form_factors"), ("reference", "path_direct_light"),
               ("reference", "path_materials"), ("reference", "path_interreflection"),
-              ("render", "direct_rays"), ("gather", "irradiance_gather"),
-              ("gather", "gathered_nodes"), ("measuring", "gather"),
-              ("light_maps", "light_map_sensors"), ("light_maps", "light_map_frames"),
-              ("scene", "textured_lights"), ("daylight", "daylight_matrix"))}
+              ("render", "direct_rays"), ("cache", "irradiance_gather"),
+              ("cache", "gathered_nodes"), ("measuring", "gather"),
+              ("cache", "light_map_sensors"), ("cache", "light_map_frames"),
+              ("loading", "textured_lights"), ("daylight", "daylight_matrix"))}
 
 
 def host_files():
     return [file for folder in HOST_FOLDERS
-            for file in sorted((ROOT / "host" / folder).glob("**/*.[ch]pp"))]
+            for file in sorted((ROOT / "host" / "renderer" / folder).glob("**/*.[ch]pp"))]
 
 
 def all_sites():
@@ -233,7 +233,7 @@ class NoTimeLeft(Exception):
 
 def try_mutant(site, runner, steps, order, seconds):
     """The test that noticed, or None; NoTimeLeft after steps of so many seconds together."""
-    area = "/".join(site.file.split("/")[:2])
+    area = str(pathlib.PurePath(site.file).parent)
     if seconds < math.inf and runner.is_built_alone(site):
         raise NoTimeLeft
     runner.prepare(site)
@@ -321,7 +321,7 @@ def run_all(options, drawn):
             sites = [site for site in drawn.values() if site and site.file.startswith("host/")]
             host = Host(options.build, work, sites, order)
         runner = host if in_host else kernels
-        steps = host.steps(site.file.split("/")[1]) if in_host else kernels.steps
+        steps = host.steps(site.file.split("/")[2]) if in_host else kernels.steps
         before = os.times()
         try:
             noticed = try_mutant(site, runner, steps, order, options.quick)
@@ -341,8 +341,8 @@ def page(results):
     """The section of docs/testing.md."""
     rows = ["| | drawn | noticed | equivalent | survive | do not compile | not decided | "
             "share noticed |", "|---|--:|--:|--:|--:|--:|--:|---|"]
-    areas = {"kernels": "kernels/", "groups": "host/groups/", "surface": "host/surface/",
-             "trace": "host/trace/", "all": ""}
+    areas = {"kernels": "kernels/", "groups": "host/renderer/groups/", "surface": "host/renderer/surface/",
+             "trace": "host/renderer/trace/", "all": ""}
     for name, start in areas.items():
         count = sum(mutant.startswith(start) for mutant in results)
         of_area = [result for mutant, result in results.items()

@@ -19,9 +19,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FUZZER = ROOT / "build/coverage/tests/fuzz/photile_fuzz"
 PROFILES = ROOT / "build/coverage/profiles"
-READERS = ("host/import/", "host/image/", "host/saved_maps/", "host/measuring/", "host/tools/",
-           "host/light_maps/light_map_contents", "host/daylight/occupancy", "host/daylight/blinds",
-           "host/common/")
+READERS = ("host/formats/", "host/renderer/image/", "host/renderer/common/", "host/lighting/measuring/",
+           "host/lighting/daylight/occupancy", "host/lighting/daylight/blinds", "host/apps/",
+           "host/renderer/cache/light_map_contents")
 
 
 def run(target, folders):

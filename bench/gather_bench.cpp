@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "gather/irradiance_gather.hpp"
-#include "render/neighbour_choice.hpp"
+#include "cache/irradiance_gather.hpp"
+#include "estimate/neighbour_choice.hpp"
+#include "estimate/reflected_radiance.hpp"
 #include "render/path_estimate.hpp"
-#include "render/reflected_radiance.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"
 
@@ -68,9 +68,10 @@ std::vector<double> totals(const Estimates& estimates, std::size_t points,
                            std::span<const double> powers) {
   std::vector<double> result(points, 0.0);
   for (std::size_t point = 0; point < points; ++point) {
-    for_each_estimate(estimates, point, powers.size(), [&](std::size_t layer, std::size_t i) {
-      result[point] += powers[layer] * luminance(glm::dvec3(estimates.irradiance[i]));
-    });
+    estimate::for_each_estimate(
+        estimates, point, powers.size(), [&](std::size_t layer, std::size_t i) {
+          result[point] += powers[layer] * luminance(glm::dvec3(estimates.irradiance[i]));
+        });
   }
   return result;
 }
@@ -151,15 +152,16 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
   const PrimaryHits many = seen_points(rays, sizes.timed_points);
   for (const auto& [gathering, looks] : {std::pair{144, 96}, std::pair{25, 32}, std::pair{324, 216},
                                          std::pair{144, 0}, std::pair{0, 96}}) {
-    IrradianceGatherParameters parameters;
+    cache::IrradianceGatherParameters parameters;
     parameters.rays = gathering;
     parameters.looks = looks;
-    IrradianceGather gather = maps->gather(parameters);
-    GatheredIrradiance light = gather.gather(points, numbers(points.size()));  // compiles kernels
-    IrradianceGather timed_gather = maps->gather(parameters);
+    cache::IrradianceGather gather = maps->gather(parameters);
+    cache::GatheredIrradiance light =
+        gather.gather(points, numbers(points.size()));  // compiles kernels
+    cache::IrradianceGather timed_gather = maps->gather(parameters);
     const double seconds = timed([&] { timed_gather.gather(many, numbers(many.size())); }) /
                            static_cast<double>(many.size());
-    const IrradianceGather::Costs& costs = timed_gather.costs();
+    const cache::IrradianceGather::Costs& costs = timed_gather.costs();
     nlohmann::json row{{"scene", name},
                        {"method", "gathering"},
                        {"paths", sizes.gathered_photons},
@@ -175,7 +177,7 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
                        {"estimated", costs.estimated}};
     double stated = 0, squares = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const GatheredIrradiance::Total total = light.total(i, maps->layer_powers());
+      const cache::GatheredIrradiance::Total total = light.total(i, maps->layer_powers());
       const double variance = total.error * total.error + truth.variance[i];
       stated += total.error / std::max(1e-30, truth.lux[i]);
       squares += std::pow(total.luminance - truth.lux[i], 2) / std::max(1e-30, variance);
@@ -223,7 +225,7 @@ bool run(BenchOptions& options, const std::vector<std::string>& files, Sizes siz
   const auto measure_scene = [&](const std::string& name, const Scene& scene) {
     const RayScene rays(scene);
     const PrimaryHits points = seen_points(rays, sizes.points);
-    const Truth truth = by_paths(rays, points, layer_powers(scene), sizes.paths);
+    const Truth truth = by_paths(rays, points, estimate::layer_powers(scene), sizes.paths);
     measure_gathering(name, rays, device, points, truth, sizes, record);
     measure_photons(name, rays, device, points, truth, sizes, record);
   };

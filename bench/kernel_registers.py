@@ -22,12 +22,12 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/kernels.md"
 INCLUDE = re.compile(r'\s*#\s*include "([^"]+)"')
 
-# Of each work-group: the kernels that ask for none run in groups of this (host/maps/work_groups.hpp).
+# Of each work-group: the kernels that ask for none run in groups of this (host/renderer/maps/work_groups.hpp).
 GROUP = 64
 
 
 def capacity(k, lanes):
-    """What host/estimate/specialisation.cpp keeps of distances."""
+    """What host/renderer/estimate/specialisation.cpp keeps of distances."""
     if lanes:
         return min(max(-(-8 * k // lanes) * lanes, 256), 4096)
     return min(max(-(-8 * k // 16) * 16, 256), 800)

@@ -11,23 +11,23 @@
 #include <optional>
 #include <random>
 
-#include "light_maps/charts.hpp"
-#include "light_maps/node_mix.hpp"
+#include "cache/charts.hpp"
+#include "cache/light_map_frames.hpp"
+#include "cache/node_mix.hpp"
+#include "cache/surface_cache.hpp"
+#include "estimate/neighbour_choice.hpp"
+#include "estimate/photon_estimate.hpp"
 #include "photile/image.hpp"
 #include "photile/photon_tracer.hpp"
 #include "photile/picture_error.hpp"
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
-#include "render/light_map_frames.hpp"
-#include "render/neighbour_choice.hpp"
-#include "render/photon_estimate.hpp"
-#include "render/surface_cache.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"
-#include "tools/view/viewpoint.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
+#include "view/viewpoint.hpp"
 
 namespace {
 
@@ -118,14 +118,15 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   const auto surface = std::make_shared<const SurfaceIndex>(
       index_surface(scene, photons, radius, defaults::group_angle_degrees));
   const EstimateParameters estimate{.neighbours = settings.neighbours, .surface = surface};
-  const std::vector<double> powers = layer_powers(scene);
+  const std::vector<double> powers = estimate::layer_powers(scene);
   std::vector<PhotonMaps> maps;
   maps.emplace_back(device, scene, photons, groups, PhotonMapParameters{.radius = radius});
-  PhotonEstimate light(std::span(&device, 1), scene, {std::move(maps), {estimate}}, powers);
-  ValuedBy by_photons(light);
+  estimate::PhotonEstimate light(std::span(&device, 1), scene, {std::move(maps), {estimate}},
+                                 powers);
+  cache::ValuedBy by_photons(light);
   LightMapParameters light_maps =
-      light_map_parameters(scene, photons, settings.neighbours, radius,
-                           defaults::group_angle_degrees, settings.detail, powers);
+      cache::light_map_parameters(scene, photons, settings.neighbours, radius,
+                                  defaults::group_angle_degrees, settings.detail, powers);
   if (settings.coarsest > 0) {
     light_maps.levels +=
         static_cast<int>(std::lround(std::log2(settings.coarsest / light_maps.spacing)));
@@ -134,7 +135,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   std::vector<glm::vec3> scales;
   for (const double power : powers) scales.emplace_back(power);
 
-  const auto draw = [&](LightMapFrames& frames, const Camera& camera, int width, int height,
+  const auto draw = [&](cache::LightMapFrames& frames, const Camera& camera, int width, int height,
                         double fill_seconds) {
     std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));
     const Stopwatch stopwatch;
@@ -143,12 +144,12 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
     return std::pair(stopwatch.taken(), drawn);
   };
   {
-    SurfaceCache warm(rays, light_maps, light, by_photons, nullptr);  // compiles the kernels
-    LightMapFrames frames(rays, warm.maps(), warm.source());
+    cache::SurfaceCache warm(rays, light_maps, light, by_photons, nullptr);  // compiles the kernels
+    cache::LightMapFrames frames(rays, warm.maps(), warm.source());
     draw(frames, scene.cameras.front(), 32, 32, all);
   }
-  SurfaceCache estimates(rays, light_maps, light, by_photons, nullptr);
-  LightMapFrames frames(rays, estimates.maps(), estimates.source());
+  cache::SurfaceCache estimates(rays, light_maps, light, by_photons, nullptr);
+  cache::LightMapFrames frames(rays, estimates.maps(), estimates.source());
   const auto [width, height] = settings.sizes.front();
   const TimeTaken fill = draw(frames, scene.cameras.front(), width, height, all).first;
   const LightMapStatistics first = estimates.maps().statistics();
@@ -177,8 +178,8 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   }
   // Each pixel's mean of 16 rays, nodes filled as it asks for them; the reference has all light.
   if (const auto reference = reference_of(name)) {
-    SurfaceCache compared(rays, light_maps, light, by_photons, nullptr);
-    LightMapFrames framed(rays, compared.maps(), compared.source());
+    cache::SurfaceCache compared(rays, light_maps, light, by_photons, nullptr);
+    cache::LightMapFrames framed(rays, compared.maps(), compared.source());
     const Film film{reference->width, reference->height, 16};
     std::vector<glm::vec3> picture(reference->pixels());
     framed.draw(scene.cameras.front(), film, scales, all, picture, Progress::none());
@@ -195,8 +196,8 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   look("look back", 0, 180);
 
   // What the window does when somebody turns: frames of a thirtieth of a second.
-  SurfaceCache fresh(rays, light_maps, light, by_photons, nullptr);
-  LightMapFrames bounded(rays, fresh.maps(), fresh.source());
+  cache::SurfaceCache fresh(rays, light_maps, light, by_photons, nullptr);
+  cache::LightMapFrames bounded(rays, fresh.maps(), fresh.source());
   draw(bounded, scene.cameras.front(), width, height, all);
   double longest = 0, drawing = 0;
   std::uint64_t count = 0, empty = 0;
@@ -249,7 +250,7 @@ void measure_mixing(std::size_t nodes, std::size_t lights, const BenchOptions& o
     value = glm::vec3(static_cast<float>(random() & 0xffff) / 65536.0f);
   }
   std::vector<glm::vec3> powers(lights, glm::vec3(1.0f));
-  light_maps::NodeMix mixed;
+  cache::NodeMix mixed;
   const auto mix = [&](bool all) {
     for (std::size_t i = 0; i < (all ? lights : 1); ++i) powers[i] *= 1.01f;
     const Stopwatch stopwatch;

@@ -12,7 +12,8 @@ import shutil
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-LIBRARY = "CMakeFiles/photile.dir/"
+ROOMS = ("renderer", "formats", "lighting")
+LIBRARY = tuple(f"host/{room}/CMakeFiles/photile_{room}.dir/" for room in ROOMS)
 # Compiles in a third of the time of -O3. Warnings are those of the build.
 LIBRARY_OPTIONS = ["-O1", "-w"]
 
@@ -52,17 +53,17 @@ class Builder:
         built = pathlib.Path(f"{header}.gch")
         if built.is_file() and built.stat().st_mtime > (self.build / "compile_commands.json").stat().st_mtime:
             return header
-        shutil.copyfile(self.build / LIBRARY / "cmake_pch.hxx", header)
+        shutil.copyfile(self.build / LIBRARY[0] / "cmake_pch.hxx", header)
         words = list(next(words for object_, words in self.commands.items()
-                          if object_.startswith(LIBRARY + "Unity")))
+                          if object_.startswith(LIBRARY[0] + "Unity")))
         del words[words.index("-include"):]
         output_of([*words, *LIBRARY_OPTIONS, "-x", "c++-header", str(header), "-o", f"{header}.gch"],
                   self.build)
         return header
 
     def objects_with(self, folders):
-        """The library's objects that hold source files of folders of host/."""
-        names = tuple(f"{ROOT}/host/{folder}/" for folder in folders)
+        """The library's objects that hold source files of folders of host/renderer."""
+        names = tuple(f"{ROOT}/host/renderer/{folder}/" for folder in folders)
         return [object_ for object_, words in self.commands.items() if object_.startswith(LIBRARY)
                 and any(name in source for source in self._sources(words[-1]) for name in names)]
 

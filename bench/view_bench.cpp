@@ -10,10 +10,10 @@
 #include "support/bench_record.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
-#include "tools/view/display.hpp"
-#include "tools/view/viewpoint.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
+#include "view/display.hpp"
+#include "view/viewpoint.hpp"
 
 namespace {
 

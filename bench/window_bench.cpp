@@ -18,8 +18,8 @@
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"
-#include "tools/view/frame.hpp"
-#include "tools/view/viewer.hpp"
+#include "view/frame.hpp"
+#include "view/viewer.hpp"
 
 namespace {
 

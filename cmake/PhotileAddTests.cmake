@@ -1,6 +1,7 @@
-# photile_add_tests(<folder> <source>... [LIBRARIES <target>...])
+# photile_add_tests(<folder> [SOURCES <source>...] [EXCLUDE <source>...] [LIBRARIES <target>...])
 #
-# The executable of a folder of tests/. The test cases of a source file are one test of CTest,
+# The executable of a folder of tests/: of its sources without those to EXCLUDE, and of SOURCES elsewhere.
+# The test cases of a source file are one test of CTest,
 # <folder>/<file>, with the label of the folder: a process for each case would take longer to start than
 # most take to run. Cases tagged [slow] are another, <folder>/<file> (slow), with the label "slow".
 #
@@ -39,9 +40,11 @@ endif()
 set(photile_add_tests_script ${CMAKE_CURRENT_LIST_FILE})
 
 function(photile_add_tests folder)
-  cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;EXCLUDE;LIBRARIES" ${ARGN})
   set(target photile_tests_${folder})
-  add_executable(${target} ${arg_UNPARSED_ARGUMENTS})
+  file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+  list(REMOVE_ITEM sources ${arg_EXCLUDE} "")
+  add_executable(${target} ${sources} ${arg_SOURCES})
   target_link_libraries(${target} PRIVATE photile_test_main ${arg_LIBRARIES})
   target_precompile_headers(${target} REUSE_FROM photile_test_headers)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}.cmake)

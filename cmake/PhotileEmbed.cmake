@@ -1,5 +1,5 @@
 # photile_embed_kernels(<target>): compiles the texts of kernels/**/*.cl, kernels/**/*.clh and
-# include/photile/device/*.h into <target>, as host/device/embedded_files.hpp declares them. A kernel
+# include/photile/device/*.h into <target>, as host/renderer/device/embedded_files.hpp declares them. A kernel
 # is known by its path below kernels/, a shared header by "photile/device/<name>".
 set(_PHOTILE_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed_files.cmake)
 

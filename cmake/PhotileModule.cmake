@@ -1,11 +1,12 @@
 # photile_add_module(<name> COMPONENT <component> SOURCES <source>... LIBRARIES <target>...)
 #
-# A shared object that host/common/module loads when it is first needed. It sees none of the library's
+# A shared object that host/renderer/common/module loads when it is first needed. It sees none of the library's
 # functions: what it needs of them is among its sources.
 function(photile_add_module name)
   cmake_parse_arguments(arg "" "COMPONENT" "SOURCES;LIBRARIES" ${ARGN})
   add_library(${name} MODULE ${arg_SOURCES})
-  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/host)
+  target_include_directories(${name} PRIVATE
+    ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/host/renderer)
   target_link_libraries(${name} PRIVATE photile_compile_options ${arg_LIBRARIES})
   # A function that is missing ends the build, not the first run. Clang's sanitizers live in the command.
   if(NOT PHOTILE_SANITIZE AND NOT PHOTILE_SANITIZE_THREADS AND NOT PHOTILE_FUZZ)

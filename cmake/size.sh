@@ -30,7 +30,7 @@ row 'headers of host/ under 30 lines' \
   "$(host | grep '\.hpp$' | lengths | awk '$1 < 30' | wc -l)" at-most 25
 row 'public headers' "$(tracked include | grep '\.hpp$' | wc -l)" at-most 25
 row 'files that name processes outside host/cluster/' \
-  "$(host | grep -v '^host/cluster/' | xargs grep -lE 'Communicator|MPI' | wc -l)" at-most 6
+  "$(host | grep -v '^host/cluster/' | xargs grep -lwE 'Communicator|MPI' | wc -l)" at-most 6
 row 'lines of tests/' "$(tracked tests | grep -E '\.(cpp|hpp|py|sh)$' | lines)" at-most 45000
 row 'files below tests/' "$(tracked tests | wc -l)" at-most 1000
 row 'conditional directives of kernels/' \

@@ -38,17 +38,17 @@ Scene subdivided(const Scene& scene) {
   fine.environments = scene.environments;
   fine.cameras = scene.cameras;
   for (Light& light : fine.lights) light.triangles.clear();
-  scene_io::MeshBuilder mesh(
+  scene::MeshBuilder mesh(
       fine, {.uv = !scene.corner_uv.empty(), .emission_uv = !scene.corner_emission_uv.empty()});
   for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
     const auto pieces = [&](const auto& whole) {
       return quarters(from_the_front(whole, scene.front_side[t] == 0));
     };
     const auto positions = pieces(scene.corners(t));
-    std::array<AtCorners<scene_io::Corner>, 4> corners;
+    std::array<AtCorners<scene::Corner>, 4> corners;
     for (std::size_t piece = 0; piece < 4; ++piece) {
       for (std::size_t i = 0; i < 3; ++i) {
-        scene_io::Corner& corner = corners[piece][i];
+        scene::Corner& corner = corners[piece][i];
         corner.position = glm::dvec3(positions[piece][i]);
         if (!scene.corner_uv.empty()) corner.uv = pieces(scene.corner_uv[t])[piece][i];
         if (!scene.corner_emission_uv.empty()) {

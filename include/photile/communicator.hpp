@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "photile/errors.hpp"
@@ -17,9 +19,9 @@ struct OtherProcessFailed : Error {
 };
 
 /// Processes that make the same calls in the same order, each with data of its own: ranks, from 0.
-/// photile has one over MPI (host/mpi); a program may bring its own. All functions but the first
-/// two are collective, and throw OtherProcessFailed once a process has called `conclude` with a
-/// failure in place of them.
+/// photile has one over MPI (host/cluster); a program may bring its own. All functions but the
+/// first two are collective, and throw OtherProcessFailed once a process has called `conclude` with
+/// a failure in place of them.
 class Communicator {
  public:
   using Bytes = std::vector<std::byte>;
@@ -33,6 +35,19 @@ class Communicator {
 
   /// What each rank gave, by rank, on all of them.
   virtual std::vector<Bytes> gather(std::span<const std::byte> own) = 0;
+
+  /// The values of all ranks, those of rank 0 first.
+  template <class Value>
+  std::vector<Value> gather_values(std::span<const Value> own) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    std::vector<Value> all;
+    for (const Bytes& bytes : gather(std::as_bytes(own))) {
+      const std::size_t before = all.size();
+      all.resize(before + bytes.size() / sizeof(Value));
+      if (!bytes.empty()) std::memcpy(all.data() + before, bytes.data(), bytes.size());
+    }
+    return all;
+  }
 
   /// Replaces values by their sums over all ranks, which wrap around.
   virtual void sum(std::span<std::uint64_t> values) = 0;

@@ -31,10 +31,10 @@ std::string_view name_of(LightMapMode mode);
 inline constexpr std::array all_light_map_modes = {LightMapMode::off, LightMapMode::on,
                                                    LightMapMode::automatic};
 
-namespace light_maps {
-class Charts;  // host/light_maps/charts.hpp
-class Tiles;   // host/light_maps/tiles.hpp
-}  // namespace light_maps
+namespace cache {
+class Charts;  // host/renderer/cache/charts.hpp
+class Tiles;   // host/renderer/cache/tiles.hpp
+}  // namespace cache
 
 /// Nodes of light maps that are valued together.
 struct NodeBatch {
@@ -211,8 +211,8 @@ class LightMaps {
 
   LightMapStatistics statistics() const;
 
-  const light_maps::Charts& charts() const;
-  const light_maps::Tiles& tiles() const;
+  const cache::Charts& charts() const;
+  const cache::Tiles& tiles() const;
 
  private:
   struct Impl;

@@ -60,8 +60,8 @@ class SceneRenderer {
                       const LightPooling* pooling = nullptr);
 
   /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a sample,
-  /// glossy surfaces as if they were matt (host/render/light_map_frames.hpp). For parameters that
-  /// ask for light maps.
+  /// glossy surfaces as if they were matt (host/renderer/cache/light_map_frames.hpp). For
+  /// parameters that ask for light maps.
   ///   powers         per layer: power x tint
   ///   fill_seconds   that may go into valuing nodes which pixels lack: the nearest to the eye come
   ///                  first, other pixels show a coarser level; infinite: all of them

@@ -140,8 +140,8 @@ class Order(unittest.TestCase):
             quick, slow, blind = (mutant_tests.Step("trace", (case,)) for case in ("quick", "slow", "blind"))
             for step, seconds, noticed in ((quick, 0.1, True), (slow, 9.0, True), (blind, 0.1, False)):
                 order.note(step, seconds)
-                order.count(step, "host/trace", noticed)
-            self.assertEqual(order.of([slow, blind, quick], "host/trace")[0], quick)
+                order.count(step, "host/renderer/trace", noticed)
+            self.assertEqual(order.of([slow, blind, quick], "host/renderer/trace")[0], quick)
             self.assertEqual(mutant_tests.Order(order.file).known, json.loads(json.dumps(order.known)))
 
 

@@ -7,7 +7,7 @@
 #include "daylight/sky_states.hpp"
 #include "photile/errors.hpp"
 #include "room_with_window.hpp"
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 
@@ -58,7 +58,7 @@ TEST_CASE("a closed pane lets through what is asked for") {
                {Room::right, Room::head, 0}, {Room::left, Room::head, 0}, glass);
   Scene scene = builder.build();
   scene.portals = {Room::window()};
-  Year year{{}, sky_patches(145), {{{1.8, 1.4, 3.0}, {0, 0, -1}}}, false, {}};
+  Year year{{}, weather::sky_patches(145), {{{1.8, 1.4, 3.0}, {0, 0, -1}}}, false, {}};
   year.parameters.measuring.gathering.rays = 256;
   year.parameters.measuring.repeats = 4;
   year.parameters.mean_luminance.assign(146, 1.0);

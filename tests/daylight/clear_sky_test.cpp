@@ -1,5 +1,5 @@
 // The clear sky against another model, and its table by hand.
-#include "daylight/clear_sky.hpp"
+#include "weather/clear_sky.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace photile::test {
 
-using daylight::clear_sky;
+using weather::clear_sky;
 
 namespace {
 constexpr double degree = std::numbers::pi / 180;

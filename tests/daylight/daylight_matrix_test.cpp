@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "daylight/annual_daylight.hpp"
-#include "daylight/sky_lights.hpp"
 #include "room_with_window.hpp"
-#include "tools/validation/form_factors.hpp"
 #include "trace/distant_light.hpp"
+#include "validation/form_factors.hpp"
+#include "weather/sky_lights.hpp"
 
 namespace photile::test {
 
@@ -32,17 +32,17 @@ MatrixParameters quick(std::size_t patches) {
 }  // namespace
 
 TEST_CASE("a direction has the patch that it points into") {
-  for (const int count : patch_counts) {
-    const auto patches = sky_patches(count);
-    const PatchFinder find(patches, 0.3);
+  for (const int count : weather::patch_counts) {
+    const auto patches = weather::sky_patches(count);
+    const weather::PatchFinder find(patches, 0.3);
     for (std::size_t i = 0; i < patches.size(); ++i) {
-      const SkyPatch& patch = patches[i];
+      const weather::SkyPatch& patch = patches[i];
       for (const double across : {0.01, 0.5, 0.99}) {
         for (const double up : {0.01, 0.99}) {
           const double azimuth =
               patch.azimuth_from + across * (patch.azimuth_to - patch.azimuth_from);
           const double sine = patch.sine_from + up * (patch.sine_to - patch.sine_from);
-          REQUIRE(find(glm::vec3(direction_of(azimuth + 0.3, std::asin(sine)))) == i);
+          REQUIRE(find(glm::vec3(weather::direction_of(azimuth + 0.3, std::asin(sine)))) == i);
         }
       }
     }
@@ -54,14 +54,14 @@ TEST_CASE("patches tile the sky: each direction has one light, found by its cell
   SceneBuilder builder("plate");
   builder.grid({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   builder.add(point_light("lamp", {0, 1, 0}));
-  for (const int count : patch_counts) {
+  for (const int count : weather::patch_counts) {
     Scene scene = builder.build();
-    add_sky_lights(sky_patches(count), 0.3, scene);
+    weather::add_sky_lights(weather::sky_patches(count), 0.3, scene);
     const trace::DistantLights lights(scene);
     for (int i = 0; i < 2000; ++i) {
       const double sine = -0.999 + 1.998 * std::fmod(0.5 + i * 0.6180339887, 1.0);
       const double azimuth = 2 * pi * std::fmod(i * 0.7548776662, 1.0);
-      const glm::vec3 direction(direction_of(azimuth, std::asin(sine)));
+      const glm::vec3 direction(weather::direction_of(azimuth, std::asin(sine)));
       int all = 0, found = 0;
       for (const auto& light : lights) all += light.radiance(direction) != glm::vec3(0.0f) ? 1 : 0;
       for (const std::uint32_t index : lights.towards(direction))
@@ -74,16 +74,17 @@ TEST_CASE("patches tile the sky: each direction has one light, found by its cell
 
 TEST_CASE("north turns patches clockwise as seen from above") {
   Scene scene = plate(diffuse(glm::vec3(0.0f)), 2);
-  add_sky_lights(sky_patches(145), pi / 2, scene);
-  const auto patch = std::find_if(scene.lights.begin(), scene.lights.end(),
-                                  [](const Light& light) { return light.name == patch_name(0); });
+  weather::add_sky_lights(weather::sky_patches(145), pi / 2, scene);
+  const auto patch = std::find_if(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+    return light.name == weather::patch_name(0);
+  });
   REQUIRE(patch != scene.lights.end());
   CHECK(trace::sees_disc(*patch, glm::normalize(glm::vec3(1.0f, 0.1f, 0.0f))));
 }
 
 TEST_CASE("all patches together are an even sky through a window") {
   Scene scene = Room::builder(diffuse(glm::vec3(0.0f))).build();
-  const auto patches = sky_patches(145);
+  const auto patches = weather::sky_patches(145);
   scene.portals = {Room::window()};
   const Sensor sensor{{1.5, 0.8, 3.0}, {0, 0, -1}};
   const DaylightMatrix matrix =
@@ -104,7 +105,7 @@ TEST_CASE("reflected light adds to what comes straight, as paths find it") {
   const bool coloured = GENERATE(false, true);
   const glm::vec3 albedo = coloured ? glm::vec3(0.9f, 0.5f, 0.2f) : glm::vec3(0.6f);
   Scene scene = Room::builder(diffuse(albedo)).build();
-  const auto patches = sky_patches(145);
+  const auto patches = weather::sky_patches(145);
   Scene even = scene;
   add_environment(even, even_surroundings());
   scene.portals = even.portals = {Room::window()};
@@ -132,7 +133,7 @@ TEST_CASE("reflected light adds to what comes straight, as paths find it") {
 TEST_CASE("stated errors are the scatter of seeds") {
   Scene scene = Room::builder(diffuse(glm::vec3(0.5f))).build();
   scene.portals = {Room::window()};
-  const auto patches = sky_patches(145);
+  const auto patches = weather::sky_patches(145);
   const Sensor sensor{{2.0, 0.8, 3.5}, {0, 1, 0}};
   MatrixParameters parameters = quick(patches.size());
   parameters.measuring.gathering.rays = 64;
@@ -166,7 +167,7 @@ TEST_CASE("a wall without thickness parts light, and a shelf above a floor") {
   builder.grid({0, 0, 0}, {8, 0, 0}, {0, 2.5f, 0}, 1, wall);
   builder.grid({0, 0, 3}, {0, 2.5f, 0}, {8, 0, 0}, 1, wall);
   const Scene scene = builder.build();
-  const auto patches = sky_patches(145);
+  const auto patches = weather::sky_patches(145);
   const std::vector<Sensor> sensors{{{3.8, 0.8, 1.5}, {0, 1, 0}}, {{4.3, 0.8, 1.5}, {0, 1, 0}}};
   const DaylightMatrix matrix = daylight_matrix(scene, sensors, patches, quick(patches.size()));
   double dark = 0, lit = 0;
@@ -179,8 +180,8 @@ TEST_CASE("a wall without thickness parts light, and a shelf above a floor") {
 }
 
 TEST_CASE("in the open an hour has its diffuse lux, and the sun's by its elevation") {
-  const auto patches = sky_patches(577);
-  scene_io::WeatherYear weather{{48, 0, 0}, {}};
+  const auto patches = weather::sky_patches(577);
+  weather::WeatherYear weather{{48, 0, 0}, {}};
   for (int hour = 0; hour < 24; ++hour)
     weather.hours.push_back(
         {6,
@@ -192,7 +193,7 @@ TEST_CASE("in the open an hour has its diffuse lux, and the sun's by its elevati
   DaylightMatrix matrix;
   matrix.sensors = 1;
   matrix.patches = patches.size() + 1;
-  for (const SkyPatch& patch : patches) {
+  for (const weather::SkyPatch& patch : patches) {
     const double sines = patch.sine_to * patch.sine_to - patch.sine_from * patch.sine_from;
     matrix.from_sky.push_back(
         static_cast<float>(0.5 * sines * (patch.azimuth_to - patch.azimuth_from)));

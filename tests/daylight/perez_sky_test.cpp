@@ -1,13 +1,13 @@
 // Skies of irradiances, against Radiance's gendaymtx and gendaylit.
-#include "daylight/perez_sky.hpp"
+#include "weather/perez_sky.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
 
-#include "daylight/sky_patches.hpp"
-#include "import/sky_map.hpp"
+#include "loading/sky_map.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile::test {
 
@@ -22,7 +22,7 @@ const Site berlin{52.5, 13.4, 1};
 /// counted from 1, and lux of the ground.
 struct Reference {
   LocalTime time;
-  SkyIrradiance irradiance;
+  weather::SkyIrradiance irradiance;
   double on_ground;
   std::map<std::size_t, double> sky;
   std::map<std::size_t, double> sun;
@@ -71,11 +71,12 @@ const Reference references[] = {
 }  // namespace
 
 TEST_CASE("patches have the luminances that gendaymtx gives them") {
-  const auto patches = sky_patches(145);
+  const auto patches = weather::sky_patches(145);
   for (const Reference& reference : references) {
-    const SunPosition sun = sun_position(berlin, reference.time);
-    const PerezSky sky(sun.elevation, reference.irradiance, day_of_year(reference.time));
-    const auto luminances = SkyInPatches(patches).luminances(sky, sun);
+    const weather::SunPosition sun = weather::sun_position(berlin, reference.time);
+    const weather::PerezSky sky(sun.elevation, reference.irradiance,
+                                weather::day_of_year(reference.time));
+    const auto luminances = weather::SkyInPatches(patches).luminances(sky, sun);
     for (const auto& [patch, luminance] : reference.sky) {
       INFO(reference.time.month << ", patch " << patch);
       // The suns stand up to a third of a degree apart, and gendaymtx prints three digits.
@@ -92,7 +93,7 @@ TEST_CASE("patches have the luminances that gendaymtx gives them") {
     for (const auto& [patch, luminance] : reference.sun)
       sum += luminance * patches[patch - 1].solid_angle();
     CHECK(sky.direct_illuminance() == Approx(sum).epsilon(0.01));
-    const auto in_patches = SkyInPatches(patches).sun(sun);
+    const auto in_patches = weather::SkyInPatches(patches).sun(sun);
     REQUIRE_FALSE(in_patches.empty());
     for (const auto& [patch, share] : in_patches) {
       REQUIRE(reference.sun.count(patch + 1) == 1);
@@ -103,19 +104,19 @@ TEST_CASE("patches have the luminances that gendaymtx gives them") {
 }
 
 TEST_CASE("clearness and brightness are gendaylit's") {
-  const SunPosition sun = sun_position(berlin, {2026, 6, 21, 14.0});
-  const PerezSky sky(sun.elevation, {600, 120}, 172);
+  const weather::SunPosition sun = weather::sun_position(berlin, {2026, 6, 21, 14.0});
+  const weather::PerezSky sky(sun.elevation, {600, 120}, 172);
   CHECK(sky.clearness() == Approx(4.9711).epsilon(2e-3));
   CHECK(sky.brightness() == Approx(0.1121).epsilon(2e-3));
 }
 
 TEST_CASE("patches of a sky give the diffuse illuminance, however many there are") {
-  const SunPosition sun{2.0, 0.6};
-  const PerezSky sky(sun.elevation, {400, 150}, 100);
-  for (const int count : patch_counts) {
-    const auto patches = sky_patches(count);
+  const weather::SunPosition sun{2.0, 0.6};
+  const weather::PerezSky sky(sun.elevation, {400, 150}, 100);
+  for (const int count : weather::patch_counts) {
+    const auto patches = weather::sky_patches(count);
     REQUIRE(patches.size() == static_cast<std::size_t>(count));
-    const auto luminances = SkyInPatches(patches).luminances(sky, sun);
+    const auto luminances = weather::SkyInPatches(patches).luminances(sky, sun);
     double solid_angle = 0, illuminance = 0;
     for (std::size_t i = 0; i < patches.size(); ++i) {
       solid_angle += patches[i].solid_angle();
@@ -124,17 +125,17 @@ TEST_CASE("patches of a sky give the diffuse illuminance, however many there are
     CHECK(solid_angle == Approx(2 * pi));
     CHECK(illuminance == Approx(sky.diffuse_illuminance()));
     double shares = 0;
-    for (const auto& share : SkyInPatches(patches).sun(sun)) shares += share.share;
+    for (const auto& share : weather::SkyInPatches(patches).sun(sun)) shares += share.share;
     CHECK(shares == Approx(1));
   }
 }
 
 TEST_CASE("the map of a Perez sky gives its lux, and is brightest around the sun") {
-  const SunPosition sun{1.0, 0.7};
-  const PerezSky sky(sun.elevation, {700, 90}, 180);
-  const glm::dvec3 to_sun = direction_of(sun.azimuth, sun.elevation);
+  const weather::SunPosition sun{1.0, 0.7};
+  const weather::PerezSky sky(sun.elevation, {700, 90}, 180);
+  const glm::dvec3 to_sun = weather::direction_of(sun.azimuth, sun.elevation);
   const EnvironmentMap map =
-      scene_io::sky_map(SkyKind::perez, sky.diffuse_illuminance(), to_sun, &sky);
+      loading::sky_map(SkyKind::perez, sky.diffuse_illuminance(), to_sun, &sky);
   double horizontal = 0;
   float brightest = 0;
   glm::dvec3 towards(0.0);
@@ -155,10 +156,11 @@ TEST_CASE("the map of a Perez sky gives its lux, and is brightest around the sun
 
 TEST_CASE("irradiances at the ends of the model leave finite, positive skies") {
   for (const double elevation : {-0.2, 0.0, 0.02, 1.0, pi / 2}) {
-    for (const SkyIrradiance& irradiance :
-         {SkyIrradiance{0, 0}, {0, 1}, {1, 0}, {1500, 1}, {1, 900}, {1000, 1000, -40}}) {
-      const PerezSky sky(elevation, irradiance, 1);
-      const auto luminances = SkyInPatches(sky_patches(145)).luminances(sky, {1.0, elevation});
+    for (const weather::SkyIrradiance& irradiance :
+         {weather::SkyIrradiance{0, 0}, {0, 1}, {1, 0}, {1500, 1}, {1, 900}, {1000, 1000, -40}}) {
+      const weather::PerezSky sky(elevation, irradiance, 1);
+      const auto luminances =
+          weather::SkyInPatches(weather::sky_patches(145)).luminances(sky, {1.0, elevation});
       for (const double luminance : luminances) {
         REQUIRE(std::isfinite(luminance));
         REQUIRE(luminance >= 0);

@@ -1,19 +1,17 @@
 // Suns and skies by place, time and weather; skies of pictures by another hour.
-#include "import/sky_situation.hpp"
+#include "loading/sky_situation.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "daylight/sky_lights.hpp"
-#include "daylight/sun_position.hpp"
-#include "import/relit_sky.hpp"
+#include "loading/relit_sky.hpp"
 #include "photile/errors.hpp"
+#include "weather/sky_lights.hpp"
+#include "weather/sun_position.hpp"
 
 namespace photile::test {
-
-using namespace photile::scene_io;
 
 namespace {
 
@@ -31,8 +29,8 @@ SceneLoadOptions in_berlin() {
 TEST_CASE("a Perez sky brings its sun, which north turns") {
   SceneLoadOptions options = in_berlin();
   options.sky = Sky::parse("perez=600,120");
-  const SkySituationLights plain = sun_and_sky(options);
-  const auto position = daylight::sun_position(*options.situation.site, *options.situation.time);
+  const loading::SkySituationLights plain = loading::sun_and_sky(options);
+  const auto position = weather::sun_position(*options.situation.site, *options.situation.time);
   REQUIRE(plain.sun);
   REQUIRE(plain.sky);
   CHECK(plain.sun->azimuth_degrees == Approx(position.azimuth * degrees));
@@ -41,7 +39,7 @@ TEST_CASE("a Perez sky brings its sun, which north turns") {
   const double disc = std::numbers::pi * std::pow(0.533 / 2 / degrees, 2);
   CHECK(plain.sun->illuminance == Approx(5.085e6 * 179 * disc).epsilon(0.01));
   options.situation.north_degrees = 30;
-  const SkySituationLights turned = sun_and_sky(options);
+  const loading::SkySituationLights turned = loading::sun_and_sky(options);
   CHECK(turned.sun->azimuth_degrees == Approx(plain.sun->azimuth_degrees + 30));
   CHECK(turned.sky->to_sun.x ==
         Approx(std::sin(position.azimuth + 30 / degrees) * std::cos(position.elevation)));
@@ -51,28 +49,28 @@ TEST_CASE("at night a Perez sky has no sun") {
   SceneLoadOptions options = in_berlin();
   options.situation.time->hour = 1;
   options.sky = Sky::parse("perez=600,120");
-  CHECK(!sun_and_sky(options).sun);
+  CHECK(!loading::sun_and_sky(options).sun);
   options.sky = Sky::parse("perez=0,0");
-  CHECK(!sun_and_sky(options).sky);
+  CHECK(!loading::sun_and_sky(options).sky);
 }
 
 TEST_CASE("a sun of its lux alone stands where the time says") {
   SceneLoadOptions options = in_berlin();
   options.sun = Sun::parse("80000");
   options.sky = Sky::parse("clear=10000");
-  const SkySituationLights lights = sun_and_sky(options);
+  const loading::SkySituationLights lights = loading::sun_and_sky(options);
   REQUIRE(lights.sun);
   CHECK(lights.sun->illuminance == 80'000);
   CHECK(lights.sun->elevation_degrees > 40);
   options.situation = {};
-  CHECK_THROWS_AS(sun_and_sky(options), UsageError);
+  CHECK_THROWS_AS(loading::sun_and_sky(options), UsageError);
 }
 
 TEST_CASE("options of a situation that lack another are refused") {
   const auto refused = [](const std::function<void(SceneLoadOptions&)>& change) {
     SceneLoadOptions options = in_berlin();
     change(options);
-    CHECK_THROWS_AS(sun_and_sky(options), UsageError);
+    CHECK_THROWS_AS(loading::sun_and_sky(options), UsageError);
   };
   refused([](auto& o) { o.situation.site.reset(); });
   refused([](auto& o) { o.situation.time.reset(); });
@@ -88,10 +86,10 @@ TEST_CASE("options of a situation that lack another are refused") {
 
 TEST_CASE("patches of a picture take the luminances of another hour") {
   LightMix mix;
-  const auto patches = daylight::sky_patches(145);
+  const auto patches = weather::sky_patches(145);
   for (std::size_t i = 0; i < patches.size(); ++i) {
     MixedLight light;
-    light.name = daylight::patch_name(i);
+    light.name = weather::patch_name(i);
     light.power = 1;
     mix.lights.push_back(light);
   }
@@ -99,7 +97,8 @@ TEST_CASE("patches of a picture take the luminances of another hour") {
   lamp.name = "lamp";
   mix.lights.push_back(lamp);
   const SceneLoadOptions options = in_berlin();
-  const auto changes = sky_changes(mix, options.situation, Sky{SkyKind::perez, 0, 600, 120});
+  const auto changes =
+      loading::sky_changes(mix, options.situation, Sky{SkyKind::perez, 0, 600, 120});
   REQUIRE(changes.size() == patches.size());
   double horizontal = 0;
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -110,7 +109,7 @@ TEST_CASE("patches of a picture take the luminances of another hour") {
   // gendaymtx of this hour and place: the ground, of reflectance 0.2, has 4206.5 cd/m2.
   CHECK(horizontal == Approx(4206.5 * std::numbers::pi / 0.2).epsilon(0.05));
   mix.lights.erase(mix.lights.begin());
-  CHECK_THROWS_AS(sky_changes(mix, options.situation, Sky{SkyKind::perez, 0, 600, 120}),
+  CHECK_THROWS_AS(loading::sky_changes(mix, options.situation, Sky{SkyKind::perez, 0, 600, 120}),
                   UsageError);
 }
 

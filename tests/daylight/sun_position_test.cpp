@@ -1,5 +1,5 @@
 // Where the sun stands, against an observatory's example and what geometry says.
-#include "daylight/sun_position.hpp"
+#include "weather/sun_position.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,10 +16,10 @@ namespace {
 constexpr double per_radian = 180 / std::numbers::pi;
 
 /// The highest that the sun stands on a day, and where, in degrees.
-SunPosition highest(const Site& site, int month, int day) {
-  SunPosition best;
+weather::SunPosition highest(const Site& site, int month, int day) {
+  weather::SunPosition best;
   for (int minute = 0; minute < 24 * 60; ++minute) {
-    const SunPosition at = sun_position(site, {2026, month, day, minute / 60.0});
+    const weather::SunPosition at = weather::sun_position(site, {2026, month, day, minute / 60.0});
     if (minute == 0 || at.elevation > best.elevation) best = at;
   }
   return {best.azimuth * per_radian, best.elevation * per_radian};
@@ -29,8 +29,8 @@ SunPosition highest(const Site& site, int month, int day) {
 
 TEST_CASE("the sun stands where the example of NREL's solar position algorithm has it") {
   // Reda and Andreas 2004: zenith 50.11162 with refraction (0.014 degrees), azimuth 194.34024.
-  const SunPosition sun =
-      sun_position({39.742476, -105.1786, -7}, {2003, 10, 17, 12 + 30 / 60.0 + 30 / 3600.0});
+  const weather::SunPosition sun = weather::sun_position(
+      {39.742476, -105.1786, -7}, {2003, 10, 17, 12 + 30 / 60.0 + 30 / 3600.0});
   CHECK(sun.elevation * per_radian == Approx(90 - 50.11162 - 0.014).margin(0.02));
   CHECK(sun.azimuth * per_radian == Approx(194.34024).margin(0.02));
 }
@@ -48,23 +48,23 @@ TEST_CASE("at noon of a solstice the sun is 23.44 degrees from where it is at an
 }
 
 TEST_CASE("fifteen degrees to the west the same sun stands an hour later") {
-  const SunPosition here = sun_position({50, 0, 0}, {2026, 4, 3, 9.0});
-  const SunPosition there = sun_position({50, -15, 0}, {2026, 4, 3, 10.0});
-  const SunPosition by_zone = sun_position({50, -15, -1}, {2026, 4, 3, 9.0});
+  const weather::SunPosition here = weather::sun_position({50, 0, 0}, {2026, 4, 3, 9.0});
+  const weather::SunPosition there = weather::sun_position({50, -15, 0}, {2026, 4, 3, 10.0});
+  const weather::SunPosition by_zone = weather::sun_position({50, -15, -1}, {2026, 4, 3, 9.0});
   CHECK(there.elevation == Approx(here.elevation).margin(5e-4));
   CHECK(there.azimuth == Approx(here.azimuth).margin(5e-4));
   CHECK(by_zone.elevation == Approx(there.elevation).margin(1e-9));
 }
 
 TEST_CASE("in the morning the sun is in the east") {
-  const SunPosition sun = sun_position({52.5, 13.4, 1}, {2026, 3, 20, 7.0});
+  const weather::SunPosition sun = weather::sun_position({52.5, 13.4, 1}, {2026, 3, 20, 7.0});
   CHECK(sun.azimuth * per_radian == Approx(97).margin(4));
 }
 
 TEST_CASE("days count from the first of January") {
-  CHECK(day_of_year({2026, 1, 1}) == 1);
-  CHECK(day_of_year({2026, 3, 1}) == 60);
-  CHECK(day_of_year({2024, 12, 31}) == 366);
+  CHECK(weather::day_of_year({2026, 1, 1}) == 1);
+  CHECK(weather::day_of_year({2026, 3, 1}) == 60);
+  CHECK(weather::day_of_year({2024, 12, 31}) == 366);
 }
 
 TEST_CASE("sites and times are read, others refused") {

@@ -1,5 +1,5 @@
 // EPW files, whole and damaged.
-#include "import/weather_file.hpp"
+#include "weather/weather_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -11,8 +11,6 @@
 #include "weather_text.hpp"
 
 namespace photile::test {
-
-using namespace photile::scene_io;
 
 namespace {
 
@@ -26,7 +24,7 @@ std::string error_of(const TemporaryFolder& folder, const std::string& text) {
   const auto file = folder.path / "bad.epw";
   std::ofstream(file, std::ios::binary) << text;
   try {
-    read_weather(file);
+    weather::read_weather(file);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -45,12 +43,12 @@ TEST_CASE("the hours of a weather file are read, their middle half an hour befor
   const TemporaryFolder folder;
   const auto file = folder.path / "good.epw";
   std::ofstream(file, std::ios::binary) << text_of_year();
-  const WeatherYear year = read_weather(file);
+  const weather::WeatherYear year = weather::read_weather(file);
   CHECK(year.site.latitude_degrees == 52.5);
   CHECK(year.site.longitude_degrees == 13.4);
   CHECK(year.site.time_zone == 1);
   REQUIRE(year.hours.size() == 8760);
-  const WeatherHour& hour = hour_at(year, {2026, 6, 21, 14.25});
+  const weather::WeatherHour& hour = weather::hour_at(year, {2026, 6, 21, 14.25});
   CHECK(hour.month == 6);
   CHECK(hour.day == 21);
   CHECK(hour.hour == 14.5);

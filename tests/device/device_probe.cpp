@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
+#include "command/exit_code.hpp"
 #include "device/launch.hpp"
 #include "device/program_source.hpp"
-#include "tools/command/exit_code.hpp"
 
 namespace {
 

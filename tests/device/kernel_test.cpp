@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
+#include "command/exit_code.hpp"
 #include "device/launch.hpp"
 #include "device/program_source.hpp"
-#include "tools/command/exit_code.hpp"
 
 namespace photile::test {
 namespace {

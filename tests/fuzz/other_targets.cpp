@@ -3,15 +3,16 @@
 #include <cmath>
 #include <string>
 
+#include "command/setting_options.hpp"
+#include "command/validators.hpp"
 #include "daylight/blinds.hpp"
 #include "daylight/occupancy.hpp"
-#include "daylight/sun_position.hpp"
 #include "fuzz_files.hpp"
 #include "glare/observers.hpp"
-#include "import/finishing.hpp"
-#include "import/light_changes.hpp"
-#include "import/material_changes.hpp"
-#include "import/up_axis.hpp"
+#include "loading/finishing.hpp"
+#include "loading/light_changes.hpp"
+#include "loading/material_changes.hpp"
+#include "loading/up_axis.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_files.hpp"
 #include "measuring/working_plane.hpp"
@@ -20,10 +21,9 @@
 #include "photile/scene_builder.hpp"
 #include "render/setting.hpp"
 #include "test_scenes.hpp"
-#include "tools/command/setting_options.hpp"
-#include "tools/command/validators.hpp"
-#include "tools/view/moods.hpp"
-#include "tools/walk/frame_names.hpp"
+#include "view/moods.hpp"
+#include "walk/frame_names.hpp"
+#include "weather/sun_position.hpp"
 
 namespace photile::test {
 namespace {
@@ -47,13 +47,13 @@ Scene lit_floor() {
 /// What a command that was given them has as lights.
 void check_lights(const SceneLoadOptions& options) {
   Scene scene = lit_floor();
-  scene_io::add_surroundings(scene, options);
-  scene_io::apply_temperatures(scene, options.temperatures);
-  scene_io::apply_reflectances(scene, options.reflectances);
+  loading::add_surroundings(scene, options);
+  loading::apply_temperatures(scene, options.temperatures);
+  loading::apply_reflectances(scene, options.reflectances);
   for (const Material& material : scene.materials) {
     require(std::isfinite(material.diffuse.x), "a colour that is no number");
   }
-  scene_io::group_lights(scene, options.light_groups);
+  loading::group_lights(scene, options.light_groups);
   for (const Light& light : scene.lights) {
     require(std::isfinite(light.power) && light.power >= 0, "a light without a power");
     require(!light.name.empty(), "a light without a name");
@@ -63,9 +63,9 @@ void check_lights(const SceneLoadOptions& options) {
 constexpr Site berlin{52.5, 13.4, 1};
 
 void check_sun(const Site& site, const LocalTime& time) {
-  const daylight::SunPosition sun = daylight::sun_position(site, time);
+  const weather::SunPosition sun = weather::sun_position(site, time);
   require(std::isfinite(sun.azimuth + sun.elevation), "a sun that is nowhere");
-  const int day = daylight::day_of_year(time);
+  const int day = weather::day_of_year(time);
   require(day >= 1 && day <= 366, "a day that no year has");
 }
 
@@ -202,7 +202,7 @@ void parse_option(unsigned char option, const std::string& text) {
       check_blinds(text);
       break;
     default:
-      finite(glm::determinant(scene_io::turn_upright(text)));
+      finite(glm::determinant(loading::turn_upright(text)));
       break;
   }
 }

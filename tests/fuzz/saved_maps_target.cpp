@@ -59,7 +59,7 @@ std::vector<unsigned char> sealed(Bytes bytes) {
   head.photon_bytes = std::min(head.photon_bytes, body);
   head.light_map_bytes = body - head.photon_bytes;
   ContentHash scene;
-  add_scene(floor_scene(), scene);
+  scene::add_scene(floor_scene(), scene);
   head.scene = scene.digest();
   const Bytes parts = Bytes(file).subspan(sizeof head);
   head.photons = digest_of(parts.first(head.photon_bytes));

@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "files/warnings.hpp"
 #include "fuzz_files.hpp"
-#include "import/camera_path.hpp"
-#include "import/photometry/photometric_file.hpp"
-#include "import/texture_decoder.hpp"
-#include "import/warnings.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
+#include "photometry/photometric_file.hpp"
+#include "pictures/texture_decoder.hpp"
+#include "reading/camera_path.hpp"
 
 namespace photile::test {
 namespace {
@@ -31,7 +31,7 @@ bool accepts_resource(const auto& read) {
   try {
     read();
     return true;
-  } catch (const scene_io::ResourceError& error) {
+  } catch (const files::ResourceError& error) {
     require(std::string(error.what()).find('\n') == std::string::npos, "two lines");
     return false;
   }
@@ -39,8 +39,8 @@ bool accepts_resource(const auto& read) {
 
 bool accepts_photometry(const char* name, Bytes bytes) {
   return accepts_resource([&] {
-    scene_io::Warnings warnings;
-    const IntensityDistribution lamp = scene_io::read_photometry(name, bytes, warnings);
+    files::Warnings warnings;
+    const IntensityDistribution lamp = photometry::read_photometry(name, bytes, warnings);
     require(std::isfinite(lamp.flux()) && lamp.flux() >= 0, "a lamp without a flux");
   });
 }
@@ -63,14 +63,14 @@ bool fuzz_ldt(Bytes bytes) { return accepts_photometry("lamp.ldt", bytes); }
 
 bool fuzz_texture(Bytes bytes) {
   return accepts_resource([&] {
-    const Texture texture = scene_io::decode_texture("picture", bytes);
+    const Texture texture = pictures::decode_texture("picture", bytes);
     require(texture.width() > 0 && texture.height() > 0, "a texture without texels");
   });
 }
 
 bool fuzz_radiance(Bytes bytes) {
   return accepts_resource([&] {
-    const auto picture = scene_io::decode_radiance("picture", bytes);
+    const auto picture = pictures::decode_radiance("picture", bytes);
     require(picture.texels.size() ==
                 static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height),
             "texels that lack");
@@ -79,7 +79,8 @@ bool fuzz_radiance(Bytes bytes) {
 
 bool fuzz_camera_path(Bytes bytes) {
   return accepts([&] {
-    const walk::CameraMotion motion = walk::read_camera_path(file_of("path.json", bytes), Camera{});
+    const reading::CameraMotion motion =
+        reading::read_camera_path(file_of("path.json", bytes), Camera{});
     for (int step = 0; step <= 4; ++step) {
       const Camera camera = motion.at(motion.begin + step * (motion.end - motion.begin) / 4);
       require(std::isfinite(glm::length(camera.position) + glm::length(camera.forward)),

@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "daylight/occupancy.hpp"
-#include "daylight/sky_patches.hpp"
+#include "files/warnings.hpp"
 #include "fuzz_files.hpp"
-#include "import/luminaires.hpp"
-#include "import/warnings.hpp"
-#include "import/weather_file.hpp"
+#include "loading/luminaires.hpp"
 #include "measuring/requirements.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
+#include "report/included_results.hpp"
 #include "scene/light_names.hpp"
 #include "test_scenes.hpp"
-#include "tools/report/included_results.hpp"
+#include "weather/sky_patches.hpp"
+#include "weather/weather_file.hpp"
 
 namespace photile::test {
 namespace {
@@ -41,13 +41,13 @@ const Scene& room() {
 }
 
 /// Its sky and sun, as renderings and years of daylight take them.
-void check_hour(const Site& site, const scene_io::WeatherHour& hour) {
-  static const auto patches = daylight::sky_patches(145);
-  static const daylight::SkyInPatches in_patches(patches);
+void check_hour(const Site& site, const weather::WeatherHour& hour) {
+  static const auto patches = weather::sky_patches(145);
+  static const weather::SkyInPatches in_patches(patches);
   const LocalTime time{2024, hour.month, hour.day, hour.hour};  // a leap year
-  const daylight::SunPosition sun = daylight::sun_position(site, time);
+  const weather::SunPosition sun = weather::sun_position(site, time);
   require(std::isfinite(sun.azimuth + sun.elevation), "a sun that is nowhere");
-  const daylight::PerezSky sky(sun.elevation, hour.irradiance, daylight::day_of_year(time));
+  const weather::PerezSky sky(sun.elevation, hour.irradiance, weather::day_of_year(time));
   const auto lux = [](double value) { return std::isfinite(value) && value >= 0; };
   require(lux(sky.direct_illuminance()), "a sun of no lux");
   require(lux(sky.diffuse_illuminance()), "a sky of no lux");
@@ -74,12 +74,12 @@ bool fuzz_luminaires(Bytes bytes) {
   const auto file = file_of("luminaires.json", bytes.first(json));
   return accepts([&] {
     Scene scene = room();
-    scene_io::Warnings warnings;
-    const scene_io::LuminaireList list = scene_io::read_luminaires(file);
-    const auto written = scene_io::LuminaireList::parse(list.text(), "written");
+    files::Warnings warnings;
+    const loading::LuminaireList list = loading::read_luminaires(file);
+    const auto written = loading::LuminaireList::parse(list.text(), "written");
     require(written == list, "written they are others");
-    scene_io::add_luminaires(list, file, 683, scene, warnings);
-    scene_io::make_light_names_unique(scene.lights);
+    loading::add_luminaires(list, file, 683, scene, warnings);
+    scene::make_light_names_unique(scene.lights);
     try {
       check_scene(scene);
     } catch (const Error& error) {
@@ -92,7 +92,7 @@ bool fuzz_weather(Bytes bytes) {
   const auto file = file_of("weather.epw", bytes);
   return accepts([&] {
     // As many hours as there are: a whole year has a megabyte.
-    const scene_io::WeatherYear year = scene_io::read_weather_hours(file);
+    const weather::WeatherYear year = weather::read_weather_hours(file);
     constexpr std::size_t most_checked = 8;
     for (std::size_t i = 0; i < std::min(most_checked, year.hours.size()); ++i) {
       check_hour(year.site, year.hours[i]);
@@ -112,8 +112,8 @@ bool fuzz_schedules(Bytes bytes) {
 bool fuzz_results(Bytes bytes) {
   const auto file = file_of("results.json", bytes);
   return accepts([&] {
-    const auto results = measuring::included_results(std::span(&file, 1),
-                                                     measuring::parse_requirement("office-desk"));
+    const auto results =
+        report::included_results(std::span(&file, 1), measuring::parse_requirement("office-desk"));
     require(results.tables.size() == 1, "another number of tables");
     for (const auto& row : results.tables[0].rows) {
       require(row.size() == results.tables[0].columns.size(), "a row of another length");

@@ -7,7 +7,7 @@
 
 #include "glare/measure_glare.hpp"
 #include "test_scenes.hpp"
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 namespace {

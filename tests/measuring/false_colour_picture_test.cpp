@@ -1,14 +1,14 @@
 // Pictures in false colour: known lux and cd/m2 in known colours.
-#include "tools/report/false_colour_picture.hpp"
+#include "report/false_colour_picture.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
 
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
-#include "tools/report/number_text.hpp"
-#include "tools/report/palette.hpp"
-#include "tools/report/sheet.hpp"
+#include "report/number_text.hpp"
+#include "report/palette.hpp"
+#include "report/sheet.hpp"
 
 namespace photile::test {
 
@@ -61,10 +61,12 @@ Colour colour_at(const Image& picture, int x, int y) {
 
 TEST_CASE("the illuminance of a picture is the sum of its lights' lux") {
   const LightLayers layers = two_pixels();
-  CHECK(illuminance_of(*mixed_picture(layers, mix_of(10, 100))) == std::vector<float>{130, 200});
+  CHECK(report::illuminance_of(*mixed_picture(layers, mix_of(10, 100))) ==
+        std::vector<float>{130, 200});
   LightMix watts = mix_of(10, 100, PowerUnit::watt);
   watts.lumen_per_watt = 179;
-  CHECK(illuminance_of(*mixed_picture(layers, watts)) == std::vector<float>{130 * 179, 200 * 179});
+  CHECK(report::illuminance_of(*mixed_picture(layers, watts)) ==
+        std::vector<float>{130 * 179, 200 * 179});
 }
 
 TEST_CASE("illuminance is read whole where a picture has more rows than are read at a time") {
@@ -76,27 +78,28 @@ TEST_CASE("illuminance is read whole where a picture has more rows than are read
     layers.layers[1].illuminance[static_cast<std::size_t>(y)] = 1000;
     expected.push_back(static_cast<float>(1000 + y));
   }
-  CHECK(illuminance_of(*mixed_picture(layers, mix_of(1, 1))) == expected);
+  CHECK(report::illuminance_of(*mixed_picture(layers, mix_of(1, 1))) == expected);
 }
 
 TEST_CASE("the luminance of a picture is in cd/m2, of watts by their efficacy") {
   const LightLayers layers = two_pixels();
   // The second pixel: 100 x (0, 2, 0), of which Rec.709's green weighs 0.7152.
-  const auto lumens = luminance_of(mixed_picture(layers, mix_of(10, 100))->root());
+  const auto lumens = report::luminance_of(mixed_picture(layers, mix_of(10, 100))->root());
   CHECK(lumens[0] == Approx(60));
   CHECK(lumens[1] == Approx(200 * 0.7152));
   LightMix mix = mix_of(10, 100, PowerUnit::watt);
   mix.lumen_per_watt = 179;
-  const auto watts = luminance_of(mixed_picture(layers, mix)->root());
+  const auto watts = report::luminance_of(mixed_picture(layers, mix)->root());
   CHECK(watts[0] == Approx(60 * 179));
-  CHECK_THROWS_AS(luminance_of(black(2, 1)), InputError);  // cd/m2, or what?
+  CHECK_THROWS_AS(report::luminance_of(black(2, 1)), InputError);  // cd/m2, or what?
 }
 
 TEST_CASE("a pixel has the colour that its share of the scale has in the palette") {
   const std::string name = GENERATE("turbo", "def", "viridis");
-  const image::Palette palette(name);
+  const report::Palette palette(name);
   const std::vector<float> lux{0, 125, 250, 500, 499, 5000};
-  const Image picture = false_colour_picture(lux, black(3, 2), {.scale = 500, .palette = name});
+  const Image picture =
+      report::false_colour_picture(lux, black(3, 2), {.scale = 500, .palette = name});
   const std::array shares{0.0, 0.25, 0.5, 1.0, 499.0 / 500, 1.0};
   for (int pixel = 0; pixel < 6; ++pixel) {
     INFO("pixel " << pixel);
@@ -108,8 +111,8 @@ TEST_CASE("a pixel has the colour that its share of the scale has in the palette
 TEST_CASE("an automatic scale ends at the largest value that is a number") {
   const std::vector<float> lux{100, 400, std::numeric_limits<float>::infinity(),
                                std::numeric_limits<float>::quiet_NaN()};
-  const Image picture = false_colour_picture(lux, black(4, 1), {.scale = 0});
-  const image::Palette palette("turbo");
+  const Image picture = report::false_colour_picture(lux, black(4, 1), {.scale = 0});
+  const report::Palette palette("turbo");
   CHECK(colour_at(picture, 0, 0) == palette.at(0.25));
   CHECK(colour_at(picture, 1, 0) == palette.at(1));
   CHECK(colour_at(picture, 2, 0) == palette.at(1));
@@ -118,8 +121,8 @@ TEST_CASE("an automatic scale ends at the largest value that is a number") {
 
 TEST_CASE("a logarithmic scale has its decades below the top") {
   const Image picture =
-      false_colour_picture(std::vector<float>{10, 100, 1000}, black(3, 1), {.decades = 2});
-  const image::Palette palette("turbo");
+      report::false_colour_picture(std::vector<float>{10, 100, 1000}, black(3, 1), {.decades = 2});
+  const report::Palette palette("turbo");
   CHECK(colour_at(picture, 0, 0) == palette.at(0));
   CHECK(colour_at(picture, 1, 0) == palette.at(0.5));
   CHECK(colour_at(picture, 2, 0) == palette.at(1));
@@ -129,9 +132,9 @@ TEST_CASE(
     "the legend has a bar for each step, in the colour of its middle, the largest at the top") {
   const int steps = GENERATE(1, 4, 8);
   const std::vector<float> lux(200 * 3, 1);
-  const Image picture = false_colour_picture(lux, black(3, 200), {.steps = steps});
+  const Image picture = report::false_colour_picture(lux, black(3, 200), {.steps = steps});
   CHECK(picture.height == 200);
-  const image::Palette palette("turbo");
+  const report::Palette palette("turbo");
   constexpr int left = 3 + 12, top = 24;
   for (int step = 0; step < steps; ++step) {
     INFO("step " << step << " of " << steps);
@@ -143,13 +146,13 @@ TEST_CASE(
 }
 
 TEST_CASE("beside the legend stand its unit and its values, in a small picture as well") {
-  REQUIRE(image::Sheet::has_font());
+  REQUIRE(report::Sheet::has_font());
   const std::vector<float> lux{1};
-  const auto drawn = [&](FalseColour options) {
-    return false_colour_picture(lux, black(1, 1), options);
+  const auto drawn = [&](report::FalseColour options) {
+    return report::false_colour_picture(lux, black(1, 1), options);
   };
   const Image plain = drawn({});
-  CHECK(plain.height >= 8 * image::Sheet::font_size);  // a line for each step
+  CHECK(plain.height >= 8 * report::Sheet::font_size);  // a line for each step
   /// Dark pixels right of the bars, and above them.
   const auto ink = [&](const Image& picture, int first_row, int end_row, int first_column) {
     int count = 0;
@@ -176,22 +179,23 @@ TEST_CASE("isolines lie over the picture") {
   Image grey = black(4, 1);
   for (auto& channel : grey.channels) channel.assign(4, 0.25f);
   const std::vector<float> lux{100, 200, 300, 400};
-  const Image picture = false_colour_picture(lux, grey, {.steps = 2, .contours = Contours::lines});
+  const Image picture =
+      report::false_colour_picture(lux, grey, {.steps = 2, .contours = report::Contours::lines});
   const Colour background = colour_at(grey, 0, 0);
   CHECK(colour_at(picture, 0, 0) == background);
-  CHECK(colour_at(picture, 1, 0) == image::Palette("turbo").at(0.2));  // 250 lies right of it
+  CHECK(colour_at(picture, 1, 0) == report::Palette("turbo").at(0.2));  // 250 lies right of it
   CHECK(colour_at(picture, 2, 0) == background);
   CHECK(colour_at(picture, 3, 0) == background);
 }
 
 TEST_CASE("numbers of legends and plans have no powers of ten up to a thousand million") {
-  CHECK(number_text(62.5, 4) == "62.5");
-  CHECK(number_text(12500, 4) == "12500");
-  CHECK(number_text(999.6, 3) == "1000");
-  CHECK(number_text(1234.5, 3) == "1234");
-  CHECK(number_text(0.06254, 3) == "0.0625");
-  CHECK(number_text(0, 3) == "0");
-  CHECK(number_text(3e12, 3) == "3e+12");
+  CHECK(report::number_text(62.5, 4) == "62.5");
+  CHECK(report::number_text(12500, 4) == "12500");
+  CHECK(report::number_text(999.6, 3) == "1000");
+  CHECK(report::number_text(1234.5, 3) == "1234");
+  CHECK(report::number_text(0.06254, 3) == "0.0625");
+  CHECK(report::number_text(0, 3) == "0");
+  CHECK(report::number_text(3e12, 3) == "3e+12");
 }
 
 }  // namespace photile::test

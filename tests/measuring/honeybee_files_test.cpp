@@ -1,5 +1,5 @@
 // Files for Honeybee.
-#include "tools/report/honeybee_files.hpp"
+#include "report/honeybee_files.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -24,7 +24,7 @@ GridValues grid(const std::string& name, const std::vector<float>& lux) {
 }  // namespace
 
 TEST_CASE("each grid has a .res of its own, listed in grids_info.json") {
-  const auto files = honeybee_files({grid("desk 1", {250.5f, 500}), grid("floor", {100})});
+  const auto files = report::honeybee_files({grid("desk 1", {250.5f, 500}), grid("floor", {100})});
   CHECK(files.at("desk_1.res") == "250.5\n500\n");
   CHECK(files.at("floor.res") == "100\n");
   const auto info = nlohmann::json::parse(files.at("grids_info.json"));
@@ -40,10 +40,10 @@ TEST_CASE("each grid has a .res of its own, listed in grids_info.json") {
 }
 
 TEST_CASE("no grid's name leads out of the folder, and none hides another") {
-  const auto files = honeybee_files({grid("../up", {1})});
+  const auto files = report::honeybee_files({grid("../up", {1})});
   CHECK(files.count("__up.res") + files.count("_._up.res") == 1);
   for (const auto& [name, text] : files) CHECK(name.find('/') == std::string::npos);
-  CHECK_THROWS_AS(honeybee_files({grid("a b", {1}), grid("a_b", {1})}), UsageError);
+  CHECK_THROWS_AS(report::honeybee_files({grid("a b", {1}), grid("a_b", {1})}), UsageError);
 }
 
 }  // namespace photile::test

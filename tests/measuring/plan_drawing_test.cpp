@@ -1,11 +1,11 @@
 // Plans of planes whose values are known.
-#include "tools/report/plan_drawing.hpp"
+#include "report/plan_drawing.hpp"
 
 #include <catch2/catch.hpp>
 #include <regex>
 
-#include "tools/report/illuminance_steps.hpp"
-#include "tools/report/palette.hpp"
+#include "report/illuminance_steps.hpp"
+#include "report/palette.hpp"
 
 namespace photile::test {
 
@@ -29,8 +29,8 @@ GridValues plane(const std::string& name, const std::vector<float>& lux) {
   return values;
 }
 
-std::string plan(const GridValues& values, const FalseColour& options) {
-  return plan_svg(values, values.total(), options);
+std::string plan(const GridValues& values, const report::FalseColour& options) {
+  return report::plan_svg(values, values.total(), options);
 }
 
 /// What the pattern's first group matches, each time.
@@ -55,7 +55,7 @@ void check_runs_at(const std::string& path, double x) {
 TEST_CASE("each cell has the colour of its value, and its number") {
   const std::vector<float> lux{50, 100, 150, 200, 1000};
   const std::string svg = plan(plane("desk", lux), {.scale = 200});
-  const image::Palette palette("turbo");
+  const report::Palette palette("turbo");
   std::vector<std::string> expected;
   for (const float value : lux) {
     expected.push_back(palette.hex(static_cast<double>(value) / 200));
@@ -87,24 +87,25 @@ TEST_CASE("the isolines of a slope run where the slope has the steps of the stan
 
 TEST_CASE("isolines alone lie in the middles of the legend's steps") {
   const GridValues values = plane("slope", {100, 200, 300, 100, 200, 300});
-  const std::string svg = plan(values, {.scale = 500, .steps = 1, .contours = Contours::lines});
+  const std::string svg =
+      plan(values, {.scale = 500, .steps = 1, .contours = report::Contours::lines});
   const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
   REQUIRE(lines.size() == 1);  // 250 lux
   check_runs_at(lines[0], 20 + 2.0 / 3 * 560);
 }
 
 TEST_CASE("steps of illuminance are those of EN 12464-1") {
-  CHECK(illuminance_steps(40, 1200) ==
+  CHECK(report::illuminance_steps(40, 1200) ==
         std::vector<double>{50, 75, 100, 150, 200, 300, 500, 750, 1000});
-  CHECK(illuminance_steps(300, 500).empty());
-  CHECK(illuminance_steps(0, 0).empty());
-  CHECK(illuminance_steps(0, 1e-3).size() < 20);
+  CHECK(report::illuminance_steps(300, 500).empty());
+  CHECK(report::illuminance_steps(0, 0).empty());
+  CHECK(report::illuminance_steps(0, 1e-3).size() < 20);
 }
 
 TEST_CASE("a level has its number beside those of cells, or none") {
   const GridValues values = plane("hill", {200, 100, 100, 100, 100, 100});
   const auto numbers = [&](double level) {  // the middle of the only step
-    return all(plan(values, {.scale = 2 * level, .steps = 1, .contours = Contours::lines}),
+    return all(plan(values, {.scale = 2 * level, .steps = 1, .contours = report::Contours::lines}),
                "font-size=\"11\"[^>]*>([^<]*)<");
   };
   CHECK(numbers(150) == std::vector<std::string>{"150"});

@@ -1,5 +1,5 @@
 // Walls, furniture and lamps on plans, of a room that is known.
-#include "tools/report/plan_surroundings.hpp"
+#include "report/plan_surroundings.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -38,9 +38,9 @@ PlaneLayout layout() {
 /// x and z of a place in cells.
 glm::dvec2 world(const glm::dvec2& cells) { return {0.5 + cells.x, 5.5 - cells.y}; }
 
-double length_of(const std::vector<Segment>& segments) {
+double length_of(const std::vector<report::Segment>& segments) {
   double length = 0;
-  for (const Segment& segment : segments) length += glm::distance(segment[0], segment[1]);
+  for (const report::Segment& segment : segments) length += glm::distance(segment[0], segment[1]);
   return length;
 }
 
@@ -49,10 +49,10 @@ double length_of(const std::vector<Segment>& segments) {
 TEST_CASE("a plan's walls are where its plane cuts the room") {
   const Scene scene = room();
   const RayScene rays(scene);
-  const PlanSurroundings around = surroundings_of(rays, layout());
+  const report::PlanSurroundings around = report::surroundings_of(rays, layout());
   CHECK(around.reach >= 0.5);
   CHECK(length_of(around.walls) == Approx(20));  // 2 x (4 + 6) m
-  for (const Segment& segment : around.walls) {
+  for (const report::Segment& segment : around.walls) {
     for (const glm::dvec2& end : segment) {
       const glm::dvec2 at = world(end);
       const double from_wall =
@@ -65,10 +65,10 @@ TEST_CASE("a plan's walls are where its plane cuts the room") {
 TEST_CASE("a plan's furniture is outlined where it stands, and its lamps have their numbers") {
   const Scene scene = room();
   const RayScene rays(scene);
-  const PlanSurroundings around = surroundings_of(rays, layout());
+  const report::PlanSurroundings around = report::surroundings_of(rays, layout());
   REQUIRE_FALSE(around.furniture.empty());
   glm::dvec2 low(100.0), high(-100.0);
-  for (const Segment& segment : around.furniture) {
+  for (const report::Segment& segment : around.furniture) {
     for (const glm::dvec2& end : segment) {
       const glm::dvec2 at = world(end);
       if (at.x < 0.05 || at.x > 3.95 || at.y < 0.05 || at.y > 5.95) continue;  // walls
@@ -89,7 +89,7 @@ TEST_CASE("what does not lie flat has no surroundings") {
   wall.v = {0, 1, 0};
   const Scene scene = room();
   const RayScene rays(scene);
-  const PlanSurroundings around = surroundings_of(rays, wall);
+  const report::PlanSurroundings around = report::surroundings_of(rays, wall);
   CHECK(around.reach == 0);
   CHECK(around.walls.empty());
 }

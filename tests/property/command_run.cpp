@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "tools/command/command_line.hpp"
+#include "command/command_line.hpp"
 
 namespace photile::test {
 namespace {

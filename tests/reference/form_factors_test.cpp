@@ -1,5 +1,5 @@
 // Closed forms of form factors against their integrals.
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>

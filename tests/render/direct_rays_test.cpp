@@ -11,7 +11,7 @@
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
-#include "tools/validation/form_factors.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 namespace {

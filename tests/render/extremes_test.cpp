@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "../scene/scene_files.hpp"
 #include "garbage.hpp"
 #include "instanced_scenes.hpp"
+#include "loading/scene_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"

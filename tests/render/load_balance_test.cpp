@@ -1,5 +1,5 @@
 // The share of each device follows its throughput.
-#include "render/load_balance.hpp"
+#include "estimate/load_balance.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -9,8 +9,8 @@ namespace {
 constexpr std::size_t many = 1'000'000;
 
 /// A balance after its first two rounds, on devices that take so many seconds for a hit.
-LoadBalance measured(const std::vector<double>& seconds_per_hit) {
-  LoadBalance balance(seconds_per_hit.size());
+estimate::LoadBalance measured(const std::vector<double>& seconds_per_hit) {
+  estimate::LoadBalance balance(seconds_per_hit.size());
   for (int round = 0; round < 2; ++round) {
     const std::vector<std::size_t> cuts = balance.cuts(balance.round(many));
     for (std::size_t i = 0; i < seconds_per_hit.size(); ++i) {
@@ -27,13 +27,13 @@ LoadBalance measured(const std::vector<double>& seconds_per_hit) {
 }  // namespace
 
 TEST_CASE("one device takes all hits at once") {
-  const LoadBalance balance(1);
+  const estimate::LoadBalance balance(1);
   CHECK(balance.round(many) == many);
   CHECK(balance.cuts(many) == std::vector<std::size_t>{0, many});
 }
 
 TEST_CASE("the first hits are few and shared evenly") {
-  const LoadBalance balance(4);
+  const estimate::LoadBalance balance(4);
   const std::size_t hits = balance.round(many);
   CHECK(hits < many / 10);
   CHECK(balance.cuts(hits) == std::vector<std::size_t>{0, hits / 4, hits / 2, 3 * hits / 4, hits});
@@ -41,7 +41,7 @@ TEST_CASE("the first hits are few and shared evenly") {
 }
 
 TEST_CASE("measured devices share hits by their throughput, whatever compiling took") {
-  const LoadBalance balance = measured({1e-6, 3e-6, 6e-6});
+  const estimate::LoadBalance balance = measured({1e-6, 3e-6, 6e-6});
   CHECK(balance.round(many) == many);
   // Throughputs of 6 : 2 : 1.
   const std::vector<std::size_t> cuts = balance.cuts(900);
@@ -49,7 +49,7 @@ TEST_CASE("measured devices share hits by their throughput, whatever compiling t
 }
 
 TEST_CASE("cuts ascend from nothing to all hits, for any number of hits") {
-  const LoadBalance balance = measured({1e-6, 1.0, 1e-6, 2e-6});
+  const estimate::LoadBalance balance = measured({1e-6, 1.0, 1e-6, 2e-6});
   for (const std::size_t count : {0u, 1u, 2u, 3u, 5u, 1000u}) {
     const std::vector<std::size_t> cuts = balance.cuts(count);
     REQUIRE(cuts.size() == 5);
@@ -60,12 +60,12 @@ TEST_CASE("cuts ascend from nothing to all hits, for any number of hits") {
 }
 
 TEST_CASE("where no time was measured all devices share evenly") {
-  const LoadBalance balance = measured({0.0, 1e-6});
+  const estimate::LoadBalance balance = measured({0.0, 1e-6});
   CHECK(balance.cuts(100) == std::vector<std::size_t>{0, 50, 100});
 }
 
 TEST_CASE("shares count every hit") {
-  LoadBalance balance(2);
+  estimate::LoadBalance balance(2);
   CHECK(balance.shares() == std::vector<double>{0, 0});
   balance.record(0, 30, 1);
   balance.record(1, 10, 1);

@@ -1,5 +1,5 @@
 // Numbers of neighbours of their own for each hit.
-#include "render/neighbour_choice.hpp"
+#include "estimate/neighbour_choice.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -33,19 +33,20 @@ std::vector<double> uniform_densities(std::mt19937& random) {
 }  // namespace
 
 TEST_CASE("levels are quarters of the largest, down to the least") {
-  CHECK(neighbour_levels(50, 800) == std::vector{50, 200, 800});
-  CHECK(neighbour_levels(51, 800) == std::vector{200, 800});
-  CHECK(neighbour_levels(800, 800) == std::vector{800});
-  CHECK(neighbour_levels(1, 5) == std::vector{1, 5});
+  CHECK(estimate::neighbour_levels(50, 800) == std::vector{50, 200, 800});
+  CHECK(estimate::neighbour_levels(51, 800) == std::vector{200, 800});
+  CHECK(estimate::neighbour_levels(800, 800) == std::vector{800});
+  CHECK(estimate::neighbour_levels(1, 5) == std::vector{1, 5});
 }
 
 TEST_CASE("estimates that agree take the most neighbours, a biased one the level before it") {
-  CHECK(least_error_level(std::vector{1.0, 1.05, 0.98}, levels) == 2);
-  CHECK(least_error_level(std::vector{1.0, 1.05, 0.5}, levels) == 1);  // blurred to half
-  CHECK(least_error_level(std::vector{1.0, 2.5, 2.5}, levels) == 0);   // light from beyond a border
-  CHECK(least_error_level(std::vector{0.0, 0.0, 0.0}, levels) == 2);
-  CHECK(least_error_level(std::vector{0.0, 0.0, 0.1}, levels) == 1);
-  CHECK(least_error_level(std::vector{1.0, 0.0, 0.0}, levels) == 0);
+  CHECK(estimate::least_error_level(std::vector{1.0, 1.05, 0.98}, levels) == 2);
+  CHECK(estimate::least_error_level(std::vector{1.0, 1.05, 0.5}, levels) == 1);  // blurred to half
+  CHECK(estimate::least_error_level(std::vector{1.0, 2.5, 2.5}, levels) ==
+        0);  // light from beyond a border
+  CHECK(estimate::least_error_level(std::vector{0.0, 0.0, 0.0}, levels) == 2);
+  CHECK(estimate::least_error_level(std::vector{0.0, 0.0, 0.1}, levels) == 1);
+  CHECK(estimate::least_error_level(std::vector{1.0, 0.0, 0.0}, levels) == 0);
 }
 
 TEST_CASE("where light is uniform nearly all hits take the most neighbours, and stay unbiased") {
@@ -57,7 +58,7 @@ TEST_CASE("where light is uniform nearly all hits take the most neighbours, and 
     double sum = 0;
     for (int hit = 0; hit < hits; ++hit) {
       const std::vector<double> values = uniform_densities(random);
-      const std::size_t level = least_error_level(values, levels);
+      const std::size_t level = estimate::least_error_level(values, levels);
       most += level + 1 == levels.size();
       sum += values[level];
     }
@@ -76,7 +77,8 @@ TEST_CASE("hits take all lights' estimates from one level") {
   by_level[0].irradiance = {grey(1), grey(2), grey(4), grey(8)};
   by_level[1].irradiance = {grey(1.01f), grey(2.02f), grey(1), grey(2)};
   const std::vector<int> neighbours{50, 200};
-  const Estimates chosen = estimates_of_least_error(by_level, neighbours, std::vector{1.0, 1.0});
+  const Estimates chosen =
+      estimate::estimates_of_least_error(by_level, neighbours, std::vector{1.0, 1.0});
   CHECK(chosen.irradiance == std::vector{grey(1.01f), grey(2.02f), grey(4), grey(8)});
 
   // The same with lists of the lights that reach a hit, of different lengths.
@@ -85,7 +87,8 @@ TEST_CASE("hits take all lights' estimates from one level") {
   by_level[1].irradiance = {grey(3.03f), grey(1), grey(2)};
   by_level[1].first = {0, 1, 3};
   by_level[1].light = {1, 1, 0};
-  const Estimates sparse = estimates_of_least_error(by_level, neighbours, std::vector{1.0, 1.0});
+  const Estimates sparse =
+      estimate::estimates_of_least_error(by_level, neighbours, std::vector{1.0, 1.0});
   CHECK(sparse.first == std::vector<std::uint64_t>{0, 1, 3});
   CHECK(sparse.light == std::vector<std::uint16_t>{1, 0, 1});
   CHECK(sparse.irradiance == std::vector{grey(3.03f), grey(4), grey(8)});
@@ -97,7 +100,8 @@ TEST_CASE("a light that is off has no say in the choice") {
   by_level[1].irradiance = {glm::vec3(1), glm::vec3(9)};  // only the second light changes
   const std::vector<int> neighbours{50, 200};
   const auto second = [&](double power) {
-    return estimates_of_least_error(by_level, neighbours, std::vector{1.0, power}).irradiance[1];
+    return estimate::estimates_of_least_error(by_level, neighbours, std::vector{1.0, power})
+        .irradiance[1];
   };
   CHECK(second(0.0) == glm::vec3(9));
   CHECK(second(1.0) == glm::vec3(1));

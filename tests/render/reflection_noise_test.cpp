@@ -1,5 +1,5 @@
 // Where the noise of photon estimates is not seen in what lobes reflect.
-#include "render/reflection_noise.hpp"
+#include "cache/reflection_noise.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -23,7 +23,7 @@ PrimaryHits hits_in_a_row(std::size_t count, double apart, double weight) {
 
 bool all_suit(const PrimaryHits& seen, const PrimaryHits& reflected, double noise) {
   const std::vector<std::uint8_t> suits =
-      suits_photons(seen, reflected, 1, {.width = 0.1, .noise = noise});
+      cache::suits_photons(seen, reflected, 1, {.width = 0.1, .noise = noise});
   REQUIRE(suits.size() == reflected.size());
   CHECK(std::all_of(suits.begin(), suits.end(), [&](auto one) { return one == suits.front(); }));
   return suits.front() != 0;
@@ -60,9 +60,9 @@ TEST_CASE("photons suit reflections pixel by pixel") {
   PrimaryHits seen = hits_in_a_row(1, 0.0, 99.0);
   reflected.pixel[0] = 4;  // where nothing else is seen
   const std::vector<std::uint8_t> suits =
-      suits_photons(seen, reflected, 1, {.width = 0.1, .noise = 0.1});
+      cache::suits_photons(seen, reflected, 1, {.width = 0.1, .noise = 0.1});
   CHECK(suits == std::vector<std::uint8_t>{0, 1});
-  CHECK(suits_photons(seen, {}, 1, {.width = 0.1, .noise = 0.1}).empty());
+  CHECK(cache::suits_photons(seen, {}, 1, {.width = 0.1, .noise = 0.1}).empty());
 }
 
 }  // namespace photile::test

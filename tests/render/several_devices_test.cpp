@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
+#include "estimate/for_each_device.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
-#include "render/for_each_device.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
@@ -88,7 +88,7 @@ TEST_CASE("the error of one device names it, stops the others and hides their in
     progress.throw_if_cancelled();
   };
   try {
-    for_each_device(devices, Progress::none(), work);
+    estimate::for_each_device(devices, Progress::none(), work);
     FAIL("no error");
   } catch (const DeviceError& error) {
     CHECK_THAT(error.what(),
@@ -103,7 +103,7 @@ TEST_CASE("a device without memory is told from one that fails") {
   const auto work = [](std::size_t i, Progress&) {
     if (i == 1) throw DeviceMemoryError("no memory", -4);
   };
-  CHECK_THROWS_AS(for_each_device(devices, Progress::none(), work), DeviceMemoryError);
+  CHECK_THROWS_AS(estimate::for_each_device(devices, Progress::none(), work), DeviceMemoryError);
 }
 
 TEST_CASE("a wish to stop reaches every device") {
@@ -112,11 +112,11 @@ TEST_CASE("a wish to stop reaches every device") {
   } progress;
   std::vector<Device> devices = halves();
   std::atomic<int> heard = 0;
-  CHECK_THROWS_AS(for_each_device(devices, progress,
-                                  [&](std::size_t, Progress& shared) {
-                                    heard += shared.cancelled();
-                                    shared.throw_if_cancelled();
-                                  }),
+  CHECK_THROWS_AS(estimate::for_each_device(devices, progress,
+                                            [&](std::size_t, Progress& shared) {
+                                              heard += shared.cancelled();
+                                              shared.throw_if_cancelled();
+                                            }),
                   Interrupted);
   CHECK(heard == 2);
 }
@@ -129,7 +129,7 @@ TEST_CASE("only the first of several devices tells its progress") {
     void end() override { ++ended; }
   } listener;
   std::vector<Device> devices = halves();
-  for_each_device(devices, listener, [](std::size_t, Progress& shared) {
+  estimate::for_each_device(devices, listener, [](std::size_t, Progress& shared) {
     shared.begin("stage", 3, "units");
     shared.advance(3);
     shared.end();

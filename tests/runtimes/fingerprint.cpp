@@ -15,12 +15,12 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "command/exit_code.hpp"
+#include "estimate/photon_estimate.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
-#include "render/photon_estimate.hpp"
-#include "tools/command/exit_code.hpp"
 
 namespace photile::test {
 namespace {
@@ -121,7 +121,7 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
   // Small tiles need small cells: pages reach beyond a tile by two of them and the radius.
   const float photons_per_cell = tiled ? 0.25f : 4.0f;
   const PrimaryHits hits = hits_of(test.scene, sizes.hits);
-  std::vector<PhotonMaps> all_maps = build_maps_on_each(
+  std::vector<PhotonMaps> all_maps = estimate::build_maps_on_each(
       devices, test.scene, photons, find_neighbour_groups(test.scene, {radius, 60}),
       {radius, photons_per_cell, test.structure}, Progress::none());
   const PhotonMaps& maps = all_maps.back();
@@ -141,7 +141,8 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
   print_hash(test, "neighbours", std::span(lists.photons));
   print_hash(test, "squared_radius", std::span(lists.squared_radius));
   const std::vector<double> powers(needs_of(test.scene).light_count, 1.0);
-  PhotonEstimate light(devices, test.scene, {std::move(all_maps), {test.parameters()}}, powers);
+  estimate::PhotonEstimate light(devices, test.scene, {std::move(all_maps), {test.parameters()}},
+                                 powers);
   const Estimates estimates = light.at(hits, Progress::none());
   print_hash(test, "irradiance", estimates.irradiance);
   if (needs_of(test.scene).glossy) print_hash(test, "radiance", estimates.radiance);

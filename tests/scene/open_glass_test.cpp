@@ -19,7 +19,7 @@ std::uint32_t open_edges(bool thin, const Add& add) {
   builder.add(point_light("lamp", {101, 1, 2.5f}));
   builder.box({99, -1, 0}, {104, 4, 3}, 0, true);
   add(builder);
-  const auto open = open_edges_of_glass(builder.build());
+  const auto open = scene::open_edges_of_glass(builder.build());
   CHECK(open[0] == 0);
   return open[pane];
 }

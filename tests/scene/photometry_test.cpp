@@ -6,8 +6,6 @@
 #include <numbers>
 
 namespace photile::test {
-
-using namespace scene_io;
 namespace {
 
 using std::numbers::pi;
@@ -26,20 +24,21 @@ double integrated_spot_flux(double intensity, double inner, double outer) {
 }
 
 TEST_CASE("spot flux is the integral of its falloff over the sphere") {
-  CHECK(spot_flux(3.0, 0.0, 0.7853981634) ==
+  CHECK(scene::spot_flux(3.0, 0.0, 0.7853981634) ==
         Approx(integrated_spot_flux(3.0, 0.0, 0.7853981634)).epsilon(1e-6));
-  CHECK(spot_flux(3.0, 0.4, 1.2) == Approx(integrated_spot_flux(3.0, 0.4, 1.2)).epsilon(1e-6));
+  CHECK(scene::spot_flux(3.0, 0.4, 1.2) ==
+        Approx(integrated_spot_flux(3.0, 0.4, 1.2)).epsilon(1e-6));
 }
 
 TEST_CASE("a spot without a ramp over the half sphere has half the flux of a point light") {
-  CHECK(2.0 * spot_flux(5.0, pi / 2, pi / 2) == Approx(point_flux(5.0)));
+  CHECK(2.0 * scene::spot_flux(5.0, pi / 2, pi / 2) == Approx(scene::point_flux(5.0)));
 }
 
 TEST_CASE("fluxes of area, point and directional lights are their closed forms") {
-  CHECK(area_flux(10.0, 2.0, false) == Approx(20.0 * pi));
-  CHECK(area_flux(10.0, 2.0, true) == Approx(40.0 * pi));
-  CHECK(point_flux(1.0) == Approx(4.0 * pi));
-  CHECK(directional_flux(1000.0, 3.0) == Approx(9000.0 * pi));
+  CHECK(scene::area_flux(10.0, 2.0, false) == Approx(20.0 * pi));
+  CHECK(scene::area_flux(10.0, 2.0, true) == Approx(40.0 * pi));
+  CHECK(scene::point_flux(1.0) == Approx(4.0 * pi));
+  CHECK(scene::directional_flux(1000.0, 3.0) == Approx(9000.0 * pi));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 std::string hash_of(const Scene& scene) {
   ContentHash hash;
-  add_scene(scene, hash);
+  scene::add_scene(scene, hash);
   return hash.hex();
 }
 

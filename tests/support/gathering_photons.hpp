@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "gather/irradiance_gather.hpp"
+#include "cache/irradiance_gather.hpp"
+#include "estimate/neighbour_choice.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
-#include "render/neighbour_choice.hpp"
 #include "render/photon_passes.hpp"
 
 namespace photile::test {
@@ -23,17 +23,17 @@ class GatheringPhotons {
         plan_(gathering(parameters), rays, HitsAsk::pictures, Progress::none()),
         passes_(rays, devices, plan_, costs_),
         photons_(passes_.next(nullptr, nullptr, Progress::none())),
-        layer_powers_(photile::layer_powers(rays.scene())) {}
+        layer_powers_(photile::estimate::layer_powers(rays.scene())) {}
   GatheringPhotons(const GatheringPhotons&) = delete;
   GatheringPhotons& operator=(const GatheringPhotons&) = delete;
 
-  IrradianceGather gather(IrradianceGatherParameters parameters) const {
+  cache::IrradianceGather gather(cache::IrradianceGatherParameters parameters) const {
     parameters.caustic_neighbours = plan_.used().neighbours;
-    return IrradianceGather(rays_, light(), light(), photons_.ends,
-                            photons_.caustics.of_points.get(), parameters);
+    return cache::IrradianceGather(rays_, light(), light(), photons_.ends,
+                                   photons_.caustics.of_points.get(), parameters);
   }
   /// By photons of all light.
-  LightAtPoints& light() const { return *photons_.all.of_points; }
+  estimate::LightAtPoints& light() const { return *photons_.all.of_points; }
   std::span<const double> layer_powers() const { return layer_powers_; }
 
  private:

@@ -44,10 +44,10 @@ struct Weights {
   float f0 = 0, f90 = 0;
 };
 
-DiffusePart part_of(double cosine, double albedo, double f0, double alpha) {
-  return diffuse_part({glm::vec3(static_cast<float>(albedo)), glm::vec3(static_cast<float>(f0)),
-                       1.0f, static_cast<float>(alpha)},
-                      static_cast<float>(cosine));
+trace::DiffusePart part_of(double cosine, double albedo, double f0, double alpha) {
+  return trace::diffuse_part({glm::vec3(static_cast<float>(albedo)),
+                              glm::vec3(static_cast<float>(f0)), 1.0f, static_cast<float>(alpha)},
+                             static_cast<float>(cosine));
 }
 
 /// One facet's reflection alone.
@@ -62,7 +62,7 @@ double facet_reflection(const glm::dvec3& i, const glm::dvec3& o, double f0, dou
 double reflection(const glm::dvec3& i, const glm::dvec3& o, double albedo, double f0,
                   double alpha) {
   const Weights weights(i.z, alpha);
-  const DiffusePart part = part_of(o.z, albedo, f0, alpha);
+  const trace::DiffusePart part = part_of(o.z, albedo, f0, alpha);
   return facet_reflection(i, o, f0, alpha) +
          double{photile_diffuse(part[0].r, part[1].r, part[2].r, weights.f0, weights.f90)};
 }
@@ -192,7 +192,8 @@ TEST_CASE("The mean of the coat's albedo is that of the fit over a diffusely lit
 }
 
 TEST_CASE("Without a coat the opaque BSDF is Lambertian") {
-  const DiffusePart part = diffuse_part({glm::vec3(0.7f), glm::vec3(0.0f), 0.0f, 1.0f}, 0.3f);
+  const trace::DiffusePart part =
+      trace::diffuse_part({glm::vec3(0.7f), glm::vec3(0.0f), 0.0f, 1.0f}, 0.3f);
   const float diffuse = photile_diffuse(part[0].r, part[1].r, part[2].r, 0.4f, 0.2f);
   CHECK(diffuse == Approx(0.7 / M_PI));
   CHECK(photile_opaque_bsdf(diffuse, 0.0f, 0.0f, 0.9f, 5.0f) == diffuse);

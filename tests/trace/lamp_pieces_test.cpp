@@ -6,10 +6,10 @@
 #include <set>
 
 #include "test_scenes.hpp"
-#include "tools/validation/form_factors.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "uniform.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 

@@ -11,9 +11,9 @@
 #include "photile/sensors.hpp"
 #include "room_with_window.hpp"
 #include "statistical_tests.hpp"
-#include "tools/validation/form_factors.hpp"
 #include "trace/light_emitter.hpp"
 #include "trace/portal_search.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 

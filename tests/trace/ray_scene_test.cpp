@@ -46,12 +46,13 @@ TEST_CASE("The weights of a place on a triangle are found, and beside it those o
     const float u = uniform();
     const glm::vec2 uv = sample_triangle(u, uniform());
     const auto [a, b, c] = scene.corners(0);
-    const TriangleHit found = nearest_on_triangle(
+    const trace::TriangleHit found = nearest_on_triangle(
         scene, 0,
         glm::dvec3(a) + double{uv.x} * glm::dvec3(b - a) + double{uv.y} * glm::dvec3(c - a));
     CHECK(found.u == Approx(uv.x).margin(1e-5));
     CHECK(found.v == Approx(uv.y).margin(1e-5));
-    const TriangleHit within = nearest_on_triangle(scene, 0, 2.0 * glm::dvec3(uniform.direction()));
+    const trace::TriangleHit within =
+        nearest_on_triangle(scene, 0, 2.0 * glm::dvec3(uniform.direction()));
     CHECK(within.u >= 0);
     CHECK(within.v >= 0);
     CHECK(within.u + within.v < 1 + 1e-6);

@@ -41,8 +41,8 @@ double integral(const Material& material, const glm::dvec3& to_light, const glm:
   float f0_weight = 0, f90_weight = 0;
   photile_lobe_albedo(&fit, static_cast<float>(glm::dot(normal, to_light)), &f0_weight,
                       &f90_weight);
-  const scene_io::Reflectance surface{material.diffuse, material.specular, material.f90,
-                                      material.roughness};
+  const scene::Reflectance surface{material.diffuse, material.specular, material.f90,
+                                   material.roughness};
   double sum = 0;
   for (int i = 0; i < rings; ++i)
     for (int j = 0; j < sectors; ++j) {
@@ -53,7 +53,8 @@ double integral(const Material& material, const glm::dvec3& to_light, const glm:
       const float lobe = photile_ggx_lobe(
           static_cast<float>(glm::dot(normal, to_light)), static_cast<float>(glm::dot(normal, o)),
           static_cast<float>(glm::dot(normal, h)), material.roughness);
-      const DiffusePart part = diffuse_part(surface, static_cast<float>(glm::dot(normal, o)));
+      const trace::DiffusePart part =
+          trace::diffuse_part(surface, static_cast<float>(glm::dot(normal, o)));
       const float diffuse = photile_diffuse(part[0].g, part[1].g, part[2].g, f0_weight, f90_weight);
       sum += photile_opaque_bsdf(diffuse, material.specular.g, material.f90,
                                  photile_schlick(static_cast<float>(glm::dot(to_light, h))), lobe) *

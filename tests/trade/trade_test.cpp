@@ -1,4 +1,4 @@
-#include "tools/trade/trade.hpp"
+#include "trade/trade.hpp"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -29,14 +29,14 @@ struct Subject {
     reference = mixed_picture(trace_paths(scene, scene.cameras.front(), film).layers, mix)->root();
   }
 
-  std::vector<TradePoint> measure(const std::vector<TradeSettings>& settings) {
-    return measure_trade({scene, scene.cameras.front(), {&test::device(), 1}, mix, reference},
-                         settings);
+  std::vector<trade::TradePoint> measure(const std::vector<trade::TradeSettings>& settings) {
+    return trade::measure_trade(
+        {scene, scene.cameras.front(), {&test::device(), 1}, mix, reference}, settings);
   }
 };
 
-TradePoint point(double seconds, double relative_error) {
-  TradePoint result;
+trade::TradePoint point(double seconds, double relative_error) {
+  trade::TradePoint result;
   result.first_picture_seconds = seconds;
   result.error.relative_mse = relative_error * relative_error;
   return result;
@@ -51,7 +51,7 @@ TEST_CASE("a trade has all pairs of photons and neighbours, and every other sett
   base.kernel = DensityKernel::cone;
   std::map<std::string, int> count;
   std::set<std::pair<std::uint64_t, int>> pairs;
-  for (const TradeSettings& one : settings_around(base)) {
+  for (const trade::TradeSettings& one : trade::settings_around(base)) {
     ++count[one.varied];
     const RenderParameters& p = one.parameters;
     if (one.varied == "photons and neighbours") {
@@ -75,12 +75,12 @@ TEST_CASE("each setting of a trade is rendered with, timed and compared") {
   Subject subject;
   RenderParameters other = subject.parameters;
   other.neighbours = 10;
-  const std::vector<TradePoint> points =
+  const std::vector<trade::TradePoint> points =
       subject.measure({{"nothing", subject.parameters}, {"neighbours", other}});
   REQUIRE(points.size() == 2);
   CHECK(points[1].settings.varied == "neighbours");
   CHECK(points[1].used.neighbours == 10);
-  for (const TradePoint& point : points) {
+  for (const trade::TradePoint& point : points) {
     CHECK(point.first_picture_seconds > point.frame_seconds);
     CHECK(point.device_bytes > 0);
     CHECK(point.error.relative_mse > 0);
@@ -93,16 +93,16 @@ TEST_CASE("more neighbours make a noisy picture more right") {
   RenderParameters few = subject.parameters, many = subject.parameters;
   few.neighbours = 3;
   many.neighbours = 30;
-  const std::vector<TradePoint> points = subject.measure({{"few", few}, {"many", many}});
+  const std::vector<trade::TradePoint> points = subject.measure({{"few", few}, {"many", many}});
   CHECK(points[0].error.relative_error() > 2 * points[1].error.relative_error());
 }
 
 TEST_CASE("the fastest settings within an error are found, or none") {
-  const std::vector<TradePoint> points{point(1, 0.10), point(3, 0.05), point(2, 0.07)};
-  CHECK(fastest_within(points, 0.5) == &points[0]);
-  CHECK(fastest_within(points, 0.08) == &points[2]);
-  CHECK(fastest_within(points, 0.05) == &points[1]);
-  CHECK(fastest_within(points, 0.04) == nullptr);
+  const std::vector<trade::TradePoint> points{point(1, 0.10), point(3, 0.05), point(2, 0.07)};
+  CHECK(trade::fastest_within(points, 0.5) == &points[0]);
+  CHECK(trade::fastest_within(points, 0.08) == &points[2]);
+  CHECK(trade::fastest_within(points, 0.05) == &points[1]);
+  CHECK(trade::fastest_within(points, 0.04) == nullptr);
 }
 
 }  // namespace photile::test

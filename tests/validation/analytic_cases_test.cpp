@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "test_device.hpp"
-#include "tools/validation/validate.hpp"
+#include "validation/validate.hpp"
 
 namespace photile::test {
 

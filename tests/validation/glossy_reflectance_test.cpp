@@ -1,5 +1,5 @@
 // The reflectance of the glossy material in a white furnace against an integral over directions.
-#include "tools/validation/glossy_reflectance.hpp"
+#include "validation/glossy_reflectance.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,7 +1,7 @@
 // What validation makes of sixteen readings: within 1%, beyond it, or too noisy to tell.
 #include <catch2/catch.hpp>
 
-#include "tools/validation/validate.hpp"
+#include "validation/validate.hpp"
 
 namespace photile::test {
 

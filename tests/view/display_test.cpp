@@ -1,5 +1,5 @@
 // From layers and powers to what the screen shows.
-#include "tools/view/display.hpp"
+#include "view/display.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include "image/glare.hpp"
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
+#include "report/number_text.hpp"
+#include "report/palette.hpp"
 #include "test_scenes.hpp"
-#include "tools/report/number_text.hpp"
-#include "tools/report/palette.hpp"
 #include "two_lights.hpp"
 
 namespace photile::test {
@@ -101,7 +101,7 @@ TEST_CASE("what an estimate's noise depends on follows from k, the kernel and th
 }
 
 TEST_CASE("a number has as many digits as its error leaves meaning") {
-  using measuring::text_with_error;
+  using report::text_with_error;
   CHECK(text_with_error(229.3, 32.4) == "230 +-30");
   CHECK(text_with_error(294.06, 0.22) == "294.1 +-0.2");
   CHECK(text_with_error(12345, 1234) == "12000 +-1000");
@@ -133,7 +133,7 @@ TEST_CASE("false colour runs over its palette from zero to the top of the scale"
   settings.mode = DisplayMode::illuminance;
   settings.false_colour.scale = 260;
   const DisplayedFrame shown = display(two_pixels(), mix_of(10, 100), settings);
-  const auto middle = image::Palette("turbo").at(0.5);  // 130 of 260
+  const auto middle = report::Palette("turbo").at(0.5);  // 130 of 260
   CHECK(std::equal(middle.begin(), middle.end(), shown.rgb.begin()));
   settings.false_colour.palette = "no such";
   CHECK_THROWS_AS(display(two_pixels(), mix_of(1, 1), settings), UsageError);
@@ -145,18 +145,18 @@ TEST_CASE("contours are drawn over the picture, posterized values fill it") {
   settings.false_colour.scale = 400;
   settings.false_colour.steps = 2;      // levels 100 and 300; bands 80 to 120 and 280 to 320
   const LightMix mix = mix_of(10, 39);  // 69 and 78 lux at the pixels, hence no band
-  settings.false_colour.contours = measuring::Contours::bands;
+  settings.false_colour.contours = report::Contours::bands;
   DisplaySettings picture;
   CHECK(display(two_pixels(), mix, settings).rgb == display(two_pixels(), mix, picture).rgb);
   const LightMix brighter = mix_of(10, 50);  // 80 and 100: the second is in a band
   const auto band = display(two_pixels(), brighter, settings);
-  const auto colour = image::Palette("turbo").at(0.25);
+  const auto colour = report::Palette("turbo").at(0.25);
   CHECK(std::equal(colour.begin(), colour.end(), band.rgb.begin() + 3));
-  settings.false_colour.contours = measuring::Contours::lines;  // between 80 and 100
+  settings.false_colour.contours = report::Contours::lines;  // between 80 and 100
   const auto line = display(two_pixels(), brighter, settings);
-  const auto left = image::Palette("turbo").at(0.2);
+  const auto left = report::Palette("turbo").at(0.2);
   CHECK(std::equal(left.begin(), left.end(), line.rgb.begin()));
-  settings.false_colour.contours = measuring::Contours::steps;
+  settings.false_colour.contours = report::Contours::steps;
   const auto steps = display(two_pixels(), brighter, settings);
   CHECK(std::equal(colour.begin(), colour.end(), steps.rgb.begin()));
   CHECK(std::equal(colour.begin(), colour.end(), steps.rgb.begin() + 3));

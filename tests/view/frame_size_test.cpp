@@ -1,5 +1,5 @@
 // How large frames are while the viewer moves.
-#include "tools/view/frame_size.hpp"
+#include "view/frame_size.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,10 +1,10 @@
 // Changes of lamps, taken back and made again.
-#include "tools/view/history.hpp"
+#include "view/history.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "tools/view/light_board.hpp"
 #include "two_lights.hpp"
+#include "view/light_board.hpp"
 
 namespace photile::test {
 namespace {

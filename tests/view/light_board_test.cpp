@@ -1,9 +1,9 @@
 // What the sliders make of the lamps.
-#include "tools/view/light_board.hpp"
+#include "view/light_board.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "import/relit_sky.hpp"
+#include "loading/relit_sky.hpp"
 #include "two_lights.hpp"
 
 namespace photile::test {
@@ -21,7 +21,7 @@ LightMix two_lamps() {
 
 std::vector<std::string> sky_light_names() {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i <= 145; ++i) names.push_back(scene_io::sky_light_name(i, 145));
+  for (std::size_t i = 0; i <= 145; ++i) names.push_back(loading::sky_light_name(i, 145));
   return names;
 }
 

@@ -1,5 +1,5 @@
 // Edits of luminaires without a window: what they do to the file, and what they leave alone.
-#include "tools/view/luminaire_editor.hpp"
+#include "view/luminaire_editor.hpp"
 
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -12,14 +12,14 @@
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"
-#include "tools/view/scene_loader.hpp"
-#include "tools/view/settings_history.hpp"
+#include "view/scene_loader.hpp"
+#include "view/settings_history.hpp"
 
 namespace photile::test {
 namespace {
 
 using namespace photile::view;
-using scene_io::PlacedLuminaires;
+using loading::PlacedLuminaires;
 
 constexpr const char* two_entries =
     R"([{"name": "panels", "file": "downlight.ies", "position": "ceiling", "size": [1.2, 0.3],
@@ -49,11 +49,11 @@ struct Room : TemporaryFolder {
     options.luminaires_text = text;
     return options;
   }
-  scene_io::SourcedScene load(const std::string& text) const {
-    return scene_io::load_sourced_scene(scene, options(text));
+  loading::SourcedScene load(const std::string& text) const {
+    return loading::load_sourced_scene(scene, options(text));
   }
   LuminaireEditor editor() const {
-    const auto sourced = load(scene_io::read_own_luminaires(list).text());
+    const auto sourced = load(loading::read_own_luminaires(list).text());
     return {list, sourced.luminaires, sourced.scene};
   }
 };
@@ -70,15 +70,15 @@ glm::dvec3 middle_of(const Scene& scene, const Light& light) {
 }  // namespace
 
 TEST_CASE("a list of luminaires is written as it was read, member by member") {
-  const auto list = scene_io::LuminaireList::parse(two_entries, "test");
-  CHECK(scene_io::LuminaireList::parse(list.text(), "test") == list);
+  const auto list = loading::LuminaireList::parse(two_entries, "test");
+  CHECK(loading::LuminaireList::parse(list.text(), "test") == list);
   CHECK_THAT(list.text(),
              Catch::Contains(R"("position":"ceiling","size":[1.2,0.3],"count":[3,2])") &&
                  Catch::Contains(R"({"rotation":30,"file")"));
-  const auto alone = scene_io::LuminaireList::parse(R"({"file": "a.ies"})", "test");
+  const auto alone = loading::LuminaireList::parse(R"({"file": "a.ies"})", "test");
   CHECK(alone.text() == "{\"file\":\"a.ies\"}\n");
-  CHECK_THROWS_AS(scene_io::LuminaireList::parse("{", "test"), InputError);
-  CHECK(scene_io::LuminaireList().text() == "[]\n");
+  CHECK_THROWS_AS(loading::LuminaireList::parse("{", "test"), InputError);
+  CHECK(loading::LuminaireList().text() == "[]\n");
 }
 
 TEST_CASE("an edit changes its member alone, and the saved file makes the same scene") {
@@ -90,13 +90,13 @@ TEST_CASE("an edit changes its member alone, and the saved file makes the same s
   editor.set_position({0.25, 2.3, 0.5});
   editor.rotate(75);
   CHECK(editor.unsaved());
-  CHECK(scene_io::read_own_luminaires(room.list) != editor.list());
+  CHECK(loading::read_own_luminaires(room.list) != editor.list());
   editor.save();
   CHECK_FALSE(editor.unsaved());
-  auto expected = scene_io::LuminaireList::parse(two_entries, "test");
+  auto expected = loading::LuminaireList::parse(two_entries, "test");
   expected.entries[1]["position"] = {0.25, 2.3, 0.5};
   expected.entries[1]["rotation"] = 105.0;
-  CHECK(scene_io::read_own_luminaires(room.list) == expected);
+  CHECK(loading::read_own_luminaires(room.list) == expected);
   // The saved file as any command reads it.
   SceneLoadOptions options;
   options.luminaires = room.list;
@@ -201,10 +201,10 @@ TEST_CASE("copies stand beside the first under names of their own, and are remov
 
 TEST_CASE("lamps and luminaires have one history") {
   const Room room;
-  const auto sourced = room.load(scene_io::read_own_luminaires(room.list).text());
+  const auto sourced = room.load(loading::read_own_luminaires(room.list).text());
   LightBoard lights(LightMix::of(sourced.scene, 683));
   LuminaireSession session(room.list, sourced.luminaires, sourced.scene,
-                           room.options(scene_io::read_own_luminaires(room.list).text()));
+                           room.options(loading::read_own_luminaires(room.list).text()));
   SettingsHistory history(lights, &session);
   const auto frame = [&](const std::function<void()>& change, bool of_lights) {
     history.begin_frame();

@@ -1,5 +1,5 @@
 // Named moods and their file.
-#include "tools/view/moods.hpp"
+#include "view/moods.hpp"
 
 #include <catch2/catch.hpp>
 #include <fstream>

@@ -1,5 +1,5 @@
 // The sky of the window at any hour: against the sun's place and what reaches open ground.
-#include "tools/view/moving_sky.hpp"
+#include "view/moving_sky.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <numeric>
 
 #include "common/output_file.hpp"
-#include "daylight/clear_sky.hpp"
-#include "daylight/perez_sky.hpp"
-#include "import/relit_sky.hpp"
+#include "loading/relit_sky.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
+#include "weather/clear_sky.hpp"
+#include "weather/perez_sky.hpp"
 #include "weather_text.hpp"
 
 namespace photile::test {
@@ -29,14 +29,14 @@ LightMix sky_mix(int patches = 145) {
   mix.lights[0].name = "lamp";
   for (std::size_t i = 0; i <= static_cast<std::size_t>(patches); ++i) {
     MixedLight& light = mix.lights.emplace_back();
-    light.name = scene_io::sky_light_name(i, static_cast<std::size_t>(patches));
+    light.name = loading::sky_light_name(i, static_cast<std::size_t>(patches));
     light.power = 1;
   }
   return mix;
 }
 
 double horizontal(const std::vector<double>& luminances) {
-  const auto patches = daylight::sky_patches(145);
+  const auto patches = weather::sky_patches(145);
   double sum = 0;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     sum += luminances[i] * patches[i].solid_angle() * std::sin(patches[i].elevation);
@@ -68,16 +68,16 @@ TEST_CASE("the patches shine where the sun is, and give open ground what the wea
   CHECK(sky->lights().front() == 1);  // after the lamp
   for (const SkyMoment moment : {SkyMoment{172, 9}, SkyMoment{172, 17}, SkyMoment{300, 12}}) {
     const auto powers = sky->powers(moment);
-    const auto patches = daylight::sky_patches(145);
+    const auto patches = weather::sky_patches(145);
     const auto brightest = static_cast<std::size_t>(
         std::max_element(powers.begin(), powers.end() - 1) - powers.begin());
-    const daylight::SunPosition sun = daylight::sun_position(berlin, moment.time());
-    const glm::dvec3 to_sun = daylight::direction_of(sun.azimuth, sun.elevation);
+    const weather::SunPosition sun = weather::sun_position(berlin, moment.time());
+    const glm::dvec3 to_sun = weather::direction_of(sun.azimuth, sun.elevation);
     const glm::dvec3 to_patch =
-        daylight::direction_of(patches[brightest].azimuth, patches[brightest].elevation);
+        weather::direction_of(patches[brightest].azimuth, patches[brightest].elevation);
     CHECK(degrees * std::acos(glm::dot(to_sun, to_patch)) < 9);  // half a patch's diagonal
-    const daylight::PerezSky perez(sun.elevation, daylight::clear_sky(sun.elevation, moment.day),
-                                   moment.day);
+    const weather::PerezSky perez(sun.elevation, weather::clear_sky(sun.elevation, moment.day),
+                                  moment.day);
     CHECK(horizontal(powers) ==
           Approx(perez.diffuse_illuminance() + perez.direct_illuminance() * std::sin(sun.elevation))
               .epsilon(0.06));
@@ -106,9 +106,9 @@ TEST_CASE("the weather of a file lights its own place, in watts by the efficacy"
   REQUIRE(sky);
   const SkyMoment noon{172, 12};
   CHECK(sky->irradiance(noon).diffuse_horizontal == 100);
-  const auto place = scene_io::read_weather(file).site;
-  const daylight::PerezSky perez(daylight::sun_position(place, noon.time()).elevation,
-                                 sky->irradiance(noon), noon.day);
+  const auto place = weather::read_weather(file).site;
+  const weather::PerezSky perez(weather::sun_position(place, noon.time()).elevation,
+                                sky->irradiance(noon), noon.day);
   CHECK(100 * horizontal(sky->powers(noon)) == Approx(perez.diffuse_illuminance()).epsilon(1e-6));
 }
 

@@ -6,8 +6,8 @@
 #include "photile/photon_tracer.hpp"
 #include "photile/ray_scene.hpp"
 #include "test_scenes.hpp"
-#include "tools/view/photon_map_overlay.hpp"
-#include "tools/view/photon_map_view.hpp"
+#include "view/photon_map_overlay.hpp"
+#include "view/photon_map_view.hpp"
 
 namespace photile::test {
 

@@ -6,8 +6,8 @@
 
 #include "photile/defaults.hpp"
 #include "test_scenes.hpp"
-#include "tools/view/light_board.hpp"
-#include "tools/view/point_worker.hpp"
+#include "view/light_board.hpp"
+#include "view/point_worker.hpp"
 
 namespace photile::test {
 namespace {

@@ -1,5 +1,5 @@
 // Walking, turning and orbiting.
-#include "tools/view/viewpoint.hpp"
+#include "view/viewpoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>

@@ -7,8 +7,8 @@
 #include "photile/scene_renderer.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
-#include "tools/view/frame_worker.hpp"
-#include "tools/view/photon_worker.hpp"
+#include "view/frame_worker.hpp"
+#include "view/photon_worker.hpp"
 
 namespace photile::test {
 

@@ -1,5 +1,5 @@
 // Keyframes of a camera.
-#include "import/camera_path.hpp"
+#include "reading/camera_path.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,14 +16,14 @@ using Catch::Contains;
 
 namespace {
 
-walk::CameraMotion read(const std::string& text) {
+reading::CameraMotion read(const std::string& text) {
   const TemporaryFolder folder;
   const auto file = folder.path / "path.json";
   std::ofstream(file) << text;
   Camera base;
   base.name = "eye";
   base.aspect_ratio = 1.5;
-  return walk::read_camera_path(file, base);
+  return reading::read_camera_path(file, base);
 }
 
 void check_near(const glm::dvec3& a, const glm::dvec3& b) {
@@ -57,12 +57,12 @@ TEST_CASE("smooth paths have the velocity of Catmull and Rom at keyframes, and r
   const std::vector<glm::dvec3> values{{0, 0, 0}, {1, 2, 0}, {6, 2, 3}};
   constexpr double h = 1e-6;
   const auto velocity = [&](double t) {
-    return (walk::smooth(times, values, t + h) - walk::smooth(times, values, t - h)) / (2 * h);
+    return (scene::smooth(times, values, t + h) - scene::smooth(times, values, t - h)) / (2 * h);
   };
   CHECK(glm::length(velocity(1) - glm::dvec3(2, 2.0 / 3, 1)) < 1e-4);
   CHECK(glm::length(velocity(2 * h)) < 1e-4);
   CHECK(glm::length(velocity(3 - 2 * h)) < 1e-4);
-  check_near(walk::linear(times, values, 2), {3.5, 2, 1.5});
+  check_near(scene::linear(times, values, 2), {3.5, 2, 1.5});
 }
 
 TEST_CASE("a target that stays is looked at all the way") {

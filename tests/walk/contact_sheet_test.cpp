@@ -1,5 +1,5 @@
 // Frames on a contact sheet, each in its place.
-#include "tools/walk/contact_sheet.hpp"
+#include "walk/contact_sheet.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // Names of numbered frames.
-#include "tools/walk/frame_names.hpp"
+#include "walk/frame_names.hpp"
 
 #include <catch2/catch.hpp>
 

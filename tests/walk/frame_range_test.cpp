@@ -1,5 +1,5 @@
 // Ranges of frames as render farms write them.
-#include "tools/walk/frame_range.hpp"
+#include "walk/frame_range.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "import/gltf/animation.hpp"
+#include "gltf/animation.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 
@@ -58,14 +58,14 @@ struct AnimatedFile {
         {{"input", input}, {"output", output}, {"interpolation", interpolation}});
   }
 
-  walk::CameraMotion read(const std::string& animation = "") {
+  reading::CameraMotion read(const std::string& animation = "") {
     const std::string bytes(reinterpret_cast<const char*>(numbers.data()), 4 * numbers.size());
     std::ofstream(folder.path / "a.bin", std::ios::binary) << bytes;
     document["buffers"] = {{{"uri", "a.bin"}, {"byteLength", bytes.size()}}};
     std::ofstream(folder.path / "a.gltf") << document.dump();
     Camera camera;
     camera.name = "eye";
-    return scene_io::read_camera_animation(folder.path / "a.gltf", {}, camera, animation);
+    return gltf::read_camera_animation(folder.path / "a.gltf", {}, camera, animation);
   }
 };
 

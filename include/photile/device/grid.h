@@ -1,5 +1,5 @@
 /* The uniform grid of one photon map, as C++ and OpenCL C both see it. Scalar members only: a
-   float3 is 16 bytes on the device. The size is asserted in host/maps/map_page.hpp and compared
+   float3 is 16 bytes on the device. The size is asserted in host/renderer/maps/map_page.hpp and compared
    with the device's in tests/device. */
 #ifndef PHOTILE_DEVICE_GRID_H
 #define PHOTILE_DEVICE_GRID_H

@@ -1,0 +1,257 @@
+#include "bake/baked_light.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cache/charts.hpp"
+#include "photile/errors.hpp"
+#include "trace/flush_denormals.hpp"
+
+namespace photile::bake {
+namespace {
+
+/// A lookup between the outermost texels stays within them; the border is for those that go astray.
+constexpr std::uint32_t border = 1;
+
+/// Where the picture is too small, texels are so much farther apart.
+constexpr double coarser = 1.25;
+
+/// Texels whose nodes are valued at a time: bounds the memory of their hits.
+constexpr std::size_t texels_per_fill = std::size_t{1} << 20;
+
+void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t sided_triangle) {
+  hits.position.push_back(position);
+  hits.sided_triangle.push_back(sided_triangle);
+}
+
+/// Light of a layer at a node, at power 1.
+glm::vec3 value_of(const Estimates& values, std::uint32_t node, std::size_t layer,
+                   std::size_t layers) {
+  if (values.first.empty()) return values.irradiance[node * layers + layer];
+  glm::vec3 light(0.0f);
+  for (std::uint64_t i = values.first[node]; i < values.first[node + 1]; ++i) {
+    if (values.light[i] == layer) light += values.irradiance[i];
+  }
+  return light;
+}
+
+/// Of a node: what it holds of any layer.
+std::span<const glm::vec3> light_of(const Estimates& values, std::uint32_t node,
+                                    std::size_t nodes) {
+  const std::size_t lights = values.irradiance.size() / nodes;
+  const std::size_t first = values.first.empty() ? node * lights : values.first[node];
+  const std::size_t last = values.first.empty() ? first + lights : values.first[node + 1];
+  return std::span(values.irradiance).subspan(first, last - first);
+}
+
+glm::vec3 blended(const Estimates& values, const NodeBlend& blend, std::size_t layer,
+                  std::size_t layers) {
+  glm::vec3 light(0.0f);
+  for (std::size_t i = 0; i < blend.node.size(); ++i) {
+    light += blend.weight[i] * value_of(values, blend.node[i], layer, layers);
+  }
+  return light;
+}
+
+}  // namespace
+
+BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
+                       const cache::NodeSight& sight, const BakeParameters& parameters,
+                       const Progress& progress)
+    : scene_(scene), maps_(maps) {
+  choose_sides(source, parameters, progress);
+  const auto most_side = static_cast<std::uint32_t>(parameters.most_side);
+  texel_ = parameters.texel > 0 ? parameters.texel : maps.charts().spacing() / 2;
+  while (!place_charts(texel_, most_side)) {
+    if (parameters.texel > 0 || texel_ > 1e9) {
+      throw UsageError(fmt::format("texels {} m apart do not fit a picture of {} x {}; give more",
+                                   texel_, most_side, most_side));
+    }
+    texel_ *= coarser;
+  }
+  fill(source, sight, progress);
+  spread(sight);
+}
+
+void BakedLight::choose_sides(NodeSource& source, const BakeParameters& parameters,
+                              const Progress& progress) {
+  const std::span<const std::uint32_t> chart_of = maps_.charts().chart_of();
+  PrimaryHits samples;  // the middle, and a point towards each corner
+  for (std::uint32_t s = 0; s < chart_of.size(); ++s) {
+    if (chart_of[s] == none) continue;
+    const std::array<glm::vec3, 3> corners = scene_.corners(triangle_of(s));
+    const glm::vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0f;
+    add(samples, middle, s);
+    for (const glm::vec3& corner : corners) add(samples, 0.5f * (middle + corner), s);
+  }
+  maps_.fill(samples, source, progress);
+  std::vector<double> light_at(samples.size());
+  const std::size_t layers = parameters.powers.size();
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    NodeBlend blend{};
+    maps_.find(samples.sided_triangle[i], samples.position[i], blend);
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+      light_at[i] += parameters.powers[layer] *
+                     luminance(glm::dvec3(blended(maps_.values(), blend, layer, layers)));
+    }
+  });
+  std::vector<double> light(chart_of.size(), 0.0);
+  for (std::size_t i = 0; i < samples.size(); ++i) light[samples.sided_triangle[i]] += light_at[i];
+  for (std::uint32_t t = 0; t < scene_.triangle_count(); ++t) {
+    const std::uint32_t front = scene_.front_side[t];
+    const std::uint32_t brighter =
+        light[sided(t, 1 - front)] > light[sided(t, front)] ? 1 - front : front;
+    for (const std::uint32_t side : {0u, 1u}) {
+      if (side == brighter || light[sided(t, side)] > 0) sides_.push_back(sided(t, side));
+    }
+  }
+}
+
+bool BakedLight::place_charts(double texel, std::uint32_t most_side) {
+  const cache::Charts& charts = maps_.charts();
+  placed_.clear();
+  place_of_chart_.assign(charts.size(), none);
+  member_.assign(charts.size(), none);
+  for (const std::uint32_t side : sides_) {
+    const std::uint32_t chart = charts.chart_of()[side];
+    if (chart == none || place_of_chart_[chart] != none) continue;
+    member_[chart] = side;
+    place_of_chart_[chart] = static_cast<std::uint32_t>(placed_.size());
+    const cache::Chart& lattice = charts[chart];
+    const glm::dvec2 size = lattice.spacing * glm::dvec2(lattice.columns, lattice.rows);
+    // A hundredth of a cell more is rounding.
+    const glm::dvec2 cells = glm::max(glm::ceil(size / texel - 0.01), glm::dvec2(1.0));
+    if (std::max(cells.x, cells.y) > most_side) return false;
+    const glm::uvec2 counted(cells);
+    const std::uint32_t more = 1 + 2 * border;
+    placed_.push_back({chart, counted, {0, 0, counted.x + more, counted.y + more}});
+  }
+  std::vector<TexelRectangle> rectangles;
+  for (const Placed& placed : placed_) rectangles.push_back(placed.rectangle);
+  const std::optional<Atlas> atlas = pack(rectangles, most_side);
+  if (!atlas) return false;
+  for (std::size_t i = 0; i < placed_.size(); ++i) placed_[i].rectangle = rectangles[i];
+  atlas_ = *atlas;
+  return true;
+}
+
+/// Of a texel of the rectangle.
+glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t y) const {
+  const cache::Chart& lattice = maps_.charts()[placed.chart];
+  const glm::uvec2 within(std::clamp(x, border, placed.cells.x + border) - border,
+                          std::clamp(y, border, placed.cells.y + border) - border);
+  const glm::dvec2 size = lattice.spacing * glm::dvec2(lattice.columns, lattice.rows);
+  const glm::dvec2 at = glm::dvec2(within) / glm::dvec2(placed.cells) * size;
+  return glm::vec3(lattice.origin + at.x * lattice.across + at.y * lattice.along);
+}
+
+void BakedLight::fill(NodeSource& source, const cache::NodeSight& sight, const Progress& progress) {
+  NodeBlend nothing{};
+  nothing.node.fill(none);
+  blend_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
+  PrimaryHits hits;
+  std::vector<std::size_t> texels;
+  const auto value = [&] {
+    maps_.fill(hits, source, progress);
+    tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
+      const trace::FlushDenormals flush_denormals;
+      NodeBlend& blend = blend_[texels[i]];
+      maps_.find(hits.sided_triangle[i], hits.position[i], blend);
+      sight.look(hits.sided_triangle[i], hits.position[i], blend);
+    });
+    hits = {};
+    texels.clear();
+  };
+  for (const Placed& placed : placed_) {
+    const TexelRectangle& rectangle = placed.rectangle;
+    for (std::uint32_t y = 0; y < rectangle.height; ++y) {
+      for (std::uint32_t x = 0; x < rectangle.width; ++x) {
+        add(hits, point(placed, x, y), member_[placed.chart]);
+        texels.push_back(std::size_t{rectangle.y + y} * atlas_.width + rectangle.x + x);
+      }
+    }
+    if (texels.size() >= texels_per_fill) value();
+  }
+  value();
+}
+
+/// A lookup beside a box that stands on a floor takes a part of the texels under the box. Those
+/// that hold no light, and from which the box hides a lit texel next to them, get what that one
+/// has.
+void BakedLight::spread(const cache::NodeSight& sight) {
+  const std::vector<NodeBlend> found = blend_;
+  const Estimates& values = maps_.values();
+  const std::size_t nodes = maps_.statistics().nodes;
+  const auto lit = [&](const NodeBlend& blend) {
+    for (std::size_t i = 0; i < blend.node.size(); ++i) {
+      if (blend.weight[i] == 0.0f) continue;
+      const auto light = light_of(values, blend.node[i], nodes);
+      if (std::any_of(light.begin(), light.end(),
+                      [](const glm::vec3& value) { return value.x + value.y + value.z > 0; })) {
+        return true;
+      }
+    }
+    return false;
+  };
+  constexpr int around[8][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
+                                {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+  tbb::parallel_for(std::size_t{0}, placed_.size(), [&](std::size_t i) {
+    const trace::FlushDenormals flush_denormals;
+    const Placed& placed = placed_[i];
+    const TexelRectangle& rectangle = placed.rectangle;
+    const auto texel = [&](std::uint32_t x, std::uint32_t y) {
+      return std::size_t{rectangle.y + y} * atlas_.width + rectangle.x + x;
+    };
+    for (std::uint32_t y = 0; y < rectangle.height; ++y) {
+      for (std::uint32_t x = 0; x < rectangle.width; ++x) {
+        if (lit(found[texel(x, y)])) continue;
+        for (const auto& [dx, dy] : around) {
+          const std::uint32_t nx = x + dx, ny = y + dy;  // beyond 0 they are large
+          if (nx >= rectangle.width || ny >= rectangle.height) continue;
+          if (!lit(found[texel(nx, ny)]) ||
+              sight.sees(member_[placed.chart], point(placed, x, y), point(placed, nx, ny))) {
+            continue;
+          }
+          blend_[texel(x, y)] = found[texel(nx, ny)];
+          break;
+        }
+      }
+    }
+  });
+}
+
+std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t sided_triangle) const {
+  const cache::Charts& charts = maps_.charts();
+  const std::uint32_t chart = charts.chart_of()[sided_triangle];
+  std::array<glm::vec2, 3> corners{};
+  if (chart == none) return corners;
+  const Placed& placed = placed_[place_of_chart_[chart]];
+  const cache::Chart& lattice = charts[chart];
+  const auto positions = scene_.corners(triangle_of(sided_triangle));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 offset = glm::dvec3(positions[i]) - lattice.origin;
+    const glm::dvec2 place(glm::dot(offset, lattice.across), glm::dot(offset, lattice.along));
+    const glm::dvec2 size = lattice.spacing * glm::dvec2(lattice.columns, lattice.rows);
+    const glm::dvec2 texel = glm::dvec2(placed.rectangle.x, placed.rectangle.y) + (border + 0.5) +
+                             glm::clamp(place / size, 0.0, 1.0) * glm::dvec2(placed.cells);
+    corners[i] = glm::vec2(texel / glm::dvec2(atlas_.width, atlas_.height));
+  }
+  return corners;
+}
+
+std::vector<glm::vec3> BakedLight::layer(std::size_t layer) const {
+  std::vector<glm::vec3> texels(blend_.size(), glm::vec3(0.0f));
+  const Estimates& values = maps_.values();
+  const std::size_t layers = values.first.empty() && maps_.statistics().nodes > 0
+                                 ? values.irradiance.size() / maps_.statistics().nodes
+                                 : 0;
+  tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
+    if (blend_[i].node[0] != none) texels[i] = blended(values, blend_[i], layer, layers);
+  });
+  return texels;
+}
+
+}  // namespace photile::bake

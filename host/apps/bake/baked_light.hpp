@@ -1,0 +1,72 @@
+// Light maps as textures: a place on one picture for every triangle, and the light there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/atlas.hpp"
+#include "cache/node_sight.hpp"
+#include "photile/light_maps.hpp"
+#include "photile/progress.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::bake {
+
+struct BakeParameters {
+  double texel = 0;            ///< metres between texels, at most; 0 = as fine as the picture holds
+  int most_side = 4096;        ///< of the picture
+  std::vector<double> powers;  ///< per layer, by which the brighter side of a surface is told
+};
+
+/// The charts of the light maps side by side: of each triangle the side on which more light falls,
+/// and the other where it is lit, too. Texels are points of the charts' lattices, so that a
+/// bilinear lookup blends neighbours of one chart; a border of one texel repeats the last. Texels
+/// under things that stand on a surface hold the light beside these, for lookups there.
+class BakedLight {
+ public:
+  /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
+  /// at this distance of texels; those of LightMaps::fill.
+  ///   sight   of the light maps
+  BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source, const cache::NodeSight& sight,
+             const BakeParameters& parameters, const Progress& progress);
+
+  std::uint32_t width() const { return atlas_.width; }
+  std::uint32_t height() const { return atlas_.height; }
+  double texel() const { return texel_; }
+
+  /// Sided triangles that are baked, ascending.
+  std::span<const std::uint32_t> sides() const { return sides_; }
+  /// Of a baked triangle's corners: (0, 0) is the top left corner of the picture.
+  std::array<glm::vec2, 3> corners(std::uint32_t sided_triangle) const;
+
+  /// Irradiance of a layer at power 1: width x height, row 0 at the top; 0 where no chart lies.
+  std::vector<glm::vec3> layer(std::size_t layer) const;
+
+ private:
+  struct Placed {
+    std::uint32_t chart;
+    glm::uvec2 cells;  ///< between texels
+    TexelRectangle rectangle;
+  };
+
+  void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
+  bool place_charts(double texel, std::uint32_t most_side);
+  void fill(NodeSource& source, const cache::NodeSight& sight, const Progress& progress);
+  void spread(const cache::NodeSight& sight);
+  glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
+
+  const Scene& scene_;
+  LightMaps& maps_;
+  std::vector<std::uint32_t> sides_;
+  double texel_ = 0;
+  Atlas atlas_;
+  std::vector<Placed> placed_;
+  std::vector<std::uint32_t> place_of_chart_;  ///< into placed_, or none
+  std::vector<std::uint32_t> member_;          ///< per chart: a sided triangle of it
+  std::vector<NodeBlend> blend_;               ///< per texel
+};
+
+}  // namespace photile::bake

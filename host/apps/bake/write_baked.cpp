@@ -1,0 +1,229 @@
+#include "bake/write_baked.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "common/output_file.hpp"
+#include "image/png_output.hpp"
+#include "photile/errors.hpp"
+#include "photile/image.hpp"
+
+namespace photile::bake {
+namespace {
+
+using nlohmann::json;
+
+constexpr int gltf_float = 5126;  ///< the component type
+
+/// "room.gltf" and "bin": "room.bin", beside it.
+std::filesystem::path beside(const std::filesystem::path& file, const std::string& ending) {
+  return file.parent_path() / fmt::format("{}.{}", file.stem().string(), ending);
+}
+
+std::filesystem::path layer_file(const std::filesystem::path& file, std::size_t layer) {
+  return beside(file, fmt::format("light{:02}.exr", layer));
+}
+
+std::filesystem::path texture_file(const std::filesystem::path& file, std::uint32_t texture) {
+  return beside(file, fmt::format("colour{:02}.png", texture));
+}
+
+/// Textures of base colours, each once, ascending.
+std::vector<std::uint32_t> textures_of(const Scene& scene) {
+  std::vector<std::uint32_t> textures;
+  for (const Material& material : scene.materials) {
+    if (material.diffuse_texture != none) textures.push_back(material.diffuse_texture);
+  }
+  std::sort(textures.begin(), textures.end());
+  textures.erase(std::unique(textures.begin(), textures.end()), textures.end());
+  return textures;
+}
+
+/// Bytes as they are.
+void write_texture(const std::filesystem::path& file, const Texture& texture) {
+  OutputFile output(file);
+  std::vector<std::uint8_t> bytes;
+  for (int y = 0; y < texture.height(); ++y) {
+    for (int x = 0; x < texture.width(); ++x) {
+      const glm::vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(texture.width()),
+                         (static_cast<float>(y) + 0.5f) / static_cast<float>(texture.height()));
+      const glm::vec4 texel = texture.sample_data(uv);
+      for (int c = 0; c < 4; ++c) {
+        bytes.push_back(static_cast<std::uint8_t>(std::lround(255.0f * texel[c])));
+      }
+    }
+  }
+  image::encode_png(output, texture.width(), texture.height(), bytes);
+  output.commit();
+}
+
+void write_layer(const std::filesystem::path& file, const BakedLight& baked, std::size_t layer,
+                 const MixedLight& light) {
+  const std::vector<glm::vec3> texels = baked.layer(layer);
+  const glm::vec3 scale(light.power * glm::dvec3(light.tint));
+  Image image;
+  image.width = static_cast<int>(baked.width());
+  image.height = static_cast<int>(baked.height());
+  for (int channel = 0; channel < 3; ++channel) {
+    std::vector<float>& plane = image.add(std::string(1, "RGB"[channel]));
+    for (std::size_t i = 0; i < texels.size(); ++i) plane[i] = scale[channel] * texels[i][channel];
+  }
+  std::size_t lost = 0;
+  for (const std::vector<float>& plane : image.channels) {
+    lost += static_cast<std::size_t>(std::count_if(
+        plane.begin(), plane.end(), [](float value) { return !std::isfinite(value); }));
+  }
+  if (lost > 0) {
+    throw InputError(
+        fmt::format("light '{}': {} of {} values of its texture are beyond any number; "
+                    "turn it down",
+                    light.name, lost, 3 * image.pixels()));
+  }
+  image.attributes["photile.light"] = light.name;
+  write_exr(file, image);
+}
+
+/// A glTF document that grows.
+class Document {
+ public:
+  /// Accessor of an array, which goes to the buffer.
+  template <class Vector>
+  std::size_t add(const std::vector<Vector>& values) {
+    json& accessors = json_["accessors"];
+    json_["bufferViews"].push_back({{"buffer", 0},
+                                    {"byteOffset", buffer_.size()},
+                                    {"byteLength", values.size() * sizeof(Vector)}});
+    Vector low = values.front(), high = low;
+    for (const Vector& value : values) low = glm::min(low, value), high = glm::max(high, value);
+    json accessor{{"bufferView", json_["bufferViews"].size() - 1},
+                  {"componentType", gltf_float},
+                  {"count", values.size()},
+                  {"type", fmt::format("VEC{}", Vector::length())}};
+    for (int i = 0; i < Vector::length(); ++i) {
+      accessor["min"].push_back(low[i]);
+      accessor["max"].push_back(high[i]);
+    }
+    accessors.push_back(std::move(accessor));
+    buffer_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Vector));
+    return accessors.size() - 1;
+  }
+
+  json& operator[](const char* key) { return json_[key]; }
+
+  void write(const std::filesystem::path& file) {
+    const std::filesystem::path buffer = beside(file, "bin");
+    json_["asset"] = {{"version", "2.0"}, {"generator", "photile"}};
+    json_["buffers"] = {{{"uri", buffer.filename().string()}, {"byteLength", buffer_.size()}}};
+    write_file(buffer, buffer_);
+    write_file(file, json_.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  }
+
+ private:
+  json json_;
+  std::string buffer_;
+};
+
+json material_of(const Scene& scene, const Material& material,
+                 const std::map<std::uint32_t, std::size_t>& texture_number) {
+  // What is not textured here is matt with the same reflectance on the whole.
+  glm::vec3 colour = material.diffuse + material.specular;
+  if (material.metallic_roughness != none) {
+    colour = glm::vec3(scene.metallic_roughness[material.metallic_roughness].base_color);
+  }
+  colour = glm::min(colour, glm::vec3(1.0f));
+  json surface{{"baseColorFactor", {colour.r, colour.g, colour.b, 1.0}},
+               {"metallicFactor", 0.0},
+               {"roughnessFactor", 1.0}};
+  if (material.diffuse_texture != none && !scene.corner_uv.empty()) {
+    surface["baseColorTexture"] = {{"index", texture_number.at(material.diffuse_texture)}};
+  }
+  return {{"name", material.name}, {"pbrMetallicRoughness", surface}};
+}
+
+/// Baked sides of a material, each a triangle of its own that faces where it is seen from.
+json primitive_of(const Scene& scene, const BakedLight& baked,
+                  const std::vector<std::uint32_t>& sides, std::uint32_t material,
+                  Document& document) {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec2> colours, lights;
+  for (const std::uint32_t s : sides) {
+    const std::uint32_t t = triangle_of(s);
+    const auto corners = scene.corners(t);
+    const auto light = baked.corners(s);
+    for (const std::size_t corner : {0u, 1 + side_of(s), 2 - side_of(s)}) {
+      positions.push_back(corners[corner]);
+      lights.push_back(light[corner]);
+      if (!scene.corner_uv.empty()) colours.push_back(scene.corner_uv[t][corner]);
+    }
+  }
+  // A second set needs a first one.
+  if (colours.empty()) colours.assign(positions.size(), glm::vec2(0.0f));
+  json primitive{{"material", material}};
+  primitive["attributes"] = {{"POSITION", document.add(positions)},
+                             {"TEXCOORD_0", document.add(colours)},
+                             {"TEXCOORD_1", document.add(lights)}};
+  return primitive;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, const Scene& scene,
+                                            const LightMix& mix) {
+  std::vector<std::filesystem::path> files{file, beside(file, "bin")};
+  for (std::size_t i = 0; i < mix.lights.size(); ++i) files.push_back(layer_file(file, i));
+  for (const std::uint32_t texture : textures_of(scene)) {
+    files.push_back(texture_file(file, texture));
+  }
+  return files;
+}
+
+void write_baked(const std::filesystem::path& file, const Scene& scene, const BakedLight& baked,
+                 const LightMix& mix) {
+  Document document;
+  std::map<std::uint32_t, std::size_t> texture_number;
+  for (const std::uint32_t texture : textures_of(scene)) {
+    const std::filesystem::path picture = texture_file(file, texture);
+    write_texture(picture, scene.textures[texture]);
+    texture_number[texture] = texture_number.size();
+    document["images"].push_back({{"uri", picture.filename().string()}});
+    document["textures"].push_back({{"source", document["images"].size() - 1}});
+  }
+  std::vector<std::vector<std::uint32_t>> sides(scene.materials.size());
+  for (const std::uint32_t side : baked.sides()) {
+    sides[scene.triangle_material[triangle_of(side)]].push_back(side);
+  }
+  json mesh;
+  for (std::uint32_t m = 0; m < sides.size(); ++m) {
+    document["materials"].push_back(material_of(scene, scene.materials[m], texture_number));
+    if (sides[m].empty()) continue;
+    mesh["primitives"].push_back(primitive_of(scene, baked, sides[m], m, document));
+  }
+  document["meshes"] = {mesh};
+  document["nodes"] = {
+      {{"mesh", 0}, {"translation", {scene.origin.x, scene.origin.y, scene.origin.z}}}};
+  json layers;
+  for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+    const MixedLight& light = mix.lights[i];
+    write_layer(layer_file(file, i), baked, i, light);
+    layers.push_back({{"light", light.name},
+                      {"uri", layer_file(file, i).filename().string()},
+                      {"texCoord", 1},
+                      {"power", light.power},
+                      {"tint", {light.tint.r, light.tint.g, light.tint.b}}});
+  }
+  document["scenes"] = {
+      {{"nodes", {0}},
+       {"extras",
+        {{"photile",
+          {{"light_maps", layers},
+           {"irradiance", scene.unit == PowerUnit::lumen ? "lm/m2" : "W/m2"}}}}}}};
+  document["scene"] = 0;
+  document.write(file);
+}
+
+}  // namespace photile::bake

@@ -1,0 +1,26 @@
+// A baked scene as files: glTF with a second set of texture coordinates, and a picture per light.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bake/baked_light.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::bake {
+
+/// The files that are written for `file`, a .gltf: itself, its .bin, an EXR for each layer and a
+/// PNG for each texture of base colours.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, const Scene& scene,
+                                            const LightMix& mix);
+
+/// Writes them. Corners of triangles are vertices of their own; the coordinates of light are
+/// TEXCOORD_1. The picture of a layer is the irradiance of its lights at their powers and tints in
+/// the mix, linear Rec.709, in the unit of the scene per square metre; the document names it in
+/// extras.photile of the scene. Errors: OutputError.
+void write_baked(const std::filesystem::path& file, const Scene& scene, const BakedLight& baked,
+                 const LightMix& mix);
+
+}  // namespace photile::bake

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bake/write_baked.hpp"
+#include "command/commands.hpp"
+#include "command/output_files.hpp"
+#include "command/render_options.hpp"
+#include "command/run_notes.hpp"
+#include "command/saved_maps_option.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "command/validators.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "render/render_session.hpp"
+
+namespace photile::app {
+namespace {
+
+struct BakeOptions {
+  RenderOptions render;
+  std::string output;
+  bake::BakeParameters baking;
+};
+
+void run_bake(BakeOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  render.parameters.light_maps = LightMapMode::on;
+  check(render.parameters);
+  note_inputs_of(render);
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  const Scene scene = load_scene(render.scene, render.load);
+  const LightMix mix = mix_of(scene, render);
+  check_outputs(bake::files_of(options.output, scene, mix));
+  std::vector<Device> devices = devices_for(render, progress);
+  tell_scene(scene, mix, progress);
+
+  std::optional<PreparedPhotons> prepared = load_maps(scene, render, progress);
+  RenderSession session(std::make_shared<const PreparedScene>(scene), devices, render.parameters,
+                        prepared ? &*prepared : nullptr, keep_maps(scene, render, progress),
+                        progress);
+  cache::SurfaceCache& cache = *session.light().cache();
+  for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
+  progress.begin("bake light maps", 0, "");
+  const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.sight(),
+                               options.baking, progress);
+  bake::write_baked(options.output, scene, baked, mix);
+  progress.end();
+  keep_light_maps(session.light_map_contents(), render, progress);
+  progress.note(fmt::format("{}: {} x {} texels, {:.3g} cm apart", options.output, baked.width(),
+                            baked.height(), 100 * baked.texel()));
+}
+
+}  // namespace
+
+void add_bake_command(CLI::App& photile) {
+  auto options = std::make_shared<BakeOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "bake", "Write light maps as textures of a glTF scene, a picture per light");
+  command->add_option("-o,--output", options->output, "scene to write, with files beside it")
+      ->required()
+      ->type_name("FILE.gltf")
+      ->check(file_ending_in({".gltf"}))
+      ->group("Output");
+  command
+      ->add_option("--texel", options->baking.texel,
+                   "metres between texels; default: half the coarsest nodes, or what fits")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Output");
+  command
+      ->add_option("--most-texels", options->baking.most_side, "texels on a side of the pictures")
+      ->type_name("N")
+      ->transform(count_between(64, limits::max_image_side))
+      ->capture_default_str()
+      ->group("Output");
+  add_setting_options(*command, options->render,
+                      {"samples_per_pixel", "passes", "direct_rays", "light_maps"});
+  add_saved_maps_options(*command, options->render);
+  command->callback([options] { run_bake(*options); });
+}
+
+}  // namespace photile::app

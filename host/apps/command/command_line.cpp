@@ -1,0 +1,143 @@
+#include "command/command_line.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "command/exit_code.hpp"
+#include "command/processes.hpp"
+#include "command/setting_options.hpp"
+#include "command/signals.hpp"
+#include "command/terminal.hpp"
+#include "command/version.hpp"
+#include "common/run_files.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::app {
+namespace {
+
+void define(CLI::App& photile) {
+  photile.set_version_flag("--version", version_text());
+  photile.require_subcommand(1);
+  add_render_command(photile);
+  add_relight_command(photile);
+  add_compare_command(photile);
+  add_measure_command(photile);
+  add_daylight_command(photile);
+  add_glare_command(photile);
+  add_trade_command(photile);
+  add_devices_command(photile);
+  add_info_command(photile);
+  add_settings_command(photile);
+  add_ies_command(photile);
+  add_validate_command(photile);
+  add_walk_command(photile);
+  add_trace_command(photile);
+  add_merge_command(photile);
+  add_view_command(photile);
+  add_bake_command(photile);
+  for (CLI::App* command : photile.get_subcommands([](CLI::App*) { return true; })) {
+    const std::string name = command->get_name();
+    if (name == "render" || name == "measure" || name == "walk") continue;
+    command->preparse_callback([name](std::size_t) {
+      refuse_several("photile " + name, name == "trace"
+                                            ? "give each process its --shard, without mpirun"
+                                            : "start it without mpirun");
+    });
+  }
+}
+
+/// The command whose --help knows more about a usage error.
+std::string help_command(const CLI::App& photile) {
+  const auto chosen = photile.get_subcommands();
+  return chosen.empty() ? "photile --help" : "photile " + chosen.front()->get_name() + " --help";
+}
+
+/// Standard output may be a file on a full disk: what was lost there is an error, too.
+void flush_standard_output() {
+  std::cout.flush();
+  if (!std::cout) throw OutputError("standard output: cannot write (disk full?)");
+}
+
+ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const* arguments) {
+  try {
+    photile.parse(argument_count, arguments);
+  } catch (const CLI::ExtrasError&) {
+    // CLI11 tells them from the last to the first.
+    const std::vector<std::string> extra = photile.remaining(true);
+    for (std::size_t i = 0; i < extra.size(); ++i) {
+      const std::string remedy =
+          remedy_for_option(extra[i], i + 1 < extra.size() ? extra[i + 1] : std::string());
+      if (!remedy.empty()) throw UsageError(remedy + "; photile settings lists all");
+    }
+    throw UsageError(fmt::format("{} not expected: {}; see {}",
+                                 extra.size() > 1 ? "these arguments were" : "this argument was",
+                                 fmt::join(extra, " "), help_command(photile)));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
+      throw UsageError(std::string(error.what()) + "; see " + help_command(photile));
+    }
+    std::ostringstream unread;
+    // Prints the help or the version that was asked for.
+    photile.exit(error, leads() ? std::cout : unread, leads() ? std::cerr : unread);
+  }
+  flush_standard_output();
+  return ExitCode::success;
+}
+
+/// Ends the run of all processes, and tells the error of the first that failed. Returns what all
+/// exit with.
+int conclude(ExitCode code, const std::string& problem) {
+  const auto own = static_cast<int>(code);
+  if (!processes()) {
+    if (code != ExitCode::success) print_error(problem);
+    return own;
+  }
+  // A launcher that ends all does not wait until they agree.
+  const bool told = code == ExitCode::interrupted && leads() && stop_requested();
+  if (told) print_error(problem);
+  const auto tell = [&] {
+    if (!told) print_error(problem);
+  };
+  return processes()->conclude(own, tell).code;
+}
+
+}  // namespace
+
+int run_command_line(int argument_count, const char* const* arguments) {
+  ExitCode code = ExitCode::failure;
+  std::string problem;
+  try {
+    join_processes({arguments, static_cast<std::size_t>(argument_count)});
+    CLI::App photile("Photon mapping on OpenCL devices, a layer of the picture per light.",
+                     "photile");
+    define(photile);
+    const RunFiles files;
+    code = parse_and_run(photile, argument_count, arguments);
+  } catch (const SettingError& error) {
+    problem = option_of(error.setting) + ": " + error.problem;
+    code = exit_code_of(error);
+  } catch (const DeviceError& error) {
+    // At a signal PoCL's compiler removes what it is writing, and then fails for want of it.
+    problem = stop_requested() ? Interrupted().what() : error.what();
+    code = stop_requested() ? ExitCode::interrupted : exit_code_of(error);
+  } catch (const Error& error) {
+    problem = error.what();
+    code = exit_code_of(error);
+  } catch (const std::bad_alloc&) {
+    problem = "out of memory; render fewer photons, fewer pixels or a smaller scene";
+  } catch (const std::exception& error) {
+    problem = std::string("internal error: ") + error.what();
+  }
+  return conclude(code, problem);
+}
+
+}  // namespace photile::app

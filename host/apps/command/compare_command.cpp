@@ -1,0 +1,249 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "command/mood_options.hpp"
+#include "command/number_format.hpp"
+#include "command/output_files.hpp"
+#include "command/signals.hpp"
+#include "command/tone_mapping_options.hpp"
+#include "command/validators.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "report/picture_comparison.hpp"
+
+namespace photile::app {
+namespace {
+
+struct CompareOptions {
+  std::string first, second;       ///< the second may be "" where moods are compared
+  std::vector<std::string> moods;  ///< of the first picture, or none
+  std::string moods_file;          ///< "" = beside its scene or itself
+  std::string picture;             ///< file, "" = none
+  std::string json;                ///< file, "" = none
+  double scale = 0;                ///< 0 = automatic
+  ToneMapping tone_mapping;
+};
+
+std::string words_of(const PictureError& error) {
+  const std::string psnr = std::isinf(error.psnr) ? "equal" : fmt::format("{:.1f} dB", error.psnr);
+  std::string line = fmt::format("{:>10.3g}%{:>10.4f}{:>11}{:>9.2f}%", 100 * error.relative_error(),
+                                 error.mean_ratio, psnr, 100 * error.worst_region);
+  const auto& place = error.worst_place;
+  if (place.width > 0) {
+    line += fmt::format("  {}x{} at {},{}", place.width, place.height, place.x, place.y);
+  }
+  return line;
+}
+
+void print_missing(const report::PictureComparison& comparison) {
+  for (const auto& light : comparison.only_a) std::cout << light << ": only in the first\n";
+  for (const auto& light : comparison.only_b) std::cout << light << ": only in the second\n";
+}
+
+void print(const report::PictureComparison& comparison) {
+  std::cout << fmt::format("{:<24}{:>11}{:>10}{:>11}{:>10}\n", "", "error", "mean", "PSNR",
+                           "worst");
+  for (const auto& part : comparison.parts) {
+    std::cout << fmt::format("{:<24}{}\n", part.light.empty() ? "picture" : part.light,
+                             part.error ? words_of(*part.error) : "  the second is black");
+  }
+  print_missing(comparison);
+}
+
+nlohmann::ordered_json part_json(const report::ComparedPart& part) {
+  nlohmann::ordered_json entry{{"light", part.light}};
+  if (!part.error) return entry;
+  const PictureError& error = *part.error;
+  entry["relative_mse"] = error.relative_mse;
+  entry["relative_error"] = error.relative_error();
+  entry["mean_ratio"] = error.mean_ratio;
+  entry["psnr"] = error.psnr;  // null where the pictures are equal
+  entry["worst_region"] = error.worst_region;
+  const auto& place = error.worst_place;
+  if (place.width > 0) entry["worst_place"] = {place.x, place.y, place.width, place.height};
+  return entry;
+}
+
+nlohmann::ordered_json record_of(const CompareOptions& options,
+                                 const report::PictureComparison& comparison) {
+  nlohmann::ordered_json record{
+      {"first", std::filesystem::path(options.first).filename().string()},
+      {"second", std::filesystem::path(options.second).filename().string()}};
+  record["picture"] = part_json(comparison.parts.front());
+  record["picture"].erase("light");
+  record["layers"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 1; i < comparison.parts.size(); ++i) {
+    record["layers"].push_back(part_json(comparison.parts[i]));
+  }
+  record["only_in_first"] = comparison.only_a;
+  record["only_in_second"] = comparison.only_b;
+  return record;
+}
+
+/// A picture that is compared, under the name that tables give it.
+struct Compared {
+  std::string name;
+  std::unique_ptr<LayeredPicture> layers;  ///< null where it has no layers of lights
+  Image whole;
+};
+
+Compared in_mood(const CompareOptions& options, const std::string& mood) {
+  Compared compared{
+      mood,
+      relit_picture(options.first, mood_of_picture({mood, options.moods_file}, options.first)),
+      {}};
+  compared.whole = to_image(*compared.layers);
+  return compared;
+}
+
+Compared from_file(const std::string& file) {
+  Compared compared{std::filesystem::path(file).filename().string(), nullptr, read_image(file)};
+  try {
+    compared.layers = relit_picture(file, {});
+  } catch (const InputError&) {  // no lights: compared as a whole
+  }
+  return compared;
+}
+
+std::string ratio_text(double a, double b) {
+  return b > 0 ? fmt::format("{:.3g}", a / b) : a > 0 ? "-" : "1";
+}
+
+void print(const report::LevelComparison& comparison, const std::string& a, const std::string& b) {
+  std::cout << fmt::format("{:<24}{:>16}{:>16}{:>10}\n", "", a, b, "ratio");
+  for (const auto& level : comparison.levels) {
+    std::cout << fmt::format(
+        "{:<24}{:>16}{:>16}{:>10}\n", level.what, fmt::format("{:.4g} {}", level.a, level.unit),
+        fmt::format("{:.4g} {}", level.b, level.unit), ratio_text(level.a, level.b));
+  }
+  for (const auto& power : comparison.powers) {
+    std::cout << fmt::format("{:<24}{:>16}{:>16}{:>10}\n", power.light,
+                             format_power(power.a, power.unit), format_power(power.b, power.unit),
+                             ratio_text(power.a, power.b));
+  }
+}
+
+nlohmann::ordered_json levels_json(const report::LevelComparison& comparison) {
+  nlohmann::ordered_json json{{"levels", nlohmann::ordered_json::array()},
+                              {"powers", nlohmann::ordered_json::array()}};
+  for (const auto& level : comparison.levels) {
+    json["levels"].push_back(
+        {{"what", level.what}, {"unit", level.unit}, {"first", level.a}, {"second", level.b}});
+  }
+  for (const auto& power : comparison.powers) {
+    json["powers"].push_back({{"light", power.light},
+                              {"unit", unit_symbol(power.unit)},
+                              {"first", power.a},
+                              {"second", power.b}});
+  }
+  return json;
+}
+
+void check_moods(const CompareOptions& options) {
+  if (options.moods.empty()) {
+    if (options.second.empty()) {
+      throw UsageError("nothing to compare with; give a second picture, or --mood twice");
+    }
+    return;
+  }
+  if (options.moods.size() != 2 || !options.second.empty()) {
+    throw UsageError("moods are compared by two: give one picture, and --mood twice");
+  }
+}
+
+void write_record(const CompareOptions& options, const nlohmann::ordered_json& record) {
+  if (options.json.empty()) return;
+  write_file(options.json,
+             record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+void run_compare(const CompareOptions& options) {
+  handle_signals();
+  check_moods(options);
+  std::vector<std::filesystem::path> outputs;
+  if (!options.picture.empty()) outputs.emplace_back(options.picture);
+  if (!options.json.empty()) outputs.emplace_back(options.json);
+  note_input(options.first);
+  if (!options.second.empty()) note_input(options.second);
+  check_outputs(outputs);
+
+  const bool moods = !options.moods.empty();
+  const Compared first = moods ? in_mood(options, options.moods[0]) : from_file(options.first);
+  const Compared second = moods ? in_mood(options, options.moods[1]) : from_file(options.second);
+  throw_if_stop_requested();
+  if (!options.picture.empty()) {
+    const auto unit = first.whole.attributes.find("photile.units");
+    write_png(
+        options.picture,
+        report::draw_comparison(first.whole, second.whole,
+                                {first.name, second.name,
+                                 unit == first.whole.attributes.end() ? "luminance" : unit->second,
+                                 options.scale, options.tone_mapping}));
+  }
+  if (moods) {
+    const report::LevelComparison levels =
+        report::compare_levels(*first.layers, *second.layers, first.whole, second.whole);
+    nlohmann::ordered_json record{{"first", first.name}, {"second", second.name}};
+    record.update(levels_json(levels));
+    write_record(options, record);
+    print(levels, first.name, second.name);
+    return;
+  }
+  const report::PictureComparison comparison = report::compare_pictures(first.whole, second.whole);
+  nlohmann::ordered_json record = record_of(options, comparison);
+  if (first.layers && second.layers && report::lights_differ(first.whole, second.whole)) {
+    const report::LevelComparison levels =
+        report::compare_levels(*first.layers, *second.layers, first.whole, second.whole);
+    record.update(levels_json(levels));
+    print(levels, first.name, second.name);
+    print_missing(comparison);
+  } else {
+    print(comparison);
+  }
+  write_record(options, record);
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& photile) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "compare",
+      "Two pictures side by side: difference and error, layer by layer; levels of two moods");
+  command->add_option("FIRST", options->first, "picture")->required()->type_name("");
+  command->add_option("SECOND", options->second, "picture that the first is compared with")
+      ->type_name("");
+  command
+      ->add_option("--mood", options->moods,
+                   "give two: the first picture in both, as the window kept them")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--moods", options->moods_file,
+                   "file of moods; default: beside the picture, by the scene's name or its own")
+      ->type_name("FILE");
+  command->add_option("-o,--output", options->picture, "both and their difference in false colour")
+      ->type_name("FILE.png")
+      ->check(file_ending_in({".png"}));
+  command->add_option("--json", options->json, "write the errors as JSON")->type_name("FILE");
+  command
+      ->add_option("-s,--scale", options->scale,
+                   "largest difference of the legend; default: from the pictures")
+      ->type_name("X")
+      ->transform(positive_number());
+  add_tone_mapping_options(*command, options->tone_mapping, "Options");
+  command->callback([options] { run_compare(*options); });
+}
+
+}  // namespace photile::app

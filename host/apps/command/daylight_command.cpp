@@ -1,0 +1,281 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "command/daylight_results.hpp"
+#include "command/output_files.hpp"
+#include "command/run_notes.hpp"
+#include "command/sensor_options.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "command/validators.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "measuring/measure_grids.hpp"
+#include "photile/errors.hpp"
+#include "photile/illuminance.hpp"
+#include "photile/light_groups.hpp"
+#include "photile/limits.hpp"
+#include "report/honeybee_year.hpp"
+#include "weather/weather_file.hpp"
+
+namespace photile::app {
+namespace {
+
+using namespace daylight;
+
+std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, const Scene& scene,
+                                            std::size_t hours, Progress& progress) {
+  std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
+  std::size_t sensors = 0;
+  for (auto& grid : grids) {
+    clear_of_furniture(options.places.plane, scene, grid, progress);
+    sensors += grid.sensors.size();
+  }
+  const std::size_t states =
+      options.blinds_are_scene() ? 2 : std::size_t{1} << options.blinds.size();
+  if (sensors * hours * states > limits::max_profile_values) {
+    throw UsageError(
+        fmt::format("{} points of {} hours in {} states are more than {} values; give "
+                    "fewer points",
+                    sensors, hours, states, limits::max_profile_values));
+  }
+  return grids;
+}
+
+/// The scene's own lamps at the points; daylight leaves them out.
+std::vector<LightIlluminance> lamps_of(const DaylightOptions& options, const Scene& scene,
+                                       std::span<const Sensor> sensors, const LightMix& mix,
+                                       Progress& progress) {
+  if (!(options.lamps_to > 0) || scene.lights.empty()) return {};
+  std::vector<Device> devices = devices_for(options.render, progress);
+  MeasuringParameters parameters = options.parameters;
+  parameters.photons = options.render.parameters;
+  auto found = measure_illuminance(scene, sensors, mix, devices, parameters, progress);
+  const LightGroups groups = light_groups_of(scene);
+  std::erase_if(found, [&](const LightIlluminance& light) {
+    return std::none_of(groups.groups.begin(), groups.groups.end(), [&](const LightGroup& group) {
+      return group.name == light.light && !scene.lights[group.lights.front()].is_distant();
+    });
+  });
+  return found;
+}
+
+void write(const DaylightOptions& options, const report::DaylightResults& results,
+           const std::vector<SkyHour>& hours) {
+  for (const std::filesystem::path file : options.outputs) {
+    write_file(file, file.extension() == ".csv"
+                         ? report::daylight_csv(results)
+                         : report::daylight_json(results, options.asked).dump(1) + "\n");
+  }
+  if (options.honeybee.empty()) return;
+  const std::filesystem::path folder = options.honeybee;
+  for (const auto& [name, content] : report::annual_files(results, hours)) {
+    make_folder((folder / name).parent_path());
+    write_file(folder / name, content);
+  }
+}
+
+/// The lights of the scene are lamps, those from beyond it are the sky's.
+void check_lights(const DaylightOptions& options) {
+  const SceneLoadOptions& load = options.render.load;
+  if (load.sky || load.sun || !load.environment.file.empty() || load.situation.time) {
+    throw UsageError(
+        "daylight makes the skies of a whole year; leave out --sky, --sun, "
+        "--environment and --time");
+  }
+  if (load.situation.weather.empty()) throw UsageError("daylight needs --weather FILE.epw");
+  if (!options.blinds.empty() && options.suns != "rays") {
+    throw UsageError("--blinds close where the sun shines straight; leave out --suns patches");
+  }
+  if (options.blinds.size() > most_blind_groups) {
+    throw UsageError(
+        fmt::format("--blinds: {} groups of panes, more than {}; let some close together",
+                    options.blinds.size(), most_blind_groups));
+  }
+}
+
+/// The sky's lights are needed to find the windows, and for no more.
+Scene scene_under_sky(const std::string& file, SceneLoadOptions load) {
+  load.sky = Sky{SkyKind::patches, 0, 0, 0, weather::patch_counts[0]};
+  load.situation.weather.clear();
+  load.situation.site.reset();
+  load.portals = {"off"};  // those of the grids are looked for
+  return load_scene(file, load);
+}
+
+void take_windows(const DaylightOptions& options, std::span<const measuring::SensorGrid> grids,
+                  Scene& scene) {
+  scene.portals = measuring::portals_of_grids(scene, grids, options.render.load.portals);
+  std::erase_if(scene.lights, [](const Light& light) { return light.is_sky_patch(); });
+}
+
+void warn_of_darkness(const std::vector<SkyState>& states, Progress& progress) {
+  const std::vector<float>& lux = states.front().matrix.from_sky;
+  if (std::any_of(lux.begin(), lux.end(), [](float value) { return value > 0; })) return;
+  progress.note(report::no_sky_warning);
+}
+
+std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year, Scene& scene,
+                                std::span<const measuring::SensorGrid> grids, Progress& progress) {
+  if (options.blinds_are_scene()) {
+    Scene closed = scene_under_sky(options.blinds.front(), options.render.load);
+    take_windows(options, grids, closed);
+    std::vector<SkyState> states{sky_state(year, scene, "open", 0, progress)};
+    states.push_back(sky_state(year, closed, "closed", 1, progress));
+    return states;
+  }
+  std::vector<BlindGroup> groups;
+  for (const std::string& text : options.blinds) groups.push_back(BlindGroup::parse(text));
+  return sky_states(year, scene, groups, progress);
+}
+
+void run_daylight(DaylightOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  check(render.parameters);
+  check_lights(options);
+  options.asked.occupancy.set_hours(options.occupied);
+  options.asked.occupancy.set_days(options.days);
+  options.asked.occupancy.schedule = options.schedule;
+  if (options.places.empty()) {
+    throw UsageError("no points; give --plane floor+0.75, --grid FILE or --points FILE");
+  }
+  note_inputs_of(render);
+  note_places(options.places);
+  if (options.blinds_are_scene()) note_input(options.blinds.front());
+  if (!options.schedule.empty()) note_input(options.schedule);
+  if (!options.honeybee.empty()) make_folder(options.honeybee);
+  check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  weather::WeatherYear weather = weather::read_weather(render.load.situation.weather);
+  if (render.load.situation.site) weather.site = *render.load.situation.site;
+  Year year{{}, weather::sky_patches(options.patches), {}, options.suns == "rays", {}};
+  year.hours = sky_hours(weather, year.patches, options.ground);
+  options.asked.occupied = occupied_hours(year.hours, options.asked.occupancy);
+
+  Scene scene = scene_under_sky(render.scene, render.load);
+  const auto grids = grids_of(options, scene, weather.hours.size(), progress);
+  take_windows(options, grids, scene);
+  if (scene.portals.empty()) {
+    progress.note(
+        "no windows were found: rays look for the sky everywhere; name the panes' material by "
+        "--portals if there are some");
+  }
+  const LightMix mix = mix_of(scene, render);
+  for (const auto& grid : grids)
+    year.sensors.insert(year.sensors.end(), grid.sensors.begin(), grid.sensors.end());
+  year.parameters = {options.parameters,
+                     render.load.situation.north_degrees * std::numbers::pi / 180,
+                     mean_luminances(year.hours, year.patches)};
+  year.parameters.measuring.photons = render.parameters;
+  const std::vector<SkyState> states = states_of(options, year, scene, grids, progress);
+  warn_of_darkness(states, progress);
+  const auto lamps = lamps_of(options, scene, year.sensors, mix, progress);
+  const report::DaylightResults results =
+      daylight_results(options, year, grids, states, lamps, mix);
+  write(options, results, year.hours);
+  for (const auto& line : report::daylight_lines(results, options.asked)) std::cout << line << '\n';
+}
+
+void add_year(CLI::App& command, DaylightOptions& options) {
+  command.add_option("--patches", options.patches, "of the sky: Tregenza's, or Reinhart's")
+      ->type_name("")
+      ->check(CLI::IsMember({145, 577, 2305}))
+      ->capture_default_str()
+      ->group("Year");
+  command
+      .add_option("--suns", options.suns,
+                  "rays: the sun's own to each point; patches: the four patches nearest to it, as "
+                  "Radiance's two-phase method has it")
+      ->type_name("")
+      ->check(CLI::IsMember({"rays", "patches"}))
+      ->capture_default_str()
+      ->group("Year");
+  command
+      .add_option("--ground", options.ground, "reflectance of the ground that surrounds the scene")
+      ->type_name("X")
+      ->transform(number_between(0, 1))
+      ->capture_default_str()
+      ->group("Year");
+  command.add_option("--lux", options.asked.wanted_lux, "that count as autonomous daylight")
+      ->type_name("LUX")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Year");
+  command.add_option("--occupied", options.occupied, "hours of a day in standard time")
+      ->type_name("FROM-TO")
+      ->capture_default_str()
+      ->group("Year");
+  command
+      .add_option("--days", options.days, "on which they are occupied, by the weather's calendar")
+      ->type_name("DAYS")
+      ->capture_default_str()
+      ->group("Year");
+  command
+      .add_option("--schedule", options.schedule,
+                  "in their place: a value for each hour of the year, occupied above 0")
+      ->type_name("FILE.csv")
+      ->group("Year");
+  command
+      .add_option("--blinds", options.blinds,
+                  "that close where the sun comes in (IES LM-83): the scene with closed ones, or "
+                  "panes and what they let through then; repeatable")
+      ->type_name("SCENE|MATERIAL=TRANSMITTANCE")
+      ->allow_extra_args(false)
+      ->group("Year");
+  command
+      .add_option("--lamps-to", options.lamps_to,
+                  "lux that the scene's lamps, dimmed together, keep on the mean of a grid; tells "
+                  "their energy")
+      ->type_name("LUX")
+      ->transform(positive_number())
+      ->group("Year");
+  command.add_option("--lamp-efficacy", options.lamp_efficacy, "lm/W of the scene's lamps")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Year");
+}
+
+}  // namespace
+
+void add_daylight_command(CLI::App& photile) {
+  auto options = std::make_shared<DaylightOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "daylight", "A year of daylight at points: autonomy, glare of the sun, energy of lamps");
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "table of the points: .csv or .json; repeatable")
+      ->type_name("FILE")
+      ->check(file_ending_in({".csv", ".json"}))
+      ->allow_extra_args(false)
+      ->group("Output");
+  command
+      ->add_option("--honeybee", options->honeybee,
+                   "folder for the lux of every hour, as annual recipes leave it")
+      ->type_name("FOLDER")
+      ->group("Output");
+  add_place_options(*command, options->places);
+  add_year(*command, *options);
+  options->parameters.repeats = defaults::daylight_repeats;
+  options->parameters.gathering.rays = defaults::daylight_rays;
+  add_maintenance_option(*command, options->parameters, "Measuring");
+  add_sensor_options(*command, options->parameters, "Measuring");
+  add_setting_options(*command, options->render,
+                      {"samples_per_pixel", "direct_rays", "gloss", "quota"});
+  command->callback([options] { run_daylight(*options); });
+}
+
+}  // namespace photile::app

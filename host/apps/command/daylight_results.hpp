@@ -1,0 +1,49 @@
+// The figures of `photile daylight` from light by the hour.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "command/place_options.hpp"
+#include "command/render_options.hpp"
+#include "daylight/sky_states.hpp"
+#include "measuring/sensor_grid.hpp"
+#include "photile/defaults.hpp"
+#include "photile/illuminance.hpp"
+#include "report/daylight_tables.hpp"
+
+namespace photile::app {
+
+struct DaylightOptions {
+  RenderOptions render;
+  MeasuringParameters parameters;
+  PlaceOptions places;
+  std::vector<std::string> outputs;  ///< .csv, .json
+  std::string honeybee;              ///< folder, "" = none
+  int patches = defaults::sky_patches;
+  double ground = defaults::ground_reflectance;
+  std::string suns = "rays";
+  report::DaylightAsked asked{defaults::daylight_lux, {}, {}};
+  std::string occupied = "8-18", days = "mon-sun";
+  std::string schedule;             ///< file, "" = none
+  std::vector<std::string> blinds;  ///< a scene's file, or groups of panes
+  double lamps_to = 0;              ///< lux that lamps keep; 0 = no lamps
+  double lamp_efficacy = defaults::lamp_efficacy;
+
+  /// Whether blinds are another scene.
+  bool blinds_are_scene() const {
+    return blinds.size() == 1 && blinds.front().find('=') == std::string::npos;
+  }
+};
+
+/// By the schedule of the blinds, with the sun as it is without them (IES LM-83), then in each of
+/// their states.
+///   states   as sky_states has them
+///   lamps    lux of each at full power, at the sensors of the year
+report::DaylightResults daylight_results(const DaylightOptions& options, const daylight::Year& year,
+                                         const std::vector<measuring::SensorGrid>& grids,
+                                         const std::vector<daylight::SkyState>& states,
+                                         const std::vector<LightIlluminance>& lamps,
+                                         const LightMix& mix);
+
+}  // namespace photile::app

@@ -1,0 +1,295 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command/commands.hpp"
+#include "command/output_files.hpp"
+#include "command/place_options.hpp"
+#include "command/render_options.hpp"
+#include "command/run_notes.hpp"
+#include "command/sensor_options.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "command/validators.hpp"
+#include "command/version.hpp"
+#include "common/ascii_text.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "glare/measure_glare.hpp"
+#include "glare/observers.hpp"
+#include "measuring/requirements.hpp"
+#include "measuring/sensor_files.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/limits.hpp"
+#include "report/glare_tables.hpp"
+
+namespace photile::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct GlareOptions {
+  RenderOptions render;
+  glare::GlareParameters parameters;
+  std::vector<std::string> outputs;    ///< .csv, .json
+  std::vector<std::string> observers;  ///< files
+  std::vector<std::string> cameras;    ///< names or indices
+  PlaneOptions plane;
+  int directions = defaults::glare_directions;
+  std::vector<std::string> ratings;  ///< empty = all of observers, UGR alone of a grid
+  std::string pictures;              ///< folder, "" = none
+  std::string target;                ///< "" = none
+};
+
+std::vector<glare::Observer> observers_of(const GlareOptions& options, const Scene& scene,
+                                          Progress& progress) {
+  const auto axes = measuring::PlanAxes::in_world(scene);
+  std::vector<glare::Observer> all;
+  const auto add = [&](const std::vector<glare::Observer>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  for (const auto& file : options.observers) {
+    add(glare::observers_at(measuring::read_points(file), axes));
+  }
+  for (const auto& name : options.cameras) {
+    const Camera camera = in_world(scene, choose_camera(scene, name));
+    all.push_back(
+        glare::Observer::looking(camera.name, camera.position, camera.forward, camera.up));
+  }
+  if (!options.plane.height.empty()) {
+    measuring::SensorGrid grid = plane_of(options.plane, scene);
+    clear_of_furniture(options.plane, scene, grid, progress);
+    grid.name = "point";
+    add(glare::observers_on(grid, axes, options.directions));
+  }
+  if (2 * all.size() > limits::max_sensors) {
+    throw UsageError(
+        fmt::format("{} observers, more than {}; rate fewer", all.size(), limits::max_sensors / 2));
+  }
+  return all;
+}
+
+/// Area of the luminaires over that of the ceiling of the first observer's room; 1 where there is
+/// no such room.
+double coverage_of(const GlareOptions& options, const Scene& scene,
+                   const glare::Observer& observer) {
+  const measuring::PlanAxes axes;
+  const RayScene rays(scene);
+  const double area = glare::Luminaires(rays, options.parameters.looks).large_area(axes.up);
+  if (!(area > 0)) return 1;
+  const auto room = measuring::Room::around(rays, axes, place_in_scene(scene, observer.position));
+  if (!room) return 1;
+  return area / (static_cast<double>(room->places().size()) * room->cell_area());
+}
+
+/// The highest UGR beside what is required; none where nothing is.
+std::optional<measuring::Judgement> judged(const GlareOptions& options,
+                                           std::span<const glare::ObserverGlare> all) {
+  if (options.target.empty()) return std::nullopt;
+  const double limit = measuring::parse_requirement(options.target).glare;
+  const glare::ObserverGlare* highest = nullptr;
+  for (const auto& each : all) {
+    if (each.ugr && (!highest || each.ugr->value > highest->ugr->value)) highest = &each;
+  }
+  if (!(limit > 0) || !highest) return std::nullopt;
+  return measuring::Judgement{highest->observer.name, "UGR", limit, *highest->ugr, true};
+}
+
+Json run_json(const GlareOptions& options, const Scene& scene, const LightMix& mix,
+              std::span<const glare::ObserverGlare> all) {
+  const MeasuringParameters& measuring = options.parameters.measuring;
+  Json record{{"photile", version_number()},
+              {"scene", scene.source.filename().string()},
+              {"integrator", name_of(options.render.integrator)},
+              {"seed", measuring.photons.seed},
+              {"repeats", measuring.repeats},
+              {"rays", measuring.gathering.rays},
+              {"picture_side", options.parameters.picture_side},
+              {"source_threshold", options.parameters.search.threshold},
+              {"lumen_per_watt", mix.lumen_per_watt}};
+  if (options.render.mood.asked()) record["mood"] = options.render.mood.mood;
+  if (const auto judgement = judged(options, all)) {
+    record["target"] = {{"name", options.target},
+                        {"ugr_limit", judgement->required},
+                        {"highest_ugr", judgement->measured.value},
+                        {"met", judgement->met()}};
+  }
+  record["observers"] = report::glare_json(all);
+  return record;
+}
+
+std::filesystem::path picture_name(const GlareOptions& options, std::size_t observer) {
+  return std::filesystem::path(options.pictures) / fmt::format("view-{:04}.hdr", observer + 1);
+}
+
+/// Whether daylight ratings are asked for.
+bool wants_pictures(const GlareOptions& options) {
+  if (!options.pictures.empty()) return true;
+  if (options.ratings.empty()) return !options.observers.empty() || !options.cameras.empty();
+  return std::any_of(options.ratings.begin(), options.ratings.end(),
+                     [](const std::string& rating) { return rating != "ugr"; });
+}
+
+void check_outputs_of(const GlareOptions& options) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& file : options.outputs) {
+    if (!ends_in(file, ".csv") && !ends_in(file, ".json")) {
+      throw UsageError(fmt::format("{}: an output ends in .csv or .json; rename it", file));
+    }
+    files.emplace_back(file);
+  }
+  if (!options.pictures.empty()) make_folder(options.pictures);
+  check_outputs(files);
+}
+
+void write_outputs(const GlareOptions& options, const Scene& scene, const LightMix& mix,
+                   std::span<const glare::ObserverGlare> all) {
+  for (const std::string& file : options.outputs) {
+    if (ends_in(file, ".csv")) {
+      write_file(file, report::glare_csv(all));
+    } else {
+      write_file(
+          file,
+          run_json(options, scene, mix, all).dump(1, ' ', false, Json::error_handler_t::replace) +
+              "\n");
+    }
+  }
+}
+
+void run_glare(const CLI::App& command, GlareOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  check(render.parameters);
+  if (render.integrator == Integrator::path) refuse_photon_map_options(command);
+  if (!options.target.empty()) measuring::parse_requirement(options.target);
+  if (options.observers.empty() && options.cameras.empty() && options.plane.height.empty()) {
+    throw UsageError("nobody looks; give --observers FILE, --grid or --camera NAME");
+  }
+  note_inputs_of(render);
+  for (const auto& file : options.observers) note_input(file);
+  check_outputs_of(options);
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  const Scene scene = load_scene(render.scene, render.load);
+  const LightMix mix = mix_of(scene, render);
+  tell_scene(scene, mix, progress);
+  const std::vector<glare::Observer> observers = observers_of(options, scene, progress);
+  std::vector<Device> devices = devices_for(render, progress);
+
+  glare::GlareParameters& parameters = options.parameters;
+  parameters.measuring.photons = render.parameters;
+  parameters.measuring.by_paths = render.integrator == Integrator::path;
+  parameters.by_pictures = wants_pictures(options);
+  glare::KeepPicture keep;
+  if (!options.pictures.empty()) {
+    for (std::size_t i = 0; i < observers.size(); ++i) note_output(picture_name(options, i));
+    keep = [&](std::size_t i, const Camera& camera, const LightLayers& layers) {
+      const auto picture = mixed_picture(layers, mix);
+      Image root = picture->root();
+      set_camera_attributes(root, in_world(scene, camera), layers.width, layers.height);
+      write_hdr(picture_name(options, i), root);
+    };
+  }
+  const auto all =
+      glare::measure_glare(scene, observers, mix, coverage_of(options, scene, observers.front()),
+                           devices, parameters, keep, progress);
+  write_outputs(options, scene, mix, all);
+  for (const auto& line : report::glare_lines(all)) std::cout << line << '\n';
+  if (const auto judgement = judged(options, all)) {
+    std::cout << fmt::format("target {}: {}\n", options.target,
+                             measuring::judgement_text(*judgement));
+  }
+}
+
+void add_places(CLI::App& command, GlareOptions& options) {
+  command
+      .add_option("--observers", options.observers,
+                  "eyes and directions of view, lines x y z dx dy dz; repeatable")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group("Places");
+  command
+      .add_option("--camera", options.cameras,
+                  "name or index of a camera that is an observer; repeatable")
+      ->type_name("NAME|INDEX")
+      ->allow_extra_args(false)
+      ->group("Places");
+  CLI::Option* grid =
+      command
+          .add_option("--grid", options.plane.height,
+                      fmt::format("observers over the floor, at the grid of EN 12464-1; default: "
+                                  "floor+{:g}",
+                                  defaults::eye_height))
+          ->type_name("[HEIGHT]")
+          ->expected(0, 1)
+          ->default_str(fmt::format("floor+{:g}", defaults::eye_height))
+          ->group("Places");
+  command.add_option("--directions", options.directions, "of view at each point of the grid")
+      ->type_name("N")
+      ->transform(count_between(1, 360))
+      ->capture_default_str()
+      ->needs(grid)
+      ->group("Places");
+  add_plane_options(command, options.plane);
+}
+
+void add_rating(CLI::App& command, GlareOptions& options) {
+  glare::GlareParameters& parameters = options.parameters;
+  command
+      .add_option("--ratings", options.ratings,
+                  "ugr, dgp and dgi, separated by commas; default: all, of a grid ugr. dgp and dgi "
+                  "take a picture of each view")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"ugr", "dgp", "dgi"}))
+      ->group("Glare");
+  command
+      .add_option("--target", options.target,
+                  "the UGR that a standard allows, by name (office-desk) or value (UGR=19)")
+      ->type_name("NAME|VALUES")
+      ->group("Glare");
+  command
+      .add_option("--source-luminance", parameters.search.threshold,
+                  "of glare sources in pictures: above 100 cd/m2; else times the mean luminance")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Glare");
+  command.add_option("--picture-size", parameters.picture_side, "pixels across a fisheye picture")
+      ->type_name("N")
+      ->transform(count_between(16, limits::max_image_side))
+      ->capture_default_str()
+      ->group("Glare");
+  add_sensor_options(command, parameters.measuring, "Glare");
+}
+
+}  // namespace
+
+void add_glare_command(CLI::App& photile) {
+  auto options = std::make_shared<GlareOptions>();
+  CLI::App* command = photile.add_subcommand("glare", "Discomfort glare: UGR, DGP and DGI");
+  command->add_option("-o,--output", options->outputs, "table to write, .csv or .json; repeatable")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group("Output");
+  command
+      ->add_option("--pictures", options->pictures,
+                   "folder for the fisheye pictures of all views, as evalglare reads them")
+      ->type_name("FOLDER")
+      ->group("Output");
+  add_places(*command, *options);
+  add_rating(*command, *options);
+  add_setting_options(*command, options->render, {"direct_rays", "gloss"});
+  add_integrator_option(*command, options->render);
+  command->callback([command, options] { run_glare(*command, *options); });
+}
+
+}  // namespace photile::app

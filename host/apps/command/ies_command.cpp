@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command/commands.hpp"
+#include "command/output_files.hpp"
+#include "command/validators.hpp"
+#include "common/ascii_text.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "files/warnings.hpp"
+#include "glare/ugr_table.hpp"
+#include "loading/light_changes.hpp"
+#include "photile/errors.hpp"
+#include "report/glare_tables.hpp"
+
+namespace photile::app {
+namespace {
+
+struct IesOptions {
+  std::string file;
+  bool ugr_table = false;
+  double spacing = defaults::ugr_table_spacing;
+  bool per_thousand_lumens = false;
+  std::vector<std::string> outputs;  ///< .csv, .json
+};
+
+void print_lamp(const IntensityDistribution& lamp) {
+  const LuminousOpening& opening = lamp.opening();
+  std::cout << fmt::format("lamp: {}: {:.5g} lm\n", lamp.name(), lamp.flux());
+  if (opening.round) {
+    const std::string across =
+        opening.along_zero == opening.along_quarter
+            ? fmt::format("{:.4g}", opening.along_zero)
+            : fmt::format("{:.4g} x {:.4g}", opening.along_zero, opening.along_quarter);
+    std::cout << fmt::format("luminous opening: round, {} m across, {:.4g} m high\n", across,
+                             opening.height);
+  } else {
+    std::cout << fmt::format(
+        "luminous opening: {:.4g} m along azimuth 0 x {:.4g} m along 90, {:.4g} m high\n",
+        opening.along_zero, opening.along_quarter, opening.height);
+  }
+}
+
+/// The ratings of a lamp of 1000 lm with the same distribution.
+void scale_to_thousand_lumens(double flux, glare::UgrTable& table) {
+  const double change = 8 * std::log10(flux / 1000);
+  for (auto* rows : {&table.crosswise, &table.endwise}) {
+    for (auto& row : *rows) {
+      for (double& value : row) value -= change;
+    }
+  }
+}
+
+void run_ies(const IesOptions& options) {
+  note_input(options.file);
+  std::vector<std::filesystem::path> files(options.outputs.begin(), options.outputs.end());
+  for (const std::string& file : options.outputs) {
+    if (!ends_in(file, ".csv") && !ends_in(file, ".json")) {
+      throw UsageError(fmt::format("{}: an output ends in .csv or .json; rename it", file));
+    }
+  }
+  check_outputs(files);
+  files::Warnings warnings;
+  const IntensityDistribution lamp = loading::read_user_photometry(options.file, warnings);
+  print_lamp(lamp);
+  for (const auto& line : warnings.lines()) std::cerr << "warning: " << line << '\n';
+  if (!options.ugr_table) return;
+  if (!(lamp.opening().along_zero > 0)) {
+    throw InputError(fmt::format(
+        "{}: states no luminous opening, so no luminance is known; get it again from the maker",
+        options.file));
+  }
+  glare::UgrTable table = glare::ugr_table(lamp, options.spacing);
+  if (options.per_thousand_lumens) scale_to_thousand_lumens(lamp.flux(), table);
+  for (const std::string& file : options.outputs) {
+    write_file(file, ends_in(file, ".csv") ? report::ugr_table_csv(table)
+                                           : report::ugr_table_json(table).dump(1) + "\n");
+  }
+  for (const auto& line : report::ugr_table_lines(table)) std::cout << line << '\n';
+}
+
+}  // namespace
+
+void add_ies_command(CLI::App& photile) {
+  auto options = std::make_shared<IesOptions>();
+  CLI::App* command =
+      photile.add_subcommand("ies", "Say what a photometric file holds, and its UGR table");
+  command->add_option("FILE", options->file, "photometric file: .ies or .ldt")
+      ->required()
+      ->type_name("");
+  CLI::Option* table = command->add_flag("--ugr-table", options->ugr_table,
+                                         "glare in standard rooms by the tabular method (CIE 190)");
+  command
+      ->add_option("--spacing", options->spacing,
+                   "of the luminaires, over their height above the eyes")
+      ->type_name("X")
+      ->transform(number_between(0.1, 2))
+      ->capture_default_str()
+      ->needs(table);
+  command
+      ->add_flag("--per-1000-lm", options->per_thousand_lumens,
+                 "uncorrected values: of a luminaire of 1000 lm")
+      ->needs(table);
+  command->add_option("-o,--output", options->outputs, "table to write, .csv or .json; repeatable")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->needs(table);
+  command->callback([options] { run_ies(*options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,230 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "command/measure_outputs.hpp"
+#include "command/output_files.hpp"
+#include "command/place_options.hpp"
+#include "command/processes.hpp"
+#include "command/render_options.hpp"
+#include "command/report_contents.hpp"
+#include "command/run_notes.hpp"
+#include "command/sensor_options.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "command/validators.hpp"
+#include "common/run_files.hpp"
+#include "measuring/measure_grids.hpp"
+#include "measuring/requirements.hpp"
+#include "measuring/room_surfaces.hpp"
+#include "measuring/sensor_files.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "report/daylight_tables.hpp"
+#include "report/sensor_tables.hpp"
+
+namespace photile::app {
+namespace {
+
+struct MeasureOptions {
+  RenderOptions render;
+  MeasureOutputOptions outputs;
+  MeasuringParameters parameters;
+  PlaceOptions places;
+  bool walls = false, ceiling = false;
+  std::string cylindrical_at, semi_cylindrical_at;  ///< heights, "" = none
+  std::string target;                               ///< "" = none
+  bool cylindrical = false;
+  bool daylight_factor = false;
+
+  /// Whether surfaces or heights of the room are asked for.
+  bool of_room() const {
+    return walls || ceiling || !cylindrical_at.empty() || !semi_cylindrical_at.empty();
+  }
+};
+
+/// An overcast sky of 100 lux: what it gives is a daylight factor in per cent.
+/// Errors: UsageError where another sky is asked for.
+void take_overcast_sky(SceneLoadOptions& load) {
+  if (load.sky || load.sun || load.situation.time || !load.environment.file.empty()) {
+    throw UsageError(
+        "--daylight-factor takes the CIE overcast sky; leave out --sky, --sun, "
+        "--time and --environment");
+  }
+  load.sky = Sky{SkyKind::overcast, 100};
+}
+
+/// Leaves what the sky gives alone.
+void keep_sky(measuring::Measurement& measurement) {
+  for (measuring::GridValues& values : measurement) {
+    for (const measuring::LightValues& light : values.lights) {
+      if (light.light != "sky") continue;
+      values.lights = {measuring::LightValues{"", light.sensors, light.statistics}};
+      break;
+    }
+  }
+}
+
+bool all_dark(const measuring::Measurement& measurement) {
+  const auto dark = [](const Measured& reading) { return !(reading.value > 0); };
+  return std::all_of(measurement.begin(), measurement.end(), [&](const auto& grid) {
+    const auto& sensors = grid.total().sensors;
+    return std::all_of(sensors.begin(), sensors.end(), dark);
+  });
+}
+
+/// Everything that the command line asks to be measured.
+std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const Scene& scene,
+                                            Progress& progress) {
+  std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
+  const PlaneOptions& plane = options.places.plane;
+  const auto add = [&](std::vector<measuring::SensorGrid> more) {
+    for (auto& grid : more) grids.push_back(std::move(grid));
+  };
+  if (options.walls) add(measuring::wall_grids(scene, plane_at(plane, "floor")));
+  if (options.ceiling) {
+    grids.push_back(measuring::ceiling_grid(scene, plane_at(plane, "floor")));
+  }
+  if (!options.cylindrical_at.empty()) {
+    grids.push_back(measuring::cylindrical_grid(scene, plane_at(plane, options.cylindrical_at)));
+  }
+  if (!options.semi_cylindrical_at.empty()) {
+    add(measuring::semi_cylindrical_grids(scene, plane_at(plane, options.semi_cylindrical_at)));
+  }
+  for (auto& grid : grids) clear_of_furniture(plane, scene, grid, progress);
+  std::size_t sensors = 0;
+  for (const auto& grid : grids) sensors += grid.sensors.size();
+  if (sensors > limits::max_sensors) {
+    throw UsageError(fmt::format("{} points together, more than {}; measure fewer", sensors,
+                                 limits::max_sensors));
+  }
+  return grids;
+}
+
+void warn(const Scene& scene, const std::vector<measuring::SensorGrid>& grids, Progress& progress) {
+  if (has_unseen_caustics(scene)) {
+    progress.note(
+        "warning: what mirrors and glass throw onto sensors from point, spot and directional "
+        "lights is missing; lamps with an area are seen in them");
+  }
+  const std::size_t covered = measuring::covered_sensors(scene, grids);
+  if (covered > 0) {
+    progress.note(
+        fmt::format("warning: {} points have a surface less than 1 cm before them; they may lie in "
+                    "furniture or just below a top",
+                    covered));
+  }
+}
+
+void run_measure(const CLI::App& command, MeasureOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  check(render.parameters);
+  if (render.integrator == Integrator::path) refuse_photon_map_options(command);
+  share_rendering(render);
+  if (options.places.empty() && !options.of_room()) {
+    throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
+  }
+  std::optional<measuring::Requirement> requirement;
+  if (!options.target.empty()) requirement = measuring::parse_requirement(options.target);
+  if (options.daylight_factor) take_overcast_sky(render.load);
+  note_inputs_of(render);
+  note_places(options.places);
+  options.outputs.daylight_factor = options.daylight_factor;
+  const MeasureOutputs outputs(options.outputs);
+
+  const std::filesystem::path moods = moods_of_report(render.mood.file, render.scene);
+  outputs.check_moods(moods);
+  const report::IncludedResults included = outputs.included(requirement);
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet || !leads());
+  Scene scene = load_scene(render.scene, render.load);
+  const LightMix mix = mix_of(scene, render);
+  tell_scene(scene, mix, progress);
+  const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
+  outputs.check_names(grids);
+  scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
+  std::vector<Device> devices = devices_for(render, progress);
+  warn(scene, grids, progress);
+
+  MeasuringParameters& parameters = options.parameters;
+  parameters.photons = render.parameters;
+  parameters.by_paths = render.integrator == Integrator::path;
+  if (options.cylindrical) parameters.gathering.response = SensorResponse::cylindrical;
+  const measuring::Readings readings =
+      measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
+  if (!leads()) return;
+  measuring::Measurement measurement = measuring::measurement_of(grids, readings);
+  if (options.daylight_factor) {
+    keep_sky(measurement);
+    if (all_dark(measurement)) progress.note(report::no_sky_warning);
+  }
+  outputs.write(measurement,
+                {scene, mix, parameters, render.mood.mood, requirement, moods, included});
+  for (const auto& line : report::measurement_lines(measurement, outputs.unit())) {
+    std::cout << line << '\n';
+  }
+  if (requirement) {
+    for (const auto& line :
+         measuring::requirement_lines(measurement, *requirement, included.glare)) {
+      std::cout << line << '\n';
+    }
+  }
+}
+
+void add_places(CLI::App& command, MeasureOptions& options) {
+  add_place_options(command, options.places);
+  const auto height = [&](const char* name, std::string& text, const char* what) {
+    command.add_option(name, text, what)->type_name("HEIGHT")->group("Places");
+  };
+  command.add_flag("--walls", options.walls, "a grid on each wall of the room")->group("Places");
+  command.add_flag("--ceiling", options.ceiling, "a grid on the ceiling of the room")
+      ->group("Places");
+  height("--cylindrical-at", options.cylindrical_at,
+         "cylindrical illuminance over the floor: floor+1.2 of people who sit");
+  height("--semi-cylindrical-at", options.semi_cylindrical_at,
+         "semi-cylindrical illuminance over the floor, towards four sides");
+}
+
+void add_measuring(CLI::App& command, MeasureOptions& options) {
+  command
+      .add_flag("--cylindrical", options.cylindrical,
+                "cylindrical illuminance round each point's direction, which points up")
+      ->group("Measuring");
+  command
+      .add_flag("--daylight-factor", options.daylight_factor,
+                "per cent of the lux on open ground under the CIE overcast sky; .csv, .json, .svg")
+      ->group("Measuring");
+  command
+      .add_option("--target", options.target,
+                  "what is required, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)")
+      ->type_name("NAME|VALUES")
+      ->group("Measuring");
+  add_maintenance_option(command, options.parameters, "Measuring");
+  add_sensor_options(command, options.parameters, "Measuring");
+}
+
+}  // namespace
+
+void add_measure_command(CLI::App& photile) {
+  auto options = std::make_shared<MeasureOptions>();
+  CLI::App* command =
+      photile.add_subcommand("measure", "Illuminance at points, in lux, with standard errors");
+  add_measure_output_options(*command, options->outputs);
+  add_places(*command, *options);
+  add_measuring(*command, *options);
+  add_setting_options(*command, options->render, {"samples_per_pixel", "direct_rays", "gloss"});
+  add_integrator_option(*command, options->render);
+  command->callback([command, options] { run_measure(*command, *options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,282 @@
+#include "command/measure_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <ctime>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "command/number_format.hpp"
+#include "command/output_files.hpp"
+#include "command/report_contents.hpp"
+#include "command/validators.hpp"
+#include "command/version.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "photile/errors.hpp"
+#include "photile/ray_scene.hpp"
+#include "report/honeybee_files.hpp"
+#include "report/plan_drawing.hpp"
+#include "report/plan_surroundings.hpp"
+#include "report/print_page.hpp"
+#include "report/report.hpp"
+#include "report/sensor_tables.hpp"
+#include "view/moods.hpp"
+
+namespace photile::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json target_json(const measuring::Measurement& measurement,
+                 const measuring::Requirement& requirement) {
+  Json json{{"name", requirement.name},
+            {"reference", requirement.reference},
+            {"ugr_limit", requirement.glare},
+            {"ra", requirement.rendering},
+            {"judgements", Json::array()}};
+  for (const auto& values : measurement) {
+    for (const auto& judgement : measuring::judge(values, requirement)) {
+      json["judgements"].push_back({{"grid", judgement.grid},
+                                    {"figure", judgement.figure},
+                                    {"required", judgement.required},
+                                    {"value", judgement.measured.value},
+                                    {"standard_error", judgement.measured.standard_error},
+                                    {"met", judgement.met()},
+                                    {"doubtful", judgement.doubtful()}});
+    }
+  }
+  return json;
+}
+
+Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
+              const std::string& unit) {
+  const MeasuringParameters& parameters = run.parameters;
+  const bool planar = parameters.gathering.response == SensorResponse::planar;
+  Json record{{"photile", version_number()},
+              {"scene", run.scene.source.filename().string()},
+              {"unit", unit},
+              {"response", planar ? "planar" : "cylindrical"},
+              {"maintenance_factor", parameters.maintenance},
+              {"integrator", parameters.by_paths ? "path" : "photon-map"},
+              {"seed", parameters.photons.seed},
+              {"repeats", parameters.repeats},
+              {"rays", parameters.gathering.rays}};
+  if (!parameters.by_paths) {
+    record["photons"] = parameters.photons.photons.emitted_photons;
+    record["neighbours"] = parameters.photons.neighbours;
+  }
+  if (!run.mood.empty()) record["mood"] = run.mood;
+  record["lumen_per_watt"] = run.mix.lumen_per_watt;
+  for (const MixedLight& light : run.mix.lights) {
+    record["lights"].push_back(
+        {{"name", light.name}, {"power", light.power}, {"unit", unit_symbol(light.unit)}});
+  }
+  if (run.requirement) record["target"] = target_json(measurement, *run.requirement);
+  record["grids"] = report::measurement_json(measurement);
+  return record;
+}
+
+/// Such as 2026-11-23.
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  return fmt::format("{:04}-{:02}-{:02}", local.tm_year + 1900, local.tm_mon + 1, local.tm_mday);
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run) {
+  const MeasuringParameters& parameters = run.parameters;
+  const bool planar = parameters.gathering.response == SensorResponse::planar;
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"illuminance", planar ? "planar" : "cylindrical"},
+      {"maintenance factor", fmt::format("{:g}", parameters.maintenance)},
+      {"measured",
+       fmt::format("{} times with {} rays a point", parameters.repeats, parameters.gathering.rays)},
+      {"light by", parameters.by_paths
+                       ? "path tracing"
+                       : fmt::format("photon maps, {} photons, k = {}",
+                                     format_count(static_cast<double>(
+                                         parameters.photons.photons.emitted_photons)),
+                                     parameters.photons.neighbours)},
+      {"errors", "standard errors of the mean of the repeats"},
+      {"seed", std::to_string(parameters.photons.seed)}};
+  if (!run.mood.empty()) facts.emplace_back("mood", run.mood);
+  facts.emplace_back("program", "photile " + version_number());
+  facts.emplace_back("date", today());
+  return facts;
+}
+
+/// Of each grid.
+std::vector<report::PlanSurroundings> surroundings_of(const measuring::Measurement& measurement,
+                                                      const MeasureRun& run) {
+  const RayScene rays(run.scene);
+  std::vector<report::PlanSurroundings> surroundings;
+  for (const auto& values : measurement) {
+    const auto& layout = values.grid.layout;
+    surroundings.push_back(layout ? report::surroundings_of(rays, *layout)
+                                  : report::PlanSurroundings());
+  }
+  return surroundings;
+}
+
+/// The file of each plane's plan.
+std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file,
+                                              std::size_t planes) {
+  if (planes <= 1) return std::vector(planes, file);
+  std::vector<std::filesystem::path> names;
+  for (std::size_t i = 1; i <= planes; ++i) {
+    names.push_back(file);
+    names.back().replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i));
+  }
+  return names;
+}
+
+}  // namespace
+
+void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options) {
+  command
+      .add_option("-o,--output", options.outputs,
+                  "table (.csv, .json), plan (.svg) or report (.html, .pdf) to write; repeatable")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group("Output");
+  command
+      .add_option("--honeybee", options.honeybee,
+                  "folder for <grid>.res, grids_info.json and grid_summary.csv")
+      ->type_name("FOLDER")
+      ->group("Output");
+  command
+      .add_option("--picture", options.picture,
+                  "EXR of the scene, whose moods the report shows in pictures and in lux")
+      ->type_name("FILE.exr")
+      ->check(file_ending_in({".exr"}))
+      ->group("Output");
+  command
+      .add_option("--include", options.results,
+                  "JSON of photile glare or daylight, which the report shows; repeatable")
+      ->type_name("FILE.json")
+      ->allow_extra_args(false)
+      ->check(file_ending_in({".json"}))
+      ->group("Output");
+  const auto text = [&](const char* name, std::string& value, const char* what) {
+    command.add_option(name, value, what)->type_name("TEXT")->group("Output");
+  };
+  text("--project", options.project.name, "name of the project, for the report's head");
+  text("--client", options.project.client, "for whom the report is; it ends with lines to sign on");
+  text("--designer", options.project.designer, "who answers for it");
+  add_false_colour_options(command, options.false_colour);
+}
+
+MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
+    : unit_(options.daylight_factor ? "DF %" : "lux"),
+      colours_(options.false_colour.of(unit_)),
+      honeybee_(options.honeybee),
+      picture_(options.picture),
+      results_(options.results.begin(), options.results.end()),
+      project_(options.project) {
+  if (options.daylight_factor) colours_.scale = 0;  // thousands of lux would show nothing
+  const std::map<std::string, std::vector<std::filesystem::path>*> lists{
+      {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}, {".pdf", &pdf_}};
+  std::vector<std::filesystem::path> all;
+  for (const std::filesystem::path file : options.outputs) {
+    const auto list = lists.find(file.extension().string());
+    if (list == lists.end()) {
+      throw UsageError(fmt::format(
+          "{}: an output ends in .csv, .json, .svg, .html or .pdf; rename it", file.string()));
+    }
+    if (options.daylight_factor && (list->first == ".html" || list->first == ".pdf")) {
+      throw UsageError(
+          fmt::format("{}: reports are in lux; write daylight factors to .csv, .json "
+                      "or .svg",
+                      file.string()));
+    }
+    list->second->push_back(file);
+    all.push_back(file);
+  }
+  if (!honeybee_.empty()) {
+    make_folder(honeybee_);
+    for (const char* name : report::honeybee_tables) all.push_back(honeybee_ / name);
+  }
+  const bool reports = !html_.empty() || !pdf_.empty();
+  const auto only_in_reports = [&](const char* option, bool given) {
+    if (!given || reports) return;
+    throw UsageError(
+        fmt::format("{} is for reports; give -o FILE.html or -o FILE.pdf, too", option));
+  };
+  only_in_reports("--picture", !picture_.empty());
+  only_in_reports("--include", !results_.empty());
+  only_in_reports("--project, --client and --designer", project_.said());
+  if (!picture_.empty()) note_input(picture_);
+  for (const auto& file : results_) note_input(file);
+  check_outputs(all);
+}
+
+void MeasureOutputs::check_names(const std::vector<measuring::SensorGrid>& grids) const {
+  if (!honeybee_.empty()) {
+    for (const auto& name : report::honeybee_names(grids)) note_output(honeybee_ / name);
+  }
+  const auto planes = static_cast<std::size_t>(std::count_if(
+      grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
+  for (const auto& file : svg_) {
+    if (planes == 0) {
+      throw UsageError(fmt::format("{}: points have no plan; measure a plane, by --plane or --grid",
+                                   file.string()));
+    }
+    if (planes == 1) continue;  // noted under its own name
+    for (const auto& name : plan_names(file, planes)) note_output(name);
+  }
+}
+
+void MeasureOutputs::check_moods(const std::filesystem::path& moods) const {
+  if (picture_.empty() || moods.empty()) return;
+  const view::Moods kept(moods);
+  const LightMix mix = read_light_mix(picture_);
+  for (const std::string& name : kept.names()) kept.changes(name, mix);
+}
+
+void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
+  if (!honeybee_.empty()) {
+    for (const auto& [name, text] : report::honeybee_files(measurement)) {
+      write_file(honeybee_ / name, text);
+    }
+  }
+  for (const auto& file : csv_) write_file(file, report::measurement_csv(measurement, unit_));
+  for (const auto& file : json_) {
+    write_file(
+        file,
+        run_json(measurement, run, unit_).dump(1, ' ', false, Json::error_handler_t::replace) +
+            "\n");
+  }
+  std::vector<const measuring::GridValues*> planes;
+  for (const auto& values : measurement) {
+    if (values.grid.layout) planes.push_back(&values);
+  }
+  if (svg_.empty() && html_.empty() && pdf_.empty()) return;
+  const std::vector<report::PlanSurroundings> surroundings = surroundings_of(measurement, run);
+  for (const auto& file : svg_) {
+    const auto names = plan_names(file, planes.size());
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const auto grid = static_cast<std::size_t>(planes[i] - measurement.data());
+      write_file(names[i], report::plan_svg(*planes[i], planes[i]->total(), colours_,
+                                            report::PlanSize::whole, surroundings[grid]));
+    }
+  }
+  if (html_.empty() && pdf_.empty()) return;
+  report::ReportText text{run.scene.source.filename().string(),
+                          facts_of(run),
+                          run.requirement,
+                          {lamp_schedule(run.scene, run.mix), reflectances(run.scene)},
+                          run.included.glare,
+                          project_,
+                          {}};
+  text.tables.insert(text.tables.begin(), run.included.tables.begin(), run.included.tables.end());
+  if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
+  const std::string page = report::report_html(measurement, text, colours_, surroundings);
+  for (const auto& file : html_) write_file(file, page);
+  for (const auto& file : pdf_) write_file(file, report::pdf_of(page));
+}
+
+}  // namespace photile::app

@@ -1,0 +1,84 @@
+// The files that `photile measure` writes: checked early, written late.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command/false_colour_options.hpp"
+#include "measuring/measure_grids.hpp"
+#include "measuring/measurement.hpp"
+#include "measuring/requirements.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/scene.hpp"
+#include "report/false_colour.hpp"
+#include "report/included_results.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace photile::app {
+
+struct MeasureOutputOptions {
+  std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg, .html or .pdf
+  FalseColourOptions false_colour;
+  std::string honeybee;              ///< folder, "" = none
+  std::string picture;               ///< EXR for the report, "" = none
+  std::vector<std::string> results;  ///< JSON files for the report
+  report::ReportProject project;
+  bool daylight_factor = false;  ///< values are per cent of the sky's lux
+};
+
+/// Adds -o, --honeybee and the options of false colour.
+void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options);
+
+/// What was measured, and how.
+struct MeasureRun {
+  const Scene& scene;
+  const LightMix& mix;
+  const MeasuringParameters& parameters;
+  std::string mood = {};  ///< "" = none
+  std::optional<measuring::Requirement> requirement = std::nullopt;
+  std::filesystem::path moods = {};       ///< file of those that a report shows; "" = none
+  report::IncludedResults included = {};  ///< of `included`
+};
+
+class MeasureOutputs {
+ public:
+  /// Errors: UsageError for a name with another ending; those of check_outputs; OutputError where
+  /// the folder cannot be made.
+  explicit MeasureOutputs(const MeasureOutputOptions& options);
+
+  /// Notes the files whose names follow from what is measured: a plan of each plane goes to the
+  /// .svg, numbered where there are several, and a file of each grid to the folder.
+  /// Errors: UsageError where a plan is asked for and there is no plane, or where two grids have
+  /// one file; those of note_output.
+  void check_names(const std::vector<measuring::SensorGrid>& grids) const;
+
+  /// Checks that the moods of a file fit the picture, which `write` shows in them ("" = none).
+  /// Errors: those of report_pictures.
+  void check_moods(const std::filesystem::path& moods) const;
+
+  /// What the report shows of other commands. Errors: those of included_results.
+  report::IncludedResults included(const std::optional<measuring::Requirement>& requirement) const {
+    return report::included_results(results_, requirement);
+  }
+
+  /// "lux", or "DF %" of daylight factors.
+  const std::string& unit() const { return unit_; }
+
+  /// Errors: OutputError.
+  void write(const measuring::Measurement& measurement, const MeasureRun& run) const;
+
+ private:
+  std::vector<std::filesystem::path> csv_, json_, svg_, html_, pdf_;
+  std::string unit_;
+  report::FalseColour colours_;
+  std::filesystem::path honeybee_, picture_;
+  std::vector<std::filesystem::path> results_;
+  report::ReportProject project_;
+};
+
+}  // namespace photile::app

@@ -1,0 +1,54 @@
+// The pictures that a command writes: which files, checked early, written late.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command/false_colour_options.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/progress.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace photile::app {
+
+struct PictureOptions {
+  std::vector<std::string> outputs;  ///< -o: .exr, .png or .hdr
+  std::string illuminance;           ///< .png in false colour, "" = none
+  std::string luminance;             ///< the same
+  FalseColourOptions false_colour;   ///< of both
+  ToneMapping tone_mapping;
+};
+
+/// Adds -o, --exposure, --view, --illuminance and --luminance to a subcommand.
+void add_picture_options(CLI::App& command, PictureOptions& options);
+
+/// Files to be written, each with its format.
+class PictureOutputs {
+ public:
+  /// Errors: UsageError for a picture whose name ends in none of .exr, .png and .hdr.
+  explicit PictureOutputs(const PictureOptions& options);
+
+  bool empty() const { return files().empty(); }
+  std::vector<std::filesystem::path> files() const;
+
+  /// Writes every file: `picture` as EXR, its tone-mapped root as PNG, its root in
+  /// Radiance's format, its illuminance and its
+  /// luminance in false colour. `notes` are told what a drawing lacks.
+  /// Errors: OutputError; the file that it names is then as it was before. Those of `picture`, of
+  /// measuring::illuminance_of and luminance_of; then nothing is written.
+  ///   source   the file that the picture is from, named where it lacks something
+  void write(const LayeredPicture& picture, Progress& notes = Progress::none(),
+             const std::filesystem::path& source = {}) const;
+
+ private:
+  std::vector<std::filesystem::path> exr_, png_, hdr_;
+  std::filesystem::path illuminance_, luminance_;  ///< empty: none
+  ToneMapping tone_mapping_;
+  FalseColourOptions false_colour_;
+};
+
+}  // namespace photile::app

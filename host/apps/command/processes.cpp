@@ -1,0 +1,97 @@
+#include "command/processes.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "common/module.hpp"
+#include "mpi_communicator.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::app {
+namespace {
+
+Communicator* communicator = nullptr;
+decltype(&photile_mpi_other_failed) other_failed_of_module = nullptr;
+
+int number_in(const char* variable) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? 0 : std::atoi(text);
+}
+
+/// Processes that a launcher with MPI has started: mpirun of OpenMPI, of MPICH and its kin, srun
+/// with PMI. 0: none did. Some tell it to MPI alone: then 1.
+int launched_with_mpi() {
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    if (const int count = number_in(variable); count > 0) return count;
+  }
+  return std::getenv("PMIX_RANK") != nullptr ? 1 : 0;
+}
+
+/// Whether each process has a part of its own, so that several do not write the same file.
+bool names_its_part(std::span<const char* const> arguments) {
+  for (const char* argument : arguments) {
+    for (const std::string_view option : {"--shard", "--frames"}) {
+      if (std::string_view(argument).starts_with(option)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void join_processes(std::span<const char* const> arguments) {
+  communicator = nullptr;
+  const int launched = launched_with_mpi();
+  if (launched == 0) {
+    const int tasks = std::getenv("SLURM_STEP_ID") ? number_in("SLURM_STEP_NUM_TASKS") : 0;
+    if (tasks > 1 && !names_its_part(arguments)) {
+      throw UsageError(fmt::format(
+          "srun has started {} tasks without MPI; use srun --mpi=pmix or mpirun, or give each task "
+          "its --shard",
+          tasks));
+    }
+    return;
+  }
+  // Global: MPI libraries load parts of their own, which look for the rest. It is never unloaded.
+  static const Module& module = *new Module("photile_mpi.so", Module::Symbols::global);
+  auto* const found = module.find<decltype(photile_mpi_communicator)>("photile_mpi_communicator");
+  if (!found) {
+    if (launched == 1) return;
+    throw UsageError(fmt::format(
+        "mpirun has started {} processes, and photile's part for MPI is not here: {}; install the "
+        "package photile-mpi, or start one process",
+        launched, module.error()));
+  }
+  other_failed_of_module =
+      module.find<decltype(photile_mpi_other_failed)>("photile_mpi_other_failed");
+  communicator = found();
+  if (!communicator) throw UsageError("MPI cannot be initialised; see what mpirun says");
+}
+
+Communicator* processes() { return communicator; }
+
+bool other_failed() { return communicator != nullptr && other_failed_of_module(); }
+
+bool leads() { return communicator == nullptr || communicator->rank() == 0; }
+
+std::vector<bool> as_first_says(const std::vector<bool>& own) {
+  if (!communicator) return own;
+  std::vector<std::byte> bytes;
+  for (const bool one : own) bytes.push_back(std::byte{one});
+  if (!leads()) bytes.clear();
+  const std::vector<Communicator::Bytes> all = communicator->gather(bytes);
+  std::vector<bool> said;
+  for (const std::byte one : all.front()) said.push_back(one != std::byte{0});
+  return said;
+}
+
+void refuse_several(const std::string& what, const std::string& remedy) {
+  if (communicator == nullptr || communicator->size() == 1) return;
+  throw UsageError(fmt::format("{} is of one process, and {} share the work; {}", what,
+                               communicator->size(), remedy));
+}
+
+}  // namespace photile::app

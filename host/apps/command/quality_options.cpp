@@ -1,0 +1,101 @@
+#include "command/quality_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <string>
+
+#include "command/number_format.hpp"
+#include "command/setting_options.hpp"
+#include "command/validators.hpp"
+#include "photile/errors.hpp"
+#include "render/render_plan.hpp"
+
+namespace photile::app {
+namespace {
+
+std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); }
+
+}  // namespace
+
+std::span<const GoalOption> goal_options() {
+  static constexpr std::array<GoalOption, 2> options{{
+      {"target_error", "target-error", "PERCENT",
+       "make pictures, each with twice the work of the one before, until one states this root mean "
+       "square relative error",
+       &RefinementGoal::error},
+      {"for", "for", "TIME",
+       "make such pictures for so long, from a quarter of the work on; the picture depends on the "
+       "machine",
+       &RefinementGoal::seconds},
+  }};
+  return options;
+}
+
+void set_quality(const QualityOptions& options, Quality quality) {
+  options.quality = quality;
+  photile::set_quality(options.parameters, quality);
+}
+
+void add_quality_preset(CLI::App& command, const QualityOptions& options) {
+  Words names;
+  for (const Quality quality : all_qualities) names.words.push_back(name_of(quality));
+  command
+      .add_option_function<std::string>(
+          "--quality",
+          [options](const std::string& word) {
+            for (const Quality quality : all_qualities) {
+              if (name_of(quality) == word) set_quality(options, quality);
+            }
+          },
+          std::string(quality_help))
+      ->type_name(fmt::format("{}", fmt::join(names.words, "|")))
+      ->transform(within(names))
+      ->default_str(std::string(name_of(options.quality)))
+      ->group("Picture");
+}
+
+void add_goal_options(CLI::App& command, RefinementGoal& goal) {
+  for (const GoalOption& option : goal_options()) {
+    command
+        .add_option(fmt::format("--{}", option.option), goal.*option.value,
+                    std::string(option.help))
+        ->type_name(std::string(option.type))
+        ->transform(option.type == "TIME" ? duration() : share_up_to(1))
+        ->group("Quality");
+  }
+}
+
+void check_goal(const RefinementGoal& goal, const RenderParameters& parameters) {
+  if (nodes_gather(parameters)) return;
+  for (const GoalOption& option : goal_options()) {
+    if (!(goal.*option.value > 0)) continue;
+    throw UsageError(fmt::format(
+        "--{}: pictures state their error where nodes of light maps gather, as with --quality good",
+        option.option));
+  }
+}
+
+RenderResult render_refined(
+    const RefinementGoal& goal, const RenderParameters& parameters,
+    const std::function<RenderResult(const RenderParameters&, Progress&)>& make,
+    const std::function<void(const RenderResult&)>& finished,
+    const std::function<double()>& elapsed, Progress& progress) {
+  int pictures = 0;
+  const auto tell = [&](const RenderParameters& asked, const RenderResult& picture) {
+    finished(picture);
+    progress.note(fmt::format("picture {}: standard error {}, {}; {}", ++pictures,
+                              percent(standard_error_of(picture)), format_seconds(elapsed()),
+                              options_text(asked)));
+  };
+  RenderResult best = refine(goal, parameters, {make, tell, elapsed}, progress);
+  if (standard_error_of(best) > goal.error && goal.error > 0) {
+    progress.note(fmt::format("warning: a standard error of {} was not reached, but {}",
+                              percent(goal.error), percent(standard_error_of(best))));
+  }
+  return best;
+}
+
+}  // namespace photile::app

@@ -1,0 +1,320 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "command/number_format.hpp"
+#include "command/output_files.hpp"
+#include "command/processes.hpp"
+#include "command/quality_options.hpp"
+#include "command/render_options.hpp"
+#include "command/run_notes.hpp"
+#include "command/run_record.hpp"
+#include "command/saved_maps_option.hpp"
+#include "command/signals.hpp"
+#include "command/summary.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "common/output_file.hpp"
+#include "device/context.hpp"
+#include "image/glare.hpp"
+#include "image/srgb.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/denoiser.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/path_tracer.hpp"
+#include "render/hit_source.hpp"
+#include "render/render_costs.hpp"
+#include "render/render_plan.hpp"
+#include "view/snapshots.hpp"
+
+namespace photile::app {
+namespace {
+
+PictureOutputs check_outputs_of(const RenderOptions& options) {
+  PictureOutputs outputs(options.pictures);
+  if (outputs.empty() && options.glare.empty()) {
+    throw UsageError("no output; give -o FILE.exr or -o FILE.png");
+  }
+  auto files = outputs.files();
+  if (!options.statistics.empty()) files.emplace_back(options.statistics);
+  if (!options.glare.empty()) files.emplace_back(options.glare);
+  if (!options.errors.empty()) files.emplace_back(options.errors);
+  if (!options.save_maps.empty()) files.emplace_back(options.save_maps);
+  note_inputs_of(options);
+  check_outputs(files);
+  return outputs;
+}
+
+/// Runs `work` as a stage of its own and returns what it cost.
+template <class Work>
+StageStatistics timed_stage(const char* name, Progress& progress, const Work& work) {
+  progress.throw_if_cancelled();
+  progress.begin(name, 0, "");
+  const Stopwatch stopwatch;
+  work();
+  progress.end();
+  return stage(name, {stopwatch.taken()});
+}
+
+/// Tells and notes what the kernels of a device cost.
+void tell_kernels(Device& device, bool profile, RunRecord& record, Progress& progress) {
+  KernelRecord kernels{device.info().id,
+                       device.programs_built(),
+                       device.programs_from_cache(),
+                       device.compile_seconds(),
+                       {}};
+  if (profile) kernels.times = device::context_of(device).kernel_times();
+  progress.note(fmt::format("kernels of {}: {} compiled, {} from the cache, {}", device.info().id,
+                            device.programs_built(), device.programs_from_cache(),
+                            format_seconds(device.compile_seconds())));
+  if (profile) {
+    for (const auto& line : kernel_table(kernels.times)) progress.note(line);
+  }
+  record.kernels.push_back(std::move(kernels));
+}
+
+/// What is rendered: the picture and, where --glare asks for it, what came by reflection.
+struct Views {
+  const HitSource& picture;
+  LightLayers* reflections;  ///< is filled; may be null
+};
+
+/// Takes what was found on the way to a picture.
+void note_result(const RenderResult& result, std::span<const Device> devices, RunRecord& record) {
+  record.used = result.used;
+  record.devices.clear();
+  for (const Device& device : devices) record.devices.push_back(device.info());
+  record.device_shares = result.device_shares;
+  record.stored_photons = result.stored_photons;
+  record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
+}
+
+/// Whether photon maps outlive the picture that they are made for.
+bool keeps_maps(const RenderOptions& options) {
+  return !options.save_maps.empty() || !options.load_maps.empty() || !options.glare.empty();
+}
+
+/// Pictures until one is good enough; `write` writes the last of `record`.
+///   elapsed   since the process began, seconds
+void render_until_good(const Scene& scene, std::span<Device> devices, const RenderOptions& options,
+                       const HitSource& hits, RunRecord& record,
+                       const std::function<void(const LightLayers&)>& write,
+                       const std::function<double()>& elapsed, Progress& progress) {
+  const RunStatistics before = record.stages;
+  render_refined(
+      options.goal, options.parameters,
+      [&](const RenderParameters& parameters, Progress& deadline) {
+        return render_hits(scene, hits, parameters.film, devices, parameters, deadline);
+      },
+      [&](const RenderResult& result) {
+        record.stages = before;
+        note_result(result, devices, record);
+        write(result.layers);
+      },
+      elapsed, progress);
+}
+
+/// The layers by photon maps. Fills in what `record` tells of them.
+LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
+                              const RenderOptions& options, const Views& views, RunRecord& record,
+                              Progress& progress) {
+  RenderResult result = keeps_maps(options)
+                            ? render_with_kept_maps(scene, camera, views.picture, devices, options,
+                                                    views.reflections, progress)
+                            : render_hits(scene, views.picture, options.parameters.film, devices,
+                                          options.parameters, progress);
+  note_result(result, devices, record);
+  return std::move(result.layers);
+}
+
+/// The layers by path tracing.
+LightLayers render_by_paths(const Scene& scene, const Camera& camera, const Views& views,
+                            RunRecord& record, Progress& progress) {
+  if (has_unseen_caustics(scene)) {
+    progress.note(
+        "warning: paths do not find what mirrors and glass throw from point, spot and directional "
+        "lights; photon maps do");
+  }
+  PathTracerResult result =
+      trace_paths_of_hits(scene, views.picture, eye_rays(record.used), progress);
+  if (views.reflections) {
+    PathTracerResult reflected =
+        trace_paths_of_hits(scene, ReflectedHits(camera), eye_rays(record.used), progress);
+    *views.reflections = std::move(reflected.layers);
+  }
+  record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
+  return std::move(result.layers);
+}
+
+/// What --denoise asks for: loaded before the rendering, so that a library which is not there is
+/// told at once.
+class Denoising {
+ public:
+  ///   film   of the picture
+  Denoising(const RenderOptions& options, const Scene& scene, const Camera& camera)
+      : denoiser_(options.denoiser, options.threads),
+        scene_(scene),
+        camera_(camera),
+        film_(options.parameters.film),
+        seed_(options.parameters.seed) {}
+
+  const std::string& version() const { return denoiser_.version(); }
+
+  ///   errors   standard errors of the layers, or null
+  LightLayers denoised(const LightLayers& layers, const LightLayers* errors) {
+    if (!guides_) guides_ = denoising_guides(RayScene(scene_), camera_, film_, seed_);
+    return denoiser_.denoised(layers, *guides_, errors);
+  }
+
+ private:
+  Denoiser denoiser_;
+  const Scene& scene_;
+  const Camera& camera_;
+  Film film_;
+  std::uint64_t seed_;
+  std::optional<DenoisingGuides> guides_;  ///< once they are needed
+};
+
+/// Writes the file that --glare names, and tells what is marked. `reflections` are the part of
+/// `layers` that came by reflection. Errors: OutputError.
+void write_glare(const RenderOptions& options, const LightLayers& layers,
+                 const LightLayers& reflections, const LightMix& mix, Progress& progress) {
+  const image::Glare glare = image::find_glare(layers, reflections, mix, options.glare_limit);
+  const Image displayed =
+      tone_map(mixed_picture(layers, mix)->root(), options.pictures.tone_mapping);
+  std::vector<std::uint8_t> rgb = image::srgb8_texels(displayed);
+  image::draw_marks(glare.marks, rgb);
+  view::write_screenshot(options.glare, layers.width, layers.height, rgb);
+  const PowerUnit unit = mix.lights.empty() ? PowerUnit::lumen : mix.lights.front().unit;
+  for (const std::string& line : image::glare_lines(glare, unit)) progress.note(line);
+}
+
+/// Renders and writes the pictures. Returns a watch that was started when they were written: what
+/// the rendering held is released before the caller gets it.
+///   elapsed   seconds of the process so far
+Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRecord& record,
+                          const std::function<double()>& elapsed, Progress& progress) {
+  check(options.parameters);
+  if (options.integrator == Integrator::path) refuse_photon_map_options(command);
+  share_rendering(options);
+  const bool knows_errors =
+      options.integrator == Integrator::photon_map && nodes_gather(options.parameters);
+  if (!options.errors.empty() && (!knows_errors || keeps_maps(options))) {
+    throw UsageError(
+        "--errors: noise is known where nodes of light maps gather, as with --quality good, and "
+        "without --save-maps, --load-maps and --glare");
+  }
+  if (!options.denoiser.empty() && knows_errors && keeps_maps(options)) {
+    throw UsageError(
+        "--denoise needs the noise of nodes, which is not known with --save-maps, --load-maps and "
+        "--glare; leave those out");
+  }
+  check_goal(options.goal, options.parameters);
+  if (options.goal.is_given() && keeps_maps(options)) {
+    throw UsageError(
+        "--target-error and --for make pictures of photons of their own; leave out --save-maps, "
+        "--load-maps and --glare");
+  }
+  const PictureOutputs outputs = check_outputs_of(options);
+
+  const ThreadLimit threads(options.threads);
+  const Stopwatch device_watch;
+  std::vector<Device> devices = devices_for(options, progress);
+  record.stages.push_back(stage("open devices", {device_watch.taken()}));
+
+  Scene scene;
+  record.stages.push_back(timed_stage("load scene", progress,
+                                      [&] { scene = load_scene(options.scene, options.load); }));
+  record.mix = mix_of(scene, options);
+  tell_scene(scene, record.mix, progress);
+  const Camera camera = projected(choose_camera(scene, options.camera), options);
+  set_film_size(options.parameters.film, options.size, camera);
+  record.scene = scene.source.filename().string();
+  record.camera = camera.name;
+  record.integrator = name_of(options.integrator);
+  record.quality = options.quality;
+  record.goal = options.goal;
+  record.used = options.parameters;
+
+  std::optional<Denoising> denoising;
+  if (!options.denoiser.empty()) {
+    denoising.emplace(options, scene, camera);
+    record.denoiser = denoising->version();
+  }
+  const bool wants_errors = !options.errors.empty() || (denoising && knows_errors);
+  LightLayers errors;
+  const CameraHits hits(camera, wants_errors ? &errors : nullptr);
+  LightLayers reflections;
+  const Views views{hits, options.glare.empty() ? nullptr : &reflections};
+  const auto write = [&](const LightLayers& rendered) {
+    if (!leads()) return;
+    std::optional<LightLayers> denoised;
+    if (denoising) {
+      record.stages.push_back(timed_stage("denoise", progress, [&] {
+        denoised = denoising->denoised(rendered, wants_errors ? &errors : nullptr);
+      }));
+    }
+    const LightLayers& layers = denoised ? *denoised : rendered;
+    record.stages.push_back(timed_stage("write pictures", progress, [&] {
+      const auto picture_of = [&](const LightLayers& film) {
+        std::unique_ptr<LayeredPicture> picture = mixed_picture(film, record.mix);
+        set_camera_attributes(picture->header(), in_world(scene, camera), film.width, film.height);
+        set_run_attributes(picture->header(), record);
+        return picture;
+      };
+      outputs.write(*picture_of(layers), progress);
+      if (!options.errors.empty()) write_exr(options.errors, *picture_of(errors));
+      if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
+    }));
+  };
+  if (options.goal.is_given()) {
+    render_until_good(scene, devices, options, hits, record, write, elapsed, progress);
+  } else if (options.integrator == Integrator::path) {
+    write(render_by_paths(scene, camera, views, record, progress));
+  } else {
+    write(render_by_photons(scene, camera, devices, options, views, record, progress));
+  }
+  for (Device& device : devices) tell_kernels(device, options.device.profile, record, progress);
+  return {};
+}
+
+void run_render(const CLI::App& command, RenderOptions& options) {
+  handle_signals();
+  const TimeTaken loading = time_of_loading();
+  const Stopwatch since_loaded;
+  RunRecord record;
+  record.stages.push_back(stage("load libraries", {loading}));
+  TerminalProgress progress(options.quiet || !leads());
+  const auto elapsed = [&] { return loading.seconds + since_loaded.seconds(); };
+  const Stopwatch since_written = render_to_files(command, options, record, elapsed, progress);
+  add_time(record.stages, "release memory", since_written.taken());
+  TimeTaken total = since_loaded.taken();
+  close(record, total += loading);
+  if (!options.statistics.empty() && leads()) {
+    write_file(
+        options.statistics,
+        run_json(record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+  for (const auto& line : summary_table(record)) progress.note(line);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& photile) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = photile.add_subcommand("render", "Render a scene to an EXR and a PNG");
+  add_render_options(*command, *options);
+  command->callback([command, options] { run_render(*command, *options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,293 @@
+#include "command/render_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "command/processes.hpp"
+#include "command/scene_options.hpp"
+#include "command/setting_options.hpp"
+#include "command/validators.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::app {
+namespace {
+
+constexpr std::array integrators{"photon-map", "path"};  // as Integrator has them
+
+void add_view_group(CLI::App& command, RenderOptions& options) {
+  command.add_option("--camera", options.camera, "name or index; default: the first")
+      ->type_name("NAME|INDEX")
+      ->group("Picture");
+  command
+      .add_option(
+          "--size", options.size,
+          fmt::format("pixels; default: {} high, as wide as the camera says, else {}x{}",
+                      defaults::image_height, defaults::image_width, defaults::image_height))
+      ->type_name("WxH")
+      ->transform(picture_size())
+      ->group("Picture");
+}
+
+void add_lights(CLI::App& command, RenderOptions& options) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--light",
+          [&options](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) options.lights.push_back(LightChange::parse(text));
+          },
+          "power of a light in its unit, a factor (x2), a colour or off; repeatable")
+      ->type_name("NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off")
+      ->allow_extra_args(false)
+      ->group("Picture");
+}
+
+void add_device_group(CLI::App& command, RenderOptions& options) {
+  command
+      .add_option("--device", options.device.selector,
+                  "OpenCL device: platform:device, index, cpu, gpu or a part of its name; "
+                  "all, or several separated by commas; with /N split into N sub-devices, with =N "
+                  "only N of its compute units; "
+                  "default: the environment's PHOTILE_DEVICE, else the best")
+      ->type_name("SELECTOR")
+      ->group("Device");
+}
+
+}  // namespace
+
+void add_run_group(CLI::App& command, RenderOptions& options) {
+  command.add_option("--threads", options.threads, "threads of the host; 0 = all cores")
+      ->type_name("N")
+      ->transform(count_between(0, limits::max_threads))
+      ->capture_default_str()
+      ->group("Run");
+  command.add_flag("-q,--quiet", options.quiet, "print errors only")->group("Run");
+}
+
+void add_setting_options(CLI::App& command, RenderOptions& options,
+                         std::initializer_list<std::string_view> without,
+                         const NamedSettings& more) {
+  command.add_option("SCENE", options.scene, "scene file: .obj, .gltf or .glb")
+      ->required()
+      ->type_name("");
+  add_lights(command, options);
+  add_mood_options(command, options.mood, "Picture");
+  add_settings(command, options.parameters, without);
+  add_set_option(command, {rendering_settings(options.parameters, without),
+                           scene_settings(options.load), device_settings(options.device), more});
+  add_scene_options(command, options.load, "Scene");
+  add_light_options(command, options.load, "Lights");
+  add_device_group(command, options);
+  add_run_group(command, options);
+}
+
+void add_picture_settings(CLI::App& command, RenderOptions& options, const NamedSettings& more) {
+  add_quality_preset(command, options.quality_options());  // before the settings that override it
+  add_setting_options(command, options, {}, more);
+  add_view_group(command, options);
+}
+
+void add_integrator_option(CLI::App& command, RenderOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--integrator",
+          [&options](const std::string& word) {
+            options.integrator =
+                word == name_of(Integrator::path) ? Integrator::path : Integrator::photon_map;
+          },
+          "photon maps, or paths from the eye: unbiased, slower, without a device")
+      ->type_name("photon-map|path")
+      ->transform(within(Words{{integrators.begin(), integrators.end()}}))
+      ->default_str(name_of(options.integrator))
+      ->group("Picture");
+}
+
+void add_projection_options(CLI::App& command, RenderOptions& options) {
+  std::vector<std::string_view> names;
+  for (const Projection projection : all_projections) names.push_back(name_of(projection));
+  command
+      .add_option_function<std::string>(
+          "--projection",
+          [&options](const std::string& word) {
+            for (const Projection projection : all_projections) {
+              if (name_of(projection) == word) options.projection = projection;
+            }
+          },
+          "of the camera: Radiance's -vtv, -vth and -vta, the whole sphere, -vtl")
+      ->type_name("perspective|fisheye|angular|equirectangular|orthographic")
+      ->transform(within(Words{names}))
+      ->default_str(std::string(name_of(options.projection)))
+      ->group("Picture");
+  command
+      .add_option("--field-of-view", options.field_of_view,
+                  fmt::format("degrees from the lower border to the upper; of orthographic metres; "
+                              "default: the camera's, of fisheyes {}, of orthographic {}",
+                              defaults::fisheye_field_of_view, defaults::orthographic_height))
+      ->type_name("X")
+      ->transform(positive_number())
+      ->group("Picture");
+}
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  add_picture_options(command, options.pictures);
+  add_scale_option(command, options.pictures.false_colour, "Output");
+  set_quality(options.quality_options(), Quality::good);
+  add_goal_options(command, options.goal);
+  NamedSettings more = display_settings(options.pictures.tone_mapping);
+  for (NamedSetting& setting : glare_settings(options.glare_limit)) more.push_back(setting);
+  add_picture_settings(command, options, more);
+  add_projection_options(command, options);
+  add_integrator_option(command, options);
+  command.add_option("--stats", options.statistics, "write the summary as JSON")
+      ->type_name("FILE")
+      ->group("Run");
+  add_saved_maps_options(command, options);
+  command
+      .add_option(
+          "--errors", options.errors,
+          "standard errors of the picture, a layer per light: the noise of nodes and samples")
+      ->type_name("FILE.exr")
+      ->check(file_ending_in({".exr"}))
+      ->group("Quality");
+  command
+      .add_option("--denoise", options.denoiser,
+                  "denoise each light's layer by Open Image Denoise 2, an installed library; never "
+                  "the illuminance")
+      ->type_name("[LIBRARY]")
+      ->expected(0, 1)
+      ->default_str(defaults::denoising_library)
+      ->group("Picture");
+  command
+      .add_option("--glare", options.glare,
+                  "picture in which reflections above a limit are marked, in a colour per light")
+      ->type_name("FILE.png")
+      ->check(file_ending_in({".png"}))
+      ->group("Output");
+}
+
+void add_shard_option(CLI::App& command, Shard& shard, const std::string& of_what,
+                      const std::string& group) {
+  command
+      .add_option_function<std::string>(
+          "--shard", [&shard](const std::string& text) { shard = *parse_shard(text); },
+          fmt::format("the I-th of N equal parts {}, from 1; several processes share the work",
+                      of_what))
+      ->type_name("I/N")
+      ->check(shard_of_some())
+      ->group(group);
+}
+
+void add_saved_maps_options(CLI::App& command, RenderOptions& options) {
+  CLI::Option* save =
+      command.add_option("--save-maps", options.save_maps, "keep the photons for --load-maps")
+          ->type_name("FILE")
+          ->group("Photons");
+  command
+      .add_option("--load-maps", options.load_maps,
+                  "photons that --save-maps kept, of the same scene and options")
+      ->type_name("FILE")
+      ->excludes(save)
+      ->group("Photons");
+}
+
+const char* name_of(Integrator integrator) {
+  return integrators[static_cast<std::size_t>(integrator)];
+}
+
+void share_rendering(RenderOptions& options) {
+  options.parameters.processes = processes();
+  const auto refuse = [](bool asked, const char* what) {
+    if (asked) refuse_several(what, "leave it out, or start one process");
+  };
+  refuse(options.integrator == Integrator::path, "--integrator path");
+  refuse(!options.save_maps.empty(), "--save-maps");
+  refuse(!options.load_maps.empty(), "--load-maps");
+  for (const GoalOption& goal : goal_options()) {
+    if (options.goal.*goal.value > 0) {
+      refuse_several(fmt::format("--{}", goal.option), "leave it out, or start one process");
+    }
+  }
+}
+
+void refuse_photon_map_options(const CLI::App& command) {
+  const std::set<std::string> groups{"Photons", "Estimate", "Device", "Quality"};
+  for (const std::string& name : names_set(command)) {
+    if (!is_of_photon_maps(name)) continue;
+    throw UsageError(
+        fmt::format("--set {}: only photon maps use it; leave it out, or --integrator path", name));
+  }
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0 || groups.count(option->get_group()) == 0) continue;
+    throw UsageError(fmt::format("{}: only photon maps use it; leave it out, or --integrator path",
+                                 option->get_name()));
+  }
+}
+
+const Camera& choose_camera(const Scene& scene, const std::string& selector) {
+  if (selector.empty()) return scene.cameras.front();
+  for (const Camera& camera : scene.cameras) {
+    if (camera.name == selector) return camera;
+  }
+  const auto index = parse_count(selector);
+  if (index && *index < scene.cameras.size()) return scene.cameras[*index];
+  std::string known;
+  for (const Camera& camera : scene.cameras) {
+    known += (known.empty() ? "'" : ", '") + camera.name + "'";
+  }
+  throw UsageError(
+      fmt::format("no camera '{}' in {}; it has {}", selector, scene.source.string(), known));
+}
+
+Camera projected(Camera camera, const RenderOptions& options) {
+  camera.projection = options.projection;
+  const bool round =
+      options.projection == Projection::fisheye || options.projection == Projection::angular;
+  if (round) camera.aspect_ratio = 1;
+  if (options.projection == Projection::equirectangular) camera.aspect_ratio = 2;
+  if (options.projection == Projection::orthographic) {
+    if (options.field_of_view > 0) camera.orthographic_height = options.field_of_view;
+    return camera;
+  }
+  double degrees = options.field_of_view;
+  if (!(degrees > 0) && round) degrees = defaults::fisheye_field_of_view;
+  if (!(degrees > 0)) return camera;
+  const double most = options.projection == Projection::angular       ? 360.0
+                      : options.projection == Projection::perspective ? 179.0
+                                                                      : 180.0;
+  if (degrees > most) {
+    throw UsageError(fmt::format("--field-of-view {:g}: is more than the {:g} degrees of a {} view",
+                                 degrees, most, name_of(options.projection)));
+  }
+  camera.vertical_field_of_view = glm::radians(degrees);
+  return camera;
+}
+
+LightMix mix_of(const Scene& scene, const RenderOptions& options) {
+  LightMix mix = LightMix::of(scene, options.load.lumen_per_watt);
+  change_lights(mix, joined(changes_of(options.mood, mix, options.scene), options.lights));
+  return mix;
+}
+
+void set_film_size(Film& film, const std::string& size, const Camera& camera) {
+  if (const auto pixels = parse_size(size)) {
+    film.width = pixels->width;
+    film.height = pixels->height;
+  } else if (camera.aspect_ratio > 0) {
+    const double width = std::round(camera.aspect_ratio * film.height);
+    if (width > limits::max_image_side) {
+      throw UsageError(
+          fmt::format("the camera's aspect ratio {} makes the picture wider than {} "
+                      "pixels; give --size",
+                      camera.aspect_ratio, limits::max_image_side));
+    }
+    film.width = std::max(1, static_cast<int>(width));
+  }
+}
+
+}  // namespace photile::app

@@ -1,0 +1,115 @@
+// The options of `photile render`.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "command/mood_options.hpp"
+#include "command/picture_outputs.hpp"
+#include "command/quality_options.hpp"
+#include "command/setting_options.hpp"
+#include "photile/camera.hpp"
+#include "photile/defaults.hpp"
+#include "photile/device.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/renderer.hpp"
+#include "photile/scene.hpp"
+#include "photile/shard.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace photile::app {
+
+/// What estimates the light that reaches a surface.
+enum class Integrator { photon_map, path };
+
+/// As typed; each value is within its range.
+struct RenderOptions {
+  QualityOptions quality_options() { return {quality, parameters}; }
+
+  std::string scene;
+  PictureOptions pictures;
+  RenderParameters parameters;
+  Integrator integrator = Integrator::photon_map;
+  Quality quality = Quality::draft;  ///< the settings are its own but for those given
+  RefinementGoal goal;               ///< pictures are made until it is met
+  std::string camera;
+  std::string size;  ///< "" = by the camera
+  Projection projection = Projection::perspective;
+  double field_of_view = 0;         ///< degrees, or metres of parallel rays; 0 = by the camera
+  std::vector<LightChange> lights;  ///< what --light asks for
+  MoodOptions mood;                 ///< before them
+  DeviceOptions device;
+  SceneLoadOptions load;
+  int threads = 0;
+  std::string statistics;            ///< file, "" = none
+  std::string save_maps, load_maps;  ///< files, "" = none
+  std::string errors;                ///< EXR of standard errors, "" = none
+  std::string denoiser;              ///< library of Open Image Denoise, "" = not denoised
+  std::string glare;                 ///< PNG of marked reflections, "" = none
+  double glare_limit = defaults::glare_limit;
+  bool quiet = false;
+};
+
+/// Adds the options of `photile render` to the subcommand.
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// Adds those that say how light is found, but not what a camera makes of it: what commands that
+/// measure take, too.
+///   without   names of settings that the command does without
+///   more      that --set reaches, too
+void add_setting_options(CLI::App& command, RenderOptions& options,
+                         std::initializer_list<std::string_view> without = {},
+                         const NamedSettings& more = {});
+
+/// Adds these and those that say what a camera makes of it, but not what becomes of the picture.
+void add_picture_settings(CLI::App& command, RenderOptions& options,
+                          const NamedSettings& more = {});
+
+/// Adds --threads and --quiet.
+void add_run_group(CLI::App& command, RenderOptions& options);
+
+/// Adds --shard I/N.
+///   of_what   "of the paths"
+void add_shard_option(CLI::App& command, Shard& shard, const std::string& of_what,
+                      const std::string& group);
+
+/// Adds --save-maps and --load-maps.
+void add_saved_maps_options(CLI::App& command, RenderOptions& options);
+
+/// Adds --integrator.
+void add_integrator_option(CLI::App& command, RenderOptions& options);
+
+/// "photon-map", "path".
+const char* name_of(Integrator integrator);
+
+/// Has the processes that were started together share the rendering. Errors: UsageError for what
+/// one process alone can do.
+void share_rendering(RenderOptions& options);
+
+/// Errors: UsageError that names an option which was given to `command` although the path tracer
+/// has no use for it.
+void refuse_photon_map_options(const CLI::App& command);
+
+/// The camera named by `selector`: a name, an index, or "" for the first.
+/// Errors: UsageError listing those there are.
+const Camera& choose_camera(const Scene& scene, const std::string& selector);
+
+/// The camera with the projection and the field of view that are asked for. Errors: UsageError for
+/// an angle that the projection cannot have.
+Camera projected(Camera camera, const RenderOptions& options);
+
+/// The scene's lights as they are, then as --mood and --light ask for.
+/// Errors: UsageError where no light has the name; those of changes_of.
+LightMix mix_of(const Scene& scene, const RenderOptions& options);
+
+/// Width and height into `film`: `size` if given, else the default height and the camera's aspect
+/// ratio, else the default size. Errors: UsageError when the aspect ratio makes the picture too
+/// wide.
+void set_film_size(Film& film, const std::string& size, const Camera& camera);
+
+}  // namespace photile::app

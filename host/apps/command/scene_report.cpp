@@ -1,0 +1,289 @@
+#include "command/scene_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "command/number_format.hpp"
+#include "scene/material_reflectance.hpp"
+#include "scene/open_glass.hpp"
+
+namespace photile::app {
+namespace {
+
+using nlohmann::json;
+
+// An interior in millimetres is thousands of units wide, one in metres hardly ever 500.
+constexpr double doubtfully_large = 500;   // metres
+constexpr double doubtfully_small = 0.05;  // metres
+
+/// "reflectance 0.52", and why it is not the colour that the file has; "" of glass.
+std::string reflectance_text(const Scene& scene, const Material& material) {
+  const auto reflectance = scene::reflectance_of(scene, material);
+  if (!reflectance) return "";
+  std::string text = fmt::format(", reflectance {:.3g}", reflectance->whole);
+  if (!material.glossy()) return text;
+  const bool changed = std::abs(reflectance->whole - reflectance->matt) >= 0.005;
+  if (!changed || !(reflectance->matt > 0)) return text;
+  return text +
+         fmt::format(" ({:.3g} entered, and {:.2g} specular; --set lambertian=on removes that)",
+                     reflectance->matt, luminance(glm::dvec3(material.specular)));
+}
+
+/// "1 camera", "2 cameras"
+std::string counted(std::size_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+const char* interaction_name(const Material& material) {
+  switch (material.interaction) {
+    case Interaction::opaque:
+      return material.glossy() ? "glossy" : "diffuse";
+    case Interaction::mirror:
+      return "mirror";
+    case Interaction::glass:
+      return material.thin ? "thin glass" : "glass";
+  }
+  return "";
+}
+
+template <class Vector>
+json components(const Vector& vector) {
+  return json::array({vector.x, vector.y, vector.z});
+}
+
+json power_json(double power, PowerUnit unit, double lumen_per_watt) {
+  const bool lumen = unit == PowerUnit::lumen;
+  return {{"lumens", lumen ? power : power * lumen_per_watt},
+          {"watts", lumen ? power / lumen_per_watt : power}};
+}
+
+/// The file that says where a light shines to, or "".
+std::string source_of(const Scene& scene, const Light& light) {
+  if (light.distribution != none) return scene.distributions[light.distribution].name();
+  if (light.environment != none) return scene.environments[light.environment].name();
+  return "";
+}
+
+json light_json(const Light& light, const std::string& source, double power, PowerUnit unit,
+                double lumen_per_watt) {
+  json entry{{"name", light.name},
+             {"kind", kind_name(light)},
+             {"color", components(light.color)},
+             {"triangles", light.triangles.size()},
+             {"two_sided", light.two_sided}};
+  if (!light.group.empty()) entry["group"] = light.group;
+  if (!source.empty()) entry["source"] = source;
+  entry.update(power_json(power, unit, lumen_per_watt));
+  return entry;
+}
+
+json group_json(const MixedLight& group, double lumen_per_watt) {
+  json entry{{"name", group.name}, {"lights", group.members}, {"color", components(group.color)}};
+  entry.update(power_json(group.power, group.unit, lumen_per_watt));
+  return entry;
+}
+
+std::vector<std::size_t> triangles_of_materials(const Scene& scene) {
+  std::vector<std::size_t> triangles(scene.materials.size(), 0);
+  for (const std::uint32_t material : scene.triangle_material) ++triangles[material];
+  return triangles;
+}
+
+json material_json(const Scene& scene, const Material& material, std::size_t triangles) {
+  json entry{{"name", material.name},
+             {"interaction", interaction_name(material)},
+             {"triangles", triangles},
+             {"diffuse", components(material.diffuse)},
+             {"specular", components(material.specular)},
+             {"f90", material.f90},
+             {"roughness", material.roughness},
+             {"opacity", material.opacity},
+             {"opacity_cutoff", material.opacity_cutoff}};
+  if (const auto reflectance = scene::reflectance_of(scene, material)) {
+    entry["reflectance"] = reflectance->whole;
+    entry["matt_reflectance"] = reflectance->matt;
+  }
+  const auto add_texture = [&](const char* member, std::uint32_t texture) {
+    if (texture != none) entry[member] = scene.textures[texture].name();
+  };
+  add_texture("texture", material.diffuse_texture);
+  add_texture("opacity_texture", material.opacity_texture);
+  add_texture("normal_texture", material.normal_texture);
+  if (material.metallic_roughness != none) {
+    const MetallicRoughness& model = scene.metallic_roughness[material.metallic_roughness];
+    add_texture("metallic_roughness_texture", model.texture);
+    add_texture("specular_texture", model.specular_texture);
+    add_texture("specular_color_texture", model.specular_color_texture);
+  }
+  return entry;
+}
+
+json camera_json(const Camera& camera) {
+  return {{"name", camera.name},
+          {"position", components(camera.position)},
+          {"forward", components(camera.forward)},
+          {"up", components(camera.up)},
+          {"vertical_field_of_view_degrees", glm::degrees(camera.vertical_field_of_view)},
+          {"aspect_ratio", camera.aspect_ratio}};
+}
+
+}  // namespace
+
+const char* kind_name(const Light& light) {
+  if (light.distribution != none) return "photometric";
+  switch (light.kind) {
+    case LightKind::area:
+      return "area";
+    case LightKind::point:
+      return "point";
+    case LightKind::spot:
+      return "spot";
+    case LightKind::directional:
+      return light.has_size() ? "sun" : "directional";
+    case LightKind::environment:
+      return "environment";
+  }
+  return "";
+}
+
+std::vector<double> powers_of(const Scene& scene, const LightMix& mix) {
+  const LightGroups groups = light_groups_of(scene);
+  std::vector<double> powers;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    powers.push_back(groups.share[i] * mix.lights[groups.group_of[i]].power);
+  }
+  return powers;
+}
+
+Extents extents_of(const Scene& scene) {
+  Extents extents{glm::dvec3(std::numeric_limits<double>::infinity()),
+                  glm::dvec3(-std::numeric_limits<double>::infinity())};
+  for (const glm::vec3& vertex : scene.vertices) {
+    const glm::dvec3 place = place_in_world(scene, glm::dvec3(vertex));
+    extents.lowest = glm::min(extents.lowest, place);
+    extents.highest = glm::max(extents.highest, place);
+  }
+  return extents;
+}
+
+std::string doubtful_unit(const Extents& extents) {
+  const glm::dvec3 size = extents.size();
+  const double largest = std::max({size.x, size.y, size.z});
+  if (largest > doubtfully_large) {
+    return fmt::format(
+        "the scene is {:.4g} m wide: its file is probably in millimetres or centimetres; scale it "
+        "to metres",
+        largest);
+  }
+  if (largest < doubtfully_small) {
+    return fmt::format("the scene is {:.4g} m wide: is its file in metres?", largest);
+  }
+  return {};
+}
+
+std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) {
+  const glm::dvec3 size = extents_of(scene).size();
+  std::vector<std::string> lines{
+      fmt::format(
+          "scene: {}: {}, {}, {}, {}", scene.source.string(),
+          counted(scene.triangle_count(), "triangle"), counted(scene.materials.size(), "material"),
+          counted(scene.textures.size(), "texture"), counted(scene.cameras.size(), "camera")),
+      fmt::format("extents: {:.4g} x {:.4g} x {:.4g} m", size.x, size.y, size.z)};
+  const std::vector<double> powers = powers_of(scene, mix);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    const std::string source = source_of(scene, light);
+    lines.push_back(fmt::format("light: {}: {}, {}{}{}", light.name, kind_name(light),
+                                format_power_in_both(powers[i], scene.unit, mix.lumen_per_watt),
+                                light.group.empty() ? "" : ", of group " + light.group,
+                                source.empty() ? "" : ", from " + source));
+  }
+  for (const MixedLight& group : mix.lights) {
+    if (group.members.empty()) continue;
+    lines.push_back(fmt::format("group: {}: {}, {}", group.name,
+                                counted(group.members.size(), "light"),
+                                format_power_in_both(group.power, group.unit, mix.lumen_per_watt)));
+  }
+  return lines;
+}
+
+std::vector<std::string> material_summary(const Scene& scene) {
+  const std::vector<std::size_t> triangles = triangles_of_materials(scene);
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& material = scene.materials[i];
+    const bool textured = material.diffuse_texture != none;
+    lines.push_back(fmt::format(
+        "material: {}: {}, {}{}{}", material.name, interaction_name(material),
+        counted(triangles[i], "triangle"), reflectance_text(scene, material),
+        textured ? ", texture " + scene.textures[material.diffuse_texture].name() : ""));
+  }
+  return lines;
+}
+
+std::vector<std::string> scene_warnings(const Scene& scene) {
+  std::vector<std::string> lines = scene.report.warnings;
+  if (const std::string doubt = doubtful_unit(extents_of(scene)); !doubt.empty()) {
+    lines.push_back(doubt);
+  }
+  return lines;
+}
+
+std::vector<std::string> info_warnings(const Scene& scene) {
+  std::vector<std::string> lines = scene_warnings(scene);
+  const std::vector<std::uint32_t> open = scene::open_edges_of_glass(scene);
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    if (open[i] == 0) continue;
+    lines.push_back(fmt::format(
+        "material {}: solid glass that ends in the open at {}: all that lies behind it is inside "
+        "glass, unless it ends at other surfaces as water does in a basin; a pane of one sheet is "
+        "thin glass",
+        scene.materials[i].name, counted(open[i], "edge")));
+  }
+  return lines;
+}
+
+json scene_json(const Scene& scene, const LightMix& mix) {
+  const Extents extents = extents_of(scene);
+  json result{{"scene", scene.source.string()},
+              {"unit", unit_symbol(scene.unit)},
+              {"lumen_per_watt", mix.lumen_per_watt},
+              {"triangles", scene.triangle_count()},
+              {"vertices", scene.vertices.size()},
+              {"polygons_triangulated", scene.report.polygons_triangulated},
+              {"degenerate_triangles", scene.report.degenerate_triangles},
+              {"non_finite_triangles", scene.report.non_finite_triangles},
+              {"duplicate_triangles", scene.report.duplicate_triangles},
+              {"extents",
+               {{"lowest", components(extents.lowest)},
+                {"highest", components(extents.highest)},
+                {"size", components(extents.size())}}},
+              {"origin", components(scene.origin)},
+              {"materials", json::array()},
+              {"lights", json::array()},
+              {"groups", json::array()},
+              {"cameras", json::array()},
+              {"warnings", info_warnings(scene)}};
+  const std::vector<std::size_t> triangles = triangles_of_materials(scene);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    result["materials"].push_back(material_json(scene, scene.materials[i], triangles[i]));
+  }
+  const std::vector<double> powers = powers_of(scene, mix);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    result["lights"].push_back(light_json(scene.lights[i], source_of(scene, scene.lights[i]),
+                                          powers[i], scene.unit, mix.lumen_per_watt));
+  }
+  for (const MixedLight& group : mix.lights) {
+    if (!group.members.empty()) result["groups"].push_back(group_json(group, mix.lumen_per_watt));
+  }
+  for (const Camera& camera : scene.cameras) {
+    result["cameras"].push_back(camera_json(in_world(scene, camera)));
+  }
+  return result;
+}
+
+}  // namespace photile::app

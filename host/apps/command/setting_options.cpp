@@ -1,0 +1,374 @@
+#include "command/setting_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "command/validators.hpp"
+#include "common/ascii_text.hpp"
+#include "photile/errors.hpp"
+#include "photile/settings.hpp"
+
+namespace photile::app {
+namespace {
+
+/// "-k", "--neighbours".
+std::vector<std::string> option_names(const Setting& setting) {
+  std::vector<std::string> names;
+  for (const std::string& name : CLI::detail::split(std::string(setting.option), ',')) {
+    names.push_back((name.size() == 1 ? "-" : "--") + name);
+  }
+  return names;
+}
+
+/// Of a value in the help: "N", "X", "naive|triangle|patch|auto".
+std::string type_name(const ValueRange& range) {
+  if (const auto* words = std::get_if<Words>(&range)) {
+    return fmt::format("{}", fmt::join(words->words, "|"));
+  }
+  return std::holds_alternative<WholeNumbers>(range) ? "N" : "X";
+}
+
+bool has_option(const Setting& setting) { return !setting.option.empty(); }
+
+void add(CLI::App& command, RenderParameters& parameters, const Setting& setting) {
+  CLI::Option* option = command
+                            .add_option_function<std::string>(
+                                fmt::format("{}", fmt::join(option_names(setting), ",")),
+                                [&parameters, &setting](const std::string& text) {
+                                  setting.set(parameters, *parse_value(text, setting.range));
+                                },
+                                std::string(setting.help))
+                            ->type_name(type_name(setting.range))
+                            ->transform(within(setting.range))
+                            ->group(std::string(setting.group));
+  if (setting.is_given(parameters)) option->default_str(text_of(setting.value(parameters)));
+}
+
+NamedSetting bound_number(std::string_view name, std::string_view group, ValueRange range,
+                          auto& field, std::string_view help, std::string_view unit = {}) {
+  using Number = std::remove_reference_t<decltype(field)>;
+  return {.name = name,
+          .group = group,
+          .range = std::move(range),
+          .help = help,
+          .initial = fmt::format("{}", field),
+          .unit = unit,
+          .set = [&field](const SettingValue& value) {
+            field = static_cast<Number>(std::get<double>(value));
+          }};
+}
+
+NamedSetting bound_switch(std::string_view name, std::string_view group, bool& field,
+                          std::string_view help) {
+  return {.name = name,
+          .group = group,
+          .range = Words{{"off", "on"}},
+          .help = help,
+          .initial = field ? "on" : "off",
+          .set = [&field](const SettingValue& value) {
+            field = std::get<std::string_view>(value) == "on";
+          }};
+}
+
+/// Defaults of all that --set reaches in any command, and where their values go.
+class AllSettings {
+ public:
+  const NamedSettings& list() const { return list_; }
+
+ private:
+  RenderParameters parameters_;
+  SceneLoadOptions load_;
+  DeviceOptions device_;
+  ToneMapping tone_mapping_;
+  double glare_limit_ = defaults::glare_limit;
+  NamedSettings list_ = [this] {
+    NamedSettings all;
+    for (const NamedSettings& some :
+         {rendering_settings(parameters_), scene_settings(load_), device_settings(device_),
+          display_settings(tone_mapping_), glare_settings(glare_limit_)}) {
+      all.insert(all.end(), some.begin(), some.end());
+    }
+    return all;
+  }();
+};
+
+const NamedSetting* named_in(const NamedSettings& settings, std::string_view name) {
+  const auto found = std::find_if(settings.begin(), settings.end(),
+                                  [&](const NamedSetting& one) { return one.name == name; });
+  return found == settings.end() ? nullptr : &*found;
+}
+
+/// What is wrong with a name that a command does not know.
+std::string problem_with_name(std::string_view name, const NamedSettings& settings) {
+  for (const Setting& setting : photile::settings()) {
+    if (setting.name == name && has_option(setting)) {
+      return fmt::format("give it by {}", option_names(setting).front());
+    }
+  }
+  if (named_in(AllSettings().list(), name)) return "this command has no use for it";
+  std::vector<std::string_view> names;
+  for (const NamedSetting& one : settings) names.push_back(one.name);
+  return fmt::format("there is no such setting; the nearest is {}, and photile settings lists all",
+                     nearest_word(name, names));
+}
+
+std::string name_in(const std::string& assignment) {
+  return assignment.substr(0, assignment.find('='));
+}
+
+/// What each sets, a row for each.
+std::string quality_table() {
+  std::string text = "| `--quality` |", rule = "|---|";
+  for (const Setting& setting : settings()) {
+    if (!setting.is_of_quality()) continue;
+    text += fmt::format(
+        " `{}` |", has_option(setting) ? option_names(setting).front() : std::string(setting.name));
+    rule += "--:|";
+  }
+  text += " the picture |\n" + rule + "---|\n";
+  for (const Quality quality : all_qualities) {
+    text += fmt::format("| `{}` |", name_of(quality));
+    for (const Setting& setting : settings()) {
+      if (!setting.is_of_quality()) continue;
+      const std::string value = text_of(setting.by_quality[index_of(quality)]);
+      text += value == "0" ? " |" : fmt::format(" {} |", value);
+    }
+    text += fmt::format(" {} |\n", description_of(quality));
+  }
+  return text;
+}
+
+}  // namespace
+
+NamedSettings rendering_settings(RenderParameters& parameters,
+                                 std::initializer_list<std::string_view> without) {
+  NamedSettings list;
+  for (const Setting& setting : settings()) {
+    if (has_option(setting)) continue;
+    if (std::find(without.begin(), without.end(), setting.name) != without.end()) continue;
+    std::string initial = setting.is_of_quality()     ? "by quality"
+                          : setting.otherwise.empty() ? text_of(setting.value(parameters))
+                                                      : std::string(setting.otherwise);
+    list.push_back({.name = setting.name,
+                    .group = setting.group,
+                    .range = setting.range,
+                    .help = setting.help,
+                    .initial = std::move(initial),
+                    .unit = setting.unit,
+                    .reader = setting.reader,
+                    .set = [&parameters, &setting](const SettingValue& value) {
+                      setting.set(parameters, value);
+                    }});
+  }
+  return list;
+}
+
+NamedSettings scene_settings(SceneLoadOptions& options) {
+  const char* group = "Scene";
+  const Numbers turn{-360, 360};
+  return {
+      {.name = "up",
+       .group = group,
+       .range = Words{{"x", "y", "z", "-x", "-y", "-z"}},
+       .help = "axis of the file that points up",
+       .initial = "y, and a warning where it seems to be z",
+       .set = [&options](
+                  const SettingValue& value) { options.up = std::get<std::string_view>(value); }},
+      bound_number("north", group, turn, options.situation.north_degrees,
+                   "where north lies, clockwise from -z as seen from above", "degrees"),
+      bound_number("lumen_per_watt", group, PositiveNumbers{}, options.lumen_per_watt,
+                   "luminous efficacy: 683 or, as Radiance, 179", "lm/W"),
+      bound_number("emissive_scale", group, PositiveNumbers{}, options.emissive_scale,
+                   "multiplies emissive materials; 683 mends files from Blender"),
+      bound_number(
+          "environment_scale", group, PositiveNumbers{}, options.environment.scale,
+          "multiplies the picture of --environment, which is in cd/m2, or W/(m2 sr) for OBJ"),
+      bound_number("environment_rotation", group, turn, options.environment.rotation_degrees,
+                   "clockwise as seen from above; at 0 the picture's middle lies towards -z",
+                   "degrees"),
+      bound_switch("lambertian", group, options.lambertian,
+                   "no specular lobe on dielectrics, such as the 4% that glTF has by default"),
+      bound_switch("allow_outside", group, options.allow_outside,
+                   "the scene may name files outside its folder"),
+  };
+}
+
+NamedSettings device_settings(DeviceOptions& options) {
+  const char* group = "Device";
+  return {
+      {.name = "device_memory",
+       .group = group,
+       .range = PositiveNumbers{},
+       .help = "bound on the device's buffers together",
+       .initial = "all that the device has",
+       .unit = "GiB",
+       .set =
+           [&options](const SettingValue& value) {
+             constexpr double most = 0x1p33;  // GiB, whose bytes 64 bits count
+             options.memory_bytes =
+                 static_cast<std::uint64_t>(std::min(std::get<double>(value), most) * 0x1p30);
+           }},
+      bound_switch("program_cache", group, options.use_program_cache,
+                   "kernels that were compiled before are taken from the cache"),
+      bound_switch("profile", group, options.profile, "print the time of every kernel"),
+  };
+}
+
+NamedSettings display_settings(ToneMapping& tone_mapping) {
+  return {bound_switch("auto_exposure", "Display", tone_mapping.automatic_exposure,
+                       "off: 1 cd/m2 or 1 W/(m2 sr) becomes white, before --exposure")};
+}
+
+NamedSettings glare_settings(double& limit) {
+  return {bound_number(
+      "glare_limit", "Display", PositiveNumbers{}, limit,
+      "of --glare; above 100: luminance in cd/m2; else times the mean luminance of the "
+      "picture")};
+}
+
+void assign_named(const NamedSettings& settings, const std::string& assignment) {
+  const std::string name = name_in(assignment);
+  const NamedSetting* setting = named_in(settings, name);
+  if (!setting)
+    throw UsageError(fmt::format("--set {}: {}", name, problem_with_name(name, settings)));
+  if (name.size() == assignment.size()) {
+    throw UsageError(
+        fmt::format("--set {0}: has no value; give {0}={1}", name, type_name(setting->range)));
+  }
+  const std::string text = assignment.substr(name.size() + 1);
+  const auto value = parse_value(text, setting->range);
+  if (!value) {
+    throw UsageError(fmt::format("--set {}: {}", assignment, out_of_range(text, setting->range)));
+  }
+  setting->set(*value);
+}
+
+void add_set_option(CLI::App& command, std::initializer_list<NamedSettings> settings) {
+  NamedSettings all;
+  for (const NamedSettings& some : settings) all.insert(all.end(), some.begin(), some.end());
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [all](const std::vector<std::string>& assignments) {
+            for (const std::string& assignment : assignments) assign_named(all, assignment);
+          },
+          "a setting by its name, such as radius=0.1; photile settings lists them; repeatable")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false)
+      ->group("Settings");
+}
+
+std::vector<std::string> names_set(const CLI::App& command) {
+  std::vector<std::string> names;
+  if (command.count("--set") == 0) return names;
+  for (const std::string& assignment : command.get_option("--set")->results()) {
+    names.push_back(name_in(assignment));
+  }
+  return names;
+}
+
+bool is_of_photon_maps(std::string_view name) {
+  const AllSettings all;
+  const NamedSetting* setting = named_in(all.list(), name);
+  return setting && (setting->group == "Photons" || setting->group == "Estimate" ||
+                     setting->group == "Device");
+}
+
+std::string remedy_for_option(const std::string& argument, const std::string& next) {
+  if (!argument.starts_with("--")) return {};
+  const std::string option = name_in(argument);
+  std::string name = option.substr(2);
+  std::replace(name.begin(), name.end(), '-', '_');
+  const AllSettings all;
+  const auto& list = all.list();
+  const auto setting = std::find_if(list.begin(), list.end(), [&](const NamedSetting& one) {
+    return one.name == name || one.name == name + "_degrees";
+  });
+  if (setting == list.end()) return {};
+  const std::string text =
+      option.size() < argument.size() ? argument.substr(option.size() + 1) : next;
+  const bool fits = parse_value(text, setting->range).has_value();
+  return fmt::format("{} is a setting: --set {}={}", option, setting->name,
+                     fits ? text : type_name(setting->range));
+}
+
+void add_settings(CLI::App& command, RenderParameters& parameters,
+                  std::initializer_list<std::string_view> without) {
+  for (const Setting& setting : settings()) {
+    if (!has_option(setting) || setting.option == "size") continue;
+    if (std::find(without.begin(), without.end(), setting.name) != without.end()) continue;
+    add(command, parameters, setting);
+  }
+}
+
+void add_setting(CLI::App& command, RenderParameters& parameters, std::string_view name) {
+  add(command, parameters, setting_named(name));
+}
+
+std::string option_of(const Setting& setting) {
+  return has_option(setting) ? option_names(setting).back() : std::string(setting.name);
+}
+
+nlohmann::json settings_json(const RenderParameters& parameters, bool all) {
+  nlohmann::json result = nlohmann::json::object();
+  for (const Setting& setting : settings()) {
+    if (!all && !is_of_any_integrator(setting)) continue;
+    std::visit([&](const auto& value) { result[std::string(setting.name)] = value; },
+               setting.value(parameters));
+  }
+  return result;
+}
+
+std::string options_text(const RenderParameters& parameters) {
+  constexpr std::array always{"photons_emitted", "neighbours", "samples_per_pixel"};
+  std::string text;
+  for (const char* name : always) {
+    const Setting& setting = setting_named(name);
+    text += fmt::format("{}{} {}", text.empty() ? "" : " ", option_names(setting).front(),
+                        text_of(setting.value(parameters)));
+  }
+  const RenderParameters usual;
+  for (const Setting& setting : settings()) {
+    if (has_option(setting) || setting.value(parameters) == setting.value(usual)) continue;
+    text += fmt::format(" --set {}={}", setting.name, text_of(setting.value(parameters)));
+  }
+  return text;
+}
+
+std::string settings_text() {
+  std::string text, group;
+  const AllSettings all;
+  for (const NamedSetting& one : all.list()) {
+    if (group != one.group) text += fmt::format("{}{}\n", text.empty() ? "" : "\n", one.group);
+    group = one.group;
+    text += fmt::format("  {:<21} {}\n  {:<21}   {}{}{}; default: {}\n", one.name, one.help, "",
+                        text_of(one.range), one.unit.empty() ? "" : ", ", one.unit, one.initial);
+  }
+  return text;
+}
+
+std::string settings_markdown() {
+  std::string text =
+      "| setting | meaning | values | default | read by |\n"
+      "|---|---|---|---|---|\n";
+  std::string_view group;
+  const AllSettings all;
+  for (const NamedSetting& one : all.list()) {
+    if (group != one.group) text += fmt::format("| **{}** | | | | |\n", one.group);
+    group = one.group;
+    text +=
+        fmt::format("| `{}` | {} | {}{}{} | {} | {} |\n", one.name, one.help, text_of(one.range),
+                    one.unit.empty() ? "" : ", ", one.unit, one.initial, one.reader);
+  }
+  return text + "\n" + quality_table();
+}
+
+}  // namespace photile::app

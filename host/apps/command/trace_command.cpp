@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "command/output_files.hpp"
+#include "command/render_options.hpp"
+#include "command/run_notes.hpp"
+#include "command/saved_maps_option.hpp"
+#include "command/scene_options.hpp"
+#include "command/setting_options.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "command/validators.hpp"
+#include "common/run_files.hpp"
+#include "photile/limits.hpp"
+#include "photile/photon_tracer.hpp"
+#include "photile/ray_scene.hpp"
+#include "render/render_plan.hpp"
+#include "saved_maps/saved_maps.hpp"
+
+namespace photile::app {
+namespace {
+
+struct TraceOptions {
+  RenderOptions render;
+  std::string output;
+  Shard shard;
+};
+
+void run_trace(TraceOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  render.parameters.passes = 1;  // a file holds the photons of one
+  check(render.parameters);
+  note_inputs_of(render);
+  check_outputs(std::vector<std::filesystem::path>{options.output});
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  const Scene scene = load_scene(render.scene, render.load);
+  tell_scene(scene, LightMix::of(scene, render.load.lumen_per_watt), progress);
+
+  const RayScene rays(scene);
+  const RenderPlan plan(render.parameters, rays, HitsAsk::pictures, progress);
+  PhotonTracerParameters tracing = plan.tracing(0, {});
+  tracing.shard = options.shard;
+  PhotonTracerResult traced = trace_photons(rays, tracing, progress);
+  PreparedPhotons photons;
+  photons.photons = std::move(traced.photons);
+  if (plan.keeps_caustics()) photons.caustics = std::move(traced.caustics);
+  progress.begin("save photons", 0, "");
+  saved_maps::save(options.output, scene, saved_settings(render.parameters), photons,
+                   options.shard);
+  progress.end();
+  progress.note(fmt::format("{}: {} photons", options.output, photons.photons.size()));
+}
+
+struct MergeOptions {
+  std::vector<std::string> files;
+  std::string output;
+};
+
+void run_merge(const MergeOptions& options) {
+  handle_signals();
+  for (const std::string& file : options.files) note_input(file);
+  check_outputs(std::vector<std::filesystem::path>{options.output});
+  saved_maps::merge(std::vector<std::filesystem::path>(options.files.begin(), options.files.end()),
+                    options.output);
+}
+
+}  // namespace
+
+void add_trace_command(CLI::App& photile) {
+  auto options = std::make_shared<TraceOptions>();
+  RenderOptions& render = options->render;
+  CLI::App* command = photile.add_subcommand(
+      "trace", "Trace photons, or a share of them, to a file for --load-maps");
+  command->add_option("-o,--output", options->output, "file of photons")
+      ->required()
+      ->type_name("FILE")
+      ->group("Output");
+  command->add_option("SCENE", render.scene, "scene file: .obj, .gltf or .glb")
+      ->required()
+      ->type_name("");
+  set_quality(render.quality_options(), Quality::good);
+  add_quality_preset(*command, render.quality_options());
+  for (const char* name : {"photons_emitted", "seed"}) {
+    add_setting(*command, render.parameters, name);
+  }
+  NamedSettings of_photons = rendering_settings(render.parameters);
+  std::erase_if(of_photons, [](const NamedSetting& setting) {
+    constexpr std::array kept{"quota", "maps", "direct_rays", "light_maps", "light_map_rays"};
+    return std::find(kept.begin(), kept.end(), setting.name) == kept.end();
+  });
+  add_set_option(*command, {of_photons, scene_settings(render.load)});
+  add_shard_option(*command, options->shard, "of the paths", "Photons");
+  add_scene_options(*command, render.load, "Scene");
+  add_light_options(*command, render.load, "Lights");
+  add_run_group(*command, render);
+  command->callback([options] { run_trace(*options); });
+}
+
+void add_merge_command(CLI::App& photile) {
+  auto options = std::make_shared<MergeOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "merge", "Bring the shards of photile trace together, as one process would have traced them");
+  command->add_option("FILE", options->files, "all shards, in any order")
+      ->required()
+      ->expected(1, static_cast<int>(limits::max_shards))
+      ->type_name("");
+  command->add_option("-o,--output", options->output, "file of all photons, for --load-maps")
+      ->required()
+      ->type_name("FILE")
+      ->group("Output");
+  command->callback([options] { run_merge(*options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "command/output_files.hpp"
+#include "command/setting_options.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "command/validation_report.hpp"
+#include "command/validators.hpp"
+#include "common/output_file.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/quiet_progress.hpp"
+#include "validation/validate.hpp"
+
+namespace photile::app {
+namespace {
+
+struct ValidateOptions {
+  validation::ValidationParameters parameters;
+  std::string integrator = "both";
+  std::string only;  ///< part of the names of cases; "" = all
+  DeviceOptions device;
+  int threads = 0;
+  std::string json;  ///< file, "" = none
+  bool quiet = false;
+};
+
+std::vector<validation::AnalyticCase> chosen_cases(const std::string& only) {
+  std::vector<validation::AnalyticCase> cases = validation::analytic_cases();
+  std::string names;
+  for (const auto& each : cases) names += (names.empty() ? "'" : ", '") + each.name + "'";
+  std::erase_if(cases, [&](const auto& each) { return each.name.find(only) == std::string::npos; });
+  if (cases.empty()) {
+    throw UsageError(fmt::format("--case '{}' is part of no name; there are {}", only, names));
+  }
+  return cases;
+}
+
+void run_validate(ValidateOptions& options) {
+  handle_signals();
+  const Stopwatch stopwatch;
+  validation::ValidationParameters& parameters = options.parameters;
+  parameters.by_photons = options.integrator != "path";
+  parameters.by_paths = options.integrator != "photon-map";
+  if (!options.json.empty()) {
+    const std::filesystem::path file = options.json;
+    check_outputs(std::span(&file, 1));
+  }
+  const auto cases = chosen_cases(options.only);
+
+  const ThreadLimit threads(options.threads);
+  TerminalProgress progress(options.quiet);
+  std::vector<Device> devices;
+  if (parameters.by_photons) devices = open_devices(options.device);
+  std::vector<validation::ValidationRow> rows;
+  progress.begin("validate", cases.size(), "cases");
+  for (const auto& each : cases) {
+    QuietProgress quiet(progress);
+    const auto of_case = validation::validate(each, devices, parameters, quiet);
+    rows.insert(rows.end(), of_case.begin(), of_case.end());
+    progress.advance(1);
+  }
+  progress.end();
+  for (const auto& line : validation_table(rows)) std::cout << line << '\n';
+  if (!options.json.empty()) {
+    write_file(options.json,
+               validation_json(rows, parameters, devices, stopwatch.seconds()).dump(2) + "\n");
+  }
+  const std::size_t failed = rows_not_within(rows);
+  if (failed > 0) {
+    throw Error(
+        fmt::format("{} of {} readings are not within {}%; those that are only too noisy "
+                    "need more --photons or --paths",
+                    failed, rows.size(), 100 * validation::tolerance));
+  }
+}
+
+}  // namespace
+
+void add_validate_command(CLI::App& photile) {
+  auto options = std::make_shared<ValidateOptions>();
+  RenderParameters& photons = options->parameters.photons;
+  photons.photons.emitted_photons = defaults::validation_photons;
+  photons.neighbours = defaults::validation_neighbours;
+  options->parameters.paths = defaults::validation_paths;
+  CLI::App* command =
+      photile.add_subcommand("validate", "Measure light that is known in closed form");
+  command->add_option("--integrator", options->integrator, "what to measure with")
+      ->type_name("")
+      ->check(CLI::IsMember({"photon-map", "path", "both"}))
+      ->capture_default_str();
+  command->add_option("--case", options->only, "only cases with this in their names")
+      ->type_name("TEXT");
+  for (const char* name : {"photons_emitted", "neighbours"}) add_setting(*command, photons, name);
+  command
+      ->add_option("--paths", options->parameters.paths, "paths of a measurement by path tracing")
+      ->type_name("N")
+      ->transform(count_between(1, std::numeric_limits<int>::max()))
+      ->capture_default_str();
+  command->add_option("--seed", photons.seed, "the first of 16 seeds")
+      ->type_name("N")
+      ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max() - 16))
+      ->capture_default_str();
+  command->add_option("--device", options->device.selector, "OpenCL device, as in photile render")
+      ->type_name("SELECTOR");
+  command->add_option("--threads", options->threads, "threads of the host; 0 = all cores")
+      ->type_name("N")
+      ->transform(count_between(0, limits::max_threads))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "write the readings as JSON")->type_name("FILE");
+  command->add_flag("-q,--quiet", options->quiet, "no progress");
+  command->callback([options] { run_validate(*options); });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "command/commands.hpp"
+#include "command/output_files.hpp"
+#include "command/render_options.hpp"
+#include "command/run_notes.hpp"
+#include "command/saved_maps_option.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "command/tone_mapping_options.hpp"
+#include "command/validators.hpp"
+#include "loading/sourced_scene.hpp"
+#include "photile/errors.hpp"
+#include "view/moving_sky.hpp"
+#include "view/viewer.hpp"
+
+namespace photile::app {
+namespace {
+
+struct ViewOptions {
+  RenderOptions render;
+  double frames_per_second = defaults::view_frames_per_second;
+  std::string outputs = ".";
+  DisplayView view = ToneMapping{}.view;
+};
+
+/// Lights that options name may be gone by then.
+LightMix mix_again(const Scene& scene, const RenderOptions& options) {
+  try {
+    return mix_of(scene, options);
+  } catch (const UsageError&) {
+    return LightMix::of(scene, options.load.lumen_per_watt);
+  }
+}
+
+void run_view(ViewOptions& options) {
+  handle_signals();
+  RenderOptions& render = options.render;
+  check(render.parameters);
+  if (!std::filesystem::is_directory(options.outputs)) {
+    throw UsageError(
+        fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
+  }
+  // It may be written, and is not there yet where it is a new one.
+  const std::filesystem::path luminaires = std::exchange(render.load.luminaires, {});
+  note_inputs_of(render);
+  if (!luminaires.empty()) {
+    render.load.luminaires = luminaires;
+    render.load.luminaires_text = loading::read_own_luminaires(luminaires).text();
+  }
+  if (!render.save_maps.empty()) {
+    const std::filesystem::path file = render.save_maps;
+    check_outputs(std::span(&file, 1));
+  }
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet);
+  const SkySituation situation = view::take_moving_sky(render.load);
+  const loading::SourcedScene sourced = loading::load_sourced_scene(render.scene, render.load);
+  const Scene& scene = sourced.scene;
+  render.mood.edited = true;
+  const LightMix mix = mix_of(scene, render);
+  const Camera& camera = choose_camera(scene, render.camera);
+  set_film_size(render.parameters.film, render.size, camera);
+  tell_scene(scene, mix, progress);
+
+  view::ViewerParameters parameters;
+  parameters.render = render.parameters;
+  parameters.frames_per_second = options.frames_per_second;
+  parameters.outputs = options.outputs;
+  parameters.view = options.view;
+  parameters.moods = render.mood.file;
+  parameters.prepared = load_maps(scene, render, progress);
+  // Progress is shown in the window from here on.
+  parameters.keep = keep_maps(scene, render, Progress::none());
+  parameters.keep_light_maps = [&](const LightMapContents& light_maps) {
+    keep_light_maps(light_maps, render, progress);
+  };
+  parameters.light_map_bytes = render.device.memory_bytes;
+  parameters.load = render.load;
+  parameters.situation = situation;
+  parameters.mix_of = [&](const Scene& edited) { return mix_again(edited, render); };
+  parameters.luminaire_file = luminaires;
+  parameters.luminaires = sourced.luminaires;
+  parameters.notes = &progress;
+  parameters.interrupted = [&progress] { return progress.cancelled(); };
+  view::run_viewer(
+      scene, camera, mix, [&render] { return open_devices(render.device); }, std::move(parameters));
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& photile) {
+  auto options = std::make_shared<ViewOptions>();
+  options->render.parameters.film.samples_per_pixel = defaults::view_samples_per_pixel;
+  CLI::App* command =
+      photile.add_subcommand("view", "Walk through a scene in a window, and set its lamps");
+  command
+      ->add_option("--frame-rate", options->frames_per_second,
+                   "frames per second aimed at while moving: pictures become smaller for it")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Window");
+  command->add_option("--outputs", options->outputs, "folder of what F12 and Ctrl+S keep")
+      ->type_name("FOLDER")
+      ->capture_default_str()
+      ->group("Window");
+  add_view_option(*command, options->view, "Window");
+  add_picture_settings(*command, options->render);
+  add_saved_maps_options(*command, options->render);
+  command->callback([options] { run_view(*options); });
+}
+
+}  // namespace photile::app

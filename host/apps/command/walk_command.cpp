@@ -1,0 +1,442 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <future>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "command/frame_record.hpp"
+#include "command/output_files.hpp"
+#include "command/processes.hpp"
+#include "command/render_options.hpp"
+#include "command/run_notes.hpp"
+#include "command/run_record.hpp"
+#include "command/saved_maps_option.hpp"
+#include "command/signals.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/threads.hpp"
+#include "command/tone_mapping_options.hpp"
+#include "command/validators.hpp"
+#include "common/run_files.hpp"
+#include "gltf/animation.hpp"
+#include "photile/camera_attributes.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/limits.hpp"
+#include "photile/quiet_progress.hpp"
+#include "photile/scene_renderer.hpp"
+#include "reading/camera_path.hpp"
+#include "view/display.hpp"
+#include "walk/contact_sheet.hpp"
+#include "walk/frame_names.hpp"
+#include "walk/frame_range.hpp"
+
+namespace photile::app {
+namespace {
+
+struct WalkOptions {
+  RenderOptions render;
+  std::string path;       ///< file; "" = the scene's animation
+  std::string animation;  ///< name or index, "" = the first
+  std::string output;     ///< EXR pattern
+  std::string png;        ///< PNG pattern, "" = none
+  std::string sheet;      ///< file, "" = none
+  bool quick = false;     ///< frames of light maps alone
+  double frames_per_second = 24;
+  int first_number = 1;
+  std::optional<walk::FrameRange> frames;  ///< none = all
+  Shard shard;                             ///< of them
+};
+
+reading::CameraMotion motion_of(const WalkOptions& options, const Camera& camera) {
+  if (!options.path.empty()) return reading::read_camera_path(options.path, camera);
+  try {
+    return gltf::read_camera_animation(options.render.scene, options.render.load, camera,
+                                       options.animation);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{} (--camera-path)", error.what()));
+  }
+}
+
+int count_of(const reading::CameraMotion& motion, double frames_per_second) {
+  const double count = std::floor((motion.end - motion.begin) * frames_per_second + 1e-6) + 1;
+  if (count > limits::max_frames) {
+    throw UsageError(fmt::format("{:.0f} frames are more than {}; give fewer with --fps", count,
+                                 limits::max_frames));
+  }
+  return static_cast<int>(count);
+}
+
+/// Places in the walk, from 0, of the frames to be made. Errors: UsageError where there are none.
+std::vector<int> frames_to_make(const WalkOptions& options, int count) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < count; ++frame) {
+    if (!options.frames || options.frames->contains(options.first_number + frame)) {
+      frames.push_back(frame);
+    }
+  }
+  if (frames.empty()) {
+    throw UsageError(fmt::format("--frames: the walk has frames {} to {}, and none of these",
+                                 options.first_number, options.first_number + count - 1));
+  }
+  const auto place = [&](std::uint64_t i) {
+    return frames.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  return {place(options.shard.begin(frames.size())), place(options.shard.end(frames.size()))};
+}
+
+/// Frames of a walk, rendered or found finished.
+class Walk {
+ public:
+  Walk(WalkOptions& options, const Scene& scene, const LightMix& mix, const Camera& camera,
+       std::span<Device> devices, TerminalProgress& progress)
+      : options_(options),
+        scene_(scene),
+        mix_(mix),
+        motion_(motion_of(options, camera)),
+        count_(count_of(motion_, options.frames_per_second)),
+        frames_(frames_to_make(options, count_)),
+        to_exr_(options.output.ends_with(".exr")),
+        names_(options.output),
+        devices_(devices),
+        progress_(progress),
+        scene_digest_(digest_of(scene)) {
+    if (!options.png.empty()) png_names_.emplace(options.png);
+    if (!to_exr_) png_names_.emplace(options.output);
+    for (const int frame : frames_) {
+      if (frame == 0) continue;  // check_names has noted it
+      if (to_exr_) note_output(names_.of(number(frame)));
+      if (png_names_) note_output(png_names_->of(number(frame)));
+    }
+    if (!options.sheet.empty()) {
+      const Film& film = options.render.parameters.film;
+      sheet_.emplace(std::min(count_, most_on_sheet), film.width, film.height);
+    }
+  }
+
+  void run() {
+    const std::vector<bool> finished = find_finished();
+    const auto kept = static_cast<std::size_t>(std::count(finished.begin(), finished.end(), true));
+    if (kept > 0) {
+      progress_.note(
+          fmt::format("{} of {} frames are finished, with these settings", kept, frames_.size()));
+    }
+    if (kept < frames_.size() || !options_.render.save_maps.empty()) make_maps();
+    if (png_names_ && kept < frames_.size() && frames_.front() != 0) set_exposure();
+    progress_.begin("render frames", frames_.size() - kept, "frames");
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      progress_.throw_if_cancelled();
+      const int frame = frames_[i];
+      const bool keeps = finished[i];
+      std::optional<Image> root;
+      if (!keeps) root = options_.quick ? draw(frame) : render(frame);
+      wait_for_shown();
+      if (!leads()) continue;
+      const auto keep = [this, frame, root = std::move(root)] {
+        if (options_.quick && root && to_exr_) write_exr(names_.of(number(frame)), *root);
+        show(frame, root);
+      };
+      if (options_.quick) {
+        shown_ = std::async(std::launch::async, keep);  // while the next one is drawn
+      } else {
+        keep();
+      }
+      if (!keeps) progress_.advance(1);
+    }
+    wait_for_shown();
+    progress_.end();
+    if (renderer_) keep_light_maps(renderer_->light_maps(), options_.render, progress_);
+    if (sheet_ && leads()) write_png(options_.sheet, sheet_->image());
+  }
+
+ private:
+  static constexpr int most_on_sheet = 100;
+
+  int number(int frame) const { return options_.first_number + frame; }
+
+  /// In the scene's coordinates.
+  Camera camera_at(int frame) const {
+    return in_scene(scene_, motion_.at(motion_.begin + frame / options_.frames_per_second));
+  }
+
+  RunRecord record_of(const Camera& camera) const {
+    RunRecord record;
+    record.scene = scene_.source.filename().string();
+    record.camera = camera.name;
+    record.integrator = "photon-map";
+    record.quality = options_.render.quality;
+    record.used = options_.render.parameters;
+    record.mix = mix_;
+    for (const Device& device : devices_) record.devices.push_back(device.info());
+    record.device_shares.assign(devices_.size(), 0.0);
+    return record;
+  }
+
+  std::string settings_of(const Camera& camera) const {
+    return frame_settings(scene_digest_, record_of(camera), camera) +
+           (options_.quick ? " quick" : "");
+  }
+
+  /// Of each frame that is to be made.
+  std::vector<bool> find_finished() const {
+    std::vector<bool> finished(frames_.size(), false);
+    if (!to_exr_) return finished;
+    if (!leads()) return as_first_says({});
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      progress_.throw_if_cancelled();
+      finished[i] = is_finished(names_.of(number(frames_[i])), settings_of(camera_at(frames_[i])));
+    }
+    return as_first_says(finished);
+  }
+
+  /// To that of the walk's first frame, which another process may make.
+  void set_exposure() { exposure_ = std::log2(automatic_exposure(first_frame())); }
+
+  Image first_frame() {
+    const std::string file = names_.of(number(0));
+    const bool there = leads() && to_exr_ && is_finished(file, settings_of(camera_at(0)));
+    if (as_first_says({there}).front()) return read_image(file);
+    if (options_.quick) return draw(0);
+    LightLayers layers;
+    return picture_of(0, layers)->root();
+  }
+
+  void make_maps() {
+    std::optional<PreparedPhotons> prepared = load_maps(scene_, options_.render, progress_);
+    renderer_.emplace(scene_, devices_, options_.render.parameters, prepared ? &*prepared : nullptr,
+                      keep_maps(scene_, options_.render, progress_), progress_);
+  }
+
+  /// Renders a frame to its file and returns its R, G, B.
+  Image render(int frame) {
+    LightLayers layers;
+    const auto picture = picture_of(frame, layers);
+    if (!leads()) return {};
+    if (to_exr_) write_exr(names_.of(number(frame)), *picture);
+    for (const std::string& line : picture->overflows()) {
+      progress_.note(fmt::format("warning: frame {}: {}", number(frame), line));
+    }
+    return picture->root();
+  }
+
+  /// Puts the layers that it refers to in `layers`.
+  std::unique_ptr<LayeredPicture> picture_of(int frame, LightLayers& layers) {
+    const Camera camera = camera_at(frame);
+    QuietProgress quiet(progress_);
+    const Film& film = options_.render.parameters.film;
+    RenderResult result = renderer_->render(camera, film, quiet);
+    RunRecord record = record_of(camera);
+    const std::string settings = settings_of(camera);
+    record.used = result.used;
+    record.stored_photons = result.stored_photons;
+    record.stages = result.statistics;
+    layers = std::move(result.layers);
+    auto picture = mixed_picture(layers, mix_);
+    set_camera_attributes(picture->header(), in_world(scene_, camera), film.width, film.height);
+    set_run_attributes(picture->header(), record);
+    set_settings(picture->header(), settings);
+    return picture;
+  }
+
+  /// Errors: those of what wrote it.
+  void wait_for_shown() {
+    if (shown_.valid()) shown_.get();
+  }
+
+  /// R, G, B of a frame of light maps alone.
+  Image draw(int frame) {
+    const Camera camera = camera_at(frame);
+    const Film& film = options_.render.parameters.film;
+    std::vector<glm::vec3> picture(static_cast<std::size_t>(film.width) *
+                                   static_cast<std::size_t>(film.height));
+    QuietProgress quiet(progress_);
+    renderer_->draw(camera, film, view::scales_of(mix_), std::numeric_limits<double>::infinity(),
+                    picture, quiet);
+    Image image;
+    image.width = film.width;
+    image.height = film.height;
+    for (int channel = 0; channel < 3; ++channel) {
+      std::vector<float>& plane = image.add(std::string(1, "RGB"[channel]));
+      for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {
+        plane[pixel] = picture[pixel][channel];
+      }
+    }
+    set_camera_attributes(image, in_world(scene_, camera), film.width, film.height);
+    set_run_attributes(image, record_of(camera));
+    set_settings(image, settings_of(camera));
+    return image;
+  }
+
+  /// The frame as PNG and on the contact sheet, all with the exposure of the first.
+  void show(int frame, std::optional<Image> root) {
+    const bool on_sheet = sheet_ && place_on_sheet(frame) >= 0;
+    const bool to_png = png_names_ && (root || !is_whole(png_names_->of(number(frame))));
+    if (!on_sheet && !to_png && exposure_) return;
+    if (!exposure_ && !sheet_ && !png_names_) return;
+    if (!root) root = read_image(names_.of(number(frame)));
+    if (!exposure_) exposure_ = std::log2(automatic_exposure(*root));
+    if (!on_sheet && !to_png) return;
+    const ToneMapping& asked = options_.render.pictures.tone_mapping;
+    const Image displayed = tone_map(*root, {false, *exposure_ + asked.exposure, asked.view});
+    if (to_png) write_png(png_names_->of(number(frame)), displayed);
+    if (on_sheet) sheet_->add(place_on_sheet(frame), displayed);
+  }
+
+  /// Of a long walk the sheet shows frames at even distances. -1: not this one.
+  int place_on_sheet(int frame) const {
+    if (count_ <= most_on_sheet) return frame;
+    const auto place = static_cast<int>(std::int64_t{frame} * most_on_sheet / count_);
+    const bool first = frame == 0 || std::int64_t{frame - 1} * most_on_sheet / count_ < place;
+    return first ? place : -1;
+  }
+
+  const WalkOptions& options_;
+  const Scene& scene_;
+  const LightMix& mix_;
+  const reading::CameraMotion motion_;
+  const int count_;  ///< of the whole walk
+  const std::vector<int> frames_;
+  const bool to_exr_;
+  const walk::FrameNames names_;
+  std::optional<walk::FrameNames> png_names_;
+  std::span<Device> devices_;
+  TerminalProgress& progress_;
+  const std::string scene_digest_;
+  std::optional<SceneRenderer> renderer_;
+  std::optional<walk::ContactSheet> sheet_;
+  std::optional<double> exposure_;  ///< stops
+  std::future<void> shown_;         ///< the frame before; last: it uses all of the above
+};
+
+///   off   light maps were refused by name
+void check_quick(WalkOptions& options, bool off) {
+  const bool to_exr = options.output.ends_with(".exr");
+  if (options.quick && off) {
+    throw UsageError("--quick draws light maps; leave out light_maps=off");
+  }
+  if (options.quick) options.render.parameters.light_maps = LightMapMode::on;
+  if (!to_exr && !options.png.empty()) {
+    throw UsageError("--png: the frames are PNG by --output already; leave out one");
+  }
+}
+
+void check_names(const WalkOptions& options) {
+  std::vector<std::filesystem::path> files{
+      walk::FrameNames(options.output).of(options.first_number)};
+  if (!options.png.empty()) {
+    files.push_back(walk::FrameNames(options.png).of(options.first_number));
+  }
+  if (!options.sheet.empty()) files.emplace_back(options.sheet);
+  if (!options.render.save_maps.empty()) files.emplace_back(options.render.save_maps);
+  note_inputs_of(options.render);
+  note_input(options.path);
+  for (const std::filesystem::path& file : files) {
+    if (file.has_parent_path()) make_folder(file.parent_path());
+  }
+  check_outputs(files);
+}
+
+void check_share(const WalkOptions& options) {
+  if (options.sheet.empty() || (!options.frames && options.shard == Shard{})) return;
+  throw UsageError(
+      "--contact-sheet shows all frames; leave it out here, and make it when all are finished");
+}
+
+void run_walk(WalkOptions& options) {
+  handle_signals();
+  check_share(options);
+  RenderOptions& render = options.render;
+  check(render.parameters);
+  share_rendering(render);
+  check_names(options);
+
+  const ThreadLimit threads(render.threads);
+  TerminalProgress progress(render.quiet || !leads());
+  const Scene scene = load_scene(render.scene, render.load);
+  const LightMix mix = mix_of(scene, render);
+  const Camera& camera = choose_camera(scene, render.camera);
+  set_film_size(render.parameters.film, render.size, camera);
+  const Camera base = in_world(scene, camera);
+  std::vector<Device> devices = devices_for(render, progress);
+  tell_scene(scene, mix, progress);
+  Walk(options, scene, mix, base, devices, progress).run();
+}
+
+}  // namespace
+
+void add_walk_command(CLI::App& photile) {
+  auto options = std::make_shared<WalkOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "walk", "Render the frames of a moving camera from one set of photon maps");
+  command
+      ->add_option("-o,--output", options->output,
+                   "frames to write, such as frame.####.exr, or PNG alone; a name without #### "
+                   "gets its number "
+                   "before the ending")
+      ->required()
+      ->type_name("PATTERN")
+      ->check(file_ending_in({".exr", ".png"}))
+      ->group("Output");
+  command
+      ->add_flag("--quick", options->quick,
+                 "draw light maps alone, as the window does while it moves: matt, no layers")
+      ->group("Output");
+  command->add_option("--png", options->png, "frames as PNG, with the exposure of the first")
+      ->type_name("PATTERN.png")
+      ->check(file_ending_in({".png"}))
+      ->group("Output");
+  add_tone_mapping_options(*command, options->render.pictures.tone_mapping, "Output");
+  command->add_option("--contact-sheet", options->sheet, "all frames on one PNG")
+      ->type_name("FILE.png")
+      ->check(file_ending_in({".png"}))
+      ->group("Output");
+  CLI::Option* path = command
+                          ->add_option("--camera-path", options->path,
+                                       "keyframes as JSON; default: the scene's animation")
+                          ->type_name("FILE")
+                          ->group("Motion");
+  command
+      ->add_option("--animation", options->animation,
+                   "animation of a glTF scene; default: the first that moves the camera")
+      ->type_name("NAME|INDEX")
+      ->excludes(path)
+      ->group("Motion");
+  command->add_option("--fps", options->frames_per_second, "frames per second of the motion")
+      ->type_name("X")
+      ->transform(positive_number())
+      ->capture_default_str()
+      ->group("Motion");
+  command->add_option("--first-number", options->first_number, "number of the first frame")
+      ->type_name("N")
+      ->transform(count_between(0, limits::max_frames))
+      ->capture_default_str()
+      ->group("Motion");
+  command
+      ->add_option_function<std::string>(
+          "--frames",
+          [&frames = options->frames](const std::string& text) {
+            frames = walk::parse_frame_range(text);
+          },
+          "frames to render, by number; every S-th")
+      ->type_name("A[-B[xS]]")
+      ->check(frame_range())
+      ->group("Motion");
+  add_shard_option(*command, options->shard, "of the frames", "Motion");
+  set_quality(options->render.quality_options(), Quality::good);
+  add_picture_settings(*command, options->render);
+  add_saved_maps_options(*command, options->render);
+  command->callback([options] {
+    check_quick(*options, options->render.parameters.light_maps == LightMapMode::off);
+    run_walk(*options);
+  });
+}
+
+}  // namespace photile::app

@@ -1,0 +1,96 @@
+// Frames of the walkthrough, rendered on a thread of their own.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "view/frame.hpp"
+#include "view/frame_size.hpp"
+#include "view/photon_worker.hpp"
+
+namespace photile::view {
+
+/// What is to be seen.
+struct FrameRequest {
+  Camera camera;  ///< in the scene's coordinates
+  int width = 0, height = 0;
+  /// While the viewer moves, frames are as small as their rate asks for. Standing still, they are
+  /// whole and get more and more samples.
+  bool moving = false;
+  bool reflections = false;  ///< asks for Frame::reflections
+  /// Per layer, power x tint: asks for quick frames where there are light maps, while the viewer
+  /// moves and until no node is lacking. Empty: frames with layers are wanted.
+  std::vector<glm::vec3> powers = {};
+  /// Of the layers of frames that have some; null = each light for itself.
+  std::shared_ptr<const LightPooling> pooling = nullptr;
+};
+
+/// Renders what was asked for last from the newest maps. A frame in the making is finished while
+/// the viewer moves, and given up when it starts to.
+class FrameWorker {
+ public:
+  ///   most_samples        per pixel, standing still
+  ///   frames_per_second   aimed at while moving
+  FrameWorker(int most_samples, double frames_per_second);
+  ~FrameWorker();
+
+  void show(const FrameRequest& request);
+  void use(std::shared_ptr<MapGeneration> maps);
+  /// The same with what is to be seen: of maps of another scene, which has other powers.
+  void use(std::shared_ptr<MapGeneration> maps, const FrameRequest& request);
+
+  /// Ends the work. Returns the newest maps, which nobody uses any longer; null: there are none.
+  std::shared_ptr<MapGeneration> stop();
+
+  /// The newest frame; null before the first.
+  std::shared_ptr<const Frame> latest() const;
+  /// Whether the newest frame has all samples of the newest maps.
+  bool finished() const;
+  /// The error that ended the work, or null; each is told once.
+  std::exception_ptr take_error();
+
+ private:
+  class Interruption;
+
+  /// What the next frame is made of.
+  struct Task {
+    FrameRequest request;
+    std::shared_ptr<MapGeneration> maps;
+    int samples = 1;
+    std::uint64_t version = 0;
+    bool quick = false;
+  };
+
+  void work(std::stop_token stop);
+  bool next_task(std::stop_token stop, Task& task);
+  std::shared_ptr<const Frame> render(const std::stop_token& stop, const Task& task);
+  std::shared_ptr<const Frame> draw(const std::stop_token& stop, const Task& task);
+  double time_to_fill(bool moving) const;
+
+  const int most_samples_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_;
+  FrameRequest request_;
+  std::shared_ptr<MapGeneration> maps_;
+  std::uint64_t version_ = 0;       ///< counts requests and maps
+  std::uint64_t done_version_ = 0;  ///< of the newest frame
+  int done_samples_ = 0;            ///< of the newest frame, 0 where it was a quick one
+  bool lacking_ = false;            ///< the newest frame shows surface more coarsely than it should
+  std::shared_ptr<const Frame> latest_;
+  std::exception_ptr error_;
+  // The worker's alone:
+  const double frame_seconds_;  ///< aimed at while moving
+  FrameSize size_;
+  std::shared_ptr<MapGeneration> drawn_maps_;  ///< those of the frame before
+  bool lacks_nodes_ = false;                   ///< the frame in the making
+  double draw_seconds_ = 0;                    ///< of the newest quick frame, its nodes left out
+  const MapGeneration* timed_maps_ = nullptr;  ///< those of the frame before
+  std::jthread thread_;                        // last: it uses all of the above
+};
+
+}  // namespace photile::view

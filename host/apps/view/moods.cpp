@@ -1,0 +1,199 @@
+#include "view/moods.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "common/ascii_text.hpp"
+#include "common/input_file.hpp"
+#include "common/json_object.hpp"
+#include "common/output_file.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "scene/light_names.hpp"
+
+namespace photile::view {
+namespace {
+
+using nlohmann::json;
+
+constexpr int version = 1;
+
+glm::vec3 color_of(const std::string& hex) {
+  const auto code =
+      hex.size() == 7 && hex[0] == '#' ? parse_number<unsigned>(hex.substr(1), 16) : std::nullopt;
+  if (!code) {
+    throw std::invalid_argument(fmt::format("'{}' is no colour such as #ffd9a0", hex));
+  }
+  return glm::vec3((*code >> 16) & 255, (*code >> 8) & 255, *code & 255) / 255.0f;
+}
+
+double kelvin_of(double value) {
+  if (value >= limits::min_color_temperature && value <= limits::max_color_temperature) {
+    return value;
+  }
+  throw std::invalid_argument(fmt::format("{} is no colour temperature from {} to {}", value,
+                                          limits::min_color_temperature,
+                                          limits::max_color_temperature));
+}
+
+/// With four digits that count: a slider's other ones say nothing.
+double rounded(double power) { return *parse_number<double>(fmt::format("{:.4g}", power)); }
+
+double in_unit(double power, PowerUnit from, PowerUnit to, double lumen_per_watt) {
+  if (from == to) return power;
+  return to == PowerUnit::lumen ? power * lumen_per_watt : power / lumen_per_watt;
+}
+
+PowerUnit unit_of(const std::string& word) {
+  if (word == "lm") return PowerUnit::lumen;
+  if (word == "W") return PowerUnit::watt;
+  throw std::invalid_argument(fmt::format("'{}' is no unit; use lm or W", word));
+}
+
+}  // namespace
+
+std::filesystem::path Moods::file_of(const std::filesystem::path& scene) {
+  return std::filesystem::path(scene).replace_extension(".moods.json");
+}
+
+Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
+  if (!std::filesystem::exists(file_)) return;
+  std::string place = "the file";
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError(fmt::format("{}: {}: {}; mend or remove it", file_.string(), place, reason));
+  };
+  const std::string text = read_own_text(file_);
+  check_json_depth(text, file_.string());
+  const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (document.is_discarded()) refuse("is no JSON");
+  try {
+    if (document.at("photile_moods") != version) {
+      throw std::invalid_argument(fmt::format("\"photile_moods\" is not {}", version));
+    }
+    for (const auto& [name, lights] : document.at("moods").items()) {
+      for (const auto& [light, setting] : lights.items()) {
+        place = fmt::format("mood '{}', light '{}'", name, light);
+        Setting read{setting.at("power").get<double>(), unit_of(setting.value("unit", "lm")),
+                     setting.value("on", true), std::nullopt, 0};
+        if (!(read.power >= 0 && read.power <= limits::max_light_power)) {
+          throw std::invalid_argument(
+              fmt::format("its power is not a number from 0 to {:g}", limits::max_light_power));
+        }
+        if (setting.contains("color")) read.color = color_of(setting["color"].get<std::string>());
+        if (setting.contains("kelvin")) read.kelvin = kelvin_of(setting["kelvin"].get<double>());
+        moods_[name][light] = read;
+      }
+    }
+  } catch (const json::exception&) {  // its text means something to programmers alone
+    refuse("lacks its power, or holds a value of another type than moods have");
+  } catch (const std::invalid_argument& error) {
+    refuse(error.what());
+  }
+}
+
+std::vector<std::string> Moods::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, mood] : moods_) names.push_back(name);
+  return names;
+}
+
+void Moods::keep(const std::string& name, const LightBoard& board) {
+  auto moods = moods_;
+  Mood& mood = moods[name];
+  for (const LightControl& control : board.controls()) {
+    mood[control.name] = {rounded(control.power), control.unit, control.on, control.color,
+                          std::round(control.kelvin)};
+  }
+  write(moods);
+  moods_ = std::move(moods);
+}
+
+void Moods::remove(const std::string& name) {
+  auto moods = moods_;
+  moods.erase(name);
+  write(moods);
+  moods_ = std::move(moods);
+}
+
+const Moods::Mood& Moods::named(const std::string& name) const {
+  const auto found = moods_.find(name);
+  if (found != moods_.end()) return found->second;
+  std::string known;
+  for (const auto& [other, mood] : moods_) known += (known.empty() ? "'" : ", '") + other + "'";
+  throw UsageError(fmt::format("{}: there is no mood '{}'; there {}", file_.string(), name,
+                               known.empty() ? "are none" : "is " + known));
+}
+
+std::vector<LightChange> Moods::changes(const std::string& name, const LightMix& mix) const {
+  const Mood& mood = named(name);
+  std::vector<std::string> there;
+  for (const MixedLight& light : mix.lights) there.push_back(light.name);
+  refuse_unknown_lights(name, there);
+  std::vector<LightChange> changes;
+  for (const MixedLight& light : mix.lights) {
+    const auto found = mood.find(light.name);
+    if (found == mood.end()) continue;
+    const Setting& setting = found->second;
+    if (!setting.on || setting.power == 0) {
+      changes.push_back({light.name, "off"});
+      continue;
+    }
+    const char* unit = setting.unit == PowerUnit::lumen ? "lm" : "W";
+    changes.push_back({light.name, fmt::format("{}{}", setting.power, unit)});
+    if (setting.kelvin > 0) {
+      changes.push_back({light.name, fmt::format("{}K", setting.kelvin)});
+    } else if (setting.color) {
+      changes.push_back({light.name, hex_of(*setting.color)});
+    }
+  }
+  return changes;
+}
+
+void Moods::apply(const std::string& name, LightBoard& board) const {
+  const Mood& mood = named(name);
+  std::vector<std::string> there;
+  for (LightControl& control : board.controls()) {
+    there.push_back(control.name);
+    const auto setting = mood.find(control.name);
+    if (setting == mood.end()) continue;
+    control.power =
+        in_unit(setting->second.power, setting->second.unit, control.unit, board.lumen_per_watt());
+    control.on = setting->second.on;
+    control.color = setting->second.color;
+    control.kelvin = setting->second.kelvin;
+    control.solo = false;
+  }
+  refuse_unknown_lights(name, there);
+}
+
+void Moods::refuse_unknown_lights(const std::string& name,
+                                  const std::vector<std::string>& there) const {
+  for (const auto& [light, setting] : named(name)) {
+    if (std::find(there.begin(), there.end(), light) != there.end()) continue;
+    throw UsageError(fmt::format(
+        "{}: mood '{}' names a light '{}' that is not there; there {}; mend it or keep it again",
+        file_.string(), name, light, scene::names_like(light, there)));
+  }
+}
+
+void Moods::write(const std::map<std::string, Mood>& moods) const {
+  json document{{"photile_moods", version}, {"moods", json::object()}};
+  for (const auto& [name, mood] : moods) {
+    json& lights = document["moods"][name] = json::object();
+    for (const auto& [light, setting] : mood) {
+      json& entry = lights[light];
+      entry = {{"power", setting.power},
+               {"unit", setting.unit == PowerUnit::lumen ? "lm" : "W"},
+               {"on", setting.on}};
+      if (setting.color) entry["color"] = hex_of(*setting.color);
+      if (setting.kelvin > 0) entry["kelvin"] = setting.kelvin;
+    }
+  }
+  write_file(file_, document.dump(2) + "\n");
+}
+
+}  // namespace photile::view

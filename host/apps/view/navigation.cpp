@@ -1,0 +1,68 @@
+#include "view/navigation.hpp"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+namespace photile::view {
+namespace {
+
+/// Radians that a pixel of a drag turns.
+constexpr double turn_per_pixel = 0.004;
+/// A click may tremble by so many pixels; more is a drag.
+constexpr float click_tremble = 4;
+/// The part of a second's walk that a notch of the wheel is.
+constexpr double wheel_share = 0.25;
+
+double key(int plus, int minus) {
+  return static_cast<double>(ImGui::IsKeyDown(plus)) - static_cast<double>(ImGui::IsKeyDown(minus));
+}
+
+}  // namespace
+
+bool Navigation::update(Viewpoint& viewpoint, bool left_taken) {
+  const ImGuiIO& io = ImGui::GetIO();
+  bool moved = false;
+  if (!io.WantCaptureKeyboard && !io.KeyCtrl) {
+    const double forward = key(GLFW_KEY_W, GLFW_KEY_S), right = key(GLFW_KEY_D, GLFW_KEY_A),
+                 up = key(GLFW_KEY_E, GLFW_KEY_Q);
+    // A frame that took long must not become a leap.
+    const double metres =
+        speed_ * std::min(static_cast<double>(io.DeltaTime), 0.1) * (io.KeyShift ? 3 : 1);
+    if (forward != 0 || right != 0 || up != 0) {
+      viewpoint.walk(forward * metres, right * metres, up * metres);
+      moved = true;
+    }
+  }
+  if (!io.WantCaptureMouse) {
+    const double across = turn_per_pixel * static_cast<double>(io.MouseDelta.x);
+    const double upwards = -turn_per_pixel * static_cast<double>(io.MouseDelta.y);
+    const bool dragged = across != 0 || upwards != 0;
+    if (dragged && !left_taken && ImGui::IsMouseDragging(ImGuiMouseButton_Left, click_tremble)) {
+      viewpoint.turn(-across, -upwards);  // what was grabbed follows the pointer
+      moved = true;
+    } else if (dragged && ImGui::IsMouseDragging(ImGuiMouseButton_Right, click_tremble)) {
+      viewpoint.orbit(-across, -upwards, orbit_distance_);
+      moved = true;
+    }
+    if (io.MouseWheel != 0) {
+      viewpoint.walk(wheel_share * speed_ * static_cast<double>(io.MouseWheel), 0, 0);
+      moved = true;
+    }
+  }
+  return moved;
+}
+
+bool Navigation::clicked(double& x, double& y) const {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return false;
+  if (io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] > click_tremble * click_tremble) {
+    return false;
+  }
+  x = static_cast<double>(io.MousePos.x);
+  y = static_cast<double>(io.MousePos.y);
+  return true;
+}
+
+}  // namespace photile::view

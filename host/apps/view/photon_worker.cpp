@@ -1,0 +1,123 @@
+#include "view/photon_worker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "photile/defaults.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "render/first_picture.hpp"
+
+namespace photile::view {
+
+/// Keeps what the stages report for whoever asks, and tells them when to stop.
+class PhotonWorker::Listener : public Progress {
+ public:
+  void begin(std::string_view stage, std::uint64_t total, std::string_view) override {
+    const std::lock_guard lock(mutex_);
+    stage_ = stage;
+    total_ = total;
+    done_ = 0;
+  }
+  void advance(std::uint64_t count) override { done_ += count; }
+  void end() override {
+    const std::lock_guard lock(mutex_);
+    stage_.clear();
+  }
+  bool cancelled() const override { return stopped_; }
+
+  void stop() { stopped_ = true; }
+
+  WorkProgress progress() const {
+    const std::lock_guard lock(mutex_);
+    const double share =
+        total_ > 0 ? static_cast<double>(done_.load()) / static_cast<double>(total_) : 0;
+    return {stage_, std::min(share, 1.0)};
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string stage_;
+  std::uint64_t total_ = 0;
+  std::atomic<std::uint64_t> done_{0};
+  std::atomic<bool> stopped_{false};
+};
+
+std::vector<std::uint64_t> generations_to(std::uint64_t total) {
+  std::vector<std::uint64_t> paths{total};
+  for (std::uint64_t fewer = total / 4; paths.size() < 3 && fewer >= limits::min_photons;
+       fewer /= 4) {
+    paths.push_back(fewer);
+  }
+  if (paths.back() > 4 * defaults::view_first_photons) {
+    paths.push_back(defaults::view_first_photons);
+  } else if (paths.size() > 1) {
+    paths.back() = std::min(paths.back(), defaults::view_first_photons);
+  }
+  std::reverse(paths.begin(), paths.end());
+  return paths;
+}
+
+PhotonWorker::PhotonWorker(const Scene& scene, OpenDevices open_devices,
+                           const RenderParameters& parameters,
+                           std::optional<PreparedPhotons> prepared, KeepPhotons keep,
+                           Deliver deliver)
+    : scene_(scene),
+      open_devices_(std::move(open_devices)),
+      parameters_(parameters),
+      keep_(std::move(keep)),
+      deliver_(std::move(deliver)),
+      listener_(std::make_unique<Listener>()),
+      thread_([this, prepared = std::move(prepared)]() mutable { work(std::move(prepared)); }) {}
+
+PhotonWorker::~PhotonWorker() { listener_->stop(); }
+
+WorkProgress PhotonWorker::progress() const { return listener_->progress(); }
+
+std::exception_ptr PhotonWorker::take_error() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(error_, nullptr);
+}
+
+void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
+  try {
+    const std::uint64_t paths = parameters_.photons.emitted_photons;
+    if (!prepared) {
+      std::vector<std::uint64_t> before = generations_to(paths);
+      before.pop_back();
+      for (const std::uint64_t fewer : before) {
+        deliver_(build(fewer, fewer == before.front() ? Step::first : Step::next, nullptr));
+      }
+    }
+    deliver_(build(paths, Step::last, prepared ? &*prepared : nullptr));
+  } catch (const Interrupted&) {
+    // The window was closed, or other parameters were asked for.
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    error_ = std::current_exception();
+  }
+}
+
+std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, Step step,
+                                                   PreparedPhotons* prepared) {
+  listener_->throw_if_cancelled();
+  RenderParameters parameters =
+      step == Step::first ? first_picture_parameters(parameters_) : parameters_;
+  if (step != Step::last) {
+    parameters.photons.emitted_photons = paths;
+    parameters.passes = 1;
+  }
+  auto generation = std::make_shared<MapGeneration>();
+  generation->devices = open_devices_();
+  const KeepPhotons keep = [&](const PreparedPhotons& photons) {
+    generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
+    if (step == Step::last && keep_) keep_(photons);
+  };
+  generation->renderer = std::make_unique<SceneRenderer>(scene_, generation->devices, parameters,
+                                                         prepared, keep, *listener_);
+  generation->emitted_photons = paths;
+  generation->noise = EstimateNoise::of(scene_, parameters);
+  return generation;
+}
+
+}  // namespace photile::view

@@ -1,0 +1,83 @@
+// Photon maps that get better in the background.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "photile/scene_renderer.hpp"
+#include "view/frame.hpp"
+#include "view/photon_map_view.hpp"
+
+namespace photile::view {
+
+/// Photon maps on devices of their own, so that one set can be built while another is in use.
+struct MapGeneration {
+  std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where somebody else holds it
+  std::vector<Device> devices;
+  std::unique_ptr<SceneRenderer> renderer;
+  std::uint64_t emitted_photons = 0;
+  EstimateNoise noise;
+  std::shared_ptr<const InspectablePhotons> photons;
+};
+
+/// How far the work in the background is.
+struct WorkProgress {
+  std::string stage;  ///< "" = nothing is under way
+  double share = 0;   ///< of the stage, in [0, 1]; 0 where it is not known
+};
+
+/// Traces photons and builds maps on a thread of its own: first those of a first picture
+/// (render/first_picture.hpp), so that there is something to see at once, then with a sixteenth of
+/// all paths, a quarter, and all. The last maps are those that `render` builds from the same
+/// parameters. Of several passes that is the first;
+/// the others are handed over to it one after another.
+class PhotonWorker {
+ public:
+  using OpenDevices = std::function<std::vector<Device>()>;
+  using Deliver = std::function<void(std::shared_ptr<MapGeneration>)>;
+
+  ///   prepared   photons of an earlier run, in place of all tracing, or none
+  ///   keep       is given the photons of the last maps; may be empty
+  ///   deliver    is called on the worker's thread with each set of maps
+  PhotonWorker(const Scene& scene, OpenDevices open_devices, const RenderParameters& parameters,
+               std::optional<PreparedPhotons> prepared, KeepPhotons keep, Deliver deliver);
+  ~PhotonWorker();
+
+  WorkProgress progress() const;
+
+  /// The error that ended the work, or null; each is told once.
+  std::exception_ptr take_error();
+
+ private:
+  class Listener;
+
+  enum class Step { first, next, last };
+
+  void work(std::optional<PreparedPhotons> prepared);
+  std::shared_ptr<MapGeneration> build(std::uint64_t paths, Step step, PreparedPhotons* prepared);
+
+  const Scene& scene_;
+  const OpenDevices open_devices_;
+  const RenderParameters parameters_;
+  const KeepPhotons keep_;
+  const Deliver deliver_;
+  std::unique_ptr<Listener> listener_;
+  mutable std::mutex mutex_;
+  std::exception_ptr error_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+/// The numbers of paths of the generations that lead to `total`, ascending, `total` the last: where
+/// those are many, the first are so few that the set-up alone takes time.
+std::vector<std::uint64_t> generations_to(std::uint64_t total);
+
+}  // namespace photile::view

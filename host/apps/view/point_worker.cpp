@@ -1,0 +1,140 @@
+#include "view/point_worker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+#include <span>
+#include <utility>
+
+#include "photile/defaults.hpp"
+#include "photile/errors.hpp"
+#include "photile/sensors.hpp"
+#include "report/csv_field.hpp"
+#include "trace/random_stream.hpp"
+
+namespace photile::view {
+
+std::vector<Measured> ClickedPoint::lux(const LightMix& mix, double factor,
+                                        const LightPooling* layers) const {
+  const std::size_t count = layers ? layers->layers.size() : mix.lights.size();
+  std::vector<std::vector<float>> values;  // per repeat: each layer, then the sum
+  for (const auto& repeat : repeats) {
+    auto& row = values.emplace_back(count + 1);
+    for (std::size_t light = 0; light < repeat.size(); ++light) {
+      const MixedLight& mixed = mix.lights[light];
+      const double lumens = mixed.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
+      const auto lux =
+          static_cast<float>(factor * lumens * mixed.power *
+                             luminance(glm::dvec3(mixed.tint) * glm::dvec3(repeat[light])));
+      row[layers ? layers->layer_of[light] : light] += lux;
+      row.back() += lux;
+    }
+  }
+  if (values.size() < 2) return std::vector<Measured>(count + 1);
+  return measuring::means_of(values);
+}
+
+PointWorker::PointWorker(std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)), thread_([this](const std::stop_token& stop) { work(stop); }) {}
+
+PointWorker::~PointWorker() {
+  thread_.request_stop();
+  wake_.notify_all();
+}
+
+void PointWorker::use(std::shared_ptr<const Scene> scene) {
+  const std::lock_guard lock(mutex_);
+  scene_ = std::move(scene);
+  for (ClickedPoint& point : points_) point.repeats.clear();
+  wake_.notify_all();
+}
+
+int PointWorker::add(const glm::dvec3& position, const glm::dvec3& normal) {
+  const std::lock_guard lock(mutex_);
+  points_.push_back({++clicked_, position, normal});
+  wake_.notify_all();
+  return clicked_;
+}
+
+void PointWorker::remove(int number) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(points_, [&](const ClickedPoint& point) { return point.number == number; });
+}
+
+std::vector<ClickedPoint> PointWorker::points() const {
+  const std::lock_guard lock(mutex_);
+  return points_;
+}
+
+void PointWorker::work(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    ClickedPoint next;
+    std::shared_ptr<const Scene> scene;
+    {
+      std::unique_lock lock(mutex_);
+      const auto lacking = [&] {
+        return std::min_element(points_.begin(), points_.end(), [](const auto& a, const auto& b) {
+          return a.repeats.size() < b.repeats.size();
+        });
+      };
+      wake_.wait(lock, stop, [&] {
+        const auto point = lacking();
+        return point != points_.end() && point->repeats.size() < defaults::clicked_repeats;
+      });
+      if (stop.stop_requested()) return;
+      next = *lacking();
+      scene = scene_;
+    }
+    const Sensor sensor = in_scene(*scene, {next.position, next.normal});
+    const std::uint64_t seed =
+        trace::seed_of_repeat(defaults::seed, static_cast<std::uint32_t>(1000 * next.number) +
+                                                  static_cast<std::uint32_t>(next.repeats.size()));
+    const LightLayers layers =
+        gather_by_paths(*scene, std::span(&sensor, 1), {.rays = defaults::clicked_rays}, seed)
+            .layers.dense();
+    std::vector<glm::vec3> irradiance;
+    for (const auto& layer : layers.layers) {
+      irradiance.push_back(glm::pi<float>() * layer.radiance.front());
+    }
+    const std::lock_guard lock(mutex_);
+    if (scene != scene_) continue;
+    for (ClickedPoint& point : points_) {
+      if (point.number == next.number) point.repeats.push_back(std::move(irradiance));
+    }
+  }
+}
+
+std::string points_text(const std::vector<ClickedPoint>& points) {
+  std::string text;
+  for (const ClickedPoint& point : points) {
+    const glm::dvec3 &p = point.position, &n = point.normal;
+    text +=
+        fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z, n.x, n.y, n.z);
+  }
+  return text;
+}
+
+std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& mix,
+                       const LightPooling& layers, double factor) {
+  std::string text = "point,x,y,z,dx,dy,dz,lux,standard_error";
+  for (const std::string& layer : layers.layers) {
+    text += fmt::format(",{},{}", report::csv_field("lux " + layer),
+                        report::csv_field("standard_error " + layer));
+  }
+  text += "\n";
+  for (const ClickedPoint& point : points) {
+    const glm::dvec3 &p = point.position, &n = point.normal;
+    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g}", point.number, p.x, p.y, p.z,
+                        n.x, n.y, n.z);
+    std::vector<Measured> lux = point.lux(mix, factor, &layers);
+    std::rotate(lux.begin(), lux.end() - 1, lux.end());  // all together first
+    for (const Measured& each : lux) {
+      text += point.read() ? fmt::format(",{:.6g},{:.3g}", each.value, each.standard_error) : ",,";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace photile::view

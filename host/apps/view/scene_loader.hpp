@@ -1,0 +1,50 @@
+// A scene that is loaded again with other luminaires, on a thread of its own.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "loading/sourced_scene.hpp"
+
+namespace photile::view {
+
+class SceneLoader {
+ public:
+  ///   options   with the file of luminaires
+  SceneLoader(std::filesystem::path scene, SceneLoadOptions options);
+  ~SceneLoader();
+
+  /// Loads it with these entries (LuminaireList::text); what was asked for before is given up.
+  void load(const std::string& luminaires);
+
+  struct Loaded {
+    std::string luminaires;
+    std::shared_ptr<const loading::SourcedScene> scene;
+  };
+  /// The newest scene that is loaded, once.
+  std::optional<Loaded> take();
+  /// Why the newest list cannot be loaded, or null; each is told once.
+  std::exception_ptr take_error();
+  bool busy() const;
+
+ private:
+  void work(const std::stop_token& stop);
+
+  const std::filesystem::path scene_;
+  SceneLoadOptions options_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::optional<std::string> wanted_;
+  bool loading_ = false;
+  std::optional<Loaded> loaded_;
+  std::exception_ptr error_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace photile::view

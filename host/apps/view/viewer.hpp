@@ -1,0 +1,58 @@
+// The walkthrough: a window in which a scene is walked through and its lamps are set.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "loading/luminaires.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/scene_renderer.hpp"
+#include "view/photon_worker.hpp"
+
+namespace photile::view {
+
+/// What the window shows.
+struct Redraw {
+  const Frame* frame = nullptr;  ///< null before the first
+  bool new_frame = false;        ///< seen for the first time
+  bool moving = false;           ///< the viewer
+};
+
+struct ViewerParameters {
+  RenderParameters render;  ///< film: size of the window and most samples, standing still
+  double frames_per_second = defaults::view_frames_per_second;  ///< aimed at while moving
+  std::filesystem::path outputs = ".";  ///< folder of screenshots and pictures
+  std::filesystem::path moods = {};     ///< file of moods; "" = beside the scene
+  std::uint64_t light_map_bytes = 0;    ///< that nodes may take; 0 = no bound
+  /// Photons of an earlier run in place of all tracing, or none.
+  std::optional<PreparedPhotons> prepared;
+  SceneLoadOptions load;   ///< with which the scene was loaded, for copies of its file
+  SkySituation situation;  ///< of a sky of patches; without a place nothing moves it
+  /// Makes the mix of a scene that was loaded again, as `mix` was made of the first.
+  std::function<LightMix(const Scene&)> mix_of;
+  std::filesystem::path luminaire_file;               ///< that is edited; "" = none
+  std::vector<loading::PlacedLuminaires> luminaires;  ///< as the scene has its entries
+  DisplayView view = ToneMapping{}.view;
+  Progress* notes = &Progress::none();  ///< is told what has no place in the window
+  KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
+  /// Is given the light maps of all photons at the end, where there are any; may be empty.
+  std::function<void(const LightMapContents&)> keep_light_maps;
+  /// Told after each redraw; may be empty.
+  std::function<void(const Redraw&)> redrawn;
+  /// Asked before each redraw: true ends the walkthrough.
+  std::function<bool()> interrupted = [] { return false; };
+};
+
+/// Opens the window and returns when it is closed.
+///   camera         in the scene's coordinates
+///   open_devices   called for each set of maps, so that one is built while another is in use
+/// Errors: DeviceError without a display; those of SceneRenderer where there is nothing to show
+/// yet (later ones are told in the window); InputError for a damaged file of moods.
+void run_viewer(const Scene& scene, const Camera& camera, const LightMix& mix,
+                PhotonWorker::OpenDevices open_devices, ViewerParameters parameters);
+
+}  // namespace photile::view

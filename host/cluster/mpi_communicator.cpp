@@ -1,0 +1,303 @@
+// Every collective call begins with an agreement that nobody has failed. A process that fails makes
+// that agreement in place of the call that the others make, and all end: no process waits for one
+// that is gone, and none has to be aborted. It also tells the others, who look out for that while
+// they work, so that none of them finishes a long stage first. Waiting processes sleep between
+// looks, since ranks may be more than cores.
+#include "mpi_communicator.hpp"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <climits>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <numeric>
+#include <thread>
+#include <utility>
+
+#include "photile/defaults.hpp"
+
+namespace photile {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Looks without a sleep between them: most answers are there soon.
+constexpr int quick_looks = 200;
+constexpr auto first_sleep = std::chrono::microseconds(20);
+constexpr auto longest_sleep = std::chrono::microseconds(500);
+
+void wait(MPI_Request request) {
+  auto sleep = first_sleep;
+  int done = 0;
+  for (int look = 0;; ++look) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done) return;
+    if (look < quick_looks) continue;
+    std::this_thread::sleep_for(sleep);
+    sleep = std::min(2 * sleep, std::chrono::microseconds(longest_sleep));
+  }
+}
+
+class MpiCommunicator final : public Communicator {
+ public:
+  MpiCommunicator() {
+    MPI_Comm_dup(MPI_COMM_WORLD, &all_);
+    int rank = 0, size = 1, near = 1;
+    MPI_Comm_rank(all_, &rank);
+    MPI_Comm_size(all_, &size);
+    MPI_Comm_dup(MPI_COMM_WORLD, &news_);
+    MPI_Irecv(&heard_code_, 1, MPI_INT, MPI_ANY_SOURCE, 0, news_, &news_request_);
+    MPI_Comm machine = MPI_COMM_NULL;
+    MPI_Comm_split_type(all_, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &near);
+    MPI_Comm_free(&machine);
+    rank_ = static_cast<std::uint32_t>(rank);
+    size_ = static_cast<std::uint32_t>(size);
+    near_ = static_cast<std::uint32_t>(near);
+  }
+
+  std::uint32_t rank() const override { return rank_; }
+  std::uint32_t size() const override { return size_; }
+  std::uint32_t on_this_machine() const override { return near_; }
+  Traffic traffic() const override { return traffic_; }
+
+  std::vector<Bytes> exchange(std::vector<Bytes> to_each) override {
+    const Call call(*this);
+    std::vector<Bytes> from(size_);
+    from[rank_] = std::move(to_each[rank_]);
+    to_each[rank_] = {};
+    std::vector<std::uint64_t> out(size_), in(size_);
+    for (std::uint32_t r = 0; r < size_; ++r) {
+      out[r] = to_each[r].size();
+      traffic_.bytes += out[r];
+    }
+    MPI_Request request;
+    MPI_Ialltoall(out.data(), 1, MPI_UINT64_T, in.data(), 1, MPI_UINT64_T, all_, &request);
+    wait(request);
+    for (std::uint32_t r = 0; r < size_; ++r) {
+      if (r != rank_) from[r].resize(in[r]);
+    }
+    const std::uint64_t in_round =
+        std::max<std::uint64_t>(1, defaults::exchange_round_bytes / size_);
+    std::uint64_t most = std::max(*std::max_element(out.begin(), out.end()),
+                                  *std::max_element(in.begin(), in.end()));
+    // The rounds of whoever has most.
+    MPI_Iallreduce(MPI_IN_PLACE, &most, 1, MPI_UINT64_T, MPI_MAX, all_, &request);
+    wait(request);
+    for (std::uint64_t begin = 0; begin < most; begin += in_round) {
+      exchange_round(to_each, from, begin, in_round);
+    }
+    return from;
+  }
+
+  std::vector<Bytes> gather(std::span<const std::byte> own) override {
+    const Call call(*this);
+    const std::uint64_t bytes = own.size();
+    std::vector<std::uint64_t> sizes(size_);
+    MPI_Request request;
+    MPI_Iallgather(&bytes, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, all_, &request);
+    wait(request);
+    traffic_.bytes += bytes * (size_ - 1);
+    std::vector<Bytes> all;
+    for (const std::uint64_t size : sizes) all.emplace_back(size);
+    const std::uint64_t most = *std::max_element(sizes.begin(), sizes.end());
+    const std::uint64_t in_round =
+        std::max<std::uint64_t>(1, defaults::exchange_round_bytes / size_);
+    Bytes round;
+    std::vector<int> counts(size_), places(size_);
+    for (std::uint64_t begin = 0; begin < most; begin += in_round) {
+      int total = 0;
+      for (std::uint32_t r = 0; r < size_; ++r) {
+        counts[r] = part(sizes[r], begin, in_round);
+        places[r] = total;
+        total += counts[r];
+      }
+      round.resize(static_cast<std::size_t>(total));
+      const std::byte* const from = counts[rank_] > 0 ? own.data() + begin : nullptr;
+      MPI_Iallgatherv(from, counts[rank_], MPI_BYTE, round.data(), counts.data(), places.data(),
+                      MPI_BYTE, all_, &request);
+      wait(request);
+      for (std::uint32_t r = 0; r < size_; ++r) copy(all[r], begin, round, places[r], counts[r]);
+    }
+    return all;
+  }
+
+  void sum(std::span<std::uint64_t> values) override {
+    const Call call(*this);
+    traffic_.bytes += values.size_bytes();
+    for_each_run(values.size(), [&](std::size_t first, int count) {
+      MPI_Request request;
+      MPI_Iallreduce(MPI_IN_PLACE, values.data() + first, count, MPI_UINT64_T, MPI_SUM, all_,
+                     &request);
+      wait(request);
+    });
+  }
+
+  std::vector<std::uint64_t> sum_before(std::span<const std::uint64_t> values) override {
+    const Call call(*this);
+    traffic_.bytes += values.size_bytes();
+    std::vector<std::uint64_t> sums(values.size(), 0);
+    for_each_run(values.size(), [&](std::size_t first, int count) {
+      MPI_Request request;
+      MPI_Iexscan(values.data() + first, sums.data() + first, count, MPI_UINT64_T, MPI_SUM, all_,
+                  &request);
+      wait(request);
+    });
+    if (rank_ == 0) std::fill(sums.begin(), sums.end(), 0);  // MPI leaves them undefined
+    return sums;
+  }
+
+  Conclusion conclude(int code, const std::function<void()>& tell_error) override {
+    // Others wait within a call that this process has left: mpirun ends them when it exits.
+    if (broken_) {
+      if (code != 0) tell_error();
+      return {rank_, code};
+    }
+    if (code != 0 && !heard_ && !failed_) tell(code);
+    // Who stopped because of another has not failed.
+    const Conclusion end = agree(heard_ ? 0 : code);
+    if (end.code != 0 && end.rank == rank_) tell_error();
+    MPI_Request told;
+    MPI_Ibarrier(all_, &told);
+    wait(told);
+    MPI_Cancel(&news_request_);
+    MPI_Request_free(&news_request_);
+    MPI_Comm_free(&all_);
+    MPI_Finalize();
+    return end;
+  }
+
+  bool other_failed() {
+    if (std::this_thread::get_id() == thread_ && !heard_ && !broken_) {
+      int there = 0;
+      MPI_Request_get_status(news_request_, &there, MPI_STATUS_IGNORE);
+      heard_ = there != 0;
+    }
+    return heard_;
+  }
+
+ private:
+  /// What every collective call is within.
+  class Call {
+   public:
+    explicit Call(MpiCommunicator& own) : own_(own) {
+      ++own.traffic_.calls;
+      if (own.agree(0).code != 0) throw OtherProcessFailed();
+    }
+    ~Call() {
+      own_.broken_ = own_.broken_ || std::uncaught_exceptions() > before_;
+      own_.traffic_.seconds += std::chrono::duration<double>(Clock::now() - begin_).count();
+    }
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+
+   private:
+    MpiCommunicator& own_;
+    int before_ = std::uncaught_exceptions();
+    Clock::time_point begin_ = Clock::now();
+  };
+
+  void tell(int code) {
+    told_code_ = code;
+    for (std::uint32_t r = 0; r < size_; ++r) {
+      if (r == rank_) continue;
+      MPI_Request request;
+      MPI_Isend(&told_code_, 1, MPI_INT, static_cast<int>(r), 0, news_, &request);
+      MPI_Request_free(&request);  // the agreement that follows says that it has arrived
+    }
+  }
+
+  /// The least rank that has a code, and the code.
+  Conclusion agree(int code) {
+    if (failed_) return *failed_;
+    constexpr int codes = 1 << 10;  // more than there are
+    const auto fine = static_cast<int>(size_);
+    int first = code == 0 ? fine * codes : static_cast<int>(rank_) * codes + code;
+    MPI_Request request;
+    MPI_Iallreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, all_, &request);
+    wait(request);
+    Conclusion end{static_cast<std::uint32_t>(first / codes), first % codes};
+    if (first == fine * codes) return {};
+    failed_ = std::make_unique<Conclusion>(end);
+    return end;
+  }
+
+  /// Bytes of a whole that are in the round from `begin` on.
+  static int part(std::uint64_t whole, std::uint64_t begin, std::uint64_t in_round) {
+    return begin >= whole ? 0 : static_cast<int>(std::min(in_round, whole - begin));
+  }
+
+  static void copy(Bytes& to, std::uint64_t begin, const Bytes& round, int place, int count) {
+    if (count == 0) return;
+    std::memcpy(to.data() + begin, round.data() + place, static_cast<std::size_t>(count));
+  }
+
+  void exchange_round(const std::vector<Bytes>& out, std::vector<Bytes>& in, std::uint64_t begin,
+                      std::uint64_t in_round) {
+    std::vector<int> sent(size_), got(size_), sent_at(size_), got_at(size_);
+    for (std::uint32_t r = 0; r < size_; ++r) {
+      sent[r] = part(out[r].size(), begin, in_round);
+      got[r] = r == rank_ ? 0 : part(in[r].size(), begin, in_round);
+    }
+    std::exclusive_scan(sent.begin(), sent.end(), sent_at.begin(), 0);
+    std::exclusive_scan(got.begin(), got.end(), got_at.begin(), 0);
+    Bytes to(static_cast<std::size_t>(sent_at.back() + sent.back()));
+    Bytes from(static_cast<std::size_t>(got_at.back() + got.back()));
+    for (std::uint32_t r = 0; r < size_; ++r) {
+      if (sent[r] > 0) {
+        std::memcpy(to.data() + sent_at[r], out[r].data() + begin,
+                    static_cast<std::size_t>(sent[r]));
+      }
+    }
+    MPI_Request request;
+    MPI_Ialltoallv(to.data(), sent.data(), sent_at.data(), MPI_BYTE, from.data(), got.data(),
+                   got_at.data(), MPI_BYTE, all_, &request);
+    wait(request);
+    for (std::uint32_t r = 0; r < size_; ++r) copy(in[r], begin, from, got_at[r], got[r]);
+  }
+
+  /// Runs of values that MPI counts in an int.
+  template <class Work>
+  static void for_each_run(std::size_t count, const Work& work) {
+    constexpr std::size_t most = defaults::exchange_round_bytes / sizeof(std::uint64_t);
+    for (std::size_t first = 0; first < count; first += most) {
+      work(first, static_cast<int>(std::min(most, count - first)));
+    }
+  }
+
+  MPI_Comm all_ = MPI_COMM_NULL, news_ = MPI_COMM_NULL;
+  MPI_Request news_request_ = MPI_REQUEST_NULL;
+  int heard_code_ = 0, told_code_ = 0;
+  std::atomic<bool> heard_{false};
+  const std::thread::id thread_ = std::this_thread::get_id();
+  std::uint32_t rank_ = 0, size_ = 1, near_ = 1;
+  Traffic traffic_;
+  std::unique_ptr<Conclusion> failed_;  ///< what all know of
+  bool broken_ = false;                 ///< a call was left by an exception
+};
+
+}  // namespace
+}  // namespace photile
+
+namespace {
+
+std::unique_ptr<photile::MpiCommunicator> communicator;
+
+}  // namespace
+
+bool photile_mpi_other_failed() { return communicator && communicator->other_failed(); }
+
+photile::Communicator* photile_mpi_communicator() {
+  if (!communicator) {
+    int given = 0;
+    // The thread that makes the calls is the only one.
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given) != MPI_SUCCESS)
+      return nullptr;
+    communicator = std::make_unique<photile::MpiCommunicator>();
+  }
+  return communicator.get();
+}

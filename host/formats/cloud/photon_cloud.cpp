@@ -1,0 +1,244 @@
+#include "photile/photon_cloud.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "cloud/voxels.hpp"
+#include "common/value_range.hpp"
+#include "maps/build_maps.hpp"
+#include "maps/map_store.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/statistics.hpp"
+#include "scene/coordinate_limit.hpp"
+
+namespace photile {
+namespace {
+
+void check_size(std::string_view what, std::size_t size, std::size_t expected,
+                std::string_view owners) {
+  if (size == expected) return;
+  throw InputError(fmt::format("photon cloud: {} {} for {} {}", size, what, expected, owners));
+}
+
+void check_places(std::string_view what, std::span<const glm::vec3> places) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const glm::vec3& p = places[i];
+    if (scene::within_limit(glm::dvec3(p))) continue;
+    throw InputError(fmt::format(
+        "photon cloud: {} {} lies at ({}, {}, {}); coordinates must be numbers up to {:g} m", what,
+        i, p.x, p.y, p.z, limits::max_coordinate));
+  }
+}
+
+void check_normals(std::string_view what, std::span<const glm::vec3> normals) {
+  constexpr double slack = 1e-3;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const double length = glm::length(glm::dvec3(normals[i]));
+    if (std::abs(length - 1.0) <= slack) continue;
+    throw InputError(fmt::format("photon cloud: {} {} has a normal of length {}; it must be 1",
+                                 what, i, length));
+  }
+}
+
+void check(const CloudPhotons& photons, const CloudParameters& parameters) {
+  const std::size_t count = photons.position.size();
+  if (count > limits::max_stored_photons) {
+    throw UsageError(fmt::format("photon cloud: {} photons; at most {} can be indexed", count,
+                                 limits::max_stored_photons));
+  }
+  if (!(parameters.radius > 0) || !(parameters.radius <= limits::max_coordinate)) {
+    throw UsageError(
+        fmt::format("photon cloud: radius {} m: must be a positive number", parameters.radius));
+  }
+  check_setting("angle_degrees", setting_value(parameters.angle_degrees));
+  check_setting("photons_per_cell", setting_value(parameters.photons_per_cell));
+  if (!photons.normal.empty()) check_size("normals", photons.normal.size(), count, "photons");
+  if (!photons.flux.empty()) check_size("flux values", photons.flux.size(), count, "photons");
+  if (!photons.light.empty()) check_size("lights", photons.light.size(), count, "photons");
+  check_places("photon", photons.position);
+  check_normals("photon", photons.normal);
+  for (std::size_t i = 0; i < photons.flux.size(); ++i) {
+    const glm::vec3& flux = photons.flux[i];
+    if (std::isfinite(flux.x) && std::isfinite(flux.y) && std::isfinite(flux.z)) continue;
+    throw InputError(fmt::format("photon cloud: photon {} has a flux that is no number", i));
+  }
+}
+
+std::uint32_t light_count(std::span<const std::uint16_t> lights) {
+  const auto most = std::max_element(lights.begin(), lights.end());
+  const std::uint32_t count = most == lights.end() ? 1u : 1u + *most;
+  if (count > limits::max_lights) {
+    throw InputError(fmt::format("photon cloud: light {}; at most {} lights are possible",
+                                 count - 1, limits::max_lights));
+  }
+  return count;
+}
+
+/// Each photon stands for a sided triangle of its own, which is what tables of normals and maps are
+/// indexed by.
+Photons as_stored(const CloudPhotons& cloud, const SceneNeeds& needs) {
+  Photons photons;
+  photons.position.assign(cloud.position.begin(), cloud.position.end());
+  photons.flux.assign(cloud.flux.begin(), cloud.flux.end());
+  photons.flux.resize(photons.size(), glm::vec3(1.0f));
+  if (needs.several_lights()) photons.light.assign(cloud.light.begin(), cloud.light.end());
+  photons.sided_triangle.resize(photons.size());
+  std::iota(photons.sided_triangle.begin(), photons.sided_triangle.end(), 0u);
+  photons.first_of.resize(photons.size() + 1);
+  std::iota(photons.first_of.begin(), photons.first_of.end(), 0u);
+  return photons;
+}
+
+}  // namespace
+
+struct PhotonCloud::Impl {
+  std::vector<glm::vec3> positions;
+  bool has_normals;
+  bool one_map;  ///< one structure over all photons
+  cloud::Voxels voxels;
+  maps::MapStore* store = nullptr;  ///< of `photon_maps`
+  PhotonMaps photon_maps;
+
+  Impl(Device& device, const CloudPhotons& photons, const CloudParameters& parameters,
+       Progress& progress)
+      : positions(photons.position.begin(), photons.position.end()),
+        has_normals(!photons.normal.empty()),
+        one_map(is_global(parameters.structure)),
+        voxels(one_map ? std::span<const glm::vec3>() : photons.position,
+               one_map ? std::span<const glm::vec3>() : photons.normal, parameters.radius,
+               parameters.angle_degrees),
+        photon_maps(build(device, photons, parameters, progress)) {}
+
+  PhotonMaps build(Device& device, const CloudPhotons& cloud, const CloudParameters& parameters,
+                   Progress& progress);
+
+  /// Puts points where maps and normals are looked up, beyond the photons.
+  PrimaryHits place(std::span<const glm::vec3> points, std::span<const glm::vec3> normals);
+};
+
+PhotonMaps PhotonCloud::Impl::build(Device& device, const CloudPhotons& cloud,
+                                    const CloudParameters& parameters, Progress& progress) {
+  SceneNeeds needs;
+  needs.light_count = light_count(cloud.light);
+  const Photons photons = as_stored(cloud, needs);
+  progress.begin("build photon maps", 0, "references");
+  const Stopwatch stopwatch;
+  auto owned = std::make_unique<maps::MapStore>(
+      device, needs,
+      PhotonMapParameters{parameters.radius, parameters.photons_per_cell, parameters.structure});
+  store = owned.get();
+  // Without normals all agree.
+  store->angle_degrees = has_normals ? parameters.angle_degrees : 180.0;
+  store->cos_angle = has_normals ? std::cos(glm::radians(parameters.angle_degrees)) : -1.0;
+  store->statistics.photons = photons.size();
+  if (one_map || has_normals) {
+    store->normals.assign(cloud.normal.begin(), cloud.normal.end());
+    store->normals.resize(photons.size(), glm::vec3(0, 0, 1));
+  }
+  if (one_map) {
+    store->map_of.assign(photons.size(), 0);
+    maps::build_global_map(*store, photons, 1);
+  } else if (photons.size() > 0) {
+    store->map_of = voxels.take_own_maps();
+    maps::build_maps(*store, photons, nullptr, voxels.take_plan(), progress);
+  }
+  store->statistics.spilled_bytes = store->pages.spilled_bytes();
+  store->statistics.seconds = stopwatch.seconds();
+  progress.end();
+  return maps::maps_in(std::move(owned));
+}
+
+PrimaryHits PhotonCloud::Impl::place(std::span<const glm::vec3> points,
+                                     std::span<const glm::vec3> normals) {
+  if (has_normals || !normals.empty())
+    check_size("normals", normals.size(), points.size(), "points");
+  if (!has_normals && !normals.empty()) {
+    throw InputError("photon cloud: the points have normals, but no photon has one to compare");
+  }
+  check_places("point", points);
+  check_normals("point", normals);
+  const std::size_t photons = positions.size();
+  if (points.size() > limits::max_stored_photons - photons) {
+    throw UsageError(fmt::format("photon cloud: {} points at once beside {} photons; ask for fewer",
+                                 points.size(), photons));
+  }
+  const auto normal_of = [&](std::size_t i) {
+    return normals.empty() ? glm::vec3(0, 0, 1) : normals[i];
+  };
+  PrimaryHits hits;
+  hits.position.assign(points.begin(), points.end());
+  hits.sided_triangle.resize(points.size());
+  std::iota(hits.sided_triangle.begin(), hits.sided_triangle.end(),
+            static_cast<std::uint32_t>(photons));
+  store->map_of.resize(photons + points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    store->map_of[photons + i] = one_map ? 0 : voxels.map_at(points[i], normal_of(i));
+  }
+  if (!store->normals.empty()) {
+    store->normals.resize(photons + points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) store->normals[photons + i] = normal_of(i);
+  }
+  return hits;
+}
+
+PhotonCloud::PhotonCloud(Device& device, const CloudPhotons& photons,
+                         const CloudParameters& parameters, Progress& progress) {
+  check(photons, parameters);
+  impl_ = std::make_unique<Impl>(device, photons, parameters, progress);
+}
+PhotonCloud::~PhotonCloud() = default;
+PhotonCloud::PhotonCloud(PhotonCloud&&) noexcept = default;
+PhotonCloud& PhotonCloud::operator=(PhotonCloud&&) noexcept = default;
+
+std::size_t PhotonCloud::size() const { return impl_->positions.size(); }
+const PhotonMapStatistics& PhotonCloud::statistics() const {
+  return impl_->photon_maps.statistics();
+}
+
+CloudNeighbours PhotonCloud::nearest(std::span<const glm::vec3> points,
+                                     std::span<const glm::vec3> normals, int k, double radius) {
+  Estimator estimator(impl_->photon_maps, Scene(),
+                      {.neighbours = k, .radius = radius, .area = AreaMode::disc});
+  NeighbourLists lists = estimator.nearest(impl_->place(points, normals));
+  CloudNeighbours result;
+  result.k = k;
+  result.photons = std::move(lists.photons);
+  result.squared_distance.resize(result.photons.size(), std::numeric_limits<float>::infinity());
+  const auto width = static_cast<std::size_t>(k);
+  std::vector<std::pair<double, std::uint32_t>> row;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    row.clear();
+    for (std::size_t j = i * width; j < (i + 1) * width && result.photons[j] != none; ++j) {
+      const glm::dvec3 offset =
+          glm::dvec3(impl_->positions[result.photons[j]]) - glm::dvec3(points[i]);
+      row.emplace_back(glm::dot(offset, offset), result.photons[j]);
+    }
+    std::sort(row.begin(), row.end());
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      result.squared_distance[i * width + j] = static_cast<float>(row[j].first);
+      result.photons[i * width + j] = row[j].second;
+    }
+  }
+  return result;
+}
+
+Estimates PhotonCloud::irradiance(std::span<const glm::vec3> points,
+                                  std::span<const glm::vec3> normals,
+                                  const CloudEstimateParameters& parameters) {
+  Estimator estimator(impl_->photon_maps, Scene(),
+                      {.neighbours = parameters.neighbours,
+                       .radius = parameters.radius,
+                       .area = AreaMode::disc,
+                       .kernel = parameters.kernel});
+  return estimator.estimate(impl_->place(points, normals));
+}
+
+}  // namespace photile

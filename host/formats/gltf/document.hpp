@@ -1,0 +1,48 @@
+// A glTF file, parsed and with its buffers read, before any of it is interpreted.
+#pragma once
+
+#include "gltf/tiny_gltf.hpp"
+#include "reading/import_context.hpp"
+
+namespace photile::gltf {
+
+/// Parses a .gltf or .glb file and reads its buffers from the scene's folder. Pictures inside the
+/// file stay encoded in tinygltf::Image::image. Extensions that photile does not understand are
+/// named in a warning. Errors: InputError when the file is malformed, refers outside its folder or
+/// requires an extension that photile does not understand.
+tinygltf::Model read_gltf(reading::ImportContext& context);
+
+/// Names every extension that the file uses and photile does not understand in a warning. Errors:
+/// InputError naming one that the file requires, with the remedy.
+void check_extensions(const tinygltf::Model& model, reading::ImportContext& context);
+
+/// The same for a file that could not be parsed, often because of what an extension left out of it
+/// (buffers without data, ...). Does nothing where its JSON names no such extension.
+void check_required_extensions(std::string_view json, const reading::ImportContext& context);
+
+/// A member of a JSON object: a number, or `fallback` when it is absent or no number.
+double number_member(const tinygltf::Value& object, const std::string& key, double fallback);
+
+/// A member of a JSON object: a number as the nearest int towards zero, or `fallback` when it is
+/// absent or no number. No number is beyond the reach of a cast: the largest int names nothing that
+/// a file can hold.
+int integer_member(const tinygltf::Value& object, const std::string& key, int fallback);
+
+/// A member of a JSON object: up to three numbers; missing ones keep those of `fallback`.
+glm::dvec3 vector_member(const tinygltf::Value& object, const std::string& key,
+                         const glm::dvec3& fallback);
+
+/// A member of a JSON object: a string, or "" when it is absent or no string.
+std::string string_member(const tinygltf::Value& object, const std::string& key);
+
+/// An extension's JSON object, or nullptr when `extensions` lacks it.
+const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions,
+                                      const std::string& name);
+
+/// Three numbers of a factor such as emissiveFactor; `fallback` where absent.
+glm::dvec3 rgb_of(const std::vector<double>& values, const glm::dvec3& fallback);
+
+/// A URI with its percent escapes replaced by the bytes they stand for.
+std::string decoded_uri(const std::string& uri);
+
+}  // namespace photile::gltf

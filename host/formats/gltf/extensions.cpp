@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "gltf/document.hpp"
+
+namespace photile::gltf {
+namespace {
+
+constexpr std::array<std::string_view, 11> understood_extensions{
+    "EXT_lights_area",
+    "EXT_lights_ies",
+    "EXT_lights_image_based",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+};
+
+/// Nothing that a picture could show.
+constexpr std::array<std::string_view, 4> harmless_extensions{
+    "EXT_structural_metadata",
+    "FB_ngon_encoding",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+};
+
+/// What to do about extensions that files of the wild have.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> remedies{{
+    {"EXT_mesh_gpu_instancing", "its copies are missing; export them as nodes"},
+    {"EXT_meshopt_compression", "export without compression of meshes"},
+    {"EXT_texture_webp", "save its textures as PNG or JPEG"},
+    {"KHR_draco_mesh_compression", "export without compression of meshes"},
+    {"KHR_materials_pbrSpecularGlossiness",
+     "its colours are lost; convert them to metallic-roughness"},
+    {"KHR_materials_variants", "surfaces have their default materials"},
+    {"KHR_texture_basisu", "save its textures as PNG or JPEG"},
+}};
+
+bool is_understood(std::string_view extension) {
+  const auto among = [&](std::span<const std::string_view> names) {
+    return std::ranges::find(names, extension) != names.end();
+  };
+  return among(understood_extensions) || among(harmless_extensions);
+}
+
+std::string remedy_for(std::string_view extension, std::string_view otherwise) {
+  const auto* const found = std::find_if(remedies.begin(), remedies.end(), [&](const auto& remedy) {
+    return remedy.first == extension;
+  });
+  return std::string(found == remedies.end() ? otherwise : found->second);
+}
+
+void check_required(const std::string& extension, const reading::ImportContext& context) {
+  if (is_understood(extension)) return;
+  throw context.error(fmt::format("requires the glTF extension {}, which is not understood; {}",
+                                  extension, remedy_for(extension, "export without it")));
+}
+
+}  // namespace
+
+void check_extensions(const tinygltf::Model& model, reading::ImportContext& context) {
+  for (const std::string& extension : model.extensionsRequired) check_required(extension, context);
+  for (const std::string& extension : model.extensionsUsed) {
+    if (is_understood(extension)) continue;
+    context.warnings.add("extension", extension,
+                         "not understood; " + remedy_for(extension, "what it says is ignored"));
+  }
+}
+
+void check_required_extensions(std::string_view json, const reading::ImportContext& context) {
+  const auto document = nlohmann::json::parse(json, nullptr, /*allow_exceptions=*/false);
+  if (!document.is_object() || !document.contains("extensionsRequired")) return;
+  for (const nlohmann::json& extension : document["extensionsRequired"]) {
+    if (extension.is_string()) check_required(extension.get<std::string>(), context);
+  }
+}
+
+}  // namespace photile::gltf

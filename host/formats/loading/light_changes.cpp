@@ -1,0 +1,81 @@
+#include "loading/light_changes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "files/scene_folder.hpp"
+#include "files/warnings.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photometry/photometric_file.hpp"
+#include "scene/color_temperature.hpp"
+#include "scene/light_names.hpp"
+
+namespace photile::loading {
+namespace {
+
+/// The light called `name` that a `change` is for. Errors: UsageError that lists the lights there
+/// are.
+Light& light_named(const std::string& name, const char* change, Scene& scene) {
+  const auto found = std::find_if(scene.lights.begin(), scene.lights.end(),
+                                  [&](const Light& light) { return light.name == name; });
+  if (found != scene.lights.end()) return *found;
+  std::vector<std::string> names;
+  for (const Light& light : scene.lights) names.push_back(light.name);
+  throw UsageError(fmt::format("{} {}: there is no light '{}'; there {}", change, name, name,
+                               scene::names_like(name, std::move(names))));
+}
+
+}  // namespace
+
+IntensityDistribution read_user_photometry(const std::filesystem::path& file,
+                                           files::Warnings& warnings) {
+  std::vector<unsigned char> bytes;
+  try {
+    bytes = files::read_regular_file(file, limits::max_photometry_bytes);
+  } catch (const files::ResourceError& error) {
+    throw InputError(
+        fmt::format("{}: cannot read the photometric file: {}; give an .ies or .ldt file",
+                    file.string(), error.what()));
+  }
+  try {
+    return photometry::read_photometry(file.string(), bytes, warnings);
+  } catch (const files::ResourceError& error) {
+    throw InputError(error.what());
+  }
+}
+
+void apply_profiles(Scene& scene, std::span<const LightProfile> profiles,
+                    files::Warnings& warnings) {
+  for (const LightProfile& profile : profiles) {
+    Light& light = light_named(profile.light, "photometric file for", scene);
+    if (light.kind != LightKind::point && light.kind != LightKind::spot) {
+      throw UsageError(
+          fmt::format("photometric file for {}: the light is neither a point nor a spot light; "
+                      "name one of those",
+                      profile.light));
+    }
+    IntensityDistribution distribution = read_user_photometry(profile.file, warnings);
+    light.kind = LightKind::point;
+    light.power = distribution.flux();
+    light.distribution = static_cast<std::uint32_t>(scene.distributions.size());
+    scene.distributions.push_back(std::move(distribution));
+  }
+}
+
+void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperatures) {
+  for (const LightTemperature& temperature : temperatures) {
+    Light& light = light_named(temperature.light, "temperature of", scene);
+    if (light.kind == LightKind::environment || light.emission_texture != none) {
+      throw UsageError(fmt::format(
+          "temperature of {}: its colours come from a picture, which a light mix can tint",
+          light.name));
+    }
+    light.color = glm::vec3(scene::color_of_temperature(temperature.kelvin));
+  }
+}
+
+}  // namespace photile::loading

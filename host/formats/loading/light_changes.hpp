@@ -1,0 +1,27 @@
+// What the user changes in the lights of a scene while it is loaded.
+#pragma once
+
+#include <span>
+
+#include "files/warnings.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::loading {
+
+/// Reads a photometric file that the user names. Errors: InputError for one that is missing or
+/// malformed.
+IntensityDistribution read_user_photometry(const std::filesystem::path& file,
+                                           files::Warnings& warnings);
+
+/// Gives lights photometric files: each becomes a point light with the file's flux, and keeps its
+/// place, direction and colour. Names of lights must be final.
+/// Errors: UsageError for a light that is not there, or neither point nor spot; InputError for a
+/// file that is missing or malformed.
+void apply_profiles(Scene& scene, std::span<const LightProfile> profiles,
+                    files::Warnings& warnings);
+
+/// Colours lights by temperature; their flux stays. Names of lights must be final.
+/// Errors: UsageError for a light that is not there, or whose colours come from a picture.
+void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperatures);
+
+}  // namespace photile::loading

@@ -1,0 +1,178 @@
+// From a file of either format to a scene that later stages can trust.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "common/ascii_text.hpp"
+#include "gltf/gltf_import.hpp"
+#include "gltf/lamp_instances.hpp"
+#include "loading/finishing.hpp"
+#include "loading/light_changes.hpp"
+#include "loading/luminaires.hpp"
+#include "loading/material_changes.hpp"
+#include "loading/sourced_scene.hpp"
+#include "loading/up_axis.hpp"
+#include "obj/obj_import.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/scene.hpp"
+#include "reading/area_lights.hpp"
+#include "scene/default_camera.hpp"
+#include "scene/light_names.hpp"
+#include "scene/photometry.hpp"
+#include "trace/portal_search.hpp"
+
+namespace photile {
+namespace {
+
+void import_by_extension(reading::ImportContext& context) {
+  const std::string extension = lower(context.folder.scene_file().extension().string());
+  if (extension == ".obj") {
+    obj::import_obj(context);
+  } else if (extension == ".gltf" || extension == ".glb") {
+    gltf::import_gltf(context);
+  } else {
+    throw context.error(
+        fmt::format("unknown scene format '{}'; give an .obj, .gltf or .glb file", extension));
+  }
+}
+
+void report_dropped_triangles(const ImportReport& report, files::Warnings& warnings) {
+  if (report.degenerate_triangles > 0) {
+    warnings.add(fmt::format("{} triangles without area are dropped", report.degenerate_triangles));
+  }
+  if (report.non_finite_triangles > 0) {
+    warnings.add(
+        fmt::format("{} triangles with a corner that is NaN, infinite or beyond {:g} m are dropped",
+                    report.non_finite_triangles, limits::max_coordinate));
+  }
+  if (report.duplicate_triangles > 0) {
+    warnings.add(fmt::format(
+        "{} triangles that lie exactly on others are dropped: of two materials the first counts",
+        report.duplicate_triangles));
+  }
+}
+
+/// An error about a scene that lacks something. What the import warned about is often the reason: a
+/// missing material library, lamps that the exporter dropped.
+InputError lacks(const std::string& what, const reading::ImportContext& context) {
+  constexpr std::size_t warnings_told = 3;
+  std::vector<std::string> lines = context.warnings.lines();
+  if (lines.size() > warnings_told) lines.resize(warnings_told);
+  const std::string reasons =
+      lines.empty() ? "" : fmt::format(" (import: {})", fmt::join(lines, "; "));
+  return context.error(what + reasons);
+}
+
+/// Importers leave the irradiance of a directional light in `power`, since the size of the scene is
+/// known only now.
+void finish_directional_lights(const reading::ImportContext& context) {
+  const double radius = bounding_sphere(context.scene).radius;
+  for (Light& light : context.scene.lights) {
+    if (light.kind != LightKind::directional) continue;
+    light.power = scene::directional_flux(light.power, radius);
+    if (!std::isfinite(light.power)) {
+      throw context.error(fmt::format(
+          "light '{}': its flux over a scene of {:g} m is beyond any number; give it fewer lux",
+          light.name, 2 * radius));
+    }
+  }
+}
+
+void check_powers(const Scene& scene, double emissive_scale) {
+  for (const Light& light : scene.lights) {
+    if (light.power <= limits::max_light_power) continue;
+    const std::string emits =
+        fmt::format("light '{}' emits {:.4g} {}; the limit is {:g}", light.name, light.power,
+                    scene.unit == PowerUnit::lumen ? "lm" : "W", limits::max_light_power);
+    const bool by_scale = light.kind == LightKind::area && emissive_scale > 1.0 &&
+                          light.power / emissive_scale <= limits::max_light_power;
+    if (by_scale) {
+      throw UsageError(
+          fmt::format("emissive scale of {:g}: {}; give a smaller one", emissive_scale, emits));
+    }
+    throw InputError(fmt::format("{}: {}; give it less", scene.source.string(), emits));
+  }
+}
+
+/// Objects of a glTF file are its visits, then its panels; those of an OBJ file have no nodes.
+reading::LightSource source_of(const reading::AreaLights::Origin& origin,
+                               const reading::ImportContext& context) {
+  const std::vector<std::uint32_t>& nodes = context.visited_nodes;
+  if (nodes.empty())
+    return {reading::LightSource::Kind::surface, none, origin.material, origin.lamp};
+  if (origin.object < nodes.size()) {
+    return {reading::LightSource::Kind::surface, nodes[origin.object], origin.material,
+            origin.lamp};
+  }
+  return {reading::LightSource::Kind::panel, nodes[origin.object - reading::first_panel_object],
+          none, origin.lamp};
+}
+
+}  // namespace
+
+namespace loading {
+
+SourcedScene load_sourced_scene(const std::filesystem::path& file,
+                                const SceneLoadOptions& options) {
+  Scene scene;
+  scene.source = file;
+  scene.turn = loading::turn_upright(options.up);
+  files::SceneFolder folder(file, options.allow_outside);
+  files::Warnings warnings;
+  reading::AreaLights area_lights(scene);
+  std::vector<loading::PlacedLuminaires> placed;
+  reading::ImportContext context{scene, folder, options, warnings, area_lights, {}};
+  try {
+    import_by_extension(context);
+    report_dropped_triangles(scene.report, warnings);
+    if (scene.triangles.empty()) {
+      throw lacks("no triangles with an area; export the scene with its geometry", context);
+    }
+    if (options.up.empty()) loading::warn_of_other_up(scene, warnings);
+    for (const reading::AreaLights::Origin& origin : area_lights.finish(warnings)) {
+      context.light_sources.push_back(source_of(origin, context));
+    }
+    finish_directional_lights(context);
+    placed = loading::add_luminaires(options, scene, warnings);
+    loading::add_surroundings(scene, options);
+    context.light_sources.resize(scene.lights.size());
+    if (scene.lights.empty() && !options.may_be_dark) {
+      throw lacks(
+          "no lights; give a material an emission (Ke in MTL, emissiveFactor in glTF), add "
+          "KHR_lights_punctual lights, or give luminaires, an environment picture, a sun or a sky",
+          context);
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw context.error("not enough memory to load the scene; split it");
+  } catch (const std::exception& error) {
+    // The importer libraries throw what they like on malformed files.
+    throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
+  }
+  gltf::group_instances(scene.lights, context.light_sources);
+  scene::make_light_names_unique(scene.lights);
+  loading::apply_profiles(scene, options.profiles, warnings);
+  loading::apply_temperatures(scene, options.temperatures);
+  loading::apply_reflectances(scene, options.reflectances);
+  check_powers(scene, options.emissive_scale);
+  loading::group_lights(scene, options.light_groups);
+  if (scene.cameras.empty()) scene.cameras.push_back(scene::place_camera(scene));
+  const bool lit_from_beyond = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                           [](const Light& light) { return light.is_distant(); });
+  if (lit_from_beyond) scene.portals = trace::portals_asked_for(scene, options.portals);
+  scene.report.warnings = warnings.lines();
+  return {std::move(scene), std::move(context.light_sources), std::move(placed)};
+}
+
+}  // namespace loading
+
+Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options) {
+  return loading::load_sourced_scene(file, options).scene;
+}
+
+}  // namespace photile

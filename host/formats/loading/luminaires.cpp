@@ -1,0 +1,314 @@
+#include "loading/luminaires.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/json_object.hpp"
+#include "files/scene_folder.hpp"
+#include "gltf/panels.hpp"
+#include "photile/defaults.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photometry/photometric_file.hpp"
+#include "scene/default_camera.hpp"
+#include "scene/light_names.hpp"
+#include "scene/mesh_builder.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/room.hpp"
+
+namespace photile::loading {
+namespace {
+
+using nlohmann::json;
+
+constexpr double below_ceiling = 0.005;  // metres
+/// Of a lamp's flux: what shines to the other side of its opening.
+constexpr double least_uplight = 1e-3;
+constexpr int most_in_a_row = 1'000;
+
+/// A photometric file, which a scene holds once however many entries name it.
+struct LampKind {
+  std::uint32_t distribution = 0;  ///< of the scene
+  bool uplight = false;            ///< whether it shines to the other side of its opening, too
+};
+
+/// What entries have in common, found once: a file of kilobytes may have thousands of them.
+struct Shared {
+  std::map<std::filesystem::path, LampKind> kinds = {};
+  std::optional<std::optional<glm::dvec3>> ceiling = {};  ///< its middle, once it was looked for
+};
+
+struct LuminaireArray {
+  PlacedLuminaires placed;
+  LampKind kind;
+};
+
+/// A pair of numbers, or nothing where the member is missing.
+std::optional<std::array<double, 2>> pair_of(const json& entry, const JsonObject& object,
+                                             const char* key, double lowest, double highest) {
+  if (!object.has(key)) return std::nullopt;
+  const json& value = entry[key];
+  const auto in_range = [&](const json& number) {
+    return number.is_number() && number.get<double>() >= lowest && number.get<double>() <= highest;
+  };
+  if (!value.is_array() || value.size() != 2 || !in_range(value[0]) || !in_range(value[1])) {
+    object.refuse(fmt::format("'{}' is not two numbers from {:g} to {:g}", key, lowest, highest));
+  }
+  return std::array{value[0].get<double>(), value[1].get<double>()};
+}
+
+/// Share of the flux that shines away from the aim.
+double uplight_of(const IntensityDistribution& distribution) {
+  constexpr int rows = 64, columns = 64;
+  double up = 0, all = 0;
+  for (int row = 0; row < rows; ++row) {
+    const double z = -1 + 2 * (row + 0.5) / rows, sine = std::sqrt(1 - z * z);
+    for (int column = 0; column < columns; ++column) {
+      const double azimuth = glm::two_pi<double>() * (column + 0.5) / columns;
+      const double intensity =
+          distribution.intensity({sine * std::cos(azimuth), sine * std::sin(azimuth), z});
+      all += intensity;
+      up += z > 0 ? intensity : 0.0;
+    }
+  }
+  return all > 0 ? up / all : 0.0;
+}
+
+LampKind kind_of(const std::filesystem::path& file, const JsonObject& object, Shared& shared,
+                 Scene& scene, files::Warnings& warnings) {
+  if (const auto found = shared.kinds.find(file); found != shared.kinds.end()) {
+    return found->second;
+  }
+  try {
+    const auto bytes = files::read_regular_file(file, limits::max_photometry_bytes);
+    auto lamp = photometry::read_photometry(file.string(), bytes, warnings);
+    const LampKind kind{static_cast<std::uint32_t>(scene.distributions.size()),
+                        uplight_of(lamp) > least_uplight};
+    scene.distributions.push_back(std::move(lamp));
+    return shared.kinds[file] = kind;
+  } catch (const files::ResourceError& error) {
+    object.refuse(fmt::format("'file': {}: {}", file.string(), error.what()));
+  }
+}
+
+/// The middle of the ceiling of the first camera's room.
+std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
+  const RayScene rays(scene);
+  const trace::FlushDenormals flush_denormals;
+  const auto axes = measuring::PlanAxes();
+  const Camera camera = scene.cameras.empty() ? scene::place_camera(scene) : scene.cameras.front();
+  const auto room = measuring::Room::of_camera(rays, axes, camera);
+  if (!room) return std::nullopt;
+  const glm::dvec2 plan = 0.5 * (room->low() + room->high());
+  const auto places = room->places();
+  if (places.empty()) return std::nullopt;
+  const double height = glm::dot(places.front(), axes.up);
+  const glm::dvec3 below = plan.x * axes.right + plan.y * axes.ahead + height * axes.up;
+  const auto ceiling = trace::intersect(rays, glm::vec3(below), glm::vec3(axes.up));
+  if (!ceiling) return std::nullopt;
+  const trace::SurfacePoint point = trace::surface_hit(scene, *ceiling, glm::vec3(axes.up));
+  return glm::dvec3(point.position) - below_ceiling * axes.up;
+}
+
+glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene& scene,
+                       Shared& shared) {
+  if (!entry.contains("position") || entry["position"] != "ceiling") {
+    return place_in_scene(scene, object.vector("position"));
+  }
+  if (!shared.ceiling) shared.ceiling = middle_of_ceiling(scene);
+  const auto& middle = *shared.ceiling;
+  if (!middle) {
+    object.refuse("'position': the first camera sees no room with a ceiling; give three numbers");
+  }
+  return *middle;
+}
+
+/// Along x and across, of the flat opening that is seen from below; of a round one a rectangle of
+/// the same area. Nothing where the file states none.
+std::optional<glm::dvec2> size_of(const LuminousOpening& opening) {
+  if (!(opening.along_zero > 0 && opening.along_quarter > 0)) return std::nullopt;
+  const double squared = opening.round ? std::sqrt(std::numbers::pi) / 2 : 1;
+  return glm::dvec2(squared * opening.along_zero, squared * opening.along_quarter);
+}
+
+LuminaireArray array_of(const json& entry, const JsonObject& object,
+                        const std::filesystem::path& folder, Shared& shared, Scene& scene,
+                        files::Warnings& warnings) {
+  const std::filesystem::path file = folder / object.text("file", "");
+  LuminaireArray lamps{{}, kind_of(file, object, shared, scene, warnings)};
+  const IntensityDistribution& distribution = scene.distributions[lamps.kind.distribution];
+  PlacedLuminaires& placed = lamps.placed;
+  placed.name = object.text("name", file.stem().string());
+  placed.position = position_of(entry, object, scene, shared);
+  glm::dvec3 aim(0.0, -1.0, 0.0);
+  if (object.has("aim")) aim = direction_in_scene(scene, object.vector("aim"));
+  if (!(glm::length(aim) > 0)) object.refuse("'aim' is 0 0 0; it has to point somewhere");
+  if (object.has("rotation")) placed.rotation = glm::radians(object.number("rotation", -360, 360));
+  placed.axes = luminaire_axes(glm::normalize(aim), placed.rotation);
+  placed.lumens = distribution.flux();
+  if (object.has("lumens")) placed.lumens = object.number("lumens", 0, limits::max_light_power);
+  if (const auto count = pair_of(entry, object, "count", 1, most_in_a_row)) {
+    placed.columns = static_cast<int>((*count)[0]);
+    placed.rows = static_cast<int>((*count)[1]);
+    if (placed.columns != (*count)[0] || placed.rows != (*count)[1]) {
+      object.refuse("'count' is not two whole numbers");
+    }
+  }
+  if (const auto spacing = pair_of(entry, object, "spacing", 0, limits::max_coordinate)) {
+    placed.spacing = {(*spacing)[0], (*spacing)[1]};
+  } else if (placed.columns * placed.rows > 1) {
+    object.refuse("'count' of several lamps needs 'spacing', two numbers of metres");
+  }
+  std::optional<glm::dvec2> size = size_of(distribution.opening());
+  if (const auto given = pair_of(entry, object, "size", 1e-4, limits::max_coordinate)) {
+    size = glm::dvec2((*given)[0], (*given)[1]);
+  }
+  if (!size) {
+    object.refuse(
+        "'size' is missing, and the file states no luminous opening; give two numbers of metres");
+  }
+  placed.opening = *size;
+  return lamps;
+}
+
+std::uint32_t black_material(Scene& scene) {
+  Material material;
+  material.name = "luminaire";
+  scene.materials.push_back(material);
+  return static_cast<std::uint32_t>(scene.materials.size() - 1);
+}
+
+void add_array(const LuminaireArray& lamps, double lumen_per_watt, std::uint32_t material,
+               scene::MeshBuilder& mesh, Scene& scene) {
+  const PlacedLuminaires& placed = lamps.placed;
+  Light light;
+  light.kind = LightKind::area;
+  light.power = scene.unit == PowerUnit::lumen ? placed.lumens : placed.lumens / lumen_per_watt;
+  light.direction = glm::vec3(-placed.axes[2]);
+  light.x_axis = glm::vec3(placed.axes[0]);
+  light.two_sided = lamps.kind.uplight;
+  light.distribution = lamps.kind.distribution;
+  const std::vector<glm::dvec3> middles = placed.middles();
+  const bool alone = middles.size() == 1;
+  if (!alone) light.group = placed.name;
+  const auto columns = static_cast<std::size_t>(placed.columns);
+  for (std::size_t i = 0; i < middles.size(); ++i) {
+    glm::dmat4 world(placed.axes);
+    world[3] = glm::dvec4(middles[i], 1.0);
+    const auto number = static_cast<std::uint32_t>(scene.lights.size());
+    light.name = alone ? placed.name
+                       : fmt::format("{}_{}_{}", placed.name, i % columns + 1, i / columns + 1);
+    light.triangles.clear();
+    const gltf::Panel opening{.width = placed.opening.x, .height = placed.opening.y};
+    for (const auto& corners : gltf::panel_triangles(opening, world)) {
+      const auto index = static_cast<std::uint32_t>(scene.triangles.size());
+      if (mesh.add(
+              {scene::Corner{corners[0]}, scene::Corner{corners[1]}, scene::Corner{corners[2]}},
+              material, number))
+        light.triangles.push_back(index);
+    }
+    if (!light.triangles.empty()) scene.lights.push_back(light);
+  }
+}
+
+/// A lamp to see by in a room that has none yet.
+void add_work_light(double lumen_per_watt, Scene& scene) {
+  Light light;
+  light.name = "work_light";
+  light.kind = LightKind::point;
+  light.power =
+      scene.unit == PowerUnit::lumen ? defaults::work_light : defaults::work_light / lumen_per_watt;
+  const Camera camera = scene.cameras.empty() ? scene::place_camera(scene) : scene.cameras.front();
+  light.position = glm::vec3(camera.position);
+  scene.lights.push_back(std::move(light));
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> PlacedLuminaires::middles() const {
+  std::vector<glm::dvec3> middles;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      middles.push_back(position + (column - 0.5 * (columns - 1)) * spacing.x * axes[0] +
+                        (row - 0.5 * (rows - 1)) * spacing.y * axes[1]);
+    }
+  }
+  return middles;
+}
+
+glm::dmat3 luminaire_axes(const glm::dvec3& aim, double rotation) {
+  const glm::dvec3 z = -aim;
+  const bool upright = std::abs(z.y) > 0.999;
+  const glm::dvec3 level = upright ? glm::dvec3(1, 0, 0) : glm::cross(glm::dvec3(0, 1, 0), z);
+  const glm::dvec3 x = glm::normalize(level - glm::dot(level, z) * z);
+  const glm::dvec3 y = glm::cross(z, x);
+  const double cosine = std::cos(rotation), sine = std::sin(rotation);
+  return {cosine * x + sine * y, cosine * y - sine * x, z};
+}
+
+std::optional<glm::dvec2> stated_opening(const std::filesystem::path& photometry) {
+  files::Warnings unheard;
+  const auto bytes = files::read_regular_file(photometry, limits::max_photometry_bytes);
+  return size_of(photometry::read_photometry(photometry.string(), bytes, unheard).opening());
+}
+
+std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
+                                             const std::filesystem::path& file,
+                                             double lumen_per_watt, Scene& scene,
+                                             files::Warnings& warnings) {
+  std::vector<LuminaireArray> arrays;
+  Shared shared;
+  std::size_t lamps = scene.lights.size();
+  for (std::size_t i = 0; i < list.entries.size(); ++i) {
+    const json entry = list.entries[i];
+    const JsonObject object(
+        entry, fmt::format("{}: luminaire {}", file.string(), i + 1),
+        {"name", "file", "position", "aim", "rotation", "lumens", "count", "spacing", "size"});
+    arrays.push_back(array_of(entry, object, file.parent_path(), shared, scene, warnings));
+    const PlacedLuminaires& placed = arrays.back().placed;
+    lamps += static_cast<std::size_t>(placed.columns) * static_cast<std::size_t>(placed.rows);
+    if (lamps > limits::max_lights) {
+      object.refuse(fmt::format("more than {} lights together; place fewer", limits::max_lights));
+    }
+  }
+  std::vector<PlacedLuminaires> placed;
+  if (arrays.empty()) return placed;
+  const std::uint32_t material = black_material(scene);
+  scene::MeshBuilder mesh(scene, {.uv = !scene.corner_uv.empty(),
+                                  .emission_uv = !scene.corner_emission_uv.empty(),
+                                  .normals = !scene.corner_normal.empty(),
+                                  .tangents = !scene.corner_tangent.empty()});
+  for (const LuminaireArray& array : arrays) {
+    placed.push_back(array.placed);
+    add_array(array, lumen_per_watt, material, mesh, scene);
+  }
+  return placed;
+}
+
+std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Scene& scene,
+                                             files::Warnings& warnings) {
+  const std::filesystem::path& file = options.luminaires;
+  if (file.empty()) return {};
+  const bool edited = !options.luminaires_text.empty();
+  const LuminaireList list =
+      edited ? LuminaireList::parse(options.luminaires_text, file.string()) : read_luminaires(file);
+  if (list.entries.empty() && !edited) {
+    throw InputError(fmt::format("{}: holds no luminaire", file.string()));
+  }
+  auto placed = add_luminaires(list, file, options.lumen_per_watt, scene, warnings);
+  const bool lit = options.sky || options.sun || !options.environment.file.empty();
+  if (edited && scene.lights.empty() && !lit) add_work_light(options.lumen_per_watt, scene);
+  return placed;
+}
+
+}  // namespace photile::loading

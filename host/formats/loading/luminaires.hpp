@@ -1,0 +1,59 @@
+// Measured lamps that a user places: their luminous openings emit from their true area.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files/warnings.hpp"
+#include "loading/luminaire_list.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::loading {
+
+/// Where the lamps of an entry are, in the scene's coordinates.
+struct PlacedLuminaires {
+  std::string name;
+  glm::dvec3 position{0.0};  ///< of their middle
+  /// x, y and z of each: the opening lies in x and y, and shines along -z.
+  glm::dmat3 axes{1.0};
+  double rotation = 0;        ///< radians, of x about the aim
+  glm::dvec2 opening{0.0};    ///< metres along x and y
+  int columns = 1, rows = 1;  ///< along x and y
+  glm::dvec2 spacing{0.0};    ///< metres
+  double lumens = 0;          ///< of each lamp
+
+  std::vector<glm::dvec3> middles() const;
+};
+
+/// x, y and z of a lamp with an aim: not rotated, x lies in the horizon, along that of the world
+/// where it shines up or down.
+///   aim        unit
+///   rotation   radians
+glm::dmat3 luminaire_axes(const glm::dvec3& aim, double rotation);
+
+/// The size that an entry with this photometric file has without `size`; nothing where the file
+/// states none. Errors: InputError, ResourceError.
+std::optional<glm::dvec2> stated_opening(const std::filesystem::path& photometry);
+
+/// Adds lamps to a scene with its triangles and area lights: for each a flat opening that shines by
+/// the intensities of its photometric file. Members: `file` (.ies or .ldt, beside the JSON file),
+/// `position` (metres in the scene file's world, the middle of the array; "ceiling" = the middle of
+/// the ceiling of the first camera's room), `aim` (down), `rotation` (degrees about the aim),
+/// `lumens` (those of the file), `count` and `spacing` (along the lamp's x axis and across), `size`
+/// of the opening in metres (x, across; the file's), `name`, which is that of the layer that all of
+/// an entry share. Lamps without a camera count on default_camera. Returns where each entry's are.
+///   file   of the list, for messages and for the folder of photometric files
+/// Errors: InputError naming the file, the entry and the member.
+std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
+                                             const std::filesystem::path& file,
+                                             double lumen_per_watt, Scene& scene,
+                                             files::Warnings& warnings);
+
+/// What add_luminaires makes of the options: of their file, or of the text in its place.
+std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Scene& scene,
+                                             files::Warnings& warnings);
+
+}  // namespace photile::loading

@@ -1,0 +1,159 @@
+#include "obj/obj_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <istream>
+#include <map>
+#include <streambuf>
+
+#include "common/ascii_text.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::obj {
+namespace {
+
+/// A stream over bytes that stay where they are.
+class MemoryBuffer : public std::streambuf {
+ public:
+  explicit MemoryBuffer(std::string& text) {
+    setg(text.data(), text.data(), text.data() + text.size());
+  }
+};
+
+/// Collects what the callbacks report.
+class Collector {
+ public:
+  Collector(reading::ImportContext& context, ObjFile& file) : context_(context), file_(file) {
+    file_.objects.emplace_back();
+  }
+
+  void add_face(const tinyobj::index_t* indices, int count) {
+    if (count < 3) {
+      context_.warnings.add("object", object_name(), "faces with fewer than 3 corners are ignored");
+      return;
+    }
+    if (static_cast<std::uint64_t>(count) > limits::max_polygon_corners) {
+      throw context_.error(fmt::format("face {} has {} corners; the limit is {}; split it",
+                                       file_.faces.size() + 1, count, limits::max_polygon_corners));
+    }
+    file_.faces.push_back(
+        {file_.corners.size(), static_cast<std::uint32_t>(count), object_, material_});
+    for (int i = 0; i < count; ++i) {
+      file_.corners.push_back({from_zero(indices[i].vertex_index, file_.positions.size()),
+                               from_zero(indices[i].normal_index, file_.normals.size()),
+                               from_zero(indices[i].texcoord_index, file_.texcoords.size())});
+    }
+  }
+
+  void use_material(const std::string& name) {
+    material_ = find_or_add(std::string(trimmed(name)), file_.material_names, material_index_);
+  }
+
+  void begin_object(const std::string& name) {
+    object_ = find_or_add(std::string(trimmed(name)), file_.objects, object_index_);
+  }
+
+ private:
+  /// OBJ counts from 1, and negative indices from the last element read so far.
+  static int from_zero(int index, std::size_t count) {
+    if (index > 0) return index - 1;
+    if (index == 0) return -1;
+    const std::int64_t absolute = static_cast<std::int64_t>(count) + index;
+    return absolute < 0 ? -1 : static_cast<int>(absolute);
+  }
+
+  static std::uint32_t find_or_add(const std::string& name, std::vector<std::string>& names,
+                                   std::map<std::string, std::uint32_t>& index) {
+    const auto [entry, inserted] =
+        index.try_emplace(name, static_cast<std::uint32_t>(names.size()));
+    if (inserted) names.push_back(name);
+    return entry->second;
+  }
+
+  const std::string& object_name() const { return file_.objects[object_]; }
+
+  reading::ImportContext& context_;
+  ObjFile& file_;
+  std::uint32_t object_ = 0, material_ = none;
+  std::map<std::string, std::uint32_t> object_index_{{"", 0}}, material_index_;
+};
+
+struct CallbackData {
+  Collector collector;
+  ObjFile& file;
+};
+
+tinyobj::callback_t callbacks() {
+  tinyobj::callback_t result;
+  using tinyobj::real_t;
+  result.vertex_cb = [](void* p, real_t x, real_t y, real_t z, real_t) {
+    static_cast<CallbackData*>(p)->file.positions.emplace_back(x, y, z);
+  };
+  result.normal_cb = [](void* p, real_t x, real_t y, real_t z) {
+    static_cast<CallbackData*>(p)->file.normals.emplace_back(x, y, z);
+  };
+  result.texcoord_cb = [](void* p, real_t u, real_t v, real_t) {
+    static_cast<CallbackData*>(p)->file.texcoords.emplace_back(u, v);
+  };
+  result.index_cb = [](void* p, tinyobj::index_t* indices, int count) {
+    static_cast<CallbackData*>(p)->collector.add_face(indices, count);
+  };
+  result.usemtl_cb = [](void* p, const char* name, int) {
+    static_cast<CallbackData*>(p)->collector.use_material(name);
+  };
+  result.group_cb = [](void* p, const char** names, int count) {
+    static_cast<CallbackData*>(p)->collector.begin_object(count > 0 ? names[0] : "");
+  };
+  result.object_cb = [](void* p, const char* name) {
+    static_cast<CallbackData*>(p)->collector.begin_object(name);
+  };
+  return result;
+}
+
+/// Positive vertex indices may point ahead, so they are checked when all vertices are known.
+void check_corners(ObjFile& file, reading::ImportContext& context) {
+  std::uint64_t bad_normals = 0, bad_texcoords = 0;
+  for (std::size_t f = 0; f < file.faces.size(); ++f) {
+    const ObjFace& face = file.faces[f];
+    for (std::uint64_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+      tinyobj::index_t& corner = file.corners[c];
+      const auto beyond = [](int index, std::size_t count) {
+        return index >= 0 && static_cast<std::size_t>(index) >= count;
+      };
+      if (corner.vertex_index < 0 || beyond(corner.vertex_index, file.positions.size())) {
+        throw context.error(fmt::format(
+            "face {} (object '{}') has a corner without a valid vertex index; the file has {} "
+            "vertices; repair or export it again",
+            f + 1, file.objects[face.object], file.positions.size()));
+      }
+      if (beyond(corner.normal_index, file.normals.size())) {
+        corner.normal_index = -1;
+        ++bad_normals;
+      }
+      if (beyond(corner.texcoord_index, file.texcoords.size())) {
+        corner.texcoord_index = -1;
+        ++bad_texcoords;
+      }
+    }
+  }
+  if (bad_normals + bad_texcoords > 0) {
+    context.warnings.add(fmt::format("{} normal and {} texture indices out of range are ignored",
+                                     bad_normals, bad_texcoords));
+  }
+}
+
+}  // namespace
+
+ObjFile read_obj(std::string& text, reading::ImportContext& context) {
+  ObjFile file;
+  CallbackData data{Collector(context, file), file};
+  MemoryBuffer buffer(text);
+  std::istream stream(&buffer);
+  // tinyobjloader's own warnings only repeat, less precisely, what the reader and the collector
+  // say.
+  tinyobj::LoadObjWithCallback(stream, callbacks(), &data, nullptr, nullptr, nullptr);
+  check_corners(file, context);
+  return file;
+}
+
+}  // namespace photile::obj

@@ -1,0 +1,209 @@
+#include "photometry/ies_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "files/warnings.hpp"
+#include "photile/limits.hpp"
+#include "photometry/photometric_planes.hpp"
+#include "photometry/photometric_text.hpp"
+
+namespace photile::photometry {
+namespace {
+
+enum class Photometry { type_c = 1, type_b = 2, type_a = 3 };
+
+/// What the TILT= line says; `next` is the line after it.
+struct Tilt {
+  std::string_view value;
+  std::size_t next;
+};
+
+Tilt find_tilt(const std::vector<std::string_view>& lines) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    std::string_view line = trimmed(lines[i]);
+    if (!line.starts_with("TILT")) continue;
+    line = trimmed(line.substr(4));
+    if (line.starts_with('=')) return {trimmed(line.substr(1)), i + 1};
+  }
+  throw files::ResourceError("no line starts with TILT=: this is no LM-63 file");
+}
+
+void skip_tilt(const Tilt& tilt, const std::string& name, NumberReader& reader,
+               files::Warnings& warnings) {
+  if (tilt.value == "NONE") return;
+  if (tilt.value != "INCLUDE") {
+    warnings.add("photometric file", name, "its tilt file is not read: the lamp is not tilted");
+    return;
+  }
+  reader.number("lamp-to-luminaire geometry");
+  const std::size_t count =
+      reader.count("number of tilt angles", 0, limits::max_photometric_angles);
+  reader.numbers("tilt angle", count);
+  const std::vector<double> factors = reader.numbers("tilt factor", count);
+  if (std::any_of(factors.begin(), factors.end(), [](double factor) { return factor != 1.0; })) {
+    warnings.add("photometric file", name, "its tilt factors are ignored: the lamp is not tilted");
+  }
+}
+
+double positive(const std::string& what, NumberReader& reader) {
+  const double value = reader.number(what);
+  if (!(value > 0.0)) {
+    throw files::ResourceError(
+        fmt::format("{}: the {} is {}, not above 0", reader.place(), what, value));
+  }
+  return value;
+}
+
+std::vector<double> angles(const std::string& what, std::size_t count, double lowest,
+                           double highest, NumberReader& reader) {
+  std::vector<double> values = reader.numbers(what, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool ascends = i == 0 || values[i] - values[i - 1] >= least_angle_step;
+    if (values[i] < lowest || values[i] > highest || !ascends) {
+      throw files::ResourceError(
+          fmt::format("{} {} of {} is {}; angles ascend within {} and {} degrees, by {:g} at least",
+                      what, i + 1, count, values[i], lowest, highest, least_angle_step));
+    }
+  }
+  return values;
+}
+
+/// The candela values as the file orders them: for each horizontal angle all vertical ones.
+struct Web {
+  std::vector<double> vertical, horizontal;  ///< degrees
+  std::vector<float> candela;
+
+  float at(std::size_t h, std::size_t v) const { return candela[h * vertical.size() + v]; }
+};
+
+Web read_web(std::size_t vertical, std::size_t horizontal, Photometry type, double factor,
+             NumberReader& reader) {
+  const bool polar = type == Photometry::type_c;
+  Web web;
+  web.vertical =
+      angles("vertical angle", vertical, polar ? 0.0 : -90.0, polar ? 180.0 : 90.0, reader);
+  web.horizontal =
+      angles("horizontal angle", horizontal, polar ? -360.0 : -90.0, polar ? 720.0 : 90.0, reader);
+  for (std::size_t i = 0; i < vertical * horizontal; ++i) {
+    const std::string what = "candela value";
+    const double value = factor * reader.number(what);
+    if (!(value >= 0.0) || !std::isfinite(static_cast<float>(value))) {
+      throw files::ResourceError(fmt::format("{}: {} {} of {} makes {} cd", reader.place(), what,
+                                             i + 1, vertical * horizontal, value));
+    }
+    web.candela.push_back(static_cast<float>(value));
+  }
+  return web;
+}
+
+IntensityDistribution type_c(const std::string& name, const Web& web) {
+  std::vector<double> azimuth;
+  std::vector<float> intensity;
+  for (const MeasuredPlane& plane : planes_all_around(web.horizontal)) {
+    azimuth.push_back(plane.azimuth);
+    for (std::size_t v = 0; v < web.vertical.size(); ++v) {
+      intensity.push_back(web.at(plane.measured, v));
+    }
+  }
+  return {name, PhotometricAxes{}, web.vertical, azimuth, std::move(intensity)};
+}
+
+/// An angle of types A and B, from -90 to 90 degrees, and its index in the file. A lamp measured
+/// from 0 on is symmetric.
+std::vector<MeasuredPlane> on_both_sides(const std::vector<double>& measured) {
+  std::vector<MeasuredPlane> angles;
+  for (std::size_t i = measured.size(); measured.front() == 0.0 && i-- > 1;) {
+    angles.push_back({-measured[i], i});
+  }
+  for (std::size_t i = 0; i < measured.size(); ++i) angles.push_back({measured[i], i});
+  return angles;
+}
+
+/// Types A and B are the same spherical coordinates as type C about another pole: the polar angle
+/// is 90 degrees less the vertical angle of type A, whose pole points up, or less the horizontal
+/// angle of type B, whose pole points to the right, as seen from the lamp (IES LM-75).
+IntensityDistribution type_a_or_b(const std::string& name, const Web& web, Photometry type) {
+  const glm::dvec3 forward(0, 0, -1), up(1, 0, 0), right(0, -1, 0);
+  const bool a = type == Photometry::type_a;
+  const PhotometricAxes axes =
+      a ? PhotometricAxes{up, forward, right} : PhotometricAxes{right, forward, up};
+  std::vector<MeasuredPlane> rows = on_both_sides(a ? web.vertical : web.horizontal);
+  std::reverse(rows.begin(), rows.end());  // polar angles ascend
+  std::vector<double> polar, azimuth;
+  for (const MeasuredPlane& row : rows) polar.push_back(90.0 - row.azimuth);
+  std::vector<float> intensity;
+  for (const MeasuredPlane& column : on_both_sides(a ? web.horizontal : web.vertical)) {
+    azimuth.push_back(column.azimuth);
+    for (const MeasuredPlane& row : rows) {
+      intensity.push_back(a ? web.at(column.measured, row.measured)
+                            : web.at(row.measured, column.measured));
+    }
+  }
+  return {name, axes, polar, azimuth, std::move(intensity)};
+}
+
+/// Width (across the plane of azimuth 0), length (along it) and height; of round openings the
+/// diameter has a minus, in both places (LM-63-2019, table 1) or, until 1995, in one beside a 0.
+LuminousOpening opening_of(const std::vector<double>& size, bool feet) {
+  const double metres = feet ? 0.3048 : 1.0;
+  const bool round = size[0] < 0 || size[1] < 0;
+  double width = metres * std::abs(size[0]), length = metres * std::abs(size[1]);
+  if (round && width == 0) width = length;
+  if (round && length == 0) length = width;
+  return {.along_zero = length,
+          .along_quarter = width,
+          .height = metres * std::abs(size[2]),
+          .round = round};
+}
+
+/// Whether the number after the ballast factor is a factor, too. From 1995 on it is reserved, and
+/// in 2019 it tells how the file was made.
+bool has_ballast_lamp_factor(std::string_view first_line) {
+  return !first_line.starts_with("IESNA:LM-63") && !first_line.starts_with("IES:LM-63");
+}
+
+}  // namespace
+
+IntensityDistribution read_ies(const std::string& name, std::string_view text,
+                               files::Warnings& warnings) {
+  const std::vector<std::string_view> lines = lines_of(text);
+  const Tilt tilt = find_tilt(lines);
+  NumberReader reader(lines, tilt.next);
+  skip_tilt(tilt, name, reader, warnings);
+  reader.number("number of lamps");
+  reader.number("lumens per lamp");
+  double factor = positive("candela multiplier", reader);
+  const std::size_t vertical =
+      reader.count("number of vertical angles", 2, limits::max_photometric_angles);
+  const std::size_t horizontal =
+      reader.count("number of horizontal angles", 1, limits::max_photometric_angles);
+  const auto type = static_cast<Photometry>(reader.count("photometric type", 1, 3));
+  const bool feet = reader.count("type of units", 1, 2) == 1;
+  const LuminousOpening opening =
+      opening_of(reader.numbers("size of the luminous opening", 3), feet);
+  factor *= positive("ballast factor", reader);
+  const double next = reader.number("ballast-lamp photometric factor");
+  if (has_ballast_lamp_factor(trimmed(lines.front())) && next > 0.0) factor *= next;
+  reader.number("input watts");
+  if (vertical * horizontal > limits::max_photometric_values) {
+    throw files::ResourceError(
+        fmt::format("{} vertical x {} horizontal angles; the limit is {} values", vertical,
+                    horizontal, limits::max_photometric_values));
+  }
+  if (type != Photometry::type_c && horizontal < 2) {
+    throw files::ResourceError(
+        "a file of photometric type A or B has at least 2 horizontal angles");
+  }
+  const Web web = read_web(vertical, horizontal, type, factor, reader);
+  IntensityDistribution distribution =
+      type == Photometry::type_c ? type_c(name, web) : type_a_or_b(name, web, type);
+  if (type == Photometry::type_c) distribution.set_opening(opening);
+  return distribution;
+}
+
+}  // namespace photile::photometry

@@ -1,0 +1,70 @@
+// Emissive triangles, gathered to area lights.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "files/warnings.hpp"
+#include "photile/limits.hpp"
+#include "photile/scene.hpp"
+#include "reading/light_source.hpp"
+
+namespace photile::reading {
+
+/// Panels count as objects of their own, after all visits of nodes.
+inline constexpr std::uint64_t first_panel_object = limits::max_node_visits;
+
+/// What a material emits, in cd/m2 or W/(m2 sr).
+struct Emission {
+  glm::dvec3 radiance{0.0};  ///< of a white texel, where there is a texture
+  bool two_sided = false;
+  std::uint32_t texture = none;  ///< into Scene::textures
+};
+
+/// One light per object (a glTF node, an OBJ object or group) and emissive material.
+class AreaLights {
+ public:
+  explicit AreaLights(Scene& scene) : scene_(scene) {}
+
+  /// The light of `object` and `material`, or `none` when the material emits nothing. `traits` are
+  /// those of the object's lights. Errors: InputError beyond limits::max_lights.
+  std::uint32_t find_or_add(std::uint64_t object, const std::string& object_name,
+                            std::uint32_t material, const Emission& emission,
+                            const LightTraits& traits = {});
+
+  /// What find_or_add was given for a light.
+  struct Origin {
+    std::uint64_t object;
+    std::uint32_t material;
+    std::string lamp;  ///< of the traits
+  };
+
+  /// Lists each light's triangles and computes its power. Lights that got no triangle are dropped
+  /// with a warning. Call once, after the last triangle. Returns the origins of the lights that it
+  /// appended to the scene.
+  std::vector<Origin> finish(files::Warnings& warnings);
+
+ private:
+  struct Pending {
+    std::uint64_t object;
+    std::string object_name;
+    std::uint32_t material;
+    Emission emission;
+    LightTraits traits;
+  };
+  std::string name_of(const Pending& light) const;
+  bool set_emission(const Pending& pending, double area, Light& light,
+                    files::Warnings& warnings) const;
+  void apply_lumens(std::size_t first_light, const std::vector<const Pending*>& sources);
+
+  Scene& scene_;
+  std::vector<Pending> pending_;
+  /// By object, material and texture: a primitive without coordinates loses the texture.
+  std::map<std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>, std::uint32_t> index_;
+  std::map<std::uint64_t, int> materials_of_object_;
+};
+
+}  // namespace photile::reading

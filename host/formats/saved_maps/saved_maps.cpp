@@ -1,0 +1,442 @@
+#include "saved_maps/saved_maps.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "common/content_hash.hpp"
+#include "common/input_file.hpp"
+#include "common/output_file.hpp"
+#include "common/run_files.hpp"
+#include "maps/check_photons.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/scene_needs.hpp"
+#include "saved_maps/check_photons.hpp"
+#include "scene/scene_hash.hpp"
+
+namespace photile::saved_maps {
+namespace {
+
+constexpr std::array<char, 8> magic{'P', 'H', 'O', 'T', 'M', 'A', 'P', 'S'};
+constexpr std::uint32_t version = 5;
+constexpr std::uint32_t byte_order = 0x0102'0304;
+
+/// A run of arrays. No padding.
+struct Part {
+  std::uint64_t bytes = 0;
+  ContentHash::Digest digest{};
+};
+
+/// The head of a file. It knows of all that follows, so that no part can be cut off unseen. No
+/// padding.
+struct Header {
+  std::array<char, 8> magic;
+  std::uint32_t version, byte_order;
+  ContentHash::Digest scene;
+  std::uint32_t shard, shards;
+  Part photons, light_maps;  ///< one after the other; light maps may be none
+  ContentHash::Digest head;  ///< of all before
+};
+static_assert(sizeof(Header) == 104 && std::is_trivially_copyable_v<Header>);
+static_assert(sizeof(LightMapContents::Place) == 12 && sizeof(LightMapContents::Tile) == 32);
+
+ContentHash::Digest digest_of(const Scene& scene) {
+  ContentHash hash;
+  scene::add_scene(scene, hash);
+  return hash.digest();
+}
+
+ContentHash::Digest digest_of(const Header& header) {
+  ContentHash hash;
+  hash.add_bytes(&header, offsetof(Header, head));
+  return hash.digest();
+}
+
+/// Calls `visit` with every array of photons.
+template <class Photons, class Visit>
+void for_each_array_of_photons(Photons& photons, const Visit& visit) {
+  visit(photons.position);
+  visit(photons.flux);
+  visit(photons.incoming);
+  visit(photons.light);
+  visit(photons.sided_triangle);
+  visit(photons.first_of);
+  visit(photons.emitted_per_light);
+}
+
+/// Calls `visit` with every array of the photons' part, in the order of the file.
+template <class Prepared, class Visit>
+void for_each_array(Prepared& prepared, const Visit& visit) {
+  for_each_array_of_photons(prepared.photons, visit);
+  auto& groups = prepared.groups;
+  visit(groups.offsets);
+  visit(groups.members);
+  visit(groups.patches.map_of);
+  visit(groups.patches.first_of);
+  visit(groups.patches.members);
+  if (prepared.caustics) for_each_array_of_photons(*prepared.caustics, visit);
+}
+
+/// Radius of the maps, radius and angle of the groups, and whether caustics are there.
+using Numbers = std::array<double, 4>;
+
+Numbers numbers_of(const PreparedPhotons& prepared) {
+  return {prepared.radius, prepared.groups.radius, prepared.groups.angle_degrees,
+          prepared.caustics ? 1.0 : 0.0};
+}
+
+/// Calls `put` with the bytes of an array, its number of elements before it.
+template <class Put, class Array>
+void write_array(const Array& values, const Put& put) {
+  const std::uint64_t count = values.size();
+  put(&count, sizeof count);
+  put(values.data(), count * sizeof(values[0]));
+}
+
+/// Calls `put` with all bytes of the photons' part, in runs.
+template <class Put>
+void write_photons(const PreparedPhotons& prepared, const Settings& settings, const Put& put) {
+  write_array(settings.photons, put);
+  write_array(prepared.has_groups() ? settings.groups : std::string(), put);
+  const Numbers numbers = numbers_of(prepared);
+  put(numbers.data(), sizeof numbers);
+  for_each_array(prepared, [&](const auto& values) { write_array(values, put); });
+}
+
+/// Calls `visit` with every array of light maps, in the order of the file.
+template <class Contents, class Visit>
+void for_each_light_map_array(Contents& contents, const Visit& visit) {
+  visit(contents.settings);
+  visit(contents.nodes);
+  visit(contents.values.irradiance);
+  visit(contents.values.by_normal);
+  visit(contents.values.first);
+  visit(contents.values.light);
+  visit(contents.error);
+  visit(contents.distance);
+  visit(contents.tiles);
+}
+
+/// The part that `write(put)` writes.
+template <class Write>
+Part part_of(const Write& write) {
+  Part part;
+  ContentHash hash;
+  write([&](const void* bytes, std::uint64_t count) {
+    part.bytes += count;
+    hash.add_bytes(bytes, count);
+  });
+  part.digest = hash.digest();
+  return part;
+}
+
+/// A file being read: knows how many bytes are left before it takes memory for them.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : file_(file) {
+    if (const std::string reason = why_no_regular_file(file); !reason.empty()) refuse(reason);
+    std::error_code error;
+    left_ = std::filesystem::file_size(file, error);
+    stream_.open(file, std::ios::binary);
+    if (error || !stream_) refuse("cannot be read");
+  }
+
+  std::uint64_t left() const { return left_; }
+
+  void read(void* bytes, std::uint64_t count) {
+    if (count > left_) refuse("is truncated; save it again");
+    if (!stream_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(count))) {
+      refuse("cannot be read");
+    }
+    if (hash_) hash_->add_bytes(bytes, count);
+    left_ -= count;
+  }
+
+  /// From here on, what is read counts for the digest of a part.
+  void begin_part() { hash_.emplace(); }
+  /// Errors: InputError where the part has another digest.
+  void end_part(const Part& part) {
+    if (hash_->digest() != part.digest) refuse("is damaged; save it again");
+    hash_.reset();
+  }
+
+  /// An array with its count before it.
+  template <class Array>
+  void read_array(Array& values) {
+    std::uint64_t count = 0;
+    read(&count, sizeof count);
+    if (count > left_ / sizeof(values[0])) refuse("is truncated or damaged; save it again");
+    values.resize(count);
+    read(values.data(), count * sizeof(values[0]));
+  }
+
+  [[noreturn]] void refuse(const std::string& reason) const {
+    throw InputError(fmt::format("{}: {}", file_.string(), reason));
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  std::ifstream stream_;
+  std::uint64_t left_ = 0;
+  std::optional<ContentHash> hash_;
+};
+
+Header read_header(Reader& reader) {
+  Header header{};
+  if (reader.left() < sizeof header) reader.refuse("holds no photon maps");
+  reader.read(&header, sizeof header);
+  if (header.magic != magic) reader.refuse("holds no photon maps");
+  if (header.byte_order != byte_order) {
+    reader.refuse("was saved on a machine of another byte order; save it again here");
+  }
+  if (header.version != version) {
+    reader.refuse(fmt::format("has version {} of the format, this photile reads {}; save it again",
+                              header.version, version));
+  }
+  if (header.head != digest_of(header)) reader.refuse("is damaged; save it again");
+  const std::uint64_t left = reader.left();
+  const bool whole =
+      header.photons.bytes <= left && header.light_maps.bytes <= left - header.photons.bytes;
+  if (!whole) reader.refuse("is truncated; save it again");
+  if (header.photons.bytes + header.light_maps.bytes != left) {
+    reader.refuse("has bytes after its end; save it again");
+  }
+  return header;
+}
+
+LightMapContents read_light_maps(Reader& reader, const Part& part) {
+  LightMapContents contents;
+  reader.begin_part();
+  for_each_light_map_array(contents, [&](auto& values) { reader.read_array(values); });
+  reader.end_part(part);
+  if (reader.left() > 0) reader.refuse("is damaged; save it again");
+  return contents;
+}
+
+/// The photons' part, with the settings that it was saved with.
+struct Contents {
+  Settings settings;
+  PreparedPhotons prepared;
+};
+
+Contents read_photons(Reader& reader, const Header& header) {
+  Contents contents;
+  PreparedPhotons& prepared = contents.prepared;
+  Numbers numbers{};
+  reader.begin_part();
+  reader.read_array(contents.settings.photons);
+  reader.read_array(contents.settings.groups);
+  reader.read(numbers.data(), sizeof numbers);
+  if (numbers[3] != 0) prepared.caustics.emplace();
+  for_each_array(prepared, [&](auto& values) { reader.read_array(values); });
+  reader.end_part(header.photons);
+  prepared.radius = numbers[0];
+  prepared.groups.radius = numbers[1];
+  prepared.groups.angle_degrees = numbers[2];
+  if (reader.left() != header.light_maps.bytes) reader.refuse("is damaged; save it again");
+  if (reader.left() > 0) prepared.light_maps = read_light_maps(reader, header.light_maps);
+  return contents;
+}
+
+void refuse_other_settings(const Reader& reader, const std::string& saved,
+                           const std::string& asked) {
+  if (saved == asked) return;
+  reader.refuse(fmt::format(
+      "was saved with {}, not with {}; give the same options or save it again", saved, asked));
+}
+
+void write(const std::filesystem::path& file, Header header, const Settings& settings,
+           const PreparedPhotons& prepared) {
+  header.photons = part_of([&](const auto& put) { write_photons(prepared, settings, put); });
+  header.head = digest_of(header);
+  OutputFile output(file);
+  output.write(&header, sizeof header);
+  write_photons(prepared, settings,
+                [&](const void* bytes, std::uint64_t count) { output.write(bytes, count); });
+  output.commit();  // reports short writes, too
+}
+
+Header header_of(const ContentHash::Digest& scene, const Shard& shard) {
+  return {magic, version, byte_order, scene, shard.index, shard.count, {}, {}, {}};
+}
+
+/// Photons that several processes have traced, each its shard.
+class ShardCollection {
+ public:
+  /// Errors: InputError where the file is damaged, or no shard that fits those before.
+  void add(const std::filesystem::path& file) {
+    Reader reader(file);
+    note_input(file);
+    const Header header = read_header(reader);
+    if (header.shards < 2 || header.shard >= header.shards) {
+      reader.refuse(
+          "holds all photons of its scene, or is no shard; give those of photile trace "
+          "--shard alone");
+    }
+    Contents contents = read_photons(reader, header);
+    if (contents.prepared.has_groups()) reader.refuse("holds photon maps; give photons alone");
+    if (shards_.empty()) {
+      scene_ = header.scene;
+      count_ = header.shards;
+      settings_ = contents.settings;
+      first_ = file;
+    }
+    if (header.scene != scene_) {
+      reader.refuse(fmt::format("was traced from another scene than {}", first_.string()));
+    }
+    if (contents.settings.photons != settings_.photons) {
+      reader.refuse(fmt::format("was traced with {}, {} with {}", contents.settings.photons,
+                                first_.string(), settings_.photons));
+    }
+    if (header.shards != count_) {
+      reader.refuse(
+          fmt::format("is one of {} shards, {} one of {}", header.shards, first_.string(), count_));
+    }
+    const auto [place, is_new] =
+        shards_.try_emplace(header.shard, Read{file, std::move(contents.prepared)});
+    if (!is_new) {
+      reader.refuse(fmt::format("holds shard {} of {}, as {} does; give each once",
+                                header.shard + 1, count_, place->second.file.string()));
+    }
+  }
+
+  /// Errors: InputError where shards are missing, or do not fit one another; OutputError.
+  void write_whole(const std::filesystem::path& output) {
+    check_complete();
+    PreparedPhotons whole;
+    whole.photons = merged([](PreparedPhotons& prepared) { return &prepared.photons; });
+    if (shards_.begin()->second.prepared.caustics) {
+      whole.caustics = merged([](PreparedPhotons& prepared) {
+        return prepared.caustics ? &*prepared.caustics : nullptr;
+      });
+    }
+    write(output, header_of(scene_, {}), settings_, whole);
+  }
+
+ private:
+  struct Read {
+    std::filesystem::path file;
+    PreparedPhotons prepared;
+  };
+
+  void check_complete() const {
+    constexpr std::size_t most_named = 10;
+    std::vector<std::uint32_t> missing;
+    for (std::uint32_t i = 0; i < count_ && missing.size() < most_named; ++i) {
+      if (!shards_.contains(i)) missing.push_back(i + 1);
+    }
+    if (missing.empty()) return;
+    throw InputError(fmt::format("shards {}{} of {} are missing", fmt::join(missing, ", "),
+                                 count_ - shards_.size() > missing.size() ? ", ..." : "", count_));
+  }
+
+  template <class PhotonsOf>
+  Photons merged(const PhotonsOf& photons_of) {
+    SceneNeeds needs;  // as far as the photons tell
+    std::uint64_t count = 0;
+    for (auto& [index, shard] : shards_) {
+      const Photons* photons = photons_of(shard.prepared);
+      if (!photons) refuse(shard, "lacks caustics, which another shard has");
+      needs.glossy = needs.glossy || !photons->incoming.empty();
+      if (!photons->light.empty()) needs.light_count = limits::max_lights;
+      count += photons->size();
+    }
+    if (count > limits::max_stored_photons) {
+      throw InputError(fmt::format("the shards hold {} photons, more than {}; emit fewer", count,
+                                   limits::max_stored_photons));
+    }
+    std::vector<Photons> runs;
+    for (auto& [index, shard] : shards_) {
+      Photons& photons = *photons_of(shard.prepared);
+      const std::uint64_t rows = runs.empty() ? photons.first_of.size() : runs[0].first_of.size();
+      const std::string problem =
+          rows == 0 ? "no triangles" : maps::problem_of(photons, needs, rows - 1);
+      if (!problem.empty()) refuse(shard, fmt::format("has {}; trace it again", problem));
+      if (!runs.empty() && photons.emitted_per_light != runs[0].emitted_per_light) {
+        refuse(shard, "has other numbers of paths than the first shard");
+      }
+      runs.push_back(std::move(photons));
+    }
+    return merge_runs(std::move(runs));
+  }
+
+  [[noreturn]] static void refuse(const Read& shard, const std::string& reason) {
+    throw InputError(fmt::format("{}: {}", shard.file.string(), reason));
+  }
+
+  ContentHash::Digest scene_{};
+  std::uint32_t count_ = 0;
+  Settings settings_;
+  std::filesystem::path first_;
+  std::map<std::uint32_t, Read> shards_;  ///< in the order of their paths
+};
+
+}  // namespace
+
+void save(const std::filesystem::path& file, const Scene& scene, const Settings& settings,
+          const PreparedPhotons& prepared, const Shard& shard) {
+  write(file, header_of(digest_of(scene), shard), settings, prepared);
+}
+
+void add_light_maps(const std::filesystem::path& file, const LightMapContents& contents) {
+  Reader reader(file);
+  Header header = read_header(reader);
+  const auto write_light_maps = [&](const auto& put) {
+    for_each_light_map_array(contents, [&](const auto& values) { write_array(values, put); });
+  };
+  header.light_maps = part_of(write_light_maps);
+  header.head = digest_of(header);
+  OutputFile output(file);
+  output.write(&header, sizeof header);
+  std::vector<char> copied(std::size_t{1} << 20);
+  for (std::uint64_t left = header.photons.bytes; left > 0;) {
+    const std::uint64_t count = std::min<std::uint64_t>(left, copied.size());
+    reader.read(copied.data(), count);
+    output.write(copied.data(), count);
+    left -= count;
+  }
+  write_light_maps([&](const void* bytes, std::uint64_t count) { output.write(bytes, count); });
+  output.commit();
+}
+
+PreparedPhotons load(const std::filesystem::path& file, const Scene& scene,
+                     const Settings& settings) {
+  Reader reader(file);
+  note_input(file);
+  const Header header = read_header(reader);
+  if (header.shards != 1) {
+    reader.refuse(fmt::format("holds shard {} of {}; bring all together by photile merge",
+                              header.shard + 1, header.shards));
+  }
+  Contents contents = read_photons(reader, header);
+  if (header.scene != digest_of(scene)) {
+    reader.refuse(
+        fmt::format("was saved from another scene than {}; save it again", scene.source.string()));
+  }
+  refuse_other_settings(reader, contents.settings.photons, settings.photons);
+  if (contents.prepared.has_groups()) {
+    refuse_other_settings(reader, contents.settings.groups, settings.groups);
+  }
+  const std::string problem = problem_of(contents.prepared, scene);
+  if (!problem.empty()) reader.refuse(fmt::format("has {}; save it again", problem));
+  return std::move(contents.prepared);
+}
+
+void merge(std::span<const std::filesystem::path> files, const std::filesystem::path& output) {
+  ShardCollection shards;
+  for (const std::filesystem::path& file : files) shards.add(file);
+  shards.write_whole(output);
+}
+
+}  // namespace photile::saved_maps

@@ -1,0 +1,78 @@
+// The sky in patches: Tregenza's 145, or Reinhart's finer ones.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "weather/perez_sky.hpp"
+#include "weather/sun_position.hpp"
+
+namespace photile::weather {
+
+/// An even piece of the sky between two elevations and two azimuths.
+struct SkyPatch {
+  double azimuth_from = 0, azimuth_to = 0;  ///< radians clockwise from north
+  double sine_from = 0, sine_to = 1;        ///< of the elevations
+  double azimuth = 0, elevation = 0;        ///< of its middle, radians
+
+  double solid_angle() const { return (azimuth_to - azimuth_from) * (sine_to - sine_from); }
+};
+
+/// Unit; east is +x, up +y, south +z.
+glm::dvec3 direction_of(double azimuth, double elevation);
+
+/// All patches of a sky, in the order of Radiance's gendaymtx without its ground: rows from the
+/// horizon to the zenith, each clockwise from north, where the first patch has its middle.
+/// Tregenza ("Subdivision of the sky hemisphere for luminance measurements", 1987) has rows of 30,
+/// 30, 24, 24, 18, 12 and 6 patches and a cap; Reinhart (2001) parts each row and patch in two or
+/// four.
+///   count   145, 577 or 2305
+std::vector<SkyPatch> sky_patches(int count);
+inline constexpr int patch_counts[] = {145, 577, 2305};
+
+/// Tells the patch that a direction points into.
+class PatchFinder {
+ public:
+  ///   patches   as sky_patches makes them
+  ///   north     radians clockwise from -z
+  PatchFinder(const std::vector<SkyPatch>& patches, double north);
+
+  /// Index of the patch of a unit direction, or below the horizon their number: the ground.
+  std::uint32_t operator()(const glm::vec3& direction) const;
+  std::size_t patches() const { return patches_; }
+
+ private:
+  struct Row {
+    std::uint32_t first;
+    float number, per_radian;  ///< patches in the row, and in a radian of it
+  };
+  std::vector<Row> rows_;
+  std::size_t patches_;
+  float rows_per_radian_, north_;
+};
+
+/// What stands for the sun: the four patches nearest to it, as gendaymtx has them.
+struct PatchShare {
+  std::size_t patch;
+  double share;  ///< of the sun's light; all sum to 1
+};
+
+/// Skies of any hours in patches.
+class SkyInPatches {
+ public:
+  explicit SkyInPatches(const std::vector<SkyPatch>& patches);
+
+  /// Luminance of each patch, cd/m2: that of the model in its middle, scaled together so that they
+  /// give the diffuse illuminance. Without the sun itself.
+  std::vector<float> luminances(const PerezSky& sky, const SunPosition& sun) const;
+
+  std::vector<PatchShare> sun(const SunPosition& sun) const;
+
+ private:
+  std::vector<glm::vec3> middles_;  ///< unit
+  std::vector<float> horizontal_;   ///< lux on the ground for each cd/m2
+  std::vector<float> sines_;        ///< of the middles' elevations
+};
+
+}  // namespace photile::weather

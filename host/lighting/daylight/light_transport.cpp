@@ -1,0 +1,187 @@
+#include "daylight/light_transport.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "daylight/surface_cells.hpp"
+#include "trace/flush_denormals.hpp"
+
+namespace photile::daylight {
+namespace {
+
+/// Rows whose rays are held at once.
+constexpr std::size_t rows_at_once = 256;
+/// Of the median distance from a sensor to what its rays meet.
+constexpr double cell_of_distance = 0.1;
+constexpr int most_generations = 16;
+/// Of the first generation from cells, about: however few sensors there are.
+constexpr std::size_t least_rays = 65'536;
+/// Of a cell, for each batch: as many as ends there, up to this part of a sensor's.
+constexpr int rays_of_cell = 16;
+
+/// What a row's rays saw, but for the cells of surfaces.
+TransportRow row_of(const SeenByRays& seen, const TransportParameters& parameters) {
+  TransportRow row;
+  row.mean_sky.assign(static_cast<std::size_t>(parameters.sky.batches), glm::vec3(0.0f));
+  for (const SeenPatch& sky : seen.patches) {
+    row.patches.push_back({sky.patch, sky.weight, sky.straight ? sky.weight : glm::vec3(0.0f)});
+    row.mean_sky[sky.batch] +=
+        sky.weight * static_cast<float>(parameters.mean_luminance[sky.patch]);
+  }
+  std::stable_sort(row.patches.begin(), row.patches.end(),
+                   [](const auto& a, const auto& b) { return a.patch < b.patch; });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < row.patches.size(); ++i) {
+    if (kept > 0 && row.patches[kept - 1].patch == row.patches[i].patch) {
+      row.patches[kept - 1].all += row.patches[i].all;
+      row.patches[kept - 1].straight += row.patches[i].straight;
+    } else {
+      row.patches[kept++] = row.patches[i];
+    }
+  }
+  row.patches.resize(kept);
+  row.patches.shrink_to_fit();
+  return row;
+}
+
+void join_cells(TransportRow& row) {
+  std::stable_sort(row.cells.begin(), row.cells.end(), [](const auto& a, const auto& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.batch < b.batch;
+  });
+  std::size_t kept = 0;
+  for (const TransportRow::OfCell& entry : row.cells) {
+    TransportRow::OfCell* const last = kept > 0 ? &row.cells[kept - 1] : nullptr;
+    if (last != nullptr && last->cell == entry.cell && last->batch == entry.batch) {
+      last->weight += entry.weight;
+    } else {
+      row.cells[kept++] = entry;
+    }
+  }
+  row.cells.resize(kept);
+  row.cells.shrink_to_fit();
+}
+
+bool is_coloured(const glm::vec3& weight) {
+  const float most = std::max({weight.x, weight.y, weight.z});
+  return most - std::min({weight.x, weight.y, weight.z}) > 1e-4f * most;
+}
+
+double median_distance(const std::vector<SeenByRays>& seen) {
+  std::vector<float> distances;
+  for (const SeenByRays& row : seen) {
+    for (const SeenSurface& end : row.surfaces) distances.push_back(end.distance);
+  }
+  if (distances.empty()) return 1;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return std::max(1e-3, double{*middle});
+}
+
+/// Traces generation after generation.
+class Tracer {
+ public:
+  Tracer(const RayScene& rays, const weather::PatchFinder& patches,
+         const TransportParameters& parameters, Progress& progress, LightTransport& transport)
+      : rays_(rays),
+        parameters_(parameters),
+        progress_(progress),
+        transport_(transport),
+        sky_rays_(rays, patches, parameters.sky) {}
+
+  void trace_sensors(std::span<const Sensor> sensors) {
+    transport_.sensors.resize(sensors.size());
+    const auto place = [&](std::size_t i) {
+      return std::vector<trace::Photometer>{
+          trace::Photometer(sensors[i], sensors[i].response.value_or(parameters_.response))};
+    };
+    const auto rays = [&](std::size_t) { return parameters_.rays; };
+    trace_rows(transport_.sensors, 0, 0, place, rays);
+  }
+
+  void trace_cells() {
+    if (!cells_) return;
+    for (int generation = 0; generation < most_generations; ++generation) {
+      const std::size_t first = transport_.cells.size();
+      if (first == cells_->size()) return;
+      transport_.cells.resize(cells_->size());
+      const auto places = [&](std::size_t i) {
+        std::vector<trace::Photometer> found;
+        for (const trace::SurfacePoint& point : cells_->places(i)) found.emplace_back(point);
+        return found;
+      };
+      const std::size_t batches = static_cast<std::size_t>(parameters_.sky.batches);
+      const std::size_t from_sensors =
+          transport_.sensors.size() * static_cast<std::size_t>(parameters_.rays) * batches;
+      const std::size_t each = generation > 0 ? 1 : 1 + least_rays / from_sensors;
+      const auto rays = [&, each](std::size_t i) {
+        const auto most = static_cast<std::size_t>(std::max(2, parameters_.rays / rays_of_cell));
+        const std::size_t wanted = cells_->ends(i) * each / batches;
+        return wanted < 2 ? 1 : static_cast<int>(std::min(most, wanted / 2 * 2));
+      };
+      trace_rows(transport_.cells, first, transport_.sensors.size(), places, rays);
+    }
+    transport_.cells.resize(cells_->size());  // those that nothing lights
+    for (TransportRow& row : transport_.cells)
+      row.mean_sky.resize(static_cast<std::size_t>(parameters_.sky.batches), glm::vec3(0.0f));
+  }
+
+ private:
+  template <class Places, class Rays>
+  void trace_rows(std::vector<TransportRow>& rows, std::size_t first, std::size_t first_number,
+                  const Places& places, const Rays& rays) {
+    std::vector<SeenByRays> seen;
+    for (std::size_t begin = first; begin < rows.size(); begin += rows_at_once) {
+      progress_.throw_if_cancelled();
+      const std::size_t count = std::min(rows_at_once, rows.size() - begin);
+      seen.assign(count, {});
+      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        const trace::FlushDenormals flush_denormals;
+        seen[i] = sky_rays_.from(places(begin + i), first_number + begin + i, rays(begin + i));
+        rows[begin + i] = row_of(seen[i], parameters_);
+      });
+      if (!cells_) {
+        const double distance = median_distance(seen);
+        cells_ = std::make_unique<SurfaceCells>(rays_, cell_of_distance * distance, distance);
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        for (const SeenSurface& end : seen[i].surfaces) {
+          rows[begin + i].cells.push_back(
+              {cells_->cell_of(end.point, end.distance), end.batch, end.weight});
+          transport_.coloured = transport_.coloured || is_coloured(end.weight);
+        }
+        for (const auto& patch : rows[begin + i].patches)
+          transport_.coloured = transport_.coloured || is_coloured(patch.all);
+      }
+      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { join_cells(rows[begin + i]); });
+      if (first_number == 0) progress_.advance(count);
+    }
+  }
+
+  const RayScene& rays_;
+  const TransportParameters& parameters_;
+  Progress& progress_;
+  LightTransport& transport_;
+  SkyRays sky_rays_;
+  std::unique_ptr<SurfaceCells> cells_;
+};
+
+}  // namespace
+
+LightTransport light_transport(const RayScene& rays, std::span<const Sensor> sensors,
+                               const weather::PatchFinder& patches,
+                               const TransportParameters& parameters, Progress& progress) {
+  LightTransport transport;
+  transport.patches = patches.patches() + 1;
+  transport.batches = parameters.sky.batches;
+  Tracer tracer(rays, patches, parameters, progress, transport);
+  progress.begin("trace the sky", sensors.size(), "points");
+  tracer.trace_sensors(sensors);
+  tracer.trace_cells();
+  progress.end();
+  return transport;
+}
+
+}  // namespace photile::daylight

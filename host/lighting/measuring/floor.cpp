@@ -1,0 +1,236 @@
+#include "measuring/floor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <unordered_map>
+
+#include "photile/ray_scene.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/sampling.hpp"
+#include "trace/surface.hpp"
+#include "trace/triangle_hit.hpp"
+
+namespace photile::measuring {
+namespace {
+
+const double steepest_cosine = std::cos(glm::radians(5.0));
+constexpr double level_thickness = 0.02;  // metres
+constexpr double least_room = 1.2;        // metres above a floor
+constexpr int most_surfaces_below = 1000;
+constexpr double least_share = 0.5;      // of the widest level
+constexpr std::uint32_t samples = 8192;  // places whose headroom is looked at
+constexpr double plan_pixels = 1024;     // along the longer side
+
+/// A horizontal triangle.
+struct Piece {
+  std::uint32_t triangle;
+  double height;  ///< of its middle
+  double area;
+  double covered = 0, open = 0;  ///< area with room above it, under something or not
+};
+
+std::vector<Piece> horizontal_pieces(const Scene& scene, const PlanAxes& axes) {
+  std::vector<Piece> pieces;
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    if (std::abs(glm::dot(sided_normal(scene, sided(t, 0)), axes.up)) < steepest_cosine) continue;
+    const auto [a, b, c] = scene.corners(t);
+    const glm::dvec3 middle = (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0;
+    pieces.push_back({t, glm::dot(middle, axes.up), triangle_area(scene, t)});
+  }
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const Piece& a, const Piece& b) { return a.height < b.height; });
+  return pieces;
+}
+
+/// Looks down from everywhere below the room's ceiling, to what there is most room above.
+void measure_floor_of(const Room& room, const RayScene& rays, const PlanAxes& axes,
+                      std::vector<Piece>& pieces) {
+  std::unordered_map<std::uint32_t, Piece*> piece_of;
+  for (Piece& piece : pieces) piece_of.emplace(piece.triangle, &piece);
+  const trace::FlushDenormals flush_denormals;
+  const glm::vec3 down(-axes.up);
+  for (const glm::dvec3& place : room.places()) {
+    double above = glm::dot(place, axes.up);
+    const double lowest = above - Room::most_height;
+    glm::vec3 from(place);
+    for (int i = 0; i < most_surfaces_below; ++i) {
+      const auto hit = trace::intersect(rays, from, down);
+      if (!hit) break;
+      const auto surface = trace::surface_hit(rays.scene(), *hit, down);
+      const double height = glm::dot(glm::dvec3(surface.position), axes.up);
+      if (height < lowest) break;
+      const auto piece = piece_of.find(hit->triangle);
+      if (piece != piece_of.end() && above - height >= least_room) {
+        piece->second->covered += room.cell_area();
+        break;
+      }
+      above = height;
+      from = surface.origin_towards(down);
+    }
+  }
+}
+
+/// Looks up from places spread evenly over all pieces.
+void measure_room(const RayScene& rays, const PlanAxes& axes, std::vector<Piece>& pieces) {
+  const Scene& scene = rays.scene();
+  const trace::FlushDenormals flush_denormals;
+  const glm::vec3 up(axes.up);
+  double total = 0, passed = 0;
+  for (const Piece& piece : pieces) total += piece.area;
+  std::size_t next = 0;
+  for (std::uint32_t i = 0; i < samples && next < pieces.size(); ++i) {
+    const double target = (i + 0.5) / samples * total;
+    while (next + 1 < pieces.size() && passed + pieces[next].area < target) {
+      passed += pieces[next++].area;
+    }
+    Piece& piece = pieces[next];
+    const trace::RandomBlock random =
+        trace::RandomStream(0, i, 0).block(trace::Purpose::sensor_direction, 0);
+    const glm::vec2 weights = trace::sample_triangle(random.uniform(0), random.uniform(1));
+    const trace::TriangleHit where{piece.triangle, weights.x, weights.y};
+    const auto point = trace::surface_hit(scene, where, -up);
+    const auto above = trace::intersect(rays, point.origin_towards(up), up);
+    if (!above) {
+      piece.open += total / samples;
+      continue;
+    }
+    const auto ceiling = trace::surface_hit(scene, *above, up);
+    const double room = glm::dot(glm::dvec3(ceiling.position - point.position), axes.up);
+    if (room < least_room) continue;
+    (room <= Room::most_height ? piece.covered : piece.open) += total / samples;
+  }
+}
+
+/// Pieces [first, end) of one height.
+struct Level {
+  std::size_t first, end;
+  double room;
+};
+
+template <class RoomOf>
+std::vector<Level> levels_of(const std::vector<Piece>& pieces, const RoomOf& room_of) {
+  std::vector<Level> levels;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (levels.empty() || pieces[i].height - pieces[levels.back().first].height > level_thickness) {
+      levels.push_back({i, i, 0});
+    }
+    levels.back().end = i + 1;
+    levels.back().room += room_of(pieces[i]);
+  }
+  return levels;
+}
+
+}  // namespace
+
+Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room) {
+  std::vector<Piece> pieces = horizontal_pieces(rays.scene(), axes);
+  if (room) {
+    measure_floor_of(*room, rays, axes, pieces);
+  } else {
+    measure_room(rays, axes, pieces);
+  }
+  const bool any_covered = std::any_of(pieces.begin(), pieces.end(),
+                                       [](const Piece& piece) { return piece.covered > 0; });
+  const std::vector<Level> levels = levels_of(
+      pieces, [&](const Piece& piece) { return any_covered ? piece.covered : piece.open; });
+  double widest = 0;
+  for (const Level& level : levels) widest = std::max(widest, level.room);
+  Floor floor;
+  for (const Level& level : levels) {
+    if (!(level.room > 0) || level.room < least_share * widest) continue;
+    const auto begin = pieces.begin() + static_cast<std::ptrdiff_t>(level.first);
+    const auto end = pieces.begin() + static_cast<std::ptrdiff_t>(level.end);
+    double area = 0, lower = 0;
+    std::for_each(begin, end, [&](const Piece& piece) { area += piece.area; });
+    for (auto piece = begin; piece != end; ++piece) {  // ascending: a rug is higher than most
+      floor.triangles.push_back(piece->triangle);
+      if (lower < 0.5 * area) floor.height = piece->height;
+      lower += piece->area;
+    }
+    break;
+  }
+  return floor;
+}
+
+FloorPlan::FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axes, const Room* room)
+    : room_(room) {
+  std::vector<std::array<glm::dvec2, 3>> plans;
+  low_ = glm::dvec2(HUGE_VAL);
+  high_ = -low_;
+  for (const std::uint32_t triangle : floor.triangles) {
+    const auto corners = scene.corners(triangle);
+    auto& plan = plans.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      plan[i] = axes.plan(glm::dvec3(corners[i]));
+      low_ = glm::min(low_, plan[i]);
+      high_ = glm::max(high_, plan[i]);
+    }
+  }
+  if (room_) {
+    low_ = glm::max(low_, room_->low());
+    high_ = glm::min(high_, room_->high());
+  }
+  const glm::dvec2 size = high_ - low_;
+  pixel_ = std::max(size.x, size.y) / plan_pixels;
+  width_ = std::max(1, static_cast<int>(std::ceil(size.x / pixel_)));
+  height_ = std::max(1, static_cast<int>(std::ceil(size.y / pixel_)));
+  covered_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  for (const auto& plan : plans) fill(plan);
+}
+
+void FloorPlan::fill(const std::array<glm::dvec2, 3>& corners) {
+  const auto pixel_at = [&](double metres, int count) {
+    return std::clamp(static_cast<int>(std::floor(metres / pixel_)), 0, count - 1);
+  };
+  const glm::dvec2 low = glm::min(glm::min(corners[0], corners[1]), corners[2]) - low_;
+  const glm::dvec2 high = glm::max(glm::max(corners[0], corners[1]), corners[2]) - low_;
+  const auto side_of = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+  };
+  // An edge that two triangles share leaves no gap: half a pixel counts as within.
+  for (int y = pixel_at(low.y, height_); y <= pixel_at(high.y, height_); ++y) {
+    for (int x = pixel_at(low.x, width_); x <= pixel_at(high.x, width_); ++x) {
+      const glm::dvec2 middle = low_ + pixel_ * glm::dvec2(x + 0.5, y + 0.5);
+      bool all_left = true, all_right = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec2& a = corners[i];
+        const glm::dvec2& b = corners[(i + 1) % 3];
+        const double slack = 0.5 * pixel_ * glm::length(b - a);
+        const double side = side_of(a, b, middle);
+        all_left = all_left && side >= -slack;
+        all_right = all_right && side <= slack;
+      }
+      if (all_left || all_right) {
+        covered_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                 static_cast<std::size_t>(x)] = true;
+      }
+    }
+  }
+}
+
+bool FloorPlan::holds(const glm::dvec2& point) const {
+  const glm::dvec2 at = (point - low_) / pixel_;
+  // The border itself belongs to the floor.
+  const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
+  if (x < -1 || y < -1 || x > width_ || y > height_) return false;
+  return covered_[static_cast<std::size_t>(std::clamp(y, 0, height_ - 1)) *
+                      static_cast<std::size_t>(width_) +
+                  static_cast<std::size_t>(std::clamp(x, 0, width_ - 1))] &&
+         (!room_ || room_->holds(point));
+}
+
+bool FloorPlan::holds_disc(const glm::dvec2& middle, double radius) const {
+  constexpr int directions = 32;
+  bool inside = holds(middle);
+  for (int i = 0; i < directions && inside; ++i) {
+    const double angle = glm::two_pi<double>() * i / directions;
+    inside = holds(middle + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
+  }
+  return inside;
+}
+
+}  // namespace photile::measuring

@@ -1,0 +1,43 @@
+// Where the floor of a room is.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "photile/scene.hpp"
+#include "trace/room.hpp"
+
+namespace photile::measuring {
+
+/// Triangles of the floor: see working_plane_grid for which they are. Empty where there is none.
+struct Floor {
+  double height = 0;  ///< along `up`, metres: half of its area is not higher
+  std::vector<std::uint32_t> triangles;
+};
+/// Of `room`, or of the whole scene where that is null.
+Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room);
+
+/// The floor as seen from above.
+class FloorPlan {
+ public:
+  /// `room` is null or the part of the floor that counts; it is kept.
+  FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axes, const Room* room);
+
+  const glm::dvec2& low() const { return low_; }
+  const glm::dvec2& high() const { return high_; }
+  /// Whether the disc lies on the floor, up to about 1/1000 of the floor's width.
+  bool holds_disc(const glm::dvec2& middle, double radius) const;
+
+ private:
+  bool holds(const glm::dvec2& point) const;
+  void fill(const std::array<glm::dvec2, 3>& corners);
+
+  glm::dvec2 low_{0.0}, high_{0.0};
+  double pixel_ = 1;  ///< metres
+  int width_ = 0, height_ = 0;
+  std::vector<bool> covered_;  ///< width x height
+  const Room* room_ = nullptr;
+};
+
+}  // namespace photile::measuring

@@ -1,0 +1,56 @@
+// A year of daylight as text: lines, CSV, JSON.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "daylight/daylight_metrics.hpp"
+#include "daylight/occupancy.hpp"
+#include "measuring/sensor_grid.hpp"
+
+namespace photile::report {
+
+/// A grid with its year. Profiles are those of its sensors.
+struct GridDaylight {
+  measuring::SensorGrid grid;
+  std::vector<daylight::PointDaylight> points;
+  daylight::RoomDaylight room;
+  std::vector<float> relative_error;        ///< of each sensor's mean
+  std::vector<float> lux, sun;              ///< by sensor, then hour; `sun` may be empty
+  std::vector<daylight::LampEnergy> lamps;  ///< empty where there are none
+};
+
+/// One state of the blinds all year.
+struct DaylightState {
+  std::string name;
+  std::vector<GridDaylight> grids;
+};
+
+struct DaylightResults {
+  std::vector<GridDaylight> grids;  ///< with blinds, where there are some, as they close
+  // Without blinds empty.
+  std::vector<DaylightState> states;
+  std::vector<std::size_t> state_of_hour;
+};
+
+/// What the numbers were asked for.
+struct DaylightAsked {
+  double wanted_lux = 300;
+  daylight::Occupancy occupancy;
+  std::vector<bool> occupied;  ///< by the hour
+};
+
+/// What to say where no light of the sky reaches any point.
+inline constexpr const char* no_sky_warning =
+    "warning: no light of the sky reaches any point: the room has no opening and no pane of glass; "
+    "leave out what closes its windows, or make it of glass (KHR_materials_transmission in glTF, d "
+    "below 1 or illum 4 in MTL)";
+
+std::vector<std::string> daylight_lines(const DaylightResults& results, const DaylightAsked& asked);
+/// With a column for the state of the blinds where there are some.
+std::string daylight_csv(const DaylightResults& results);
+nlohmann::ordered_json daylight_json(const DaylightResults& results, const DaylightAsked& asked);
+
+}  // namespace photile::report

@@ -1,0 +1,68 @@
+// Colours and steps of illuminances, with the options of Radiance's falsecolor.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "photile/defaults.hpp"
+#include "report/palette.hpp"
+
+namespace photile::report {
+
+/// How values are drawn.
+enum class Contours {
+  none,   ///< each in its colour
+  lines,  ///< isolines alone (-cl)
+  bands,  ///< bands of a fifth of a step around the isolines (-cb)
+  steps   ///< each in the colour of the middle of its step: posterized (-cp)
+};
+
+struct FalseColour {
+  double scale = 1000;                 ///< top of the scale (-s); 0 = automatic_top (-s auto)
+  std::string label = "lux";           ///< -l
+  int steps = defaults::legend_steps;  ///< of the legend, and isolines (-n)
+  double decades = 0;                  ///< > 0: a logarithmic scale over these (-log)
+  std::string palette = "turbo";       ///< -pal
+  Contours contours = Contours::none;
+};
+
+/// The largest of the values but the uppermost 2%, such as lamps that are seen; 0 where none is
+/// positive. NaN and infinities do not count.
+double automatic_top(std::span<const float> values);
+
+/// A FalseColour whose automatic scale ends at `automatic`.
+class ColourScale {
+ public:
+  /// Errors: UsageError for an unknown palette.
+  ColourScale(const FalseColour& options, double automatic);
+
+  /// The colour of a value; of the middle of its step with Contours::steps.
+  std::string hex(double value) const { return palette_.hex(drawn_share(value)); }
+  std::array<std::uint8_t, 3> rgb(double value) const { return palette_.at(drawn_share(value)); }
+  double top() const { return top_; }
+  /// The value at a share in [0, 1] of the scale.
+  double value_at(double share) const;
+  /// Where isolines are drawn: the middles of the legend's steps, as falsecolor has them,
+  /// ascending.
+  std::vector<double> levels() const;
+  /// The values between which the band around each level lies.
+  std::vector<std::array<double, 2>> bands() const;
+  /// Whether a value lies within one of them.
+  bool in_band(double value) const;
+  /// Number of levels below a value: isolines run where it changes.
+  int levels_below(double value) const;
+
+ private:
+  double share_of(double value) const;
+  double drawn_share(double value) const;
+
+  double top_, decades_;
+  int steps_;
+  bool stepped_;
+  Palette palette_;
+};
+
+}  // namespace photile::report

@@ -1,0 +1,243 @@
+#include "report/glare_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "report/csv_field.hpp"
+
+namespace photile::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string with_error(const std::optional<Measured>& measured, const char* format, int width) {
+  if (!measured) return fmt::format("{:>{}}", "-", width);
+  const std::string text =
+      fmt::format(fmt::runtime(format), measured->value, measured->standard_error);
+  return fmt::format("{:>{}}", text, width);
+}
+
+std::string plain(const std::optional<double>& value, const char* format, int width) {
+  if (!value) return fmt::format("{:>{}}", "-", width);
+  return fmt::format("{:>{}}", fmt::format(fmt::runtime(format), *value), width);
+}
+
+/// "highest UGR: 19.3, eyes 4", or nothing.
+template <class Value>
+void add_highest(std::span<const glare::ObserverGlare> all, const char* what, const char* format,
+                 const Value& value, std::vector<std::string>& lines) {
+  const glare::ObserverGlare* highest = nullptr;
+  for (const glare::ObserverGlare& each : all) {
+    if (value(each) && (!highest || *value(each) > *value(*highest))) highest = &each;
+  }
+  if (!highest) return;
+  lines.push_back(fmt::format("highest {}: {}, {}", what,
+                              fmt::format(fmt::runtime(format), *value(*highest)),
+                              highest->observer.name));
+}
+
+std::optional<double> value_of(const std::optional<Measured>& measured) {
+  return measured ? std::optional(measured->value) : std::nullopt;
+}
+
+std::string csv_number(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "";
+}
+
+std::string csv_measured(const std::optional<Measured>& measured) {
+  return measured ? fmt::format("{:.6g},{:.3g}", measured->value, measured->standard_error) : ",";
+}
+
+Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json measured_json(const std::optional<Measured>& measured) {
+  if (!measured) return nullptr;
+  return {{"value", measured->value}, {"standard_error", measured->standard_error}};
+}
+
+Json number_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json luminaire_json(const glare::SeenLuminaire& seen) {
+  return {{"name", seen.name},
+          {"direction", vector_json(seen.direction)},
+          {"luminance", seen.luminance},
+          {"solid_angle", seen.solid_angle},
+          {"position_index", seen.position_index},
+          {"projected_area", seen.projected_area},
+          {"illuminance", seen.illuminance}};
+}
+
+Json picture_json(const glare::PictureGlare& picture) {
+  const std::vector<glare::Source> sources = picture.plain_sources();
+  Json json{
+      {"illuminance", picture.illuminance},
+      {"background_luminance", picture.background},
+      {"dgp", glare::dgp(sources, picture.illuminance)},
+      {"ugr", sources.empty() ? Json(nullptr) : Json(glare::ugr(sources, picture.background))},
+      {"sources", Json::array()}};
+  for (const glare::PictureSource& each : picture.sources) {
+    json["sources"].push_back({{"direction_right_up_forward", vector_json(each.direction)},
+                               {"luminance", each.source.luminance},
+                               {"solid_angle", each.source.solid_angle},
+                               {"position_index", each.source.position_index}});
+  }
+  return json;
+}
+
+std::string room_name(const glare::TableRoom& room) {
+  return fmt::format("{:g}H x {:g}H", room.across, room.along);
+}
+
+template <class Use>
+void for_each_value(const glare::UgrTable& table, std::size_t room, const Use& use) {
+  for (const auto* rows : {&table.crosswise, &table.endwise}) {
+    for (const double value : (*rows)[room]) use(value);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all) {
+  std::size_t width = 8;
+  bool ggr = false, pictures = false;
+  for (const glare::ObserverGlare& each : all) {
+    width = std::max(width, each.observer.name.size());
+    ggr = ggr || each.ggr;
+    pictures = pictures || each.picture;
+  }
+  std::vector<std::string> lines{
+      fmt::format("{:<{}} {:>16} {:>16} {:>13}{}{}", "observer", width, "Ev/lux", "Lb/(cd/m2)",
+                  "UGR", ggr ? fmt::format(" {:>6}", "GGR") : "",
+                  pictures ? fmt::format(" {:>15} {:>10} {:>6}", "DGP", "low light", "DGI") : "")};
+  for (const glare::ObserverGlare& each : all) {
+    std::string line = fmt::format("{:<{}} {} {} {}", each.observer.name, width,
+                                   with_error(each.illuminance, "{:.4g} +-{:.2g}", 16),
+                                   with_error(each.background, "{:.4g} +-{:.2g}", 16),
+                                   with_error(each.ugr, "{:.1f} +-{:.1g}", 13));
+    if (ggr) line += " " + plain(each.ggr, "{:.1f}", 6);
+    if (pictures) {
+      line += " " + with_error(each.dgp, "{:.3f} +-{:.1g}", 15);
+      line += " " + plain(value_of(each.dgp_low_light), "{:.3f}", 10);
+      line += " " + plain(each.dgi, "{:.1f}", 6);
+    }
+    lines.push_back(std::move(line));
+  }
+  if (all.size() > 1) {
+    add_highest(
+        all, "UGR", "{:.1f}", [](const auto& each) { return value_of(each.ugr); }, lines);
+    add_highest(
+        all, "DGP", "{:.3f}", [](const auto& each) { return value_of(each.dgp); }, lines);
+  }
+  return lines;
+}
+
+std::string glare_csv(std::span<const glare::ObserverGlare> all) {
+  std::string text =
+      "observer,x,y,z,dx,dy,dz,illuminance,illuminance_error,background_luminance,"
+      "background_error,ugr,ugr_error,ggr,dgp,dgp_error,dgp_low_light,dgi\n";
+  for (const glare::ObserverGlare& each : all) {
+    const glm::dvec3 &p = each.observer.position, &d = each.observer.forward;
+    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{},{},{},{},{},{},{}\n",
+                        csv_field(each.observer.name), p.x, p.y, p.z, d.x, d.y, d.z,
+                        csv_measured(each.illuminance), csv_measured(each.background),
+                        csv_measured(each.ugr), csv_number(each.ggr), csv_measured(each.dgp),
+                        csv_number(value_of(each.dgp_low_light)), csv_number(each.dgi));
+  }
+  return text;
+}
+
+Json glare_json(std::span<const glare::ObserverGlare> all) {
+  Json list = Json::array();
+  for (const glare::ObserverGlare& each : all) {
+    Json entry{{"name", each.observer.name},
+               {"position", vector_json(each.observer.position)},
+               {"direction", vector_json(each.observer.forward)},
+               {"up", vector_json(each.observer.up)},
+               {"illuminance", measured_json(each.illuminance)},
+               {"background_luminance", measured_json(each.background)},
+               {"ugr", measured_json(each.ugr)},
+               {"ggr", number_json(each.ggr)},
+               {"luminaires", Json::array()}};
+    for (const glare::SeenLuminaire& seen : each.luminaires) {
+      entry["luminaires"].push_back(luminaire_json(seen));
+    }
+    if (each.picture) {
+      entry["dgp"] = measured_json(each.dgp);
+      entry["dgp_low_light"] = measured_json(each.dgp_low_light);
+      entry["dgi"] = number_json(each.dgi);
+      entry["picture"] = picture_json(*each.picture);
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+std::vector<std::string> ugr_table_lines(const glare::UgrTable& table) {
+  std::string ceiling = "ceiling    ", walls = "walls      ", floor = "floor      ";
+  for (int direction = 0; direction < 2; ++direction) {
+    for (const glare::RoomReflectances& each : glare::table_reflectances) {
+      ceiling += fmt::format("{:>6.2f}", each.ceiling);
+      walls += fmt::format("{:>6.2f}", each.walls);
+      floor += fmt::format("{:>6.2f}", each.floor);
+    }
+    for (std::string* line : {&ceiling, &walls, &floor}) *line += direction == 0 ? "  " : "";
+  }
+  std::vector<std::string> lines{ceiling, walls, floor,
+                                 fmt::format("{:<11}{:<32}{}", "room", "  crosswise", "  endwise")};
+  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
+    std::string line = fmt::format("{:<11}", room_name(glare::table_rooms[room]));
+    std::size_t column = 0;
+    for_each_value(table, room, [&](double value) {
+      line += std::isnan(value) ? fmt::format("{:>6}", "-") : fmt::format("{:>6.1f}", value);
+      if (++column == glare::table_reflectances.size()) line += "  ";
+    });
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::string ugr_table_csv(const glare::UgrTable& table) {
+  std::string text = "across,along";
+  for (const char* view : {"crosswise", "endwise"}) {
+    for (const glare::RoomReflectances& each : glare::table_reflectances) {
+      text += fmt::format(",{} {:.0f}/{:.0f}/{:.0f}", view, 100 * each.ceiling, 100 * each.walls,
+                          100 * each.floor);
+    }
+  }
+  text += "\n";
+  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
+    text +=
+        fmt::format("{:g},{:g}", glare::table_rooms[room].across, glare::table_rooms[room].along);
+    for_each_value(table, room, [&](double value) {
+      text += std::isnan(value) ? "," : fmt::format(",{:.4g}", value);
+    });
+    text += "\n";
+  }
+  return text;
+}
+
+Json ugr_table_json(const glare::UgrTable& table) {
+  Json json{{"reflectances", Json::array()}, {"rooms", Json::array()}};
+  for (const glare::RoomReflectances& each : glare::table_reflectances) {
+    json["reflectances"].push_back({each.ceiling, each.walls, each.floor});
+  }
+  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
+    Json entry{{"across", glare::table_rooms[room].across},
+               {"along", glare::table_rooms[room].along}};
+    for (const auto& [name, rows] :
+         {std::pair{"crosswise", &table.crosswise}, std::pair{"endwise", &table.endwise}}) {
+      for (const double value : (*rows)[room]) {
+        entry[name].push_back(std::isnan(value) ? Json(nullptr) : Json(value));
+      }
+    }
+    json["rooms"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+}  // namespace photile::report

@@ -1,0 +1,56 @@
+// A measurement on one page, for people who plan light.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "measuring/measurement.hpp"
+#include "measuring/requirements.hpp"
+#include "report/false_colour.hpp"
+#include "report/plan_surroundings.hpp"
+
+namespace photile::report {
+
+/// A table of texts; the first column is aligned to the left.
+struct ReportTable {
+  std::string heading;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// A picture with what it shows.
+struct ReportPicture {
+  std::string caption;
+  std::string png;  ///< bytes of the file
+};
+
+/// What a report is for, and who answers for it; "" = not said.
+struct ReportProject {
+  std::string name, client, designer;
+  bool said() const { return !name.empty() || !client.empty() || !designer.empty(); }
+};
+
+/// What a report says beside the values.
+struct ReportText {
+  std::string title;                                       ///< name of the scene
+  std::vector<std::pair<std::string, std::string>> facts;  ///< name and value, in order
+  std::optional<measuring::Requirement> requirement = std::nullopt;
+  std::vector<ReportTable> tables = {};
+  std::optional<measuring::Judgement> glare =
+      std::nullopt;  ///< the highest UGR, beside the requirement
+  ReportProject project = {};
+  std::vector<ReportPicture> pictures = {};
+};
+
+/// An HTML page that needs no other file: the project, what is required and whether it is met, the
+/// pictures, the figures of each grid with their errors, false-colour plans of all lights together
+/// and of each, the tables, the facts and, where a project is named, lines to sign on. Well-formed
+/// XML; prints on A4.
+///   surroundings   of each grid's plane, in the order of the grids
+std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
+                        const FalseColour& colours,
+                        const std::vector<PlanSurroundings>& surroundings);
+
+}  // namespace photile::report

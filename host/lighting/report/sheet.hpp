@@ -1,0 +1,42 @@
+// A sheet of paper on which pictures, legends and words are put together.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "photile/image.hpp"
+
+namespace photile::report {
+
+/// Pixels between the parts of a sheet, of its title, and of the bar of a legend.
+inline constexpr int gap = 12, title_height = 24, bar_width = 20;
+
+/// White, of display-referred linear values. Places are pixels from its top left corner.
+class Sheet {
+ public:
+  static constexpr int font_size = 14;  ///< pixels
+
+  Sheet(int width, int height);
+
+  void set(int x, int y, const std::array<float, 3>& linear);
+  void set(int x, int y, const std::array<std::uint8_t, 3>& srgb);
+
+  /// Black text from x to `end` at most, its baseline at y. Nothing without the font.
+  void write(int x, int y, int end, const std::string& text);
+
+  /// Pixels that a text is wide; 0 without the font.
+  static int width_of(const std::string& text);
+  /// Whether the font, DejaVu Sans, is installed.
+  static bool has_font() { return width_of("0") > 0; }
+
+  /// The sheet's R, G, B, as write_png takes them; leaves it empty.
+  Image take();
+
+ private:
+  std::size_t index(int x, int y) const;
+
+  Image image_;
+};
+
+}  // namespace photile::report

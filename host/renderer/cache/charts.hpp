@@ -1,0 +1,108 @@
+// Charts of the light maps: planes with lattices, and the surface that lies under each.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "geometry/box_tree.hpp"
+#include "photile/scene.hpp"
+#include "trace/triangle_hit.hpp"
+
+namespace photile::cache {
+
+/// A plane with a lattice over the sided triangles of a chart. Lattice places are counted in cells
+/// of the coarsest level; the triangles' projections lie in [0, columns] x [0, rows].
+struct Chart {
+  glm::dvec3 origin{0.0};               ///< of the lattice, metres
+  glm::dvec3 across{0.0}, along{0.0};   ///< unit, orthogonal, in the plane
+  glm::dvec2 spacing{0.0};              ///< of the coarsest nodes, metres
+  std::uint32_t columns = 1, rows = 1;  ///< cells of the coarsest level
+  std::uint32_t first_root = 0;         ///< its tiles of the coarsest level: [first_root ..)
+  std::uint32_t root_columns() const { return (columns + 7) / 8; }
+  std::uint32_t root_rows() const { return (rows + 7) / 8; }
+};
+
+/// The lattice place of a point, for lookups: a float each, in cells of the coarsest level.
+struct ChartPlace {
+  glm::vec3 across{0.0f};
+  float across_offset = 0;
+  glm::vec3 along{0.0f};
+  float along_offset = 0;
+
+  glm::vec2 of(const glm::vec3& position) const {
+    return {glm::dot(across, position) + across_offset, glm::dot(along, position) + along_offset};
+  }
+};
+
+/// A node: a place of the finest lattice of a chart, which all coarser ones share.
+struct NodePlace {
+  std::uint32_t chart, x, y;  ///< x, y in cells of the finest level
+  friend bool operator==(const NodePlace&, const NodePlace&) = default;
+};
+
+/// The charts of a scene, by a rule of geometry alone.
+///
+/// The frame of a chart is that which encloses it most tightly, of the directions of its first
+/// triangle's edges and of the axes, and the spacing divides the sides of that rectangle evenly:
+/// the borders of a rectangular wall, and the corners of a triangle smaller than the spacing, are
+/// nodes.
+class Charts {
+ public:
+  ///   spacing         metres, > 0: of the coarsest nodes, at most
+  ///   angle_degrees   largest angle between the normals of neighbours on a sheet
+  /// Where the lattices would be too many, spacing is larger.
+  Charts(const Scene& scene, double spacing, double angle_degrees);
+
+  std::size_t size() const { return charts_.size(); }
+  const Chart& operator[](std::size_t chart) const { return charts_[chart]; }
+  /// Per sided triangle; none where no photons are stored.
+  std::span<const std::uint32_t> chart_of() const { return chart_of_; }
+  const ChartPlace& place(std::size_t chart) const { return places_[chart]; }
+  double spacing() const { return spacing_; }
+  std::uint32_t roots() const { return roots_; }
+  std::uint64_t bytes() const;
+
+  /// Makes `owner` of nodes on this chart quick. Not to be called for one chart by two threads.
+  void prepare(std::uint32_t chart);
+
+  struct Owner {
+    trace::TriangleHit where;
+    std::uint32_t side;
+  };
+  /// The surface that a node stands for: the triangle of the chart whose projection is nearest to
+  /// it, the lowest of several at one distance, and the nearest point of that. So a node beyond
+  /// an edge, or in a hole, stands for the surface at the edge. `prepare` has been called.
+  ///   levels   of refinement: spacing / 2^(levels - 1) is the finest
+  Owner owner(const NodePlace& node, int levels) const;
+
+  /// The cell of the coarsest lattice that a place lies in, or the nearest one.
+  glm::uvec2 cell_at(std::uint32_t chart, const glm::vec2& place) const {
+    const auto along = [](float at, std::uint32_t cells) {
+      return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), cells - 1);
+    };
+    return {along(place.x, charts_[chart].columns), along(place.y, charts_[chart].rows)};
+  }
+
+ private:
+  void frame(std::uint32_t chart, std::uint32_t seed);
+  glm::dvec2 in_plane(const Chart& chart, const glm::vec3& point) const;
+  std::span<const std::uint32_t> members(std::uint32_t chart) const {
+    return {members_.data() + first_member_[chart], members_.data() + first_member_[chart + 1]};
+  }
+
+  const Scene& scene_;
+  double spacing_;
+  std::vector<std::uint32_t> chart_of_;
+  std::vector<std::uint32_t> first_member_, members_;  ///< sided triangles, ascending in a chart
+  std::vector<Chart> charts_;
+  std::vector<ChartPlace> places_;
+  std::vector<std::unique_ptr<geometry::BoxTree>>
+      trees_;  ///< of charts of many triangles, prepared
+  std::uint32_t roots_ = 0;
+};
+
+}  // namespace photile::cache

@@ -1,0 +1,184 @@
+#include "cache/end_light.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <glm/gtc/constants.hpp>
+#include <utility>
+
+#include "estimate/map_order.hpp"
+#include "estimate/reflected_radiance.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/hit_batch.hpp"
+
+namespace photile::cache {
+namespace {
+
+/// What is known of the cells of the light maps.
+constexpr std::uint8_t unknown_cell = 0, open_cell = 1, crossed_cell = 2;
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t hits_per_task = 1024;
+
+}  // namespace
+
+IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& progress) {
+  IndirectLight light{.rays = std::move(rays), .own_of = {}, .nodes = {}, .weight = {}, .own = {}};
+  std::vector<std::uint8_t> has_own;
+  classify(light, has_own);
+  const trace::EyeRecord& ends = light.rays.ends;
+  PrimaryHits served;
+  for (std::size_t end = 0; end < has_own.size(); ++end) {
+    if (has_own[end]) continue;
+    served.position.push_back(ends.hits[end].position);
+    served.sided_triangle.push_back(ends.hits[end].sided_triangle);
+  }
+  fill(served, progress);
+  find_nodes(light, has_own);
+  light.own_of.assign(ends.hits.size(), none);
+  std::vector<std::uint32_t> own;
+  for (std::uint32_t end = 0; end < has_own.size(); ++end) {
+    if (!has_own[end]) continue;
+    light.own_of[end] = static_cast<std::uint32_t>(own.size());
+    own.push_back(end);
+  }
+  if (!own.empty() || processes()) light.own = estimates_at(ends, own, progress);
+  costs_.estimated += own.size();
+  costs_.ends += ends.hits.size();
+  costs_.rays += ends.rays;
+  return light;
+}
+
+std::vector<NodeBlend> EndLight::nodes_around(const PrimaryHits& hits, const Progress& progress) {
+  fill(hits, progress);
+  std::vector<NodeBlend> nodes(hits.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_task),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      const trace::FlushDenormals flush_denormals;
+                      for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
+                        find(hits.sided_triangle[hit], hits.position[hit], nodes[hit]);
+                      }
+                    });
+  return nodes;
+}
+
+std::uint64_t EndLight::bytes() const {
+  if (!maps_) return 0;
+  const LightMapStatistics statistics = maps_->maps.statistics();
+  return statistics.value_bytes + statistics.index_bytes;
+}
+
+Estimates EndLight::irradiance(const PrimaryHits& nodes) {
+  costs_.estimated += nodes.size();
+  return of_nodes_.at(nodes, Progress::none());
+}
+
+void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
+                         std::uint32_t rays_per_batch, BatchSums& sums) const {
+  const std::size_t lights = rays_.needs().light_count;
+  const Estimates& values = maps_->maps.values();
+  for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
+    const trace::EyeHit& hit = light.rays.ends.hits[end];
+    const std::uint32_t batch = hit.pixel / rays_per_batch % batches;
+    const glm::vec3 direction = light.rays.direction_of(hit.pixel);
+    if (light.own_of[end] != none) {
+      const EndEstimates& own = light.own;
+      estimate::for_each_estimate(
+          own.estimates, light.own_of[end], lights, [&](std::size_t layer, std::size_t i) {
+            sums.add_surface(static_cast<std::uint32_t>(layer), batch,
+                             light.weight[end] * estimate::reflected_radiance(
+                                                     own.hits, light.own_of[end], own.estimates, i),
+                             direction);
+          });
+      continue;
+    }
+    const NodeBlend& blend = light.nodes[end];
+    for (std::size_t corner = 0; corner < blend.node.size(); ++corner) {
+      if (blend.weight[corner] == 0.0f) continue;
+      const glm::vec3 weight = blend.weight[corner] * light.weight[end];
+      estimate::for_each_estimate(values, blend.node[corner], lights,
+                                  [&](std::size_t layer, std::size_t i) {
+                                    sums.add_surface(static_cast<std::uint32_t>(layer), batch,
+                                                     weight * values.irradiance[i], direction);
+                                  });
+    }
+  }
+}
+
+/// Finds which ends have estimates of their own, and what estimates weigh at each.
+void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
+  const trace::EyeRecord& ends = light.rays.ends;
+  light.weight.resize(ends.hits.size());
+  has_own.resize(ends.hits.size());
+  tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
+    const trace::FlushDenormals flush_denormals;
+    for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
+      const trace::EndReflection reflection = trace::reflection_of(ends, end);
+      has_own[end] = reflection.strong_lobe;
+      light.weight[end] = ends.hits[end].throughput;
+      if (reflection.strong_lobe) continue;
+      light.weight[end] *= reflection.reflectance * glm::one_over_pi<float>();
+    }
+  });
+}
+
+/// Values the nodes that hits need.
+void EndLight::fill(const PrimaryHits& hits, const Progress& progress) {
+  if (!maps_) maps_.emplace(rays_, parameters_);
+  maps_->maps.fill(hits, *this, progress);
+  maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
+}
+
+/// The nodes around a place, of those that it sees. Returns false where it sees none; then all.
+bool EndLight::find(std::uint32_t sided_triangle, const glm::vec3& position,
+                    NodeBlend& blend) const {
+  maps_->maps.find(sided_triangle, position, blend);
+  return is_open(blend) || maps_->sight.look(sided_triangle, position, blend);
+}
+
+/// Whether the middle of a cell sees all of its nodes. All who ask at once find the same.
+bool EndLight::is_open(const NodeBlend& cell) const {
+  const std::atomic_ref<std::uint8_t> known(maps_->cells[cell.node[0]]);
+  std::uint8_t state = known.load(std::memory_order_relaxed);
+  if (state == unknown_cell) {
+    state = maps_->sight.is_open(cell) ? open_cell : crossed_cell;
+    known.store(state, std::memory_order_relaxed);
+  }
+  return state == open_cell;
+}
+
+/// Of ends that have no estimates of their own. Ends that none of their nodes sees get one.
+void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
+  light.nodes.resize(has_own.size());
+  tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
+    const trace::FlushDenormals flush_denormals;
+    for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
+      if (has_own[end]) continue;
+      const trace::EyeHit& hit = light.rays.ends.hits[end];
+      if (find(hit.sided_triangle, hit.position, light.nodes[end])) continue;
+      has_own[end] = 1;
+      // Estimates of ends are radiance.
+      light.weight[end] = hit.throughput;
+    }
+  });
+}
+
+/// In the order of the ends that are chosen.
+EndEstimates EndLight::estimates_at(const trace::EyeRecord& ends,
+                                    std::span<const std::uint32_t> chosen,
+                                    const Progress& progress) {
+  trace::EyeRecord record;
+  for (const std::uint32_t end : chosen) {
+    record.hits.push_back(ends.hits[end]);
+    if (!ends.glossy.empty()) record.glossy.push_back(ends.glossy[end]);
+  }
+  std::vector<trace::HitPlace> places;
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) places.push_back({0, i});
+  PrimaryHits hits = trace::hits_at({&record, 1}, places);
+  Estimates estimates = photons_.at(hits, progress);
+  return {std::move(hits), std::move(estimates)};
+}
+
+}  // namespace photile::cache

@@ -1,0 +1,110 @@
+// The light that rays find where they end: photon estimates at nodes on the surface.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cache/batch_sums.hpp"
+#include "cache/node_sight.hpp"
+#include "estimate/light_at_points.hpp"
+#include "photile/estimator.hpp"
+#include "photile/light_maps.hpp"
+#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
+#include "trace/hemisphere_rays.hpp"
+
+namespace photile::cache {
+
+/// Photon estimates at some of the ends of rays.
+struct EndEstimates {
+  PrimaryHits hits;
+  Estimates estimates;  ///< of each hit
+};
+
+/// Where the rays of a run of points end, and what counts there.
+struct IndirectLight {
+  trace::HemisphereRays rays;
+  std::vector<std::uint32_t> own_of;  ///< of each end: its own estimate, or none: light maps serve
+  std::vector<NodeBlend> nodes;       ///< of each end that they serve
+  std::vector<glm::vec3> weight;      ///< of each end: of irradiance, or of radiance
+  EndEstimates own;                   ///< of the run
+};
+
+/// Irradiance where rays end, read from light maps that photon estimates value when a ray first
+/// ends there.
+class EndLight : private PointSource {
+ public:
+  /// References are kept.
+  ///   photons   answers for ends that light maps do not serve, and `of_nodes` for nodes: the same
+  ///             but where several processes have the photons. What a point gets does not depend on
+  ///             the points beside it.
+  ///   maps      of one level: a cell is known by its first node
+  EndLight(const RayScene& rays, estimate::LightAtPoints& photons,
+           estimate::LightAtPoints& of_nodes, const LightMapParameters& maps)
+      : rays_(rays), photons_(photons), of_nodes_(of_nodes), parameters_(maps) {}
+
+  /// Finds an estimate for each end.
+  /// Errors: as DeviceEstimators; Interrupted.
+  IndirectLight look_up(trace::HemisphereRays rays, const Progress& progress);
+
+  /// Adds what the rays of a point of the run see, its batches having so many rays each.
+  void add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
+                 std::uint32_t rays_per_batch, BatchSums& sums) const;
+
+  /// The nodes around hits, and what nodes hold, in the form of estimates: node n is hit n. They
+  /// are valued where none did so yet. Errors: as DeviceEstimators; Interrupted.
+  std::vector<NodeBlend> nodes_around(const PrimaryHits& hits, const Progress& progress);
+  const Estimates& values() const { return maps_->maps.values(); }
+
+  /// That have the photon maps, and make the same calls; null: this one alone.
+  auto* processes() const { return parameters_.processes; }
+
+  /// Metres, from node to node: as wide as the estimates that value them.
+  double spacing() const { return parameters_.spacing; }
+
+  /// Of the light maps; `forget` empties them.
+  std::uint64_t bytes() const override;
+  void forget() override { maps_.reset(); }
+
+  /// What all calls took so far.
+  struct Costs {
+    std::uint64_t rays = 0;  ///< traced; those along mirrors and glass included
+    std::uint64_t ends = 0;
+    std::uint64_t estimated = 0;  ///< places where photons were looked up
+  };
+  const Costs& costs() const { return costs_; }
+
+ private:
+  Estimates irradiance(const PrimaryHits& nodes) override;
+  void classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
+  void find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
+  void fill(const PrimaryHits& hits, const Progress& progress);
+  bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
+  bool is_open(const NodeBlend& cell) const;
+  EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen,
+                            const Progress& progress);
+
+  const RayScene& rays_;
+  estimate::LightAtPoints& photons_;
+  estimate::LightAtPoints& of_nodes_;
+  /// What nodes of a cell must differ by to be looked at where something stands in it.
+  static constexpr double any_contrast = 0;
+
+  struct Maps {
+    Maps(const RayScene& rays, const LightMapParameters& parameters)
+        : maps(rays.scene(), parameters), sight(rays, maps, any_contrast) {}
+    LightMaps maps;
+    NodeSight sight;
+    /// By the first node of a cell: whether its middle sees all nodes, once an end asked.
+    mutable std::vector<std::uint8_t> cells;
+  };
+  const LightMapParameters parameters_;
+  std::optional<Maps> maps_;  ///< made when the first ray ends
+  Costs costs_;
+};
+
+}  // namespace photile::cache

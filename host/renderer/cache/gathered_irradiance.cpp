@@ -1,0 +1,133 @@
+#include "cache/gathered_irradiance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "estimate/reflected_radiance.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::cache {
+namespace {
+
+/// Of the mean of independent values.
+template <class T>
+double squared_error_of_mean(std::span<const T> values) {
+  const auto count = static_cast<double>(values.size());
+  if (values.size() < 2) return 0;
+  double mean = 0, squares = 0;
+  for (const T value : values) mean += static_cast<double>(value) / count;
+  for (const T value : values) {
+    const double difference = static_cast<double>(value) - mean;
+    squares += difference * difference;
+  }
+  return squares / (count * (count - 1));
+}
+
+template <class T>
+void append_rows(std::vector<T>& to, const std::vector<T>& from, std::size_t first,
+                 std::size_t count) {
+  if (from.empty()) return;
+  const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
+  to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+}
+
+}  // namespace
+
+std::uint64_t GatheredIrradiance::bytes() const {
+  return mean.irradiance.size() * sizeof(glm::vec3) + mean.first.size() * sizeof(std::uint64_t) +
+         mean.light.size() * sizeof(std::uint16_t) + mean.by_normal.size() * sizeof(glm::vec4) +
+         (batch.size() + shared_variance.size()) * sizeof(float);
+}
+
+double GatheredIrradiance::error(std::size_t estimate) const {
+  const auto count = static_cast<std::size_t>(batches);
+  const double shared = shared_variance.empty() ? 0.0 : double{shared_variance[estimate]};
+  return std::sqrt(squared_error_of_mean(std::span(batch).subspan(estimate * count, count)) +
+                   shared);
+}
+
+GatheredIrradiance::Total GatheredIrradiance::total(std::size_t point,
+                                                    std::span<const double> layer_powers) const {
+  const auto count = static_cast<std::size_t>(batches);
+  std::vector<double> sums(count, 0.0);
+  double luminance_sum = 0, shared = 0;
+  estimate::for_each_estimate(mean, point, layer_powers.size(),
+                              [&](std::size_t layer, std::size_t i) {
+                                const double power = layer_powers[layer];
+                                luminance_sum += power * luminance(glm::dvec3(mean.irradiance[i]));
+                                for (std::size_t b = 0; b < count; ++b)
+                                  sums[b] += power * double{batch[i * count + b]};
+                                // The same photons, or neighbours, may err in all lights alike.
+                                if (!shared_variance.empty())
+                                  shared += power * std::sqrt(double{shared_variance[i]});
+                              });
+  return {luminance_sum,
+          std::sqrt(squared_error_of_mean(std::span<const double>(sums)) + shared * shared)};
+}
+
+void GatheredIrradiance::append(const GatheredIrradiance& other, std::size_t point,
+                                std::size_t lights) {
+  const bool sparse = !other.mean.first.empty();
+  const std::size_t first = sparse ? other.mean.first[point] : point * lights;
+  const std::size_t count = sparse ? other.mean.first[point + 1] - first : lights;
+  const auto in_row = static_cast<std::size_t>(other.batches);
+  batches = other.batches;
+  append_rows(mean.irradiance, other.mean.irradiance, first, count);
+  append_rows(mean.by_normal, other.mean.by_normal, first, count);
+  append_rows(batch, other.batch, first * in_row, count * in_row);
+  append_rows(shared_variance, other.shared_variance, first, count);
+  if (!sparse) return;
+  if (mean.first.empty()) mean.first.push_back(0);
+  append_rows(mean.light, other.mean.light, first, count);
+  mean.first.push_back(mean.irradiance.size());
+}
+
+void GatheredIrradiance::append(GatheredIrradiance other) {
+  batches = other.batches;
+  mean.append(std::move(other.mean));
+  batch.insert(batch.end(), other.batch.begin(), other.batch.end());
+  shared_variance.insert(shared_variance.end(), other.shared_variance.begin(),
+                         other.shared_variance.end());
+}
+
+GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance& b,
+                          std::size_t lights) {
+  GatheredIrradiance sum;
+  sum.batches = a.batches;
+  const bool sparse = !a.mean.first.empty();
+  const bool shared = !a.shared_variance.empty() || !b.shared_variance.empty();
+  const bool smooth = !a.mean.by_normal.empty() || !b.mean.by_normal.empty();
+  const auto count = static_cast<std::size_t>(a.batches);
+  if (sparse) sum.mean.first.push_back(0);
+  std::vector<std::size_t> place(lights);
+  const std::size_t points = a.points(lights);
+  for (std::size_t point = 0; point < points; ++point) {
+    const std::size_t first = sum.mean.irradiance.size();
+    place.assign(lights, first + lights);  // of none
+    for (const GatheredIrradiance* part : {&a, &b}) {
+      estimate::for_each_estimate(part->mean, point, lights, [&](std::size_t layer, std::size_t i) {
+        if (place[layer] == first + lights) {
+          place[layer] = sum.mean.irradiance.size();
+          sum.mean.irradiance.emplace_back(0.0f);
+          if (smooth) sum.mean.by_normal.emplace_back(0.0f);
+          sum.batch.resize(sum.batch.size() + count, 0.0f);
+          if (sparse) sum.mean.light.push_back(static_cast<std::uint16_t>(layer));
+          if (shared) sum.shared_variance.push_back(0);
+        }
+        const std::size_t to = place[layer];
+        sum.mean.irradiance[to] += part->mean.irradiance[i];
+        if (smooth) sum.mean.by_normal[to] += part->mean.by_normal[i];
+        for (std::size_t b = 0; b < count; ++b) {
+          sum.batch[to * count + b] += part->batch[i * count + b];
+        }
+        if (!part->shared_variance.empty()) sum.shared_variance[to] += part->shared_variance[i];
+      });
+    }
+    if (sparse) sum.mean.first.push_back(sum.mean.irradiance.size());
+  }
+  return sum;
+}
+
+}  // namespace photile::cache

@@ -1,0 +1,250 @@
+#include "cache/gathered_nodes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "cache/irradiance_filter.hpp"
+#include "cache/weighted_points.hpp"
+#include "estimate/map_order.hpp"
+#include "photile/defaults.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::cache {
+namespace {
+
+/// Places that a place is averaged with.
+constexpr NodeSource::Surroundings averaged{.window = defaults::averaged_window,
+                                            .rounds = defaults::averaged_rounds,
+                                            .fine_window = defaults::averaged_fine_window};
+/// Differences that may be noise. Light straight from lamps ends at borders: beyond the horizon of
+/// a lamp that is near, places know that they are dark, and those before it are not sure of much.
+constexpr NoiseTolerance of_indirect{.errors = defaults::tolerated_errors};
+constexpr NoiseTolerance of_direct{.errors = defaults::tolerated_errors,
+                                   .ratio = defaults::tolerated_error_ratio};
+
+/// The point of a triangle next to this one that is so far from its edges; the middle of triangles
+/// that have none.
+glm::vec3 inset_point(const Scene& scene, std::uint32_t triangle, const glm::vec3& position,
+                      double inset) {
+  const auto corners = scene.corners(triangle);
+  const std::array<glm::dvec3, 3> corner{glm::dvec3(corners[0]), glm::dvec3(corners[1]),
+                                         glm::dvec3(corners[2])};
+  const glm::dvec3 normal =
+      glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+  glm::dvec3 point(position);
+  const auto depth = [&](std::size_t edge, glm::dvec3& inwards) {
+    inwards = glm::normalize(glm::cross(normal, corner[(edge + 1) % 3] - corner[edge]));
+    return glm::dot(point - corner[edge], inwards);
+  };
+  glm::dvec3 inwards;
+  for (int round = 0; round < 2; ++round) {
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      const double lacking = inset - depth(edge, inwards);
+      if (lacking > 0) point += lacking * inwards;
+    }
+  }
+  for (std::size_t edge = 0; edge < 3; ++edge) {
+    if (depth(edge, inwards) < 0.5 * inset) {
+      return glm::vec3((corner[0] + corner[1] + corner[2]) / 3.0);
+    }
+  }
+  return glm::vec3(point);
+}
+
+std::vector<std::uint64_t> numbers_at(const NodeBatch& batch,
+                                      std::span<const std::uint32_t> chosen) {
+  std::vector<std::uint64_t> numbers;
+  for (const std::uint32_t point : chosen) numbers.push_back(batch.number[point]);
+  return numbers;
+}
+
+/// Links between chosen points alone, by their places among those chosen.
+PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> chosen) {
+  std::vector<std::uint32_t> place(batch.points.size(), none);
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) place[chosen[i]] = i;
+  PointLinks links;
+  links.first.push_back(0);
+  for (const std::uint32_t point : chosen) {
+    for (std::uint32_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1];
+         ++i) {
+      links.to.push_back(place[batch.neighbour[i]]);
+    }
+    links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
+  }
+  return links;
+}
+
+void append(const GatheredParts& from, std::size_t point, std::size_t lights, GatheredParts& to) {
+  to.indirect.append(from.indirect, point, lights);
+  to.direct.append(from.direct, point, lights);
+  to.distance.push_back(from.distance[point]);
+}
+
+}  // namespace
+
+GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset) {
+  // Shadow borders stand at the finer levels: there looks at lamps matter more than other rays.
+  // Nine of these are averaged. Beside the sun a shadow has a hundredth of the light, and few
+  // looks find the sky through a window: there what single looks bring would show.
+  const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                [](const Light& light) { return light.is_distant(); });
+  const int fine = (coarse + 3) / 4;
+  if (open) {
+    const int looks =
+        std::min(defaults::looks_per_ray_in_the_open * coarse, limits::max_direct_rays);
+    return {{coarse, looks}, {fine, looks}, inset};
+  }
+  return {
+      {coarse, defaults::looks_per_ray * coarse}, {fine, defaults::looks_per_ray * fine}, inset};
+}
+
+NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
+
+std::uint64_t GatheredNodes::bytes() const {
+  return raw_.bytes() + nodes_.bytes() + gather_.bytes() +
+         (raw_of_.size() + row_of_.size()) * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
+}
+
+void GatheredNodes::forget() {
+  raw_of_.clear();
+  row_of_.clear();
+  raw_ = {};
+  nodes_ = {};
+  gather_.forget();
+}
+
+NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress) {
+  const std::size_t lights = layer_powers_.size();
+  std::vector<std::uint32_t> coarse, fine;
+  for (std::uint32_t i = 0; i < batch.points.size(); ++i) {
+    (batch.coarse[i] ? coarse : fine).push_back(i);
+  }
+  gather_new(batch, coarse, parameters_.coarse, progress);
+  gather_new(batch, fine, parameters_.fine, progress);
+  const GatheredParts smooth = smoothed(batch, coarse);
+  std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
+  const auto averaged_fine = [&](const GatheredIrradiance& raw, const GatheredIrradiance& known,
+                                 const NoiseTolerance& tolerated) {
+    return corrected(known, with_neighbours(raw, batch, fine, tolerated), batch, fine, tolerated);
+  };
+  const GatheredIrradiance indirect = averaged_fine(raw_.indirect, nodes_.indirect, of_indirect);
+  const GatheredIrradiance direct = averaged_fine(raw_.direct, nodes_.direct, of_direct);
+
+  const std::size_t before = nodes_.distance.size();
+  std::size_t next_coarse = 0, next_fine = 0;
+  for (std::uint32_t node = 0; node < batch.nodes; ++node) {
+    row_of_.insert_or_assign(batch.number[node],
+                             static_cast<std::uint32_t>(nodes_.distance.size()));
+    if (batch.parents[node][0] == NodeBatch::no_parent) {
+      append(smooth, next_coarse++, lights, nodes_);
+    } else {
+      nodes_.indirect.append(indirect, next_fine, lights);
+      nodes_.direct.append(direct, next_fine++, lights);
+      nodes_.distance.push_back(raw_.distance[raw_of_.at(batch.number[node])]);
+    }
+  }
+  GatheredParts own;
+  for (std::size_t row = before; row < nodes_.distance.size(); ++row) {
+    append(nodes_, row, lights, own);
+  }
+  GatheredIrradiance all = sum_of(own.indirect, own.direct, lights);
+  NodeValues values;
+  for (std::size_t node = 0; node < batch.nodes; ++node) {
+    values.error.push_back(static_cast<float>(all.total(node, layer_powers_).error));
+    values.distance.push_back(nodes_.distance[before + node]);
+  }
+  values.irradiance = std::move(all.mean);
+  return values;
+}
+
+Estimates GatheredNodes::errors() const {
+  const GatheredIrradiance all = sum_of(nodes_.indirect, nodes_.direct, layer_powers_.size());
+  Estimates errors = all.mean;
+  for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
+    const double light = luminance(glm::dvec3(all.mean.irradiance[i]));
+    const float relative = light > 0 ? static_cast<float>(all.error(i) / light) : 0.0f;
+    errors.irradiance[i] *= relative;
+    if (!errors.by_normal.empty()) errors.by_normal[i] *= relative;
+  }
+  return errors;
+}
+
+PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
+                                     std::span<const std::uint32_t> chosen) const {
+  PrimaryHits points = estimate::reordered(batch.points, 0, chosen);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    points.position[i] = inset_point(scene_, triangle_of(points.sided_triangle[i]),
+                                     points.position[i], parameters_.inset);
+  }
+  return points;
+}
+
+/// Gathers at places where nobody did.
+void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> places,
+                               const NodeRays& rays, const Progress& progress) {
+  std::vector<std::uint32_t> fresh;
+  for (const std::uint32_t point : places) {
+    if (!raw_of_.contains(batch.number[point])) fresh.push_back(point);
+  }
+  GatheredParts found = gather_.gather(points_at(batch, fresh), numbers_at(batch, fresh), rays.rays,
+                                       rays.looks, progress);
+  for (const std::uint32_t point : fresh) {
+    raw_of_.insert({batch.number[point], static_cast<std::uint32_t>(raw_of_.size())});
+  }
+  raw_.indirect.append(std::move(found.indirect));
+  raw_.direct.append(std::move(found.direct));
+  raw_.distance.insert(raw_.distance.end(), found.distance.begin(), found.distance.end());
+}
+
+/// Coarse places averaged with those around them.
+GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
+                                      std::span<const std::uint32_t> coarse) const {
+  const std::size_t lights = layer_powers_.size();
+  GatheredParts parts;
+  for (const std::uint32_t point : coarse) {
+    append(raw_, raw_of_.at(batch.number[point]), lights, parts);
+  }
+  if (coarse.empty()) return parts;
+  const PointLinks links = links_between(batch, coarse);
+  parts.indirect = filter_irradiance(std::move(parts.indirect), links, layer_powers_,
+                                     {.rounds = averaged.rounds, .tolerated = of_indirect});
+  parts.direct = filter_irradiance(std::move(parts.direct), links, layer_powers_,
+                                   {.rounds = averaged.rounds, .tolerated = of_direct});
+  return parts;
+}
+
+/// Finer nodes averaged with the places next to them, as gathered.
+GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
+                                                  const NodeBatch& batch,
+                                                  std::span<const std::uint32_t> fine,
+                                                  const NoiseTolerance& tolerated) const {
+  return cache::means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+    const std::uint32_t node = fine[i];
+    mean.add_own(raw, raw_of_.at(batch.number[node]));
+    for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
+      mean.add_other(raw, raw_of_.at(batch.number[batch.neighbour[j]]), tolerated);
+    }
+  });
+}
+
+/// Finer nodes averaged with what lies around them at coarser levels.
+///   known   of nodes valued before
+///   found   of the fine nodes
+GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
+                                            const GatheredIrradiance& found, const NodeBatch& batch,
+                                            std::span<const std::uint32_t> fine,
+                                            const NoiseTolerance& tolerated) const {
+  const GatheredIrradiance expected =
+      cache::means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+        for (const std::uint64_t parent : batch.parents[fine[i]]) {
+          mean.add_own(known, row_of_.at(parent));
+        }
+      });
+  return cache::means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+    mean.add_own(found, i);
+    mean.add_other(expected, i, tolerated, defaults::weight_of_parents);
+  });
+}
+
+}  // namespace photile::cache

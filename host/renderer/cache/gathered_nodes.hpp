@@ -1,0 +1,78 @@
+// Nodes of light maps valued by rays, and cleared of their noise.
+#pragma once
+
+#include <tsl/robin_map.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cache/irradiance_filter.hpp"
+#include "cache/irradiance_gather.hpp"
+#include "photile/light_maps.hpp"
+
+namespace photile::cache {
+
+/// Rays and looks at lamps of a node.
+struct NodeRays {
+  int rays, looks;
+};
+
+struct GatheredNodesParameters {
+  NodeRays coarse{64, 64};  ///< at the coarsest level
+  NodeRays fine{25, 32};    ///< at all others
+  /// Rays start so far within a node's triangle, metres: at an edge nothing says on which side of
+  /// a wall they are.
+  double inset = 0;
+};
+
+/// So many rays at the coarsest level and a quarter at others, and defaults::looks_per_ray; where
+/// the sun or a sky shines more looks, and as many at all levels.
+GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset);
+
+/// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
+/// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
+/// finer ones with those next to them and with what coarser ones say of their place, as far as
+/// differences may be noise. Light straight from lamps and light of other surfaces are treated
+/// apart.
+class GatheredNodes : public NodeSource {
+ public:
+  /// References are kept. It serves one LightMaps.
+  GatheredNodes(const Scene& scene, IrradianceGather& gather, std::span<const double> layer_powers,
+                const GatheredNodesParameters& parameters)
+      : scene_(scene), gather_(gather), layer_powers_(layer_powers), parameters_(parameters) {}
+
+  Surroundings surroundings() const override;
+  NodeValues value(const NodeBatch& batch, const Progress& progress) override;
+  bool knows(std::uint64_t number) const override { return row_of_.contains(number); }
+  std::uint64_t bytes() const override;
+  void forget() override;
+
+  /// Standard errors of all nodes that were valued, in their order, in the form of estimates: of
+  /// each light at power 1, in the colour of its light.
+  Estimates errors() const;
+
+ private:
+  void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> places,
+                  const NodeRays& rays, const Progress& progress);
+  GatheredParts smoothed(const NodeBatch& batch, std::span<const std::uint32_t> coarse) const;
+  GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const NodeBatch& batch,
+                                     std::span<const std::uint32_t> fine,
+                                     const NoiseTolerance& tolerated) const;
+  GatheredIrradiance corrected(const GatheredIrradiance& known, const GatheredIrradiance& found,
+                               const NodeBatch& batch, std::span<const std::uint32_t> fine,
+                               const NoiseTolerance& tolerated) const;
+
+  PrimaryHits points_at(const NodeBatch& batch, std::span<const std::uint32_t> chosen) const;
+
+  const Scene& scene_;
+  IrradianceGather& gather_;
+  std::span<const double> layer_powers_;
+  GatheredNodesParameters parameters_;
+  tsl::robin_map<std::uint64_t, std::uint32_t> raw_of_;  ///< by number of the point
+  GatheredParts raw_;                                    ///< of places, as gathered
+  tsl::robin_map<std::uint64_t, std::uint32_t> row_of_;  ///< by number of a node, in `nodes_`
+  GatheredParts nodes_;
+};
+
+}  // namespace photile::cache

@@ -1,0 +1,349 @@
+#include "cache/irradiance_gather.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "cache/batch_sums.hpp"
+#include "common/byte_stream.hpp"
+#include "estimate/map_order.hpp"
+#include "estimate/neighbour_choice.hpp"
+#include "estimate/reflected_radiance.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/shard.hpp"
+#include "photile/statistics.hpp"
+#include "trace/direct_light.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/hemisphere_rays.hpp"
+#include "trace/hit_point.hpp"
+
+namespace photile::cache {
+namespace {
+
+using cache::BatchSums;
+using cache::EndLight;
+using cache::IndirectLight;
+
+/// Enough to fill a device with new nodes, little enough to stay in the processor's caches.
+constexpr std::size_t rays_at_a_time = std::size_t{1} << 16;
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t points_per_task = 16;
+
+/// Whole rays of a batch.
+int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
+
+/// What the sums of a run of points are made of.
+struct RunLight {
+  const RayScene& rays;
+  const trace::LightSampler& lamps;
+  const IrradianceGatherParameters& parameters;
+  int rays_per_batch, looks_per_batch;
+  const PrimaryHits& points;
+  std::span<const std::uint64_t> number;
+  const IndirectLight* traced;  ///< null where no rays are
+  const EndLight& ends;
+  const Estimates& caustics;  ///< of all points; empty where there are none
+  double caustic_relative_variance;
+  std::span<const double> layer_powers;
+
+  /// Of the run's point i, which is `point` of all.
+  void add_indirect(std::size_t i, BatchSums& sums) const {
+    if (!traced) return;
+    ends.add_point(*traced, i, static_cast<std::uint32_t>(parameters.batches),
+                   static_cast<std::uint32_t>(rays_per_batch), sums);
+    const trace::HemisphereRays& met = traced->rays;
+    for (std::size_t e = met.first_direct[i]; e < met.first_direct[i + 1]; ++e) {
+      const SeenEmission& light = met.ends.direct[e];
+      sums.add_surface(light.light, batch_of(light.pixel), light.radiance,
+                       met.direction_of(light.pixel));
+    }
+  }
+  ///   indirect   luminance of the irradiance of all lights together
+  void add_direct(std::size_t i, std::size_t point, double indirect, BatchSums& sums) const {
+    if (looks_per_batch > 0) {
+      look(point, indirect, sums);
+      add_seen_lamps(i, sums);
+    }
+    if (caustics.irradiance.empty()) return;
+    estimate::for_each_estimate(
+        caustics, point, rays.needs().light_count, [&](std::size_t layer, std::size_t estimate) {
+          sums.add_to_all(static_cast<std::uint32_t>(layer), caustics.irradiance[estimate],
+                          caustic_relative_variance);
+        });
+  }
+  /// Harmonic mean, metres.
+  float distance(std::size_t i) const {
+    if (!traced) return std::numeric_limits<float>::infinity();
+    return static_cast<float>(rays_per_batch * parameters.batches) /
+           traced->rays.inverse_distances[i];
+  }
+
+ private:
+  std::uint32_t batch_of(std::uint32_t ray) const {
+    return ray / static_cast<std::uint32_t>(rays_per_batch) %
+           static_cast<std::uint32_t>(parameters.batches);
+  }
+  void look(std::size_t point, double indirect, BatchSums& sums) const {
+    const trace::SurfacePoint where = trace::point_of(rays.scene(), points, point);
+    const auto batches = static_cast<std::uint32_t>(parameters.batches);
+    const auto samples_of = [&](std::uint32_t batch) {
+      return trace::LookSamples(trace::RandomStream(parameters.seed, number[point], batch), 0);
+    };
+    if (traced) {
+      thread_local trace::LampChances chances;
+      thread_local trace::LampLooks looks;
+      lamps.weigh(where.position, where.normal, chances);
+      // What rays that meet lamps count is weighed by the looks of most points.
+      const auto rays_per_look =
+          static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch);
+      const auto found_by = [&](int count) {
+        const glm::vec3 weight(1.0f / static_cast<float>(count));
+        looks.clear();
+        for (std::uint32_t batch = 0; batch < batches; ++batch) {
+          const trace::LookSamples samples = samples_of(batch);
+          for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+            looks.add(lamps, where, samples.lamp(i), weight, rays_per_look, chances, batch);
+          }
+        }
+        return looks.found(rays);
+      };
+      const int again = std::min(defaults::looks_again * looks_per_batch,
+                                 defaults::most_looks_again / parameters.batches);
+      std::span<const trace::LampLooks::Found> found = found_by(looks_per_batch);
+      if (again > looks_per_batch && is_uncertain(found, indirect)) found = found_by(again);
+      for (const auto& light : found) {
+        sums.add_lamp(light.layer, light.tag, light.irradiance, light.direction);
+      }
+      return;
+    }
+    thread_local std::vector<trace::ReceivedLight> found;
+    for (std::uint32_t batch = 0; batch < batches; ++batch) {
+      found.clear();
+      trace::find_direct_light(rays, lamps, where, -where.normal, trace::ReflectedPart::all,
+                               looks_per_batch, samples_of(batch), found);
+      for (const trace::ReceivedLight& light : found) {
+        sums.add_even(light.layer, batch, light.irradiance);
+      }
+    }
+  }
+  /// Whether the scatter of the batches is a visible part of all light.
+  bool is_uncertain(std::span<const trace::LampLooks::Found> found, double indirect) const {
+    if (found.empty()) return false;
+    thread_local std::vector<double> of_batch;
+    of_batch.assign(static_cast<std::size_t>(parameters.batches), 0.0);
+    for (const auto& light : found) {
+      of_batch[light.tag] += layer_powers[light.layer] * luminance(glm::dvec3(light.irradiance));
+    }
+    const auto count = static_cast<double>(of_batch.size());
+    const double mean = std::accumulate(of_batch.begin(), of_batch.end(), 0.0) / count;
+    double squares = 0;
+    for (const double light : of_batch) squares += (light - mean) * (light - mean);
+    const double tolerated = defaults::tolerated_look_error * (mean + indirect);
+    return squares > tolerated * tolerated * count * (count - 1);
+  }
+  void add_seen_lamps(std::size_t i, BatchSums& sums) const {
+    if (!traced) return;
+    const trace::HemisphereRays& met = traced->rays;
+    for (std::size_t e = met.first_emission[i]; e < met.first_emission[i + 1]; ++e) {
+      const SeenEmission& lamp = met.ends.emission[e];
+      sums.add_lamp(lamps.layer(lamp.light), batch_of(lamp.pixel), lamp.radiance,
+                    met.direction_of(lamp.pixel));
+    }
+  }
+};
+
+/// Adds the points of a run, in their order.
+void add_run(const RunLight& light, std::size_t first, std::size_t count, GatheredParts& all) {
+  std::vector<GatheredParts> parts((count + points_per_task - 1) / points_per_task);
+  const SceneNeeds& needs = light.rays.needs();
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const trace::FlushDenormals flush_denormals;
+    GatheredParts& own = parts[part];
+    const int batches = light.parameters.batches;
+    BatchSums indirect(needs, batches, false, own.indirect);
+    BatchSums direct(needs, batches, light.caustic_relative_variance > 0, own.direct);
+    const std::size_t last = std::min(count, (part + 1) * points_per_task);
+    for (std::size_t i = part * points_per_task; i < last; ++i) {
+      if (needs.smooth_shading) {
+        const glm::vec3 normal =
+            trace::point_of(light.rays.scene(), light.points, first + i).normal;
+        indirect.begin_point(normal);
+        direct.begin_point(normal);
+      }
+      light.add_indirect(i, indirect);
+      indirect.end_point();
+      const std::size_t row = i - part * points_per_task;
+      light.add_direct(i, first + i, own.indirect.total(row, light.layer_powers).luminance, direct);
+      direct.end_point();
+      own.distance.push_back(light.distance(i));
+    }
+  });
+  for (GatheredParts& part : parts) {
+    all.indirect.append(std::move(part.indirect));
+    all.direct.append(std::move(part.direct));
+    all.distance.insert(all.distance.end(), part.distance.begin(), part.distance.end());
+  }
+}
+
+void put(const GatheredIrradiance& part, ByteWriter& bytes) {
+  bytes.put(part.mean.irradiance);
+  bytes.put(part.mean.by_normal);
+  bytes.put(part.mean.first);
+  bytes.put(part.mean.light);
+  bytes.put(part.batch);
+  bytes.put(part.shared_variance);
+}
+
+std::vector<std::byte> bytes_of(const GatheredParts& parts) {
+  ByteWriter bytes;
+  put(parts.indirect, bytes);
+  put(parts.direct, bytes);
+  bytes.put(parts.distance);
+  return bytes.take();
+}
+
+void append(ByteReader& reader, GatheredIrradiance& all) {
+  GatheredIrradiance part;
+  part.batches = all.batches;
+  reader.append_to(part.mean.irradiance);
+  reader.append_to(part.mean.by_normal);
+  reader.append_to(part.mean.first);
+  reader.append_to(part.mean.light);
+  reader.append_to(part.batch);
+  reader.append_to(part.shared_variance);
+  all.append(std::move(part));
+}
+
+/// The points that follow.
+void append(std::span<const std::byte> bytes, GatheredParts& all) {
+  ByteReader reader(bytes);
+  append(reader, all.indirect);
+  append(reader, all.direct);
+  reader.append_to(all.distance);
+}
+
+void check_range(const char* what, int value, int low, int high) {
+  if (value < low || value > high)
+    throw UsageError(std::string(what) + ": " + std::to_string(value) + " is not between " +
+                     std::to_string(low) + " and " + std::to_string(high));
+}
+
+}  // namespace
+
+IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
+                                   estimate::LightAtPoints& of_nodes,
+                                   const LightMapParameters& ends,
+                                   estimate::LightAtPoints* caustics,
+                                   const IrradianceGatherParameters& parameters)
+    : rays_(rays),
+      caustics_(caustics),
+      parameters_(parameters),
+      lamps_(rays.scene()),
+      emitted_(emitted_radiance_at_unit_power(rays.scene())),
+      layer_powers_(estimate::layer_powers(rays.scene())),
+      ends_(rays, photons, of_nodes, ends) {
+  check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
+  check_range("looks at lamps from a point", parameters.looks, 0, limits::max_direct_rays);
+  check_range("batches of rays", parameters.batches, 2, 64);
+}
+
+GatheredParts IrradianceGather::gather(const PrimaryHits& points,
+                                       std::span<const std::uint64_t> number, int rays, int looks,
+                                       const Progress& progress) {
+  auto* const processes = ends_.processes();
+  if (!processes) return gather_own(points, number, rays, looks, points.size(), progress);
+  const Shard shard{processes->rank(), processes->size()};
+  const std::uint64_t begin = shard.begin(points.size()), end = shard.end(points.size());
+  std::vector<std::uint32_t> own(end - begin);
+  std::iota(own.begin(), own.end(), static_cast<std::uint32_t>(begin));
+  const std::size_t most = (points.size() + shard.count - 1) / shard.count;
+  const GatheredParts part =
+      gather_own(estimate::reordered(points, 0, own), number.subspan(begin, own.size()), rays,
+                 looks, most, progress);
+  GatheredParts all;
+  all.indirect.batches = all.direct.batches = parameters_.batches;
+  for (const auto& bytes : processes->gather(bytes_of(part))) append(bytes, all);
+  return all;
+}
+
+GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
+                                           std::span<const std::uint64_t> number, int rays,
+                                           int looks, std::size_t most, const Progress& progress) {
+  const EndLight::Costs before = ends_.costs();
+  const Stopwatch caustics_watch;
+  const Estimates caustics = caustics_ ? caustics_->at(points, progress) : Estimates{};
+  costs_.estimate_seconds += caustics_watch.seconds();
+  costs_.estimated += caustics_ ? points.size() : 0;
+
+  const int rays_per_batch = per_batch(rays, parameters_.batches);
+  const int looks_per_batch = per_batch(looks, parameters_.batches);
+  const trace::HemisphereParameters hemisphere{
+      .batches = parameters_.batches,
+      .rays = rays_per_batch,
+      .seed = parameters_.seed,
+      .max_specular_depth = parameters_.max_specular_depth,
+      .lamps = &lamps_,
+      .emitted_radiance = &emitted_,
+      .rays_per_look = looks_per_batch > 0 ? static_cast<float>(rays_per_batch) /
+                                                 static_cast<float>(looks_per_batch)
+                                           : 0.0f,
+      .near = caustics_ ? 0.0f : static_cast<float>(parameters_.near)};
+  const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
+  const std::size_t at_a_time =
+      std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));
+  GatheredParts all;
+  all.indirect.batches = all.direct.batches = parameters_.batches;
+  if (rays_.needs().many_lights()) {
+    all.indirect.mean.first.push_back(0);
+    all.direct.mean.first.push_back(0);
+  }
+  for (std::size_t round = 0; round < most; round += at_a_time) {
+    progress.throw_if_cancelled();
+    const std::size_t first = std::min(round, points.size());
+    const std::size_t count = std::min(at_a_time, points.size() - first);
+    IndirectLight traced;
+    if (rays_per_batch > 0) {
+      const Stopwatch stopwatch;
+      trace::HemisphereRays hemispheres =
+          trace::trace_hemispheres(rays_, points, first, count, number, hemisphere);
+      costs_.ray_seconds += stopwatch.seconds();
+      const Stopwatch estimate_watch;
+      traced = ends_.look_up(std::move(hemispheres), progress);
+      costs_.estimate_seconds += estimate_watch.seconds();
+    }
+    const Stopwatch sum_watch;
+    add_run({.rays = rays_,
+             .lamps = lamps_,
+             .parameters = parameters_,
+             .rays_per_batch = rays_per_batch,
+             .looks_per_batch = looks_per_batch,
+             .points = points,
+             .number = number,
+             .traced = rays_per_batch > 0 ? &traced : nullptr,
+             .ends = ends_,
+             .caustics = caustics,
+             .caustic_relative_variance = caustics_ ? 1.0 / parameters_.caustic_neighbours : 0.0,
+             .layer_powers = layer_powers_},
+            first, count, all);
+    costs_.sum_seconds += sum_watch.seconds();
+  }
+  costs_.rays += ends_.costs().rays - before.rays;
+  costs_.ends += ends_.costs().ends - before.ends;
+  costs_.estimated += ends_.costs().estimated - before.estimated;
+  return all;
+}
+
+GatheredIrradiance IrradianceGather::gather(const PrimaryHits& points,
+                                            std::span<const std::uint64_t> number,
+                                            const Progress& progress) {
+  const GatheredParts parts = gather(points, number, parameters_.rays, parameters_.looks, progress);
+  return sum_of(parts.indirect, parts.direct, rays_.needs().light_count);
+}
+
+}  // namespace photile::cache

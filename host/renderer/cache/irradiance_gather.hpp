@@ -1,0 +1,118 @@
+// Irradiance at points of surfaces by rays: to lamps, and to the surfaces around, where photon
+// estimates are looked up.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cache/end_light.hpp"
+#include "cache/gathered_irradiance.hpp"
+#include "estimate/light_at_points.hpp"
+#include "photile/defaults.hpp"
+#include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
+#include "trace/light_sampler.hpp"
+
+namespace photile::cache {
+
+struct IrradianceGatherParameters {
+  /// From each point to the surfaces around; 0 = indirect light is left out.
+  int rays = 144;
+  /// At lamps from each point; 0 = direct light is left out.
+  int looks = 96;
+  /// Rays and looks are shared by so many independent batches, rounded up to a whole number in
+  /// each: their scatter is the error.
+  int batches = 8;
+  /// Surface nearer than this, metres, is not read but gathered from by one ray and one look at
+  /// lamps, for photon estimates blur over such distances and miss what hides there. Not where
+  /// there are caustics, which only photons know. 0 = all is read.
+  double near = 0;
+  /// Photons of an estimate of caustics, which tell its error.
+  int caustic_neighbours = defaults::neighbours;
+  std::uint64_t seed = defaults::seed;
+  int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
+};
+
+/// Light at points in two parts, whose noise differs.
+struct GatheredParts {
+  GatheredIrradiance indirect;  ///< from other surfaces
+  GatheredIrradiance direct;    ///< straight from lamps, and caustics
+  /// Per point: harmonic mean of the distances to what its rays met, metres; infinite where they
+  /// met nothing.
+  std::vector<float> distance;
+
+  std::uint64_t bytes() const {
+    return indirect.bytes() + direct.bytes() + distance.size() * sizeof(float);
+  }
+};
+
+/// Gathers the light of each layer at points, in three parts that together are all light
+/// (docs/irradiance-gathering.md): straight from lamps, by looks at them and by the rays that meet
+/// them; over mirrors or through glass that bends it and nothing else, by the photons that brought
+/// it; all other, by rays with the density of the cosine that read the photons of all light where
+/// they end.
+///
+/// Ends read light maps whose nodes photon estimates value: what a point gets depends on itself and
+/// its number, and not on the points beside it. Ends on surfaces whose lobe reflects much have
+/// estimates of their own; those of weaker lobes count as if they reflected the same light
+/// diffusely.
+class IrradianceGather {
+ public:
+  /// References are kept.
+  ///   photons    of all light, and `of_nodes`, as EndLight has them; k of about 100 serves
+  ///   ends       light maps for these photons
+  ///   caustics   by photons that came by mirrors and glass alone; null where there are none
+  /// Errors: UsageError for parameters out of range; InputError for an area light without area.
+  IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
+                   estimate::LightAtPoints& of_nodes, const LightMapParameters& ends,
+                   estimate::LightAtPoints* caustics, const IrradianceGatherParameters& parameters);
+
+  /// Irradiance at points, in their order. What a point gets depends on itself and its number.
+  ///   points   position, sided_triangle, diffuse_albedo and, in glossy scenes, outgoing and lobe
+  ///   number   of each point, below 2^48: the same number and point have the same rays
+  ///   rays, looks   in place of the parameters'
+  /// Where several processes have the photon maps, all give the same points; each gathers at a part
+  /// of them, and all get all.
+  /// Errors: as DeviceEstimators; Interrupted, when `progress` says so.
+  GatheredParts gather(const PrimaryHits& points, std::span<const std::uint64_t> number, int rays,
+                       int looks, const Progress& progress = Progress::none());
+
+  /// All light together.
+  GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
+                            const Progress& progress = Progress::none());
+
+  /// What rays find where they end.
+  cache::EndLight& ends() { return ends_; }
+
+  /// Of the light maps where rays end; `forget` empties them.
+  std::uint64_t bytes() const { return ends_.bytes(); }
+  void forget() { ends_.forget(); }
+
+  /// What all calls took so far.
+  struct Costs {
+    double ray_seconds = 0;       ///< tracing rays to surfaces
+    double estimate_seconds = 0;  ///< photons, at ends and at points
+    double sum_seconds = 0;       ///< looks at lamps, and sums
+    std::uint64_t rays = 0;       ///< to surfaces; those along mirrors and glass included
+    std::uint64_t ends = 0;       ///< that met a surface
+    std::uint64_t estimated = 0;  ///< places where photons were looked up
+  };
+  const Costs& costs() const { return costs_; }
+
+ private:
+  /// Of this process's points, in as many rounds as so many points take.
+  GatheredParts gather_own(const PrimaryHits& points, std::span<const std::uint64_t> number,
+                           int rays, int looks, std::size_t most, const Progress& progress);
+
+  const RayScene& rays_;
+  estimate::LightAtPoints* caustics_;
+  IrradianceGatherParameters parameters_;
+  trace::LightSampler lamps_;
+  std::vector<glm::vec3> emitted_;  ///< per light
+  std::vector<double> layer_powers_;
+  cache::EndLight ends_;
+  Costs costs_;
+};
+
+}  // namespace photile::cache

@@ -1,0 +1,199 @@
+// Contents of light maps: saved, taken in again, and dropped in part.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "cache/light_maps_impl.hpp"
+#include "cache/node_batch.hpp"
+#include "maps/check_photons.hpp"
+#include "photile/errors.hpp"
+
+namespace photile {
+
+using cache::NodePlace;
+using cache::Tile;
+using cache::Tiles;
+
+namespace {
+
+/// Whether these are the light of so many nodes, as files may not have it.
+bool are_values_of(const Estimates& values, std::size_t nodes, const SceneNeeds& needs) {
+  if (!values.radiance.empty()) return false;
+  for (const glm::vec3& light : values.irradiance) {
+    if (!std::isfinite(light.x + light.y + light.z)) return false;
+  }
+  if (!needs.many_lights()) {
+    return values.first.empty() && values.light.empty() &&
+           values.irradiance.size() == nodes * needs.light_count;
+  }
+  return values.light.size() == values.irradiance.size() &&
+         maps::are_rows(values.first, nodes, values.light.size()) &&
+         maps::all_below(values.light, needs.light_count);
+}
+
+/// Whether the values tell light by the normal, where rays found it and the scene asks for it
+/// alone.
+bool tell_by_normal(const Estimates& values, bool wanted) {
+  return values.by_normal.size() == (wanted ? values.irradiance.size() : 0) &&
+         std::all_of(values.by_normal.begin(), values.by_normal.end(), [](const glm::vec4& light) {
+           return std::isfinite(light.x + light.y + light.z + light.w);
+         });
+}
+
+/// Whether these are errors and distances of so many nodes, or none.
+bool are_errors_of(const std::vector<float>& error, const std::vector<float>& distance,
+                   std::size_t nodes) {
+  const auto sensible = [](float value) { return value >= 0; };  // infinite: nothing is near
+  return (error.empty() || error.size() == nodes) && distance.size() == error.size() &&
+         std::all_of(error.begin(), error.end(), sensible) &&
+         std::all_of(distance.begin(), distance.end(), sensible);
+}
+
+/// Per tile: the cells whose first corner is to be kept, and those above such a cell.
+std::vector<std::uint64_t> kept_cells(const Tiles& tiles, std::span<const std::uint8_t> keep) {
+  std::vector<std::uint64_t> kept(tiles.size(), 0);
+  for (auto index = static_cast<std::uint32_t>(tiles.size()); index-- > 0;) {  // the finest first
+    const Tile& tile = tiles[index];
+    for (std::uint32_t cell = 0; cell < 64; ++cell) {
+      if ((tile.known >> cell & 1) == 0) continue;
+      bool stays = keep[tile.corners(cell)[0]] != 0;
+      if ((tile.split >> cell & 1) != 0) {
+        const std::uint32_t x = cell & 7, y = cell >> 3;
+        const std::uint64_t quarter = std::uint64_t{0b11'0000'0011} << ((y & 3) * 16 + (x & 3) * 2);
+        stays = stays || (kept[tile.child[(y >> 2) * 2 + (x >> 2)]] & quarter) != 0;
+      }
+      if (stays) kept[index] |= std::uint64_t{1} << cell;
+    }
+  }
+  return kept;
+}
+
+/// Per node of `nodes`: whether it is a corner of one of these cells.
+std::vector<std::uint8_t> corners_of(const Tiles& tiles, std::span<const std::uint64_t> cells,
+                                     std::size_t nodes) {
+  std::vector<std::uint8_t> wanted(nodes, 0);
+  for (std::uint32_t index = 0; index < cells.size(); ++index) {
+    for (std::uint32_t cell = 0; cell < 64; ++cell) {
+      if ((cells[index] >> cell & 1) == 0) continue;
+      for (const std::uint32_t node : tiles[index].corners(cell)) wanted[node] = 1;
+    }
+  }
+  return wanted;
+}
+
+}  // namespace
+
+LightMapContents LightMaps::contents() const {
+  LightMapContents contents;
+  for (const NodePlace& place : impl_->places) {
+    contents.nodes.push_back({place.chart, place.x, place.y});
+  }
+  contents.values = impl_->values;
+  contents.error = impl_->error;
+  contents.distance = impl_->distance;
+  for (std::uint32_t i = 0; i < impl_->tiles.size(); ++i) {
+    const Tile& tile = impl_->tiles[i];
+    contents.tiles.push_back({tile.known, tile.split, tile.chart, tile.level, tile.x, tile.y});
+  }
+  return contents;
+}
+
+std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep) {
+  const std::vector<std::uint64_t> kept = kept_cells(impl_->tiles, keep);
+  const std::vector<std::uint8_t> wanted = corners_of(impl_->tiles, kept, keep.size());
+  LightMapContents all = contents(), left;
+  const bool many = impl_->needs.many_lights();
+  const std::size_t lights = impl_->parameters.powers.size();
+  std::vector<std::uint32_t> former;
+  if (many) left.values.first.push_back(0);
+  for (std::uint32_t node = 0; node < wanted.size(); ++node) {
+    if (wanted[node] == 0) continue;
+    former.push_back(node);
+    left.nodes.push_back(all.nodes[node]);
+    const std::size_t first = many ? all.values.first[node] : node * lights;
+    const std::size_t last = many ? all.values.first[node + 1] : first + lights;
+    for (std::size_t i = first; i < last; ++i) {
+      left.values.irradiance.push_back(all.values.irradiance[i]);
+      if (!all.values.by_normal.empty()) left.values.by_normal.push_back(all.values.by_normal[i]);
+      if (many) left.values.light.push_back(all.values.light[i]);
+    }
+    if (many) left.values.first.push_back(left.values.light.size());
+    if (all.error.empty()) continue;
+    left.error.push_back(all.error[node]);
+    left.distance.push_back(all.distance[node]);
+  }
+  for (std::uint32_t index = 0; index < kept.size(); ++index) {
+    if (kept[index] == 0) continue;
+    left.tiles.push_back(all.tiles[index]);
+    left.tiles.back().known = kept[index];
+    left.tiles.back().split &= kept[index];
+  }
+  impl_->clear();
+  restore(std::move(left));
+  return former;
+}
+
+void LightMaps::restore(LightMapContents contents) {
+  const auto fit = [](bool fits) {
+    if (!fits) throw InputError("saved light maps do not fit the scene; save them again");
+  };
+  Tiles& tiles = impl_->tiles;
+  const std::size_t count = contents.nodes.size();
+  fit(are_values_of(contents.values, count, impl_->needs));
+  fit(tell_by_normal(contents.values, impl_->needs.smooth_shading && !contents.error.empty()));
+  fit(are_errors_of(contents.error, contents.distance, count));
+  for (std::uint32_t node = 0; node < count; ++node) {
+    const auto& [chart, x, y] = contents.nodes[node];
+    fit(impl_->node_at.insert({NodePlace{chart, x, y}, node}).second);
+  }
+  std::vector<NodePlace> places;
+  for (const auto& [chart, x, y] : contents.nodes) {
+    fit(chart < impl_->charts.size());
+    places.push_back({chart, x, y});
+  }
+  const PrimaryHits points =
+      cache::node_points(impl_->scene, impl_->charts, places, impl_->levels, false);
+  impl_->append(std::move(contents.values), points, places);
+  impl_->error = std::move(contents.error);
+  impl_->distance = std::move(contents.distance);
+  const auto place_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,
+                           std::uint32_t y) {
+    return std::array{chart, level, x, y};
+  };
+  std::map<std::array<std::uint32_t, 4>, std::uint32_t> tile_at;
+  for (const LightMapContents::Tile& saved : contents.tiles) {
+    const auto& [known, split, chart, level, x, y] = saved;
+    fit(chart < impl_->charts.size() && static_cast<int>(level) < impl_->levels && (x & 7) == 0 &&
+        (y & 7) == 0 && (split & ~known) == 0);
+    std::uint32_t index = none;
+    if (level == 0) {
+      const cache::Chart& lattice = impl_->charts[chart];
+      fit(x / 8 < lattice.root_columns() && y / 8 < lattice.root_rows());
+      index =
+          tiles.tile_of({lattice.first_root + y / 8 * lattice.root_columns() + x / 8, 0, false});
+    } else {
+      const auto parent = tile_at.find(place_of(chart, level - 1, x / 16 * 8, y / 16 * 8));
+      fit(parent != tile_at.end());
+      index = tiles[parent->second].child[(y / 8 & 1) * 2 + (x / 8 & 1)];
+      fit(index != none);
+    }
+    fit(tile_at.emplace(place_of(chart, level, x, y), index).second);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
+    for (std::uint32_t cell = 0; cell < 64; ++cell) {
+      if ((known >> cell & 1) != 0) cells.emplace_back(index, cell);
+    }
+    std::vector<NodePlace> added;
+    impl_->number_corners(cells, added);
+    fit(added.empty());
+    tiles[index].known = known;
+    impl_->cells += cells.size();
+    for (std::uint32_t cell = 0; cell < 64; ++cell) {
+      if ((split >> cell & 1) == 0) continue;
+      fit(static_cast<int>(level) + 1 < impl_->levels);
+      tiles.split(index, cell);
+    }
+  }
+}
+
+}  // namespace photile

@@ -1,0 +1,95 @@
+// Pictures of the light on surfaces alone, quick enough to walk in: a ray and a lookup a pixel.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "cache/node_mix.hpp"
+#include "cache/tiles.hpp"
+#include "photile/camera.hpp"
+#include "photile/light_groups.hpp"
+#include "photile/light_maps.hpp"
+#include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/scene_renderer.hpp"
+#include "trace/distant_light.hpp"
+
+namespace photile::cache {
+
+/// Draws frames from light maps. Rays through the same places of each pixel; mirrors, glass and
+/// holes are followed; a specular lobe is taken for matt reflection of the same strength, and
+/// normal maps are left out.
+class LightMapFrames {
+ public:
+  /// References are kept.
+  LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource& source);
+
+  /// From now on, frames forget the cells that were seen least recently where light maps take more
+  /// than so many bytes: down to half of it, but none that the latest frame sees; first of all,
+  /// what their source keeps. 0 = no bound.
+  void bound(std::uint64_t bytes) { bound_ = bytes; }
+
+  /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Pixels whose nodes
+  /// are not valued show the next coarser level; those without any, the light of nodes on the
+  /// average.
+  ///   powers         per layer: power x tint
+  ///   fill_seconds   that may go into valuing nodes which pixels lack and into drawing these
+  ///                  pixels again, level by level, the nearest to the eye first; infinite: all of
+  ///                  them
+  /// Errors: those of LightMaps::fill.
+  DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
+                  double fill_seconds, std::span<glm::vec3> picture, const Progress& progress);
+
+ private:
+  /// What a frame needs of a triangle, close together.
+  struct Surface {
+    std::uint32_t chart[2];  ///< of its sides
+    glm::vec3 reflects;      ///< radiance per irradiance, where it is plain
+    enum Kind : std::uint32_t { plain, textured, lamp, followed } kind;
+  };
+  /// Where a cell is seen whose nodes are not valued.
+  struct MissingPlace {
+    cache::MissingCell cell;
+    bool empty;      ///< without a coarser level
+    float distance;  ///< from the eye, metres
+    glm::vec3 position;
+    std::uint32_t sided_triangle;
+  };
+  struct Missing {
+    std::vector<MissingPlace> places;
+    bool any = false;  ///< of the block at hand
+  };
+  struct View;
+
+  void forget_unseen();
+  std::vector<MissingPlace> draw_blocks(const View& view, std::vector<std::size_t>& blocks) const;
+  void fill(std::span<const MissingPlace> places, double seconds, const Progress& progress);
+  void draw_block(const View& view, std::size_t block, Missing& missing) const;
+  glm::vec3 seen(const View& view, std::uint32_t pixel, const glm::vec3& direction,
+                 std::uint32_t triangle, std::uint32_t side, float u, float v, float distance,
+                 Missing& missing) const;
+  glm::vec3 irradiance(const View& view, std::uint32_t sided_triangle, const glm::vec3& position,
+                       Missing& missing) const;
+  glm::vec3 followed(const View& view, std::uint32_t pixel, const glm::vec3& direction,
+                     Missing& missing) const;
+  glm::vec3 background(const glm::vec3& direction) const;
+
+  const RayScene& rays_;
+  const Scene& scene_;
+  LightMaps& maps_;
+  NodeSource& source_;
+  std::vector<Surface> surfaces_;
+  std::vector<std::uint32_t> layer_of_;  ///< per light
+  std::vector<glm::vec3> emitted_;       ///< per light, at power 1
+  trace::DistantLights distant_;
+  cache::NodeMix mixed_;
+  std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none
+  std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
+  mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell
+  glm::vec3 ambient_{0.0f};                  ///< irradiance where no level is valued
+  double seconds_per_place_;                 ///< of valuing, learned from what it took
+};
+
+}  // namespace photile::cache

@@ -1,0 +1,38 @@
+// The light of all lights together at the nodes of light maps.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "photile/estimator.hpp"
+
+namespace photile::cache {
+
+/// Irradiance of the lights together, linear RGB, at their powers and tints.
+class NodeMix {
+ public:
+  /// Brings the mix to these powers: nodes that hold light whose power changed are summed anew, and
+  /// those that are new. Every sum is made whole, in one order: a difference added would leave a
+  /// rounding of its own, and the mix would depend on how sliders came to where they are. Work is
+  /// shared by TBB.
+  ///   values   what the nodes hold, see LightMaps::values
+  ///   powers   per layer: power x tint
+  void mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers);
+
+  /// Keeps these nodes alone, in this order.
+  void keep(std::span<const std::uint32_t> nodes);
+
+  /// Per node; the fourth is nothing.
+  std::span<const glm::vec4> light() const { return light_; }
+  /// Likewise, luminance by the normal as Estimates has it; empty where nodes do not tell it.
+  std::span<const glm::vec4> by_normal() const { return by_normal_; }
+  std::span<const glm::vec3> powers() const { return powers_; }
+
+ private:
+  std::vector<glm::vec3> powers_;
+  std::vector<glm::vec4> light_, by_normal_;
+};
+
+}  // namespace photile::cache

@@ -1,0 +1,46 @@
+// Which of the nodes around a point of the surface say what light falls there.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "photile/defaults.hpp"
+#include "photile/light_maps.hpp"
+#include "photile/ray_scene.hpp"
+
+namespace photile::cache {
+
+/// A chart goes on under things that stand on it, and behind what is let into it. Nodes there hold
+/// the light of where they are, which is none of what the eye sees beside them.
+class NodeSight {
+ public:
+  /// References are kept.
+  ///   contrast   of nodes that are looked at, as LightMapParameters::contrast
+  NodeSight(const RayScene& rays, const LightMaps& maps,
+            double contrast = defaults::light_map_contrast)
+      : rays_(rays), maps_(maps), contrast_(contrast) {}
+
+  /// Leaves out the nodes that something hides from the point, or covers and not the point, where
+  /// the nodes differ so much that it matters: their weight becomes 0, and those of the others 1
+  /// together. Returns false where none is left; then the blend is what it was. Depends on the
+  /// point and its nodes alone. Thread-safe; the caller's thread must flush denormals
+  /// (flush_denormals.hpp).
+  ///   position   of an opaque surface, metres
+  ///   blend      of LightMaps::find, which found all nodes
+  bool look(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
+
+  /// Whether the middle of the cell sees all of its nodes.
+  bool is_open(const NodeBlend& cell) const;
+
+  /// Whether nothing stands between two places, metres, on the plane of a triangle's side.
+  bool sees(std::uint32_t sided_triangle, const glm::vec3& from, const glm::vec3& to) const;
+
+ private:
+  bool is_in_slit(const glm::vec3& position, const glm::vec3& normal, std::uint32_t node) const;
+
+  const RayScene& rays_;
+  const LightMaps& maps_;
+  double contrast_;
+};
+
+}  // namespace photile::cache

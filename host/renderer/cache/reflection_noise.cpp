@@ -1,0 +1,88 @@
+#include "cache/reflection_noise.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <span>
+
+#include "photile/defaults.hpp"
+#include "photile/scene.hpp"
+#include "trace/by_pixel.hpp"
+
+namespace photile::cache {
+namespace {
+
+/// Hits of a pixel that are compared with each other, at most.
+constexpr std::size_t most_compared = 64;
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t pixels_per_task = 64;
+
+/// What the light at a hit counts, if all surfaces receive the same.
+double weight_of(const PrimaryHits& hits, std::size_t hit) {
+  return luminance(glm::dvec3(hits.throughput[hit] * hits.diffuse_albedo[hit]));
+}
+
+double sum_of_weights(const PrimaryHits& hits, std::span<const std::uint32_t> chosen) {
+  double sum = 0;
+  for (const std::uint32_t hit : chosen) sum += weight_of(hits, hit);
+  return sum;
+}
+
+/// The variance of the weighted mean over some hits, of those of one hit: 1 where all lie in one
+/// blotch, less where they lie in several.
+double relative_variance(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
+                         double width) {
+  const std::size_t step = (chosen.size() + most_compared - 1) / most_compared;
+  double weights = 0, variance = 0;
+  for (std::size_t i = 0; i < chosen.size(); i += step) {
+    const double own = weight_of(hits, chosen[i]);
+    weights += own;
+    for (std::size_t j = 0; j < chosen.size(); j += step) {
+      const double apart = glm::distance(hits.position[chosen[i]], hits.position[chosen[j]]);
+      variance += own * weight_of(hits, chosen[j]) * std::max(0.0, 1 - apart / width);
+    }
+  }
+  return weights > 0 ? variance / (weights * weights) : 0.0;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
+                                        int runs, const PhotonBlotches& blotches) {
+  std::vector<std::uint8_t> suits(reflected.size(), 0);
+  if (reflected.size() == 0) return suits;
+  const auto [low, high] = std::minmax_element(reflected.pixel.begin(), reflected.pixel.end());
+  const auto count = static_cast<std::size_t>(runs);
+  const std::size_t first = *low / count, pixels = *high / count - first + 1;
+  std::vector<double> seen_weight(pixels, 0.0);
+  for (std::size_t hit = 0; hit < seen.size(); ++hit) {
+    const std::size_t pixel = seen.pixel[hit] / count;
+    if (pixel >= first && pixel < first + pixels)
+      seen_weight[pixel - first] += weight_of(seen, hit);
+  }
+  const trace::ByPixel by_pixel(reflected.size(), first, pixels,
+                                [&](std::size_t i) { return reflected.pixel[i] / count; });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, pixels, pixels_per_task),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+          const std::span<const std::uint32_t> hits = by_pixel.of(pixel);
+          const double weight = sum_of_weights(reflected, hits);
+          const double tolerated =
+              defaults::tolerated_reflection_noise * (weight + seen_weight[pixel]);
+          const double noise = weight * blotches.noise;
+          if (noise > tolerated &&
+              noise * std::sqrt(relative_variance(reflected, hits, blotches.width)) > tolerated) {
+            continue;
+          }
+          for (const std::uint32_t hit : hits) suits[hit] = 1;
+        }
+      });
+  return suits;
+}
+
+}  // namespace photile::cache

@@ -1,0 +1,124 @@
+// The cache on surfaces: light read between samples where those serve, and asked for where they do
+// not.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cache/end_light.hpp"
+#include "cache/node_sight.hpp"
+#include "cache/reflection_noise.hpp"
+#include "estimate/light_at_points.hpp"
+#include "photile/light_maps.hpp"
+#include "photile/photons.hpp"
+#include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/statistics.hpp"
+
+namespace photile::cache {
+
+/// A sum of squared relative standard errors.
+struct ErrorSum {
+  double squares = 0;
+  std::uint64_t hits = 0;
+
+  /// The root mean square; 0 where there are no hits.
+  double mean() const;
+};
+
+/// Light maps for photons of this density: nodes lie as far apart as the photons that a typical
+/// estimate takes, at the coarsest level, in steps of two.
+///   neighbours   k
+///   radius       of the photon maps, metres. One so small that estimates find no photon makes
+///                nodes no closer than photons
+///   detail       metres, > 0: spacing of the finest nodes, at most; 0 = an eighth of the coarsest
+///   powers       per layer of the scene
+LightMapParameters light_map_parameters(const Scene& scene, const Photons& photons, int neighbours,
+                                        double radius, double angle_degrees, double detail,
+                                        std::span<const double> powers);
+
+/// Values nodes by what another says of their points.
+class ValuedBy : public PointSource {
+ public:
+  explicit ValuedBy(estimate::LightAtPoints& light) : light_(light) {}
+  Estimates irradiance(const PrimaryHits& nodes) override {
+    return light_.at(nodes, Progress::none());
+  }
+
+ private:
+  estimate::LightAtPoints& light_;
+};
+
+/// What the light of hits is read from.
+struct HitReading {
+  static constexpr int own_estimate = -1, ends = 0;
+  std::vector<int> levels;        ///< of nodes; or `ends`, or `own_estimate`
+  std::vector<NodeBlend> blends;  ///< of nodes or ends
+};
+
+class SurfaceCache : public estimate::LightAtPoints {
+ public:
+  /// References are kept.
+  ///   elsewhere   answers for points that no node serves: those with a specular lobe or a normal
+  ///               map, which ask where light comes from. What a point gets from it does not depend
+  ///               on the points beside it.
+  ///   source      values nodes
+  ///   ends        where rays value nodes, the light that they find where they end, which is read
+  ///               where PrimaryHits::coarse says that it suffices; null where photons value nodes:
+  ///               the coarsest nodes are read there
+  SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
+               estimate::LightAtPoints& elsewhere, NodeSource& source, cache::EndLight* ends);
+
+  /// Of points in any order.
+  Estimates at(const PrimaryHits& points, const Progress& progress) override;
+
+  /// Standard errors of what `at` found at these hits, in the same form. Nodes around a hit
+  /// are taken to err alike; where photons served, theirs is that of a density from k of them.
+  ///   estimates   that were found
+  ///   of_nodes    as GatheredNodes::errors
+  Estimates errors(const PrimaryHits& hits, const Estimates& estimates, const Estimates& of_nodes);
+
+  /// Of the light that photons alone say.
+  PhotonBlotches blotches() const;
+
+  LightMaps& maps() { return maps_; }
+  const LightMaps& maps() const { return maps_; }
+  NodeSource& source() { return source_; }
+  const cache::NodeSight& sight() const { return sight_; }
+
+  /// Hits that were estimated where they are, so far.
+  std::uint64_t hits_alone() const { return hits_alone_; }
+  /// Of all light at hits read so far; zeros where photons value nodes.
+  const ErrorSum& errors_read() const { return errors_read_; }
+  TimeTaken fill_time() const { return fill_time_; }
+
+ private:
+  /// Whether the light of a hit can be read: it has no specular lobe and no normal map, which ask
+  /// where light comes from.
+  bool serves(const PrimaryHits& hits, std::size_t hit) const;
+
+  /// Values what the hits read.
+  HitReading read(const PrimaryHits& hits, const Progress& progress);
+  void fill(const PrimaryHits& hits, std::span<const int> levels, const Progress& progress);
+  void find_ends(const PrimaryHits& hits, const Progress& progress, HitReading& reading);
+  void find_nodes(const PrimaryHits& hits, HitReading& reading) const;
+
+  /// Estimates of hits that follow each other.
+  Estimates joined(std::vector<Estimates> parts) const;
+
+  const Scene& scene_;
+  const SceneNeeds needs_;
+  const bool shared_;        ///< with other processes, which make the same calls
+  const double neighbours_;  ///< of a photon estimate
+  estimate::LightAtPoints& elsewhere_;
+  NodeSource& source_;
+  cache::EndLight* ends_;
+  LightMaps maps_;
+  cache::NodeSight sight_;
+  std::uint64_t hits_alone_ = 0;
+  ErrorSum errors_read_;
+  TimeTaken fill_time_;
+};
+
+}  // namespace photile::cache

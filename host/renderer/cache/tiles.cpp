@@ -1,0 +1,52 @@
+#include "cache/tiles.hpp"
+
+namespace photile::cache {
+namespace {
+
+/// The chart of a root: the last whose first root is not beyond it.
+std::uint32_t chart_of_root(const Charts& charts, std::uint32_t root) {
+  std::size_t low = 0, high = charts.size();
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (charts[middle].first_root <= root ? low : high) = middle;
+  }
+  return static_cast<std::uint32_t>(low);
+}
+
+}  // namespace
+
+std::uint32_t Tiles::tile_of(const MissingCell& missing) {
+  if (missing.has_tile) return missing.tile;
+  const std::uint32_t root = missing.tile;
+  if (root_[root] == none) {
+    const std::uint32_t chart = chart_of_root(charts_, root);
+    const std::uint32_t number = root - charts_[chart].first_root;
+    const std::uint32_t columns = charts_[chart].root_columns();
+    root_[root] = add(chart, 0, number % columns * 8, number / columns * 8);
+  }
+  return root_[root];
+}
+
+void Tiles::split(std::uint32_t tile, std::uint32_t cell) {
+  tiles_[tile].split |= std::uint64_t{1} << cell;
+  const std::uint32_t right = (cell & 7) >> 2, up = cell >> 5, quadrant = up * 2 + right;
+  if (tiles_[tile].child[quadrant] != none) return;
+  const Tile& parent = tiles_[tile];
+  const std::uint32_t child =
+      add(parent.chart, parent.level + 1, 2 * parent.x + 8 * right, 2 * parent.y + 8 * up);
+  tiles_[tile].child[quadrant] = child;
+}
+
+std::uint32_t Tiles::add(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
+                         std::uint32_t y) {
+  Tile tile;
+  tile.chart = chart;
+  tile.level = level;
+  tile.x = x;
+  tile.y = y;
+  tile.node.fill(none);
+  tiles_.push_back(tile);
+  return static_cast<std::uint32_t>(tiles_.size() - 1);
+}
+
+}  // namespace photile::cache

@@ -1,0 +1,306 @@
+// What host/renderer/maps and host/renderer/estimate use of OpenCL. No OpenCL header is included
+// here: handles are opaque, so that host/renderer/device stays the only folder that knows OpenCL.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "photile/device.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::device {
+
+class Context;
+struct ListedDevice;  // device_list.hpp
+
+/// Bytes in the live buffers of a context. Shared with them: a buffer may outlive its context.
+struct MemoryCounter {
+  std::atomic<std::uint64_t> live{0};
+  std::uint64_t peak = 0;
+};
+
+/// Holds buffers whose content can be brought back. Asked for memory where an allocation or a
+/// launch fails for want of it.
+class Reclaimer {
+ public:
+  /// Releases some memory. False where nothing is left to release.
+  virtual bool reclaim() = 0;
+
+ protected:
+  ~Reclaimer() = default;
+};
+
+/// The reclaimers of a context, the one to ask first at the end.
+using ReclaimerList = std::vector<Reclaimer*>;
+
+/// Keeps a reclaimer in its context's list. May outlive the context.
+class ReclaimerEntry {
+ public:
+  ReclaimerEntry(Context& context, Reclaimer& reclaimer);
+  ~ReclaimerEntry();
+  ReclaimerEntry(const ReclaimerEntry&) = delete;
+  ReclaimerEntry& operator=(const ReclaimerEntry&) = delete;
+
+ private:
+  std::shared_ptr<ReclaimerList> list_;
+  Reclaimer* reclaimer_;
+};
+
+/// A device buffer. Move-only; released on destruction.
+class RawBuffer {
+ public:
+  RawBuffer() = default;
+  RawBuffer(RawBuffer&& other) noexcept;
+  RawBuffer& operator=(RawBuffer&& other) noexcept;
+  ~RawBuffer();
+
+  std::size_t bytes() const { return bytes_; }
+  void* handle() const { return handle_; }  ///< a cl_mem
+
+ private:
+  friend class Context;
+  /// `memory` counts the bytes; null where they are the host's. Those are in use until the queue is
+  /// empty: the deleter of `queue` waits for it.
+  RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory,
+            std::shared_ptr<void> queue = {});
+  void* handle_ = nullptr;
+  std::size_t bytes_ = 0;
+  std::shared_ptr<MemoryCounter> memory_;
+  std::shared_ptr<void> queue_;
+};
+
+/// A device buffer of `size()` elements of T. A buffer of zero elements is a valid kernel argument.
+template <class T>
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(RawBuffer raw, std::size_t size) : raw_(std::move(raw)), size_(size) {}
+  std::size_t size() const { return size_; }
+  std::size_t bytes() const { return size_ * sizeof(T); }
+  const RawBuffer& raw() const { return raw_; }
+
+ private:
+  RawBuffer raw_;
+  std::size_t size_ = 0;
+};
+
+/// Whether memory that a device shares with the host counts towards the bound on the device's
+/// memory. What comes in parts does, so that a bound makes the parts small; what is there in any
+/// case does not.
+enum class SharedMemory { uncounted, counted };
+
+/// A point of a context's queue, reached once all that was enqueued before it is done. Empty where
+/// nothing needs to be waited for. May outlive the context.
+class Event {
+ public:
+  Event() = default;
+  explicit Event(std::shared_ptr<void> handle) : handle_(std::move(handle)) {}
+  void* handle() const { return handle_.get(); }  ///< a cl_event, or null
+
+ private:
+  std::shared_ptr<void> handle_;
+};
+
+/// What memory a buffer of a CPU device is to be made of.
+enum class MemoryPages {
+  ordinary,
+  /// Large ones, where the operating system has them: for what is kept and read in many short
+  /// ranges. Nothing for a buffer that lives for one call: each time the system must clear them.
+  large
+};
+
+/// A local-memory argument of a kernel.
+struct LocalMemory {
+  std::size_t bytes;
+};
+
+/// Compile-time definitions of a program: "-D NAME=VALUE" each, in order. They are part of the
+/// cache key.
+class Defines {
+ public:
+  Defines& set(std::string name, long long value);
+  Defines& set(std::string name, double value);           ///< as a float literal that round-trips
+  Defines& set(std::string name);                         ///< defined, without a value
+  Defines& set_word(std::string name, std::string word);  ///< as the name of a type
+  std::string options() const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> entries_;
+};
+
+/// A kernel of a built program. Copyable; arguments are set by each Launch.
+class Kernel {
+ public:
+  Kernel() = default;
+  struct Impl;
+  explicit Kernel(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+  Impl& impl() const { return *impl_; }
+
+ private:
+  std::shared_ptr<Impl> impl_;
+};
+
+/// Total time of one kernel, where DeviceOptions::profile is set.
+struct KernelTime {
+  std::string kernel;
+  std::uint64_t launches = 0;
+  double seconds = 0;
+  /// Until it could run first: what the runtime leaves to the first launch. Its program is a
+  /// ProgramTime.
+  double preparation_seconds = 0;
+};
+
+/// Time until a program was there, built or loaded.
+struct ProgramTime {
+  std::string file;
+  double seconds = 0;
+};
+
+/// One device's context and in-order queue. Not thread-safe: one thread drives it.
+/// Every member throws DeviceError naming the call and the status; DeviceMemoryError where memory
+/// ran out although the queue was waited for and the reclaimers have released all they can.
+class Context {
+ public:
+  /// Of the one device that the selector means.
+  explicit Context(const DeviceOptions& options);
+  /// Of each device that the selector means.
+  static std::vector<std::unique_ptr<Context>> open_all(const DeviceOptions& options);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  const DeviceInfo& info() const;
+  /// Bytes that live buffers may take together: the device's memory, or less where the user says
+  /// so.
+  std::uint64_t memory_limit() const;
+  /// Bytes of the largest buffer that can be allocated when no other is live.
+  std::uint64_t largest_buffer() const;
+
+  /// Allocates `size` elements. Errors: DeviceMemoryError that names `what`, the bytes and the
+  /// limits when it does not fit.
+  template <class T>
+  Buffer<T> allocate(std::size_t size, std::string_view what,
+                     MemoryPages pages = MemoryPages::ordinary) {
+    return Buffer<T>(allocate_elements(size, sizeof(T), what, pages), size);
+  }
+  /// Allocates and fills from the host.
+  template <class T>
+  Buffer<T> upload(std::span<const T> values, std::string_view what) {
+    auto buffer = allocate<T>(values.size(), what);
+    write(buffer, values);
+    return buffer;
+  }
+  /// A buffer that kernels read and that holds `values`, which must stay as they are for its life:
+  /// over the host's memory itself where the device is the host's processor, else a copy.
+  template <class T>
+  Buffer<T> share(std::span<const T> values, std::string_view what,
+                  SharedMemory counts = SharedMemory::uncounted) {
+    if (!shares_host_memory() || values.empty()) return upload(values, what);
+    return Buffer<T>(share_bytes(values.data(), values.size_bytes(), what, counts), values.size());
+  }
+  template <class T>
+  void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
+    write_bytes(buffer.raw(), values.data(), values.size_bytes(), first * sizeof(T));
+  }
+  /// Blocking read of `out.size()` elements from `first` on.
+  template <class T>
+  void read(const Buffer<T>& buffer, std::span<T> out, std::size_t first = 0) {
+    read_bytes(buffer.raw(), out.data(), out.size_bytes(), first * sizeof(T));
+  }
+  /// Whether transfers run beside kernels: the device has a memory of its own.
+  bool transfers_beside_kernels() const { return !shares_host_memory(); }
+  /// The point that the queue has come to; empty where transfers do not run beside kernels.
+  Event mark();
+  void wait(const Event& event);
+  /// As `write`, beside the kernels that were enqueued before, none of which may use the buffer.
+  template <class T>
+  void write_beside(Buffer<T>& buffer, std::span<const T> values) {
+    write_bytes_beside(buffer.raw(), values.data(), values.size_bytes());
+  }
+  /// As `read`, once the event has happened, beside the kernels that were enqueued after it.
+  template <class T>
+  void read_after(const Event& event, const Buffer<T>& buffer, std::span<T> out) {
+    read_bytes_after(event, buffer.raw(), out.data(), out.size_bytes());
+  }
+  /// The content of a buffer, to be restored later.
+  template <class T>
+  std::vector<std::byte> save(const Buffer<T>& buffer) {
+    std::vector<std::byte> content(buffer.bytes());
+    read_bytes(buffer.raw(), content.data(), content.size(), 0);
+    return content;
+  }
+  /// Allocates `buffer` anew, with content that was saved.
+  template <class T>
+  void restore(Buffer<T>& buffer, std::span<const std::byte> content, std::string_view what,
+               MemoryPages pages = MemoryPages::ordinary) {
+    buffer = allocate<T>(content.size() / sizeof(T), what, pages);
+    write_bytes(buffer.raw(), content.data(), content.size(), 0);
+  }
+  /// Sets every element.
+  template <class T>
+  void fill(Buffer<T>& buffer, T value) {
+    fill(buffer, value, buffer.size());
+  }
+  /// Sets the first `count` elements.
+  template <class T>
+  void fill(Buffer<T>& buffer, T value, std::size_t count) {
+    fill(buffer, value, 0, count);
+  }
+  /// Sets elements [first, first + count).
+  template <class T>
+  void fill(Buffer<T>& buffer, T value, std::size_t first, std::size_t count) {
+    if (count == 0) return;
+    fill_bytes(buffer.raw(), &value, sizeof(T), count * sizeof(T), first * sizeof(T));
+  }
+
+  /// The kernel `name` of the embedded kernel file `file` (path below kernels/, e.g.
+  /// "grid/build.cl"), built with `defines`. Programs are built once per (file, defines), from the
+  /// cache on disk where it holds them. Errors: KernelBuildError with the log; DeviceError where
+  /// the runtime does not tell the names of arguments.
+  Kernel kernel(const std::string& file, const std::string& name, const Defines& defines);
+
+  /// Waits for everything enqueued.
+  void finish();
+
+  double compile_seconds() const;
+  std::uint64_t programs_built() const;
+  std::uint64_t programs_from_cache() const;
+  std::uint64_t allocated_bytes() const;       ///< live buffers
+  std::uint64_t peak_allocated_bytes() const;  ///< since construction
+  std::vector<KernelTime> kernel_times() const;
+  const std::vector<ProgramTime>& program_times() const;  ///< in the order of their first use
+
+ private:
+  friend class ReclaimerEntry;
+  friend class Launch;  // launch.hpp
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+
+  Context(ListedDevice&& listed, const DeviceOptions& options);
+
+  RawBuffer allocate_elements(std::size_t count, std::size_t element_bytes, std::string_view what,
+                              MemoryPages pages);
+  void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
+                   std::size_t offset);
+  void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
+  void write_bytes_beside(const RawBuffer& buffer, const void* data, std::size_t bytes);
+  void read_bytes_after(const Event& event, const RawBuffer& buffer, void* data, std::size_t bytes);
+  /// With blocks of bytes one after the other, where the device shares memory with the host.
+  void fill_from_all_cores(const RawBuffer& buffer, std::span<const unsigned char> block,
+                           std::size_t bytes, std::size_t first);
+  void fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
+                  std::size_t bytes, std::size_t offset);
+  bool shares_host_memory() const;
+  RawBuffer share_bytes(const void* data, std::size_t bytes, std::string_view what,
+                        SharedMemory counts);
+};
+
+}  // namespace photile::device

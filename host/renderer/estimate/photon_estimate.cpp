@@ -1,0 +1,141 @@
+#include "estimate/photon_estimate.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "estimate/for_each_device.hpp"
+#include "estimate/map_order.hpp"
+#include "estimate/neighbour_choice.hpp"
+#include "geometry/radix_sort.hpp"
+#include "photile/statistics.hpp"
+
+namespace photile::estimate {
+namespace {
+
+/// Lists of neighbours at a time: 26 MB of them at k = 100.
+constexpr std::size_t lists_at_a_time = std::size_t{1} << 16;
+
+geometry::Box bounds_of(const Scene& scene) {
+  geometry::Box box;
+  for (const glm::vec3& vertex : scene.vertices) box.extend(vertex);
+  return box;
+}
+
+}  // namespace
+
+std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
+                                           Photons photons, const NeighbourGroups& groups,
+                                           const PhotonMapParameters& parameters,
+                                           Progress& progress,
+                                           std::span<const std::uint8_t> wanted) {
+  std::vector<std::optional<PhotonMaps>> built(devices.size());
+  for_each_device(devices, progress, [&](std::size_t i, Progress& shared) {
+    if (devices.size() == 1) {
+      built[i].emplace(devices[i], scene, std::move(photons), groups, parameters, shared, wanted);
+    } else {
+      built[i].emplace(devices[i], scene, std::as_const(photons), groups, parameters, shared,
+                       wanted);
+    }
+  });
+  std::vector<PhotonMaps> maps;
+  for (auto& one : built) maps.push_back(std::move(*one));
+  return maps;
+}
+
+PhotonEstimate::PhotonEstimate(std::span<Device> devices, const Scene& scene, Parts parts,
+                               std::span<const double> layer_powers)
+    : devices_(devices),
+      layer_powers_(layer_powers),
+      cells_(bounds_of(scene)),
+      maps_(std::move(parts.maps)),
+      seen_(std::move(parts.seen)) {
+  for (const EstimateParameters& parameters : parts.levels) {
+    Level& level =
+        levels_.emplace_back(Level{parameters.neighbours, {}, LoadBalance(devices.size())});
+    for (const PhotonMaps& maps : maps_) level.estimators.emplace_back(maps, scene, parameters);
+  }
+}
+
+Estimates PhotonEstimate::at(const PrimaryHits& points, const Progress&) {
+  const std::vector<std::uint32_t> order = order_of(points);
+  if (order.empty()) return estimate(points);
+  return estimate::restored(estimate(estimate::reordered(points, 0, order)), order,
+                            layer_powers_.size());
+}
+
+std::vector<std::uint32_t> PhotonEstimate::order_of(const PrimaryHits& points) const {
+  std::vector<std::uint32_t> maps = points.sided_triangle;
+  if (!map_of().empty()) {
+    for (std::uint32_t& map : maps) map = map_of()[map];
+  }
+  if (std::is_sorted(maps.begin(), maps.end())) return {};
+  struct Key {
+    std::uint64_t order;
+    std::uint32_t point;
+  };
+  constexpr int code_bits = 3 * trace::HitCells::bits_per_axis;
+  std::vector<Key> keys(points.size());
+  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
+    // `none`, the map of points that have no other, loses its upper bit and stays the last.
+    keys[i] = {std::uint64_t{maps[i]} << code_bits | cells_.morton_code(points.position[i]),
+               static_cast<std::uint32_t>(i)};
+  });
+  geometry::radix_sort(keys, 64, [](const Key& key) { return key.order; });
+  std::vector<std::uint32_t> order;
+  order.reserve(keys.size());
+  for (const Key& key : keys) order.push_back(key.point);
+  return order;
+}
+
+Estimates PhotonEstimate::estimate(const PrimaryHits& points) {
+  std::vector<Estimates> by_level;
+  std::vector<int> neighbours;
+  for (Level& level : levels_) {
+    by_level.push_back(estimate(level, points));
+    neighbours.push_back(level.neighbours);
+  }
+  return by_level.size() == 1
+             ? std::move(by_level.front())
+             : estimates_of_least_error(std::move(by_level), neighbours, layer_powers_);
+}
+
+Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
+  Estimates result;
+  for (std::size_t first = 0; first < points.size();) {
+    const std::size_t count = level.balance.round(points.size() - first);
+    estimate_round(level, points, first, count, result);
+    first += count;
+  }
+  if (!seen_) return result;
+  const std::vector<std::uint32_t> lit =
+      SeenPhotons::lit(result, points.size(), layer_powers_.size());
+  for (std::size_t first = 0; first < lit.size(); first += lists_at_a_time) {
+    const std::span<const std::uint32_t> chosen =
+        std::span(lit).subspan(first, std::min(lists_at_a_time, lit.size() - first));
+    const NeighbourLists near =
+        level.estimators.front().nearest(estimate::reordered(points, 0, chosen));
+    seen_->leave_out_hidden(points, chosen, near, result);
+  }
+  return result;
+}
+
+void PhotonEstimate::estimate_round(Level& level, const PrimaryHits& points, std::size_t first,
+                                    std::size_t count, Estimates& result) {
+  const std::vector<std::size_t> cuts = level.balance.cuts(count);
+  std::vector<double> seconds(devices_.size());
+  std::vector<Estimates> parts(devices_.size());
+  for_each_device(devices_, Progress::none(), [&](std::size_t i, Progress&) {
+    const Stopwatch stopwatch;
+    parts[i] = level.estimators[i].estimate(points, first + cuts[i], cuts[i + 1] - cuts[i]);
+    seconds[i] = stopwatch.seconds();
+  });
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    result.append(std::move(parts[i]));
+    level.balance.record(i, cuts[i + 1] - cuts[i], seconds[i]);
+  }
+  level.balance.end_round();
+}
+
+}  // namespace photile::estimate

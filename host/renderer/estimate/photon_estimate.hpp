@@ -1,0 +1,77 @@
+// The photon estimate of points on every device: the method of the paper.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "estimate/light_at_points.hpp"
+#include "estimate/load_balance.hpp"
+#include "estimate/seen_photons.hpp"
+#include "photile/estimator.hpp"
+#include "photile/photon_maps.hpp"
+#include "trace/hit_order.hpp"
+
+namespace photile::estimate {
+
+/// Builds the same maps on every device, all at once; for one alone, photons are given back on the
+/// way. Errors: as PhotonMaps, see for_each_device.
+///   wanted   as PhotonMaps has it
+std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
+                                           Photons photons, const NeighbourGroups& groups,
+                                           const PhotonMapParameters& parameters,
+                                           Progress& progress,
+                                           std::span<const std::uint8_t> wanted = {});
+
+/// Light by the k nearest photons of each point, found on every device at once. On devices of one
+/// kind the result is that of one device, bit for bit, however the points are shared. Points are
+/// put in the order of their maps here, and nowhere else.
+class PhotonEstimate : public LightAtPoints {
+ public:
+  struct Parts {
+    std::vector<PhotonMaps> maps;            ///< the same on each device
+    std::vector<EstimateParameters> levels;  ///< ascending in k: points choose one, each its own
+    /// Of the photons of these maps: what a point does not see does not count. Null: all count.
+    std::shared_ptr<const SeenPhotons> seen = nullptr;
+  };
+  /// References are kept.
+  ///   layer_powers   by which points choose their own k
+  /// Errors: as Estimator.
+  PhotonEstimate(std::span<Device> devices, const Scene& scene, Parts parts,
+                 std::span<const double> layer_powers);
+
+  Estimates at(const PrimaryHits& points, const Progress& progress) override;
+
+  /// Per sided triangle, as PhotonMaps has it: points in this order are not put in another.
+  std::span<const std::uint32_t> map_of() const { return maps_.front().map_of(); }
+
+  /// Each device's part of all points so far.
+  std::vector<double> shares() const { return levels_.back().balance.shares(); }
+
+ private:
+  /// Estimators of one k, one for each device.
+  struct Level {
+    int neighbours;
+    std::vector<Estimator> estimators;
+    LoadBalance balance;
+  };
+
+  /// Positions of points by their maps, and by place on each map; empty where they are in the order
+  /// of their maps.
+  std::vector<std::uint32_t> order_of(const PrimaryHits& points) const;
+  Estimates estimate(const PrimaryHits& points);
+  Estimates estimate(Level& level, const PrimaryHits& points);
+  void estimate_round(Level& level, const PrimaryHits& points, std::size_t first, std::size_t count,
+                      Estimates& result);
+
+  std::span<Device> devices_;
+  std::span<const double> layer_powers_;
+  trace::HitCells cells_;         ///< of the scene
+  std::vector<PhotonMaps> maps_;  ///< on each device
+  std::vector<Level> levels_;     ///< ascending in k
+  std::shared_ptr<const SeenPhotons> seen_;
+};
+
+}  // namespace photile::estimate

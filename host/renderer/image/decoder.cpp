@@ -1,0 +1,67 @@
+#include "image/decoder.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string_view>
+
+#include "common/ascii_text.hpp"
+#include "common/module.hpp"
+#include "image/exr_decoder.hpp"
+#include "image/openimageio_decoder.hpp"
+#include "image/picture_checks.hpp"
+#include "photile/errors.hpp"
+
+namespace photile::image {
+namespace {
+
+std::unique_ptr<Decoder> open_by_openimageio(PictureFormat format, Encoded bytes) {
+  // It stays loaded: OpenImageIO and what it is made of are not made to be unloaded.
+  static const Module& module = *new Module("photile_openimageio.so");
+  static auto* const open =
+      module.find<decltype(photile_openimageio_decoder)>("photile_openimageio_decoder");
+  if (open == nullptr) {
+    throw UsageError(fmt::format(
+        "pictures other than EXR cannot be read: {}; install the package photile-openimageio",
+        module.error()));
+  }
+  return std::unique_ptr<Decoder>(open(format, bytes));
+}
+
+}  // namespace
+
+PictureFormat format_of(const std::string& name, Encoded bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  using namespace std::string_view_literals;
+  if (text.starts_with("\x89PNG"sv)) return PictureFormat::png;
+  if (text.starts_with("\xFF\xD8"sv)) return PictureFormat::jpeg;
+  if (text.starts_with("\x76\x2F\x31\x01"sv)) return PictureFormat::exr;
+  if (text.starts_with("#?"sv)) return PictureFormat::radiance;
+  if (text.starts_with("II*\0"sv) || text.starts_with("MM\0*"sv)) return PictureFormat::tiff;
+  if (text.starts_with("BM"sv)) return PictureFormat::bmp;
+  if (text.starts_with("GIF8"sv)) return PictureFormat::gif;
+  if (text.size() > 12 && text.starts_with("RIFF"sv) && text.substr(8).starts_with("WEBP"sv)) {
+    return PictureFormat::webp;
+  }
+  const std::string extension = lower(std::filesystem::path(name).extension().string());
+  if (extension == ".tga") return PictureFormat::targa;
+  if (extension == ".pbm" || extension == ".pgm" || extension == ".ppm" || extension == ".pnm") {
+    return PictureFormat::pnm;
+  }
+  throw DecodeError("not a picture format that is read (EXR, PNG, JPEG, ...)");
+}
+
+std::unique_ptr<Decoder> open_picture(const std::string& name, Encoded bytes) {
+  const PictureFormat format = format_of(name, bytes);
+  std::unique_ptr<Decoder> decoder;
+  if (format == PictureFormat::exr) {
+    decoder = open_exr(bytes);
+  } else {
+    check_encoded(format, bytes);
+    decoder = open_by_openimageio(format, bytes);
+  }
+  check_shape(decoder->shape(), bytes.size());
+  return decoder;
+}
+
+}  // namespace photile::image

@@ -1,0 +1,169 @@
+#include "image/light_change.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "common/ascii_text.hpp"
+#include "image/srgb.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "scene/color_temperature.hpp"
+#include "scene/light_names.hpp"
+
+namespace photile {
+namespace image {
+namespace {
+
+[[noreturn]] void refuse(const LightChange& change, const char* reason) {
+  throw UsageError(fmt::format("light '{}': '{}' {}", change.name, change.value, reason));
+}
+
+/// A finite number >= 0.
+std::optional<double> parse_amount(std::string_view text) {
+  const auto value = parse_number<double>(text);
+  return value && *value >= 0 ? value : std::nullopt;
+}
+
+SetColor parse_color(const LightChange& change) {
+  const std::string_view digits = std::string_view(change.value).substr(1);
+  const auto code = parse_number<std::uint32_t>(digits, 16);
+  if (digits.size() != 6 || !code) {
+    refuse(change, "is no colour; use six hexadecimal digits such as #FFD8A0");
+  }
+  if (*code == 0) refuse(change, "is black; to turn the light off use 'off'");
+  const auto channel = [&](unsigned shift) {
+    return linear_from_srgb(((*code >> shift) & 0xFFu) / 255.0);
+  };
+  return {{channel(16), channel(8), channel(0)}};
+}
+
+/// 2700K
+SetTemperature parse_temperature(const LightChange& change) {
+  const auto kelvin =
+      parse_amount(std::string_view(change.value).substr(0, change.value.size() - 1));
+  if (!kelvin || *kelvin < limits::min_color_temperature ||
+      *kelvin > limits::max_color_temperature) {
+    refuse(change, "is no colour temperature from 1000K to 40000K");
+  }
+  return {*kelvin};
+}
+
+bool remove_suffix(std::string_view& text, std::string_view suffix) {
+  if (!text.ends_with(suffix)) return false;
+  text.remove_suffix(suffix.size());
+  return true;
+}
+
+SetPower parse_power(const LightChange& change) {
+  std::string_view number = change.value;
+  std::optional<PowerUnit> unit;
+  if (remove_suffix(number, "lm")) {
+    unit = PowerUnit::lumen;
+  } else if (remove_suffix(number, "W")) {
+    unit = PowerUnit::watt;
+  }
+  const std::optional<double> power = parse_amount(number);
+  if (!power) {
+    refuse(change,
+           "is no change of a light; use POWER, POWERlm or POWERW (0 or more), xFACTOR, PERCENT%, "
+           "#RRGGBB, KELVINK or off");
+  }
+  return {*power, unit};
+}
+
+}  // namespace
+
+Request understand(const LightChange& change) {
+  if (change.value == "off") return ScalePower{0.0};
+  if (change.value.starts_with('#')) return parse_color(change);
+  if (change.value.ends_with('K')) return parse_temperature(change);
+  if (change.value.starts_with('x')) {
+    const std::optional<double> factor = parse_amount(std::string_view(change.value).substr(1));
+    if (!factor) refuse(change, "is no factor; use x and a number of 0 or more such as x1.5");
+    return ScalePower{*factor};
+  }
+  if (change.value.ends_with('%')) {
+    const std::string_view number =
+        std::string_view(change.value).substr(0, change.value.size() - 1);
+    const std::optional<double> percent = parse_amount(number);
+    if (!percent) refuse(change, "is no percentage; use a number of 0 or more such as 50%");
+    return ScalePower{*percent / 100};
+  }
+  return parse_power(change);
+}
+
+void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
+  if (const auto* color = std::get_if<SetColor>(&request)) {
+    const double emitted = luminance(color->linear * glm::dvec3(light.color));
+    if (!(emitted > 0.0)) {
+      throw UsageError(fmt::format(
+          "light '{}' emits nothing of that colour; choose one that its own colour holds",
+          light.name));
+    }
+    light.tint = glm::vec3(color->linear / emitted);
+    return;
+  }
+  if (const auto* temperature = std::get_if<SetTemperature>(&request)) {
+    const glm::dvec3 own(light.color);
+    const glm::dvec3 wanted = scene::color_of_temperature(temperature->kelvin);
+    for (int c = 0; c < 3; ++c) {
+      if (own[c] > 0.0 || wanted[c] == 0.0) continue;
+      throw UsageError(fmt::format(
+          "light '{}' lacks a colour that {} K has; give the temperature when it is rendered",
+          light.name, temperature->kelvin));
+    }
+    light.tint = glm::vec3(wanted / glm::max(own, glm::dvec3(1e-30)));
+    return;
+  }
+  double power = light.power;
+  if (const auto* factor = std::get_if<ScalePower>(&request)) {
+    power *= factor->factor;
+  } else {
+    const SetPower& set = std::get<SetPower>(request);
+    power = set.power;
+    if (set.unit && *set.unit != light.unit) {
+      power = light.unit == PowerUnit::lumen ? power * lumen_per_watt : power / lumen_per_watt;
+    }
+  }
+  if (!(power <= limits::max_light_power)) {
+    throw UsageError(fmt::format("light '{}': its power would be {:g}; the limit is {:g}; use less",
+                                 light.name, power, limits::max_light_power));
+  }
+  light.power = power;
+}
+
+std::size_t index_of(const LightMix& mix, const std::string& name) {
+  for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+    if (mix.lights[i].name == name) return i;
+  }
+  std::vector<std::string> names;
+  for (const MixedLight& light : mix.lights) names.push_back(light.name);
+  throw UsageError(
+      fmt::format("there is no light '{}'; there {}", name, scene::names_like(name, names)));
+}
+
+}  // namespace image
+
+LightChange LightChange::parse(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw UsageError(
+        fmt::format("'{}' is no change of a light; use NAME=POWER, NAME=xFACTOR, NAME=#RRGGBB, "
+                    "NAME=KELVINK or NAME=off",
+                    text));
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+void change_lights(LightMix& mix, const std::vector<LightChange>& changes) {
+  LightMix changed = mix;  // a refused change leaves the mix as it was
+  for (const LightChange& change : changes) {
+    image::apply(changed.lights[image::index_of(changed, change.name)], image::understand(change),
+                 changed.lumen_per_watt);
+  }
+  mix = std::move(changed);
+}
+
+}  // namespace photile

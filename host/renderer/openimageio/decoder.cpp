@@ -1,0 +1,130 @@
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "image/openimageio_decoder.hpp"
+#include "openimageio/silence.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::openimageio {
+namespace {
+
+const char* reader_of(image::PictureFormat format) {
+  switch (format) {
+    case image::PictureFormat::png:
+      return "png";
+    case image::PictureFormat::jpeg:
+      return "jpeg";
+    case image::PictureFormat::radiance:
+      return "hdr";
+    case image::PictureFormat::tiff:
+      return "tiff";
+    case image::PictureFormat::webp:
+      return "webp";
+    case image::PictureFormat::bmp:
+      return "bmp";
+    case image::PictureFormat::gif:
+      return "gif";
+    case image::PictureFormat::targa:
+      return "targa";
+    case image::PictureFormat::pnm:
+      return "pnm";
+    case image::PictureFormat::exr:
+      break;  // photile's own
+  }
+  throw image::DecodeError("not a picture format that is read");
+}
+
+/// For the process, once.
+void set_up() {
+  static const bool done = [] {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("limits:channels", limits::max_image_channels);
+    OIIO::attribute("limits:imagesize_MB", static_cast<int>(limits::max_image_bytes >> 20));
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+image::Sample sample_of(OIIO::TypeDesc stored) {
+  if (stored.is_floating_point()) return image::Sample::real;
+  return stored.size() == 1 ? image::Sample::byte : image::Sample::word;
+}
+
+/// What the reader says first: the lines behind it say the same again, or name its options.
+std::string reason_of(const OIIO::ImageInput& input) {
+  std::string reason = input.geterror();
+  reason.erase(std::find(reason.begin(), reason.end(), '\n'), reason.end());
+  return reason.empty() ? "damaged, or of a kind that is not read" : reason;
+}
+
+class OpenImageIODecoder : public image::Decoder {
+ public:
+  OpenImageIODecoder(image::PictureFormat format, image::Encoded bytes)
+      : memory_(bytes.data(), bytes.size()), input_(OIIO::ImageInput::create(reader_of(format))) {
+    if (!input_) throw image::DecodeError("OpenImageIO has no reader for it");
+    const Silence silence;
+    OIIO::ImageSpec options, spec;
+    options["oiio:UnassociatedAlpha"] = 1;
+    options["bmp:monochrome_detect"] = 0;
+    input_->set_ioproxy(&memory_);
+    if (!input_->open("the file", spec, options)) throw image::DecodeError(reason_of(*input_));
+    shape_ = {spec.width, spec.height, spec.nchannels, sample_of(spec.format)};
+    const bool alpha = spec.alpha_channel >= 0;
+    if (format == image::PictureFormat::tiff && alpha && spec["compression"].get() == "jpeg") {
+      throw image::DecodeError("alpha beside JPEG's compression is not read; save it with another");
+    }
+    associated_ = format == image::PictureFormat::webp && alpha;
+  }
+
+  image::Pixels decode() override {
+    switch (shape_.sample) {
+      case image::Sample::byte:
+        return values<std::uint8_t>(OIIO::TypeDesc::UINT8);
+      case image::Sample::word:
+        return values<std::uint16_t>(OIIO::TypeDesc::UINT16);
+      case image::Sample::real:
+        break;
+    }
+    return values<float>(OIIO::TypeDesc::FLOAT);
+  }
+
+ private:
+  template <class T>
+  std::vector<T> values(OIIO::TypeDesc type) {
+    const Silence silence;
+    std::vector<T> values(shape_.values());
+    const bool read = input_->read_image(0, 0, 0, shape_.channels, type, values.data());
+    if (!read || input_->has_error()) throw image::DecodeError(reason_of(*input_));
+    if constexpr (std::is_same_v<T, std::uint8_t>) {
+      if (associated_) divide_by_alpha(values);
+    }
+    return values;
+  }
+
+  /// WebP's reader has multiplied RGBA with alpha, in steps of 1/255, whatever it is asked for.
+  static void divide_by_alpha(std::vector<std::uint8_t>& rgba) {
+    for (std::size_t i = 0; i + 3 < rgba.size(); i += 4) {
+      const int alpha = rgba[i + 3];
+      for (std::size_t c = i; alpha > 0 && c < i + 3; ++c) {
+        rgba[c] = static_cast<std::uint8_t>(std::min(255, (rgba[c] * 255 + alpha / 2) / alpha));
+      }
+    }
+  }
+
+  OIIO::Filesystem::IOMemReader memory_;
+  OIIO::ImageInput::unique_ptr input_;
+  bool associated_ = false;
+};
+
+}  // namespace
+}  // namespace photile::openimageio
+
+photile::image::Decoder* photile_openimageio_decoder(photile::image::PictureFormat format,
+                                                     photile::image::Encoded bytes) {
+  photile::openimageio::set_up();
+  return new photile::openimageio::OpenImageIODecoder(format, bytes);
+}

@@ -1,0 +1,287 @@
+#include "render/exchange.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "common/byte_stream.hpp"
+#include "estimate/map_order.hpp"
+#include "photile/shard.hpp"
+#include "render/pass_count.hpp"
+
+namespace photile {
+namespace {
+
+std::vector<std::byte> bytes_of(const PrimaryHits& hits) {
+  ByteWriter bytes;
+  bytes.put(hits.position);
+  bytes.put(hits.sided_triangle);
+  const bool glossy = !hits.outgoing.empty();
+  bytes.put(glossy ? hits.diffuse_albedo : std::vector<glm::vec3>());
+  bytes.put(hits.outgoing);
+  bytes.put(hits.lobe);
+  return bytes.take();
+}
+
+void append_hits(std::span<const std::byte> bytes, PrimaryHits& hits) {
+  ByteReader reader(bytes);
+  reader.append_to(hits.position);
+  reader.append_to(hits.sided_triangle);
+  reader.append_to(hits.diffuse_albedo);
+  reader.append_to(hits.outgoing);
+  reader.append_to(hits.lobe);
+}
+
+/// Estimates [first, first + count).
+Estimates part_of(const Estimates& all, std::size_t first, std::size_t count, std::size_t lights) {
+  const bool many = !all.first.empty();
+  const std::size_t begin = many ? all.first[first] : first * lights;
+  const std::size_t end = many ? all.first[first + count] : (first + count) * lights;
+  const auto slice = [&](const auto& values) {
+    using Values = std::remove_cvref_t<decltype(values)>;
+    if (values.empty()) return Values{};
+    return Values(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                  values.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  Estimates part;
+  part.irradiance = slice(all.irradiance);
+  part.radiance = slice(all.radiance);
+  part.light = slice(all.light);
+  for (std::size_t hit = 0; many && hit <= count; ++hit) {
+    part.first.push_back(all.first[first + hit] - begin);
+  }
+  return part;
+}
+
+std::vector<std::byte> bytes_of(const Estimates& estimates) {
+  ByteWriter bytes;
+  bytes.put(estimates.irradiance);
+  bytes.put(estimates.radiance);
+  bytes.put(estimates.first);
+  bytes.put(estimates.light);
+  return bytes.take();
+}
+
+void append_estimates(std::span<const std::byte> bytes, Estimates& estimates) {
+  ByteReader reader(bytes);
+  Estimates part;
+  part.irradiance = reader.take<glm::vec3>();
+  part.radiance = reader.take<glm::vec3>();
+  part.first = reader.take<std::uint64_t>();
+  part.light = reader.take<std::uint16_t>();
+  estimates.append(std::move(part));
+}
+
+/// Rows [first, first + count) of planes and sparse rows.
+struct Rows {
+  std::size_t first, count;
+};
+
+Rows rows_of(const LightLayers& layers, const Shard& shard) {
+  const auto height = static_cast<std::uint64_t>(layers.height);
+  return {shard.begin(height), shard.end(height) - shard.begin(height)};
+}
+
+template <class T>
+void put(const std::vector<T>& plane, const Rows& rows, std::size_t width, ByteWriter& bytes) {
+  if (plane.empty()) return;
+  bytes.put(std::span<const T>(plane).subspan(rows.first * width, rows.count * width));
+}
+
+template <class T>
+void take(std::vector<T>& plane, const Rows& rows, std::size_t width, ByteReader& reader) {
+  if (plane.empty()) return;
+  const std::vector<T> values = reader.take<T>();
+  std::copy(values.begin(), values.end(),
+            plane.begin() + static_cast<std::ptrdiff_t>(rows.first * width));
+}
+
+Communicator::Bytes bytes_of(const LightLayers& layers, const Rows& rows) {
+  ByteWriter bytes;
+  const auto width = static_cast<std::size_t>(layers.width);
+  for (const LightLayers::Layer& layer : layers.layers) {
+    put(layer.radiance, rows, width, bytes);
+    put(layer.illuminance, rows, width, bytes);
+  }
+  if (!layers.sparse()) return bytes.take();
+  for (std::size_t y = rows.first; y < rows.first + rows.count; ++y) {
+    const LightLayers::Row& row = layers.rows[y];
+    bytes.put(row.first);
+    bytes.put(row.light);
+    bytes.put(row.radiance);
+    bytes.put(row.illuminance);
+  }
+  return bytes.take();
+}
+
+void set_rows(std::span<const std::byte> bytes, const Rows& rows, LightLayers& layers) {
+  ByteReader reader(bytes);
+  const auto width = static_cast<std::size_t>(layers.width);
+  for (LightLayers::Layer& layer : layers.layers) {
+    take(layer.radiance, rows, width, reader);
+    take(layer.illuminance, rows, width, reader);
+  }
+  if (!layers.sparse()) return;
+  for (std::size_t y = rows.first; y < rows.first + rows.count; ++y) {
+    LightLayers::Row row;
+    row.first = reader.take<std::uint32_t>();
+    row.light = reader.take<std::uint16_t>();
+    row.radiance = reader.take<glm::vec3>();
+    row.illuminance = reader.take<float>();
+    layers.rows[y] = std::move(row);
+  }
+}
+
+}  // namespace
+
+Estimates Exchange::none_yet() const {
+  Estimates estimates;
+  if (many_) estimates.first.push_back(0);
+  return estimates;
+}
+
+std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& points) const {
+  std::vector<std::vector<std::uint32_t>> places(processes_.size());
+  for (std::uint32_t point = 0; point < points.size(); ++point) {
+    places[owners_->of(points.sided_triangle[point])].push_back(point);
+  }
+  return places;
+}
+
+Estimates Exchange::in_order(std::span<const std::vector<std::uint32_t>> places,
+                             std::span<const std::vector<std::byte>> bytes,
+                             std::size_t points) const {
+  std::vector<std::uint32_t> order;
+  Estimates all = none_yet();
+  order.reserve(points);
+  for (std::size_t rank = 0; rank < places.size(); ++rank) {
+    order.insert(order.end(), places[rank].begin(), places[rank].end());
+    if (!places[rank].empty()) append_estimates(bytes[rank], all);
+  }
+  return estimate::restored(std::move(all), order, lights_);
+}
+
+Estimates Exchange::at_own(const PrimaryHits& points, const Progress& progress) {
+  const std::uint32_t ranks = processes_.size(), own = processes_.rank();
+  const std::vector<std::vector<std::uint32_t>> places = by_owner(points);
+  std::vector<Communicator::Bytes> asked(ranks);
+  for (std::uint32_t rank = 0; rank < ranks; ++rank) {
+    if (places[rank].empty()) continue;
+    asked[rank] = bytes_of(estimate::reordered(points, 0, places[rank]));
+    if (rank == own) continue;
+    traffic_.points += places[rank].size();
+    traffic_.bytes += asked[rank].size();
+  }
+  asked = processes_.exchange(std::move(asked));
+  PrimaryHits all;
+  std::vector<std::size_t> first{0};
+  for (Communicator::Bytes& bytes : asked) {
+    if (!bytes.empty()) append_hits(bytes, all);
+    first.push_back(all.size());
+    bytes = {};
+  }
+  const Estimates found = all.size() > 0 ? here_->at(all, progress) : none_yet();
+  std::vector<Communicator::Bytes> answers(ranks);
+  for (std::uint32_t rank = 0; rank < ranks; ++rank) {
+    const std::size_t count = first[rank + 1] - first[rank];
+    if (count == 0) continue;
+    answers[rank] = bytes_of(part_of(found, first[rank], count, lights_));
+    if (rank != own) traffic_.bytes += answers[rank].size();
+  }
+  answers = processes_.exchange(std::move(answers));
+  return in_order(places, answers, points.size());
+}
+
+Estimates Exchange::at_common(const PrimaryHits& points, const Progress& progress) {
+  const std::vector<std::vector<std::uint32_t>> places = by_owner(points);
+  const std::vector<std::uint32_t>& own = places[processes_.rank()];
+  const Communicator::Bytes bytes =
+      own.empty() ? Communicator::Bytes()
+                  : bytes_of(here_->at(estimate::reordered(points, 0, own), progress));
+  return in_order(places, processes_.gather(bytes), points.size());
+}
+
+void bring_rows(Communicator& processes, LightLayers& layers) {
+  const std::uint32_t ranks = processes.size();
+  std::vector<Communicator::Bytes> to_each(ranks);
+  if (processes.rank() > 0) {
+    to_each[0] = bytes_of(layers, rows_of(layers, {processes.rank(), ranks}));
+  }
+  const std::vector<Communicator::Bytes> got = processes.exchange(std::move(to_each));
+  if (processes.rank() > 0) return;
+  for (std::uint32_t rank = 1; rank < ranks; ++rank) {
+    set_rows(got[rank], rows_of(layers, {rank, ranks}), layers);
+  }
+}
+
+std::uint64_t host_bytes_of_all(Communicator* processes) {
+  if (!processes) return installed_host_bytes();
+  constexpr std::uint64_t most = std::uint64_t{1} << 56;  // where nothing is known
+  std::uint64_t bytes = std::min(most, installed_host_bytes()) / processes->on_this_machine();
+  processes->sum(std::span(&bytes, 1));
+  return bytes;
+}
+
+void add_processes(Communicator& all, RenderCosts& costs) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+  const Communicator::Traffic traffic = all.traffic();
+  const std::array own{costs.references,
+                       costs.maps,
+                       costs.mixed_maps,
+                       costs.largest_map,
+                       costs.rays,
+                       costs.hit_count,
+                       costs.photons_sent,
+                       costs.photon_bytes_sent,
+                       costs.photons_held,
+                       costs.points_sent.points,
+                       costs.points_sent.bytes,
+                       traffic.bytes,
+                       memory,
+                       std::bit_cast<std::uint64_t>(costs.light_map_errors.squares),
+                       costs.light_map_errors.hits};
+  using Counts = std::array<std::uint64_t, own.size()>;
+  const auto of_ranks = all.gather_values<Counts>(std::span<const Counts>(&own, 1));
+  const auto sum = [&](std::size_t i) {
+    std::uint64_t total = 0;
+    for (const auto& rank : of_ranks) total += rank[i];
+    return total;
+  };
+  const auto most = [&](std::size_t i) {
+    std::uint64_t largest = 0;
+    for (const auto& rank : of_ranks) largest = std::max(largest, rank[i]);
+    return largest;
+  };
+  costs.references = sum(0), costs.maps = sum(1), costs.mixed_maps = sum(2),
+  costs.largest_map = most(3);
+  costs.rays = sum(4), costs.hit_count = sum(5);
+  costs.light_map_errors = {0, sum(14)};
+  for (const auto& rank : of_ranks)
+    costs.light_map_errors.squares += std::bit_cast<double>(rank[13]);
+  const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+  const auto ratio = [](std::uint64_t a, std::uint64_t b) {
+    return static_cast<double>(a) / static_cast<double>(std::max<std::uint64_t>(1, b));
+  };
+  costs.processes = {
+      {"processes", number(all.size())},
+      {"photons sent", number(sum(6))},
+      {"bytes sent per stored photon", ratio(sum(7), costs.stored_photons)},
+      {"photons held, largest over mean", ratio(most(8) * all.size(), sum(8))},
+      {"photons held over stored", ratio(sum(8), costs.stored_photons + costs.caustic_photons)},
+      {"hits sent", number(sum(9))},
+      {"bytes per hit sent", ratio(sum(10), sum(9))},
+      {"bytes sent", number(sum(11))},
+      {"calls", number(traffic.calls)},
+      {"seconds waited", traffic.seconds},
+      {"host bytes of a process, most", number(most(12))},
+      {"host bytes of a process, mean", ratio(sum(12), all.size())}};
+}
+
+}  // namespace photile

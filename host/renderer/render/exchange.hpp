@@ -1,0 +1,76 @@
+// What processes that share a picture send each other: points and their light, rows, statistics.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "estimate/light_at_points.hpp"
+#include "photile/communicator.hpp"
+#include "photile/light_layers.hpp"
+#include "render/map_owners.hpp"
+#include "render/render_costs.hpp"
+
+namespace photile {
+
+/// Sends points to the owners of their maps, and brings their estimates back. What a point gets
+/// must not depend on the points beside it. Collective: all processes ask at the same time.
+class Exchange : public estimate::LightAtPoints {
+ public:
+  enum class Points {
+    own,    ///< each process asks for points of its own, or for none
+    common  ///< all ask for the same points: each estimates those of its maps, and all have all
+  };
+
+  /// References are kept.
+  ///   here          answers for maps of this process
+  ///   lights        layers of the scene
+  ///   many_lights   estimates have the form of many lights
+  ///   traffic       is added to
+  Exchange(Communicator& processes, std::shared_ptr<const MapOwners> owners,
+           std::shared_ptr<estimate::LightAtPoints> here, Points points, std::size_t lights,
+           bool many_lights, PointTraffic& traffic)
+      : processes_(processes),
+        owners_(std::move(owners)),
+        here_(std::move(here)),
+        points_(points),
+        lights_(lights),
+        many_(many_lights),
+        traffic_(traffic) {}
+
+  Estimates at(const PrimaryHits& points, const Progress& progress) override {
+    return points_ == Points::own ? at_own(points, progress) : at_common(points, progress);
+  }
+
+ private:
+  Estimates at_own(const PrimaryHits& points, const Progress& progress);
+  Estimates at_common(const PrimaryHits& points, const Progress& progress);
+  Estimates none_yet() const;
+  /// Positions of points, by their owners.
+  std::vector<std::vector<std::uint32_t>> by_owner(const PrimaryHits& points) const;
+  Estimates in_order(std::span<const std::vector<std::uint32_t>> places,
+                     std::span<const std::vector<std::byte>> bytes, std::size_t points) const;
+
+  Communicator& processes_;
+  std::shared_ptr<const MapOwners> owners_;
+  std::shared_ptr<estimate::LightAtPoints> here_;
+  Points points_;
+  std::size_t lights_;
+  bool many_;
+  PointTraffic& traffic_;
+};
+
+/// Brings the rows of each process, its Shard of them all, to rank 0. The layers of the others stay
+/// as they are. Collective.
+void bring_rows(Communicator& processes, LightLayers& layers);
+
+/// The memory of all machines; of this one where there is one process. Collective.
+std::uint64_t host_bytes_of_all(Communicator* processes);
+
+/// Replaces counts by those of all processes, and fills in their figures. Times stay those of this
+/// process. Collective.
+void add_processes(Communicator& all, RenderCosts& costs);
+
+}  // namespace photile

@@ -1,0 +1,306 @@
+#include "render/photon_passes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "estimate/neighbour_choice.hpp"
+#include "render/exchange.hpp"
+#include "render/setting.hpp"
+#include "render/shared_photons.hpp"
+
+namespace photile {
+namespace {
+
+/// Rays of nodes start so far within a triangle, as a part of the spacing of nodes.
+constexpr double inset_of_spacing = 1.0 / 512;
+
+/// Light that is made when it is first asked for.
+class LazyLight : public estimate::LightAtPoints {
+ public:
+  using Make = std::function<std::shared_ptr<estimate::LightAtPoints>()>;
+  explicit LazyLight(Make make) : make_(std::move(make)) {}
+
+  Estimates at(const PrimaryHits& points, const Progress& progress) override {
+    if (points.size() == 0) return {};
+    if (!light_) light_ = make_();
+    return light_->at(points, progress);
+  }
+
+ private:
+  Make make_;
+  std::shared_ptr<estimate::LightAtPoints> light_;
+};
+
+}  // namespace
+
+PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons)
+    : photons_(std::move(photons)), layer_powers_(estimate::layer_powers(rays.scene())) {
+  if (!plan.reads_light_maps()) return;
+  estimate::LightAtPoints& of_points = *photons_.all.of_points;
+  estimate::LightAtPoints& of_nodes = *photons_.all.of_nodes;
+  if (plan.gathers_at_nodes()) {
+    gather_.emplace(rays, of_points, of_nodes, photons_.ends, photons_.caustics.of_points.get(),
+                    plan.node_gathering(photons_.pass, photons_.first_radius));
+    gathered_.emplace(rays.scene(), *gather_, layer_powers_,
+                      cache::rays_of_nodes(rays.scene(), plan.used().light_map_rays,
+                                           inset_of_spacing * photons_.maps.spacing));
+  } else {
+    by_photons_.emplace(of_nodes);
+  }
+  cache_.emplace(rays, photons_.maps, of_points, nodes(), gather_ ? &gather_->ends() : nullptr);
+  if (photons_.contents) cache_->maps().restore(*photons_.contents);
+}
+
+std::span<const std::uint32_t> PassLight::map_of() const {
+  const auto& estimate = photons_.all.estimate;
+  return cache_ || !estimate ? std::span<const std::uint32_t>() : estimate->map_of();
+}
+
+std::vector<double> PassLight::shares() const {
+  const auto& estimate = photons_.all.estimate;
+  return estimate ? estimate->shares() : std::vector<double>();
+}
+
+PhotonPasses::PhotonPasses(const RayScene& rays, std::span<Device> devices, const RenderPlan& plan,
+                           RenderCosts& costs)
+    : rays_(rays),
+      scene_(rays.scene()),
+      devices_(devices),
+      plan_(plan),
+      costs_(costs),
+      layer_powers_(estimate::layer_powers(scene_)),
+      paths_before_(scene_.lights.size()) {}
+
+std::string PhotonPasses::light_map_settings() const {
+  // The kind of device is among them: sums may have another order on another.
+  std::string words = devices_.front().info().name;
+  for (const Setting& setting : settings()) {
+    if (setting.group == "Estimate" || setting.name == "max_specular_depth") {
+      words += fmt::format(", {} {}", setting.name, text_with_unit(setting, plan_.used()));
+    }
+  }
+  return words;
+}
+
+PassPhotons PhotonPasses::next(PreparedPhotons* prepared, const KeepPhotons* keep,
+                               Progress& progress) {
+  if (prepared && prepared->light_maps && plan_.reads_light_maps()) {
+    if (prepared->light_maps->settings == light_map_settings()) return waiting(*prepared, keep);
+    progress.note("light maps of the saved photons are of other settings: they are made anew");
+  }
+  Maps maps = trace_and_build(prepared, keep, progress);
+  const Stopwatch stopwatch;
+  PassPhotons photons = std::move(maps.facts);
+  photons.all = shared(estimate_of(std::move(maps.photons), nullptr));
+  if (!maps.caustics.empty()) {
+    photons.caustics = shared(estimate_of(std::move(maps.caustics), std::move(maps.seen_caustics)));
+  }
+  costs_.estimators.add(stopwatch.taken());
+  ++pass_;
+  return photons;
+}
+
+/// The photons of `prepared` have no maps until an estimate is needed: light maps tell most light.
+PassPhotons PhotonPasses::waiting(PreparedPhotons& prepared, const KeepPhotons* keep) {
+  radius_ = prepared.radius;
+  PassPhotons photons = facts(prepared.photons);
+  photons.contents = std::move(prepared.light_maps);
+  prepared.light_maps.reset();
+  const bool has_caustics = plan_.keeps_caustics() && prepared.caustics->size() > 0;
+  if (keep) (*keep)(prepared);
+  struct Waiting {
+    PreparedPhotons photons;
+    std::optional<Maps> maps;
+  };
+  const auto waiting = std::make_shared<Waiting>(Waiting{std::move(prepared), std::nullopt});
+  const auto built = [this, waiting]() -> Maps& {
+    // Nobody may stop this: photons that are released on the way would be lost.
+    if (!waiting->maps) {
+      waiting->maps = trace_and_build(&waiting->photons, nullptr, Progress::none());
+    }
+    return *waiting->maps;
+  };
+  const auto lazy = [](LazyLight::Make make) {
+    const auto light = std::make_shared<LazyLight>(std::move(make));
+    return PhotonLight{light, light, nullptr};
+  };
+  photons.all = lazy([this, built] { return estimate_of(std::move(built().photons), nullptr); });
+  if (has_caustics) {
+    photons.caustics = lazy([this, built] {
+      Maps& maps = built();
+      return estimate_of(std::move(maps.caustics), std::move(maps.seen_caustics));
+    });
+  }
+  return photons;
+}
+
+PassPhotons PhotonPasses::facts(const Photons& photons) const {
+  PassPhotons facts{
+      .pass = pass_, .first_radius = radius_, .all = {}, .caustics = {}, .maps = {}, .ends = {}};
+  if (plan_.reads_light_maps()) {
+    facts.maps = plan_.light_maps(pass_, radius_, scene_, photons, layer_powers_);
+    facts.ends = plan_.ends(pass_, radius_, scene_, photons, layer_powers_);
+  }
+  return facts;
+}
+
+std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(
+    std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::SeenPhotons> seen) const {
+  estimate::PhotonEstimate::Parts parts{std::move(maps), plan_.estimates(pass_, surface_),
+                                        std::move(seen)};
+  return std::make_shared<estimate::PhotonEstimate>(devices_, scene_, std::move(parts),
+                                                    layer_powers_);
+}
+
+PhotonLight PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estimate) {
+  auto* const processes = plan_.used().processes;
+  if (!processes) return {estimate, estimate, estimate};
+  const auto by = [&](Exchange::Points points) {
+    return std::make_shared<Exchange>(*processes, owners_, estimate, points, layer_powers_.size(),
+                                      rays_.needs().many_lights(), costs_.points_sent);
+  };
+  return {by(Exchange::Points::own), by(Exchange::Points::common), estimate};
+}
+
+PhotonTracerResult PhotonPasses::trace(PreparedPhotons* prepared, const KeepPhotons* keep,
+                                       Progress& progress) {
+  if (!kernels_) kernels_.emplace(scene_, devices_, plan_.used());  // while photons are traced
+  const Stopwatch trace_watch;
+  PhotonTracerResult traced;
+  if (prepared) {
+    traced.photons = std::move(prepared->photons);
+    if (plan_.keeps_caustics()) traced.caustics = std::move(*prepared->caustics);
+  } else {
+    traced = trace_photons(rays_, plan_.tracing(pass_, paths_before_), progress);
+  }
+  costs_.trace.add(trace_watch.taken(), traced.photons.bytes() + traced.caustics.bytes());
+  if (auto* const processes = plan_.used().processes) {
+    const Stopwatch stopwatch;
+    traced.photons.of_all = photons_of_all(*processes, traced.photons);
+    if (plan_.keeps_caustics()) {
+      traced.caustics.of_all = photons_of_all(*processes, traced.caustics);
+    }
+    costs_.exchange.add(stopwatch.taken());
+  }
+  count(traced);
+  if (pass_ == 0) {
+    const Stopwatch radius_watch;
+    const bool grouped = prepared && prepared->has_groups();
+    radius_ = grouped ? prepared->radius : plan_.radius(traced.photons, progress);
+    costs_.radius.add(radius_watch.taken());
+    // Once: no later radius is larger.
+    find_groups(traced.photons, grouped ? prepared : nullptr, progress);
+  }
+  if (plan_.used().processes) move_to_owners(traced, progress);
+  if (pass_ == 0) find_surface(traced.photons);
+  if (keep) {
+    PreparedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
+    if (plan_.keeps_caustics()) own.caustics = std::move(traced.caustics);
+    (*keep)(own);
+    traced.photons = std::move(own.photons);
+    groups_ = std::move(own.groups);
+    if (own.caustics) traced.caustics = std::move(*own.caustics);
+  }
+  return traced;
+}
+
+void PhotonPasses::move_to_owners(PhotonTracerResult& traced, Progress& progress) {
+  const Stopwatch stopwatch;
+  auto& processes = *plan_.used().processes;
+  progress.begin("exchange photons", 0, "");
+  owners_ = std::make_shared<const MapOwners>(scene_, groups_.patches,
+                                              traced.photons.of_all->landed, processes.size());
+  const double radius = plan_.maps(pass_, radius_).radius;
+  const auto move = [&](Photons& photons) {
+    PhotonsMoved moved;
+    photons = to_owners(processes, scene_, groups_, *owners_, radius, std::move(photons), moved);
+    costs_.photons_sent += moved.sent;
+    costs_.photon_bytes_sent += moved.bytes;
+    costs_.photons_held += moved.held;
+  };
+  move(traced.photons);
+  if (traced.caustics.total() > 0) move(traced.caustics);
+  progress.end();
+  costs_.exchange.add(stopwatch.taken(), traced.photons.bytes() + traced.caustics.bytes());
+}
+
+/// The photons are gone when this returns: the maps hold copies.
+PhotonPasses::Maps PhotonPasses::trace_and_build(PreparedPhotons* prepared, const KeepPhotons* keep,
+                                                 Progress& progress) {
+  PhotonTracerResult traced = trace(prepared, keep, progress);
+  const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
+  PassPhotons found = facts(traced.photons);
+  Maps maps{build(std::move(traced.photons), parameters, progress), {}, nullptr, std::move(found)};
+  const PhotonMapStatistics& built = maps.photons.front().statistics();
+  costs_.maps = built.maps;
+  costs_.mixed_maps = built.mixed_maps;
+  costs_.map_sizes = built.map_sizes;
+  // Among the photons of all light, caustics have the same groups, lit surface and radius.
+  if (traced.caustics.total() > 0) {
+    maps.seen_caustics = std::make_shared<const estimate::SeenPhotons>(rays_, traced.caustics);
+    maps.caustics = build(std::move(traced.caustics), parameters, progress);
+  }
+  const Stopwatch release_watch;
+  traced = {};
+  costs_.release.add(release_watch.taken());
+  return maps;
+}
+
+std::vector<PhotonMaps> PhotonPasses::build(Photons photons, const PhotonMapParameters& parameters,
+                                            Progress& progress) {
+  const Stopwatch stopwatch;
+  kernels_->wait();
+  std::vector<std::uint8_t> own;
+  if (owners_) own = owners_->maps_of(plan_.used().processes->rank());
+  std::vector<PhotonMaps> maps = estimate::build_maps_on_each(devices_, scene_, std::move(photons),
+                                                              groups_, parameters, progress, own);
+  std::uint64_t device_bytes = 0, spilled_bytes = 0;
+  for (const PhotonMaps& one : maps) {
+    device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
+    spilled_bytes += one.statistics().spilled_bytes;
+  }
+  costs_.build.add(stopwatch.taken(), spilled_bytes, device_bytes);
+  const PhotonMapStatistics& built = maps.front().statistics();
+  costs_.references += built.references;
+  costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
+  return maps;
+}
+
+void PhotonPasses::count(const PhotonTracerResult& traced) {
+  for (std::size_t light = 0; light < paths_before_.size(); ++light) {
+    const std::uint64_t paths = traced.photons.emitted_per_light[light];
+    paths_before_[light] += paths;
+    costs_.emitted_photons += paths;
+  }
+  costs_.stored_photons += traced.photons.total();
+  costs_.caustic_photons += traced.caustics.total();
+}
+
+void PhotonPasses::find_groups(const Photons& photons, PreparedPhotons* prepared,
+                               Progress& progress) {
+  const Stopwatch stopwatch;
+  groups_ = prepared ? std::move(prepared->groups)
+                     : find_map_groups(
+                           scene_, photons, plan_.map_mode(), plan_.groups(radius_), progress,
+                           plan_.passes() > 1 ? MapUsers::any_photons : MapUsers::these_photons);
+  costs_.group.add(stopwatch.taken(), groups_.bytes());
+  costs_.group_members = groups_.members.size();
+  costs_.groups = groups_.offsets.size() - 1;
+  costs_.patches = groups_.patches.count();
+}
+
+void PhotonPasses::find_surface(const Photons& photons) {
+  if (!plan_.clips_areas()) return;
+  const Stopwatch stopwatch;
+  surface_ = std::make_shared<const SurfaceIndex>(
+      index_surface(scene_, photons, radius_, plan_.used().angle_degrees));
+  costs_.surface.add(stopwatch.taken(), surface_->bytes());
+  costs_.sheets = surface_->sheets;
+  costs_.surface_leaves = surface_->leaves.size();
+}
+
+}  // namespace photile

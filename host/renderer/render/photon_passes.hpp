@@ -1,0 +1,143 @@
+// Photon passes of a rendering, and the light that each of them tells.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cache/gathered_nodes.hpp"
+#include "cache/irradiance_gather.hpp"
+#include "cache/surface_cache.hpp"
+#include "estimate/photon_estimate.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/scene_renderer.hpp"
+#include "photile/surface_index.hpp"
+#include "render/kernel_preparation.hpp"
+#include "render/map_owners.hpp"
+#include "render/render_costs.hpp"
+#include "render/render_plan.hpp"
+
+namespace photile {
+
+/// The photon estimate, as points ask for it.
+struct PhotonLight {
+  std::shared_ptr<estimate::LightAtPoints> of_points;
+  /// Of points that all processes ask for together; the same where there is one process.
+  std::shared_ptr<estimate::LightAtPoints> of_nodes;
+  std::shared_ptr<const estimate::PhotonEstimate>
+      estimate;  ///< null where maps are built when they are needed
+};
+
+/// The photons of one pass, and what follows from them.
+struct PassPhotons {
+  int pass = 0;
+  double first_radius = 0;  ///< of the first pass, metres
+  PhotonLight all;
+  PhotonLight caustics;           ///< that came by mirrors and glass alone; null without any
+  LightMapParameters maps, ends;  ///< where light maps are read: of them, and of those at ray ends
+  /// What such light maps held, if they were kept.
+  std::optional<LightMapContents> contents = std::nullopt;
+};
+
+/// The light of a scene, told by the photons of one pass: what answers whom is decided here, by the
+/// plan. By photons alone it is the photon estimate; where light maps are read, a cache whose nodes
+/// the estimate values, or rays, which read a coarser cache where they end.
+class PassLight {
+ public:
+  /// References are kept. Errors: those of SurfaceCache.
+  PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons);
+
+  /// All light at points: the end of the chain.
+  estimate::LightAtPoints& light() {
+    return cache_ ? static_cast<estimate::LightAtPoints&>(*cache_) : *photons_.all.of_points;
+  }
+
+  /// Null where light maps are not read.
+  cache::SurfaceCache* cache() { return cache_ ? &*cache_ : nullptr; }
+  const cache::SurfaceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
+  /// What values the nodes of the cache.
+  NodeSource& nodes() { return gathered_ ? static_cast<NodeSource&>(*gathered_) : *by_photons_; }
+  /// Where rays value nodes; else null.
+  const cache::GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
+
+  /// The order in which the light is found fastest: per sided triangle, the map of a hit; empty
+  /// where the order does not matter.
+  std::span<const std::uint32_t> map_of() const;
+  /// Each device's part of all points so far; empty where that is not known.
+  std::vector<double> shares() const;
+
+ private:
+  const PassPhotons photons_;
+  const std::vector<double> layer_powers_;
+  std::optional<cache::IrradianceGather> gather_;  ///< where rays value nodes
+  std::optional<cache::GatheredNodes> gathered_;
+  std::optional<cache::ValuedBy> by_photons_;  ///< where photons value nodes
+  std::optional<cache::SurfaceCache> cache_;
+};
+
+/// Traces the photons of one pass after another, and builds their maps. The first pass says the
+/// radius, the groups and the lit surface of all.
+class PhotonPasses {
+ public:
+  /// References are kept.
+  PhotonPasses(const RayScene& rays, std::span<Device> devices, const RenderPlan& plan,
+               RenderCosts& costs);
+
+  /// The next pass. What it returns refers to this object.
+  ///   prepared   of the first pass: photons and groups in place of traced ones, or null; taken.
+  ///              Where it has light maps of these settings, photon maps are built when an estimate
+  ///              is first needed.
+  ///   keep       is given those of the first pass, or null
+  /// Errors: those of the stages.
+  PassPhotons next(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
+
+  /// Of the first pass, metres.
+  double radius() const { return radius_; }
+
+  /// In words: what nodes depend on beside the scene and the photons.
+  std::string light_map_settings() const;
+
+ private:
+  /// On each device.
+  struct Maps {
+    std::vector<PhotonMaps> photons;
+    std::vector<PhotonMaps> caustics;  ///< for rays that gather, where there are any
+    std::shared_ptr<const estimate::SeenPhotons> seen_caustics;
+    PassPhotons facts;  ///< without their light
+  };
+
+  PassPhotons waiting(PreparedPhotons& prepared, const KeepPhotons* keep);
+  /// Photons of the pass, with all that is found before there are maps.
+  PhotonTracerResult trace(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
+  Maps trace_and_build(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
+  std::vector<PhotonMaps> build(Photons photons, const PhotonMapParameters& parameters,
+                                Progress& progress);
+  std::shared_ptr<estimate::PhotonEstimate> estimate_of(
+      std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::SeenPhotons> seen) const;
+  /// As it is asked for where several processes have the maps.
+  PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
+  /// What follows from the photons of the pass.
+  PassPhotons facts(const Photons& photons) const;
+  /// Where several processes share the rendering: brings photons to the owners of their maps.
+  void move_to_owners(PhotonTracerResult& traced, Progress& progress);
+  void count(const PhotonTracerResult& traced);
+  void find_groups(const Photons& photons, PreparedPhotons* prepared, Progress& progress);
+  void find_surface(const Photons& photons);
+
+  const RayScene& rays_;
+  const Scene& scene_;
+  std::span<Device> devices_;
+  const RenderPlan& plan_;
+  RenderCosts& costs_;
+  const std::vector<double> layer_powers_;
+  std::optional<KernelPreparation> kernels_;  ///< begun when photons are first traced
+  int pass_ = 0;                              ///< the next
+  std::vector<std::uint64_t> paths_before_;   ///< per light
+  double radius_ = 0;                         ///< of the first pass, metres
+  NeighbourGroups groups_;
+  std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
+  std::shared_ptr<const MapOwners> owners_;      ///< where several processes share the rendering
+};
+
+}  // namespace photile

@@ -1,0 +1,192 @@
+#include "render/picture.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "render/exchange.hpp"
+#include "render/film.hpp"
+#include "render/pooled_estimates.hpp"
+#include "render/sample_errors.hpp"
+
+namespace photile {
+namespace {
+
+/// Hits estimated at a time: enough to fill a device, little enough to stay in memory, and fewer
+/// where each takes longer, so that progress is seen and a wish to stop is heard.
+std::int64_t hits_per_batch(int neighbours) {
+  return (std::int64_t{1} << 20) * defaults::neighbours /
+         std::max(defaults::neighbours, neighbours);
+}
+
+/// What runs of samples see becomes that of their pixels.
+void join_runs(PrimaryHitBatch& batch, int runs) {
+  const auto count = static_cast<std::uint32_t>(runs);
+  for (std::uint32_t& pixel : batch.hits.pixel) pixel /= count;
+  for (SeenEmission& seen : batch.emission) seen.pixel /= count;
+}
+
+/// Least number of batches of a pooled picture: estimates of many lights wait for their pooling.
+constexpr int pooled_batches = 16;
+
+}  // namespace
+
+Picture::Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device> devices,
+                 const Film& film, int passes, const LightPooling* pooling, RenderCosts& costs)
+    : rays_(rays),
+      scene_(rays.scene()),
+      plan_(plan),
+      devices_(devices),
+      film_(plan.hits(film, passes)),
+      pooling_(pooling),
+      costs_(costs),
+      layers_(pooling ? LightLayers(film_.width, film_.height, pooling->layers)
+                      : LightLayers(film_.width, film_.height, scene_)),
+      shares_(devices.size(), 0.0) {
+  costs_.start_picture();
+}
+
+void Picture::add(const HitSource& source, PassLight& light, Progress& progress) {
+  LightLayers* const errors = source.errors();
+  if (errors && film_.pass == 0) {
+    *errors = LightLayers(film_.width, film_.height, scene_);
+    film_.runs = std::min(defaults::runs_of_samples, film_.samples_per_pixel);
+    runs_ = LightLayers(film_.width * film_.runs, film_.height, scene_);
+  }
+  const auto height = static_cast<std::uint64_t>(film_.height);
+  const Shard own = own_rows();
+  const int begin = static_cast<int>(own.begin(height)), end = static_cast<int>(own.end(height));
+  // All processes make as many batches: each may have to estimate for the others.
+  const int most = static_cast<int>((height - 1) / own.count + 1);
+  const int rows = rows_per_batch();
+  progress.begin("estimate radiance", static_cast<std::uint64_t>(end - begin), "rows");
+  for (int done = 0; done < most; done += rows) {
+    progress.throw_if_cancelled();
+    const int first = std::min(begin + done, end), last = std::min(first + rows, end);
+    add_rows(source, light, trace_rows(source, light, first, last), progress);
+    progress.advance(static_cast<std::uint64_t>(last - first));
+  }
+  progress.end();
+  ++film_.pass;
+  if (errors && film_.pass == film_.passes) {
+    add_sample_errors(*errors, runs_);
+    runs_ = {};
+    if (auto* const processes = plan_.used().processes) bring_rows(*processes, *errors);
+  }
+  const std::vector<double> shares = light.shares();
+  for (std::size_t i = 0; i < shares.size(); ++i) shares_[i] += shares[i] / film_.passes;
+}
+
+RenderResult Picture::finish(double radius) {
+  if (auto* const processes = plan_.used().processes) bring_rows(*processes, layers_);
+  // Looks at lamps may take more off a surface than light maps, which blur, hold there.
+  if (plan_.used().gloss == GlossMode::rays) raise_to_zero(layers_);
+  RenderCosts costs = costs_;
+  costs.film.host_bytes = layers_.bytes();
+  costs.shares.clear();
+  costs.compile_seconds = compile_seconds();
+  for (std::size_t i = 0; i < devices_.size() && devices_.size() > 1; ++i) {
+    const DeviceInfo& device = devices_[i].info();
+    costs.shares.emplace_back("share of " + device.id + " " + device.name, shares_[i]);
+  }
+  RenderParameters used = plan_.used();
+  used.film = {film_.width, film_.height, film_.samples_per_pixel};
+  used.radius = radius;
+  if (used.processes) add_processes(*used.processes, costs);
+  return {.layers = std::move(layers_),
+          .statistics = costs.statistics(),
+          .used = used,
+          .stored_photons = costs.stored_photons,
+          .device_shares = shares_};
+}
+
+/// Devices compile at the same time.
+double Picture::compile_seconds() const {
+  double most = 0;
+  for (const Device& device : devices_) most = std::max(most, device.compile_seconds());
+  return most;
+}
+
+Shard Picture::own_rows() const {
+  const auto* const processes = plan_.used().processes;
+  return processes ? Shard{processes->rank(), processes->size()} : Shard{};
+}
+
+int Picture::rows_per_batch() const {
+  const std::int64_t hits_per_row =
+      std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
+  const int most = pooling_ ? (film_.height - 1) / pooled_batches + 1 : film_.height;
+  // Where light maps are read, only their nodes take long.
+  const int neighbours = plan_.reads_light_maps() ? defaults::neighbours : plan_.used().neighbours;
+  return static_cast<int>(
+      std::clamp<std::int64_t>(hits_per_batch(neighbours) / hits_per_row, 1, most));
+}
+
+PrimaryHitBatch Picture::trace_rows(const HitSource& source, const PassLight& light, int first,
+                                    int last) {
+  if (first >= last) return {};
+  const Stopwatch hit_watch;
+  PrimaryHitBatch batch = source.trace(rays_, film_, first, last, light.map_of());
+  costs_.hits.add(hit_watch.taken());
+  costs_.rays += batch.rays;
+  return batch;
+}
+
+void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatch batch,
+                       const Progress& progress) {
+  const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight) {
+    Estimates estimates = light_at(light, seen.hits, progress);
+    const Stopwatch film_watch;
+    if (pooling_) {
+      estimates = pooled(*pooling_, estimates, seen.hits.size());
+      pool_emission(*pooling_, seen);
+    }
+    if (source.errors()) {
+      add_to_film(runs_, seen, estimates, illuminance_weight);
+      join_runs(seen, film_.runs);
+    }
+    add_to_film(layers_, seen, estimates, illuminance_weight);
+    costs_.film.add(film_watch.taken());
+    if (!source.errors() || !light.gathered()) return;
+    seen.emission.clear();  // its samples alone err
+    add_to_film(*source.errors(), seen,
+                light.cache()->errors(seen.hits, estimates, light.gathered()->errors()),
+                illuminance_weight);
+  };
+  PrimaryHitBatch reflected;
+  if (batch.reflected.size() > 0 && light.cache()) {
+    batch.reflected.coarse =
+        cache::suits_photons(batch.hits, batch.reflected, film_.runs, light.cache()->blotches());
+  }
+  reflected.hits = std::move(batch.reflected);
+  add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel));
+  if (reflected.hits.size() == 0 && !(plan_.used().processes && film_.lobe_rays)) return;
+  add(reflected, 0.0f);  // the pixel's illuminance is not theirs
+}
+
+Estimates Picture::light_at(PassLight& light, const PrimaryHits& hits, const Progress& progress) {
+  const Stopwatch stopwatch;
+  const double compiled = compile_seconds();
+  const TimeTaken built = costs_.build.time;  // maps may be built when they are first needed
+  cache::SurfaceCache* const cache = light.cache();
+  if (!cache) {
+    Estimates estimates = light.light().at(hits, progress);
+    costs_.estimate.add(stopwatch.taken() - (costs_.build.time - built));
+    costs_.estimate_compile_seconds += compile_seconds() - compiled;
+    costs_.hit_count += hits.size();
+    return estimates;
+  }
+  const std::uint64_t alone_before = cache->hits_alone();
+  const std::uint64_t nodes_before = cache->maps().statistics().nodes;
+  const TimeTaken filled_before = cache->fill_time();
+  Estimates estimates = light.light().at(hits, progress);
+  const LightMapStatistics maps = cache->maps().statistics();
+  const TimeTaken filling = cache->fill_time() - filled_before;
+  costs_.light_maps.add(filling - (costs_.build.time - built), maps.value_bytes + maps.index_bytes);
+  costs_.light_map_nodes += maps.nodes - nodes_before;
+  costs_.light_map_errors = cache->errors_read();
+  costs_.estimate.add(stopwatch.taken() - filling);
+  costs_.hit_count += cache->hits_alone() - alone_before;
+  return estimates;
+}
+
+}  // namespace photile

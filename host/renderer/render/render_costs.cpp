@@ -1,0 +1,112 @@
+#include "render/render_costs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+
+namespace photile {
+namespace {
+
+double ratio(std::uint64_t a, std::uint64_t b) {
+  return static_cast<double>(a) / static_cast<double>(std::max<std::uint64_t>(1, b));
+}
+
+double mean_of(const std::vector<std::uint32_t>& counts) {
+  return ratio(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}), counts.size());
+}
+
+/// Of an even number the mean of the two in the middle; 0 of none.
+double median_of(std::vector<std::uint32_t> counts) {
+  if (counts.empty()) return 0;
+  std::sort(counts.begin(), counts.end());
+  const std::size_t half = counts.size() / 2;
+  const std::uint64_t sum = std::uint64_t{counts[half]} + counts[(counts.size() - 1) / 2];
+  return 0.5 * static_cast<double>(sum);
+}
+
+}  // namespace
+
+StageStatistics stage(const char* name, const StageCost& cost,
+                      std::vector<std::pair<std::string, double>> figures) {
+  return {name,
+          cost.time.seconds,
+          cost.time.processor_seconds,
+          cost.host_bytes,
+          cost.device_bytes,
+          std::move(figures)};
+}
+
+void add_time(RunStatistics& stages, const char* name, const TimeTaken& time) {
+  auto row = std::find_if(stages.begin(), stages.end(),
+                          [&](const StageStatistics& one) { return one.stage == name; });
+  if (row == stages.end()) row = stages.insert(row, stage(name, {}));
+  row->seconds += time.seconds;
+  row->processor_seconds += time.processor_seconds;
+}
+
+void StageCost::add(const TimeTaken& more_time, std::uint64_t more_host_bytes,
+                    std::uint64_t more_device_bytes) {
+  time += more_time;
+  host_bytes = std::max(host_bytes, more_host_bytes);
+  device_bytes = std::max(device_bytes, more_device_bytes);
+}
+
+void RenderCosts::start_picture() {
+  hits = light_maps = estimate = film = {};
+  points_sent = {};
+  rays = light_map_nodes = hit_count = 0;
+  estimate_compile_seconds = 0;
+}
+
+RunStatistics RenderCosts::statistics() const {
+  const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+  RunStatistics stages{
+      stage("ray tracing structure", structure),
+      stage("trace photons", trace,
+            {{"emitted photons", number(emitted_photons)},
+             {"stored photons", number(stored_photons)},
+             {"stored photons per second", number(stored_photons) / trace.time.seconds}}),
+      stage("automatic radius", radius),
+      stage("neighbour groups", group,
+            {{"members", number(group_members)},
+             {"members per sided triangle", ratio(group_members, groups)},
+             {"patches", number(patches)}}),
+      stage("surface index", surface,
+            {{"sheets", number(sheets)}, {"leaves", number(surface_leaves)}}),
+      stage("build photon maps", build,
+            {{"maps", number(maps)},
+             {"mixed maps", number(mixed_maps)},
+             {"references", number(references)},
+             {"references per photon", ratio(references, stored_photons)},
+             {"photons per map, mean", mean_of(map_sizes)},
+             {"photons per map, median", median_of(map_sizes)},
+             {"photons per map, largest", number(largest_map)},
+             {"kernel compilation seconds", compile_seconds}}),
+      stage("prepare estimates", estimators),
+      stage("primary hits", hits,
+            {{"rays", number(rays)}, {"rays per second", number(rays) / hits.time.seconds}})};
+  if (light_maps.time.seconds > 0) {
+    std::vector<std::pair<std::string, double>> figures{{"new nodes", number(light_map_nodes)}};
+    const double error = light_map_errors.mean();
+    if (error > 0) figures.emplace_back("standard error percent", 100 * error);
+    stages.push_back(stage("light maps", light_maps, std::move(figures)));
+  }
+  std::vector<std::pair<std::string, double>> estimate_figures{
+      {"hits", number(hit_count)},
+      {"kernel compilation seconds", estimate_compile_seconds},
+      {"microseconds per hit",
+       hit_count == 0
+           ? 0.0
+           : 1e6 * (estimate.time.seconds - estimate_compile_seconds) / number(hit_count)}};
+  estimate_figures.insert(estimate_figures.end(), shares.begin(), shares.end());
+  stages.push_back(stage("radiance estimate", estimate, std::move(estimate_figures)));
+  if (!processes.empty()) stages.push_back(stage("exchange", exchange, processes));
+  stages.push_back(stage("film", film));
+  stages.push_back(stage("release memory", release));
+  return stages;
+}
+
+}  // namespace photile

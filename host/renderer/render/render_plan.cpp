@@ -1,0 +1,232 @@
+#include "render/render_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cache/surface_cache.hpp"
+#include "estimate/neighbour_choice.hpp"
+#include "geometry/radius_range.hpp"
+#include "photile/errors.hpp"
+#include "photile/neighbour_groups.hpp"
+#include "render/exchange.hpp"
+#include "render/pass_count.hpp"
+#include "render/pass_schedule.hpp"
+#include "render/setting.hpp"
+#include "trace/random_stream.hpp"
+
+namespace photile {
+namespace {
+
+/// Without those whose light rays bring.
+PhotonTracerParameters all_photons(const RenderParameters& used) {
+  return {.emitted_photons = used.photons.emitted_photons,
+          .quota = used.photons.quota,
+          .seed = used.seed,
+          .max_path_length = used.photons.max_path_length,
+          .roulette_start = used.photons.roulette_start,
+          .store_direct = used.direct_rays == 0,
+          .keep_caustics = used.light_map_rays > 0};
+}
+
+/// Says so where most photons have no other within the radius: most places then read nothing.
+void note_lonely_photons(const Photons& photons, double radius, Progress& progress) {
+  try {
+    const double nearest = automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance;
+    if (radius >= nearest) return;
+    progress.note(
+        fmt::format("radius {:.3g} m: half of the photons have no other within {:.3g} m; "
+                    "most places read no light; give a larger radius, or none",
+                    radius, nearest));
+  } catch (const UsageError&) {
+    // Most photons lie in the same points.
+  }
+}
+
+/// Errors: SettingError for what one process alone can do.
+void check_for_several(const RenderParameters& asked) {
+  if (is_global(asked.structure)) {
+    throw SettingError(
+        setting_named("structure"),
+        std::string(name_of(asked.structure)) +
+            " is over all photons, which several processes share; take uniform-grid");
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(GlossMode mode) {
+  switch (mode) {
+    case GlossMode::photons:
+      return "photons";
+    case GlossMode::rays:
+      return "rays";
+    case GlossMode::automatic:
+      return "auto";
+  }
+  return "unknown";
+}
+
+bool nodes_gather(const RenderParameters& asked) {
+  const bool read =
+      asked.light_maps == LightMapMode::on || (asked.light_maps == LightMapMode::automatic &&
+                                               asked.maps != MapMode::naive && asked.passes <= 1);
+  return asked.light_map_rays > 0 && asked.direct_rays == 0 && read;
+}
+
+PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
+  return {.width = parameters.film.width,
+          .height = parameters.film.height,
+          .samples_per_pixel = parameters.film.samples_per_pixel,
+          .seed = parameters.seed,
+          .max_specular_depth = parameters.max_specular_depth};
+}
+
+RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits,
+                       Progress& progress)
+    : used_(asked),
+      asked_passes_(asked.passes),
+      least_radius_(photile::least_radius(rays.scene())),
+      scene_(rays.scene().source.filename().string()) {
+  check(asked);
+  if (asked.processes) check_for_several(asked);
+  if (!nodes_gather(asked)) used_.light_map_rays = 0;
+  if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
+  if (asked.passes == 0) {
+    used_.passes =
+        automatic_passes(rays, all_photons(used_), progress, host_bytes_of_all(asked.processes));
+  }
+  if (asked.light_maps == LightMapMode::on && passes() > 1) {
+    throw SettingError(
+        setting_named("light_maps"),
+        fmt::format("light maps are of one photon pass, and there are {}; take fewer "
+                    "photons, or one pass",
+                    passes()));
+  }
+  const bool read =
+      asked.light_maps == LightMapMode::on || (asked.light_maps == LightMapMode::automatic &&
+                                               asked.maps != MapMode::naive && passes() == 1);
+  if (!read) used_.light_map_rays = 0;
+  if (asked.gloss == GlossMode::automatic) {
+    used_.gloss = read ? GlossMode::rays : GlossMode::photons;
+  }
+  const bool at_points =
+      hits == HitsAsk::points && asked.light_maps == LightMapMode::automatic && !gathers_at_nodes();
+  used_.light_maps = read && !at_points ? LightMapMode::on : LightMapMode::off;
+  // Beyond the scene there is nothing to find.
+  if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
+}
+
+PhotonTracerParameters RenderPlan::tracing(int pass,
+                                           const std::vector<std::uint64_t>& paths_before) const {
+  PhotonTracerParameters parameters = all_photons(used_);
+  if (used_.processes) parameters.shard = {used_.processes->rank(), used_.processes->size()};
+  if (passes() == 1) return parameters;
+  const std::uint64_t all = used_.photons.emitted_photons;
+  const auto until = [&](int p) { return all / passes() * p + all % passes() * p / passes(); };
+  parameters.emitted_photons = std::max<std::uint64_t>(1, until(pass + 1) - until(pass));
+  parameters.paths_before = paths_before;
+  return parameters;
+}
+
+double RenderPlan::radius(const Photons& photons, Progress& progress) const {
+  if (used_.radius > 0) {
+    if (photons.total() >= 2) note_lonely_photons(photons, used_.radius, progress);
+    return used_.radius;
+  }
+  if (photons.total() < 2) {
+    // Nothing but lamps, mirrors and glass is seen, or rays bring all the light there is.
+    if (all_photons(used_).store_direct) {
+      progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
+    }
+    return std::max(1.0, least_radius_);  // any serves
+  }
+  try {
+    const double radius = automatic_radius(photons, used_.neighbours);
+    if (radius >= least_radius_) return radius;
+    throw UsageError(fmt::format(
+        "automatic radius: {:.3g} m is less than {:.3g} m, the least in a scene of this "
+        "extent; remove what lies far from the rest, or give a radius",
+        radius, least_radius_));
+  } catch (const UsageError& error) {
+    throw SettingError(setting_named("radius"), fmt::format("{}: {}", scene_, error.what()));
+  }
+}
+
+MapMode RenderPlan::map_mode() const {
+  const bool global = is_global(used_.structure);  // no use for patches
+  return global ? MapMode::triangle : used_.maps;
+}
+
+NeighbourGroupParameters RenderPlan::groups(double first_radius) const {
+  return {first_radius, used_.angle_degrees};
+}
+
+PhotonMapParameters RenderPlan::maps(int pass, double first_radius) const {
+  return {.radius = estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
+          .photons_per_cell = used_.photons_per_cell,
+          .structure = used_.structure,
+          .large_pages = !reads_light_maps()};  // whose nodes are few
+}
+
+std::vector<EstimateParameters> RenderPlan::estimates(
+    int pass, const std::shared_ptr<const SurfaceIndex>& surface) const {
+  const int most = estimate_of_pass(pass, {0, used_.neighbours}).neighbours;
+  const int least = used_.least_neighbours > 0 ? std::min(used_.least_neighbours, most) : most;
+  std::vector<EstimateParameters> levels;
+  for (const int neighbours : estimate::neighbour_levels(least, most)) {
+    levels.push_back({.neighbours = neighbours,
+                      .compiled_neighbours = used_.neighbours,
+                      .area = used_.area,
+                      .kernel = used_.kernel,
+                      .surface = surface});
+  }
+  return levels;
+}
+
+LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const Scene& scene,
+                                          const Photons& photons,
+                                          std::span<const double> powers) const {
+  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
+  LightMapParameters parameters =
+      cache::light_map_parameters(scene, photons, estimate.neighbours, estimate.radius,
+                                  used_.angle_degrees, used_.light_map_detail, powers);
+  parameters.processes = used_.processes;
+  return parameters;
+}
+
+LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& scene,
+                                    const Photons& photons, std::span<const double> powers) const {
+  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
+  LightMapParameters parameters = cache::light_map_parameters(
+      scene, photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0, powers);
+  // A point sees many ends: what their nodes are wrong by between each other cancels out.
+  parameters.spacing *= 2;
+  parameters.levels = 1;
+  parameters.processes = used_.processes;
+  return parameters;
+}
+
+cache::IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {
+  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
+  return {.rays = used_.light_map_rays,
+          .looks = used_.light_map_rays,
+          .near = defaults::near_radii * estimate.radius,
+          .caustic_neighbours = estimate.neighbours,
+          .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(pass)),
+          .max_specular_depth = used_.max_specular_depth};
+}
+
+PrimaryHitParameters RenderPlan::hits(const Film& film, int passes) const {
+  RenderParameters parameters = used_;
+  parameters.film = film;
+  PrimaryHitParameters hits = eye_rays(parameters);
+  hits.samples_per_pixel = passes * ((film.samples_per_pixel - 1) / passes + 1);
+  hits.passes = passes;
+  hits.direct_rays = used_.direct_rays;  // as the photons are traced
+  hits.lobe_rays = used_.gloss == GlossMode::rays;
+  hits.part_at_glass = true;
+  return hits;
+}
+
+}  // namespace photile

@@ -1,0 +1,88 @@
+// How a rendering is made: what is asked for, checked once, and all that follows from it. Every
+// stage has its own parameters from here, and from nowhere else.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "cache/irradiance_gather.hpp"
+#include "photile/estimator.hpp"
+#include "photile/neighbour_groups.hpp"
+#include "photile/photon_maps.hpp"
+#include "photile/photon_tracer.hpp"
+#include "photile/primary_hits.hpp"
+#include "photile/renderer.hpp"
+
+namespace photile {
+
+/// Whether nodes of light maps gather light for what is asked: with rays of theirs, and unless the
+/// light is not that of nodes, or looks at lamps from the hits replace a part of it.
+bool nodes_gather(const RenderParameters& asked);
+
+/// Who asks for light: pictures, whose hits lie so close that many share nodes of light maps, or
+/// points here and there, which read them only where they are asked to.
+enum class HitsAsk { pictures, points };
+
+class RenderPlan {
+ public:
+  /// Traces a few paths where the number of passes follows from the memory. Errors: those of
+  /// `check` in render/setting.hpp and of automatic_passes.
+  RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits, Progress& progress);
+
+  /// What is asked, with what follows from it in place: photon passes that fit in memory, looks at
+  /// lamps where rays gather, discs for naive maps. The radius is 0 where photons tell it.
+  const RenderParameters& used() const { return used_; }
+
+  int passes() const { return used_.passes; }
+  /// Whether the photons of all passes may be kept at once: their number was asked for, and does
+  /// not follow from the memory.
+  bool may_keep_passes() const { return passes() == 1 || asked_passes_ > 0; }
+  bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
+  bool gathers_at_nodes() const { return used_.light_map_rays > 0; }
+  bool keeps_caustics() const { return gathers_at_nodes(); }
+  bool clips_areas() const { return used_.area == AreaMode::clipped; }
+
+  /// Of this pass, whose paths follow those of the passes before.
+  ///   paths_before   of each light
+  PhotonTracerParameters tracing(int pass, const std::vector<std::uint64_t>& paths_before) const;
+
+  /// Of the first pass, metres: as asked, or by its photons. Errors: SettingError where they tell
+  /// none.
+  double radius(const Photons& photons, Progress& progress) const;
+
+  MapMode map_mode() const;
+  NeighbourGroupParameters groups(double first_radius) const;
+  PhotonMapParameters maps(int pass, double first_radius) const;
+
+  /// Of each k that hits choose from, ascending; just one unless they are to have their own.
+  ///   surface   where areas are clipped, else null
+  std::vector<EstimateParameters> estimates(
+      int pass, const std::shared_ptr<const SurfaceIndex>& surface) const;
+
+  /// Of light maps from the photons of this pass.
+  ///   powers   per layer
+  LightMapParameters light_maps(int pass, double first_radius, const Scene& scene,
+                                const Photons& photons, std::span<const double> powers) const;
+
+  /// Of light maps where gathering rays end.
+  LightMapParameters ends(int pass, double first_radius, const Scene& scene, const Photons& photons,
+                          std::span<const double> powers) const;
+  /// At nodes of light maps.
+  ///   first_radius   of the first pass, metres
+  cache::IrradianceGatherParameters node_gathering(int pass, double first_radius) const;
+
+  /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
+  /// of neighbouring samples alike, those of another do not.
+  ///   passes   at least 1
+  PrimaryHitParameters hits(const Film& film, int passes) const;
+
+ private:
+  RenderParameters used_;
+  int asked_passes_;
+  double least_radius_;  ///< metres
+  std::string scene_;    ///< for messages
+};
+
+}  // namespace photile

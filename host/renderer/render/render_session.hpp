@@ -1,0 +1,57 @@
+// A scene whose photon maps are kept for many pictures.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cache/light_map_frames.hpp"
+#include "photile/scene_renderer.hpp"
+#include "render/hit_source.hpp"
+#include "render/photon_passes.hpp"
+
+namespace photile {
+
+/// A scene prepared for rays, and what that took.
+struct PreparedScene {
+  explicit PreparedScene(const Scene& scene);
+
+  Stopwatch stopwatch;  ///< before `rays`, whose construction it times
+  RayScene rays;
+  StageCost cost;
+};
+
+/// Errors: UsageError without a device.
+void require_device(std::span<const Device> devices);
+
+/// What SceneRenderer offers, of any hits that lie close together.
+class RenderSession {
+ public:
+  /// Prepares all passes. References are kept, `scene` aside. As SceneRenderer.
+  RenderSession(std::shared_ptr<const PreparedScene> scene, std::span<Device> devices,
+                const RenderParameters& parameters, PreparedPhotons* prepared,
+                const KeepPhotons& keep, Progress& progress);
+
+  RenderResult render(const HitSource& hits, const Film& film, Progress& progress,
+                      const LightPooling* pooling = nullptr);
+
+  bool reads_light_maps() const { return plan_.reads_light_maps(); }
+  /// The light of the scene; where light maps are read there is one pass.
+  PassLight& light() { return *passes_.front(); }
+  /// Quick pictures, where light maps are read.
+  cache::LightMapFrames& frames() { return *frames_; }
+  /// What the light maps hold; none where they are not read, or not yet.
+  std::optional<LightMapContents> light_map_contents() const;
+
+ private:
+  const std::shared_ptr<const PreparedScene> scene_;
+  std::span<Device> devices_;
+  const RenderPlan plan_;
+  RenderCosts costs_;
+  PhotonPasses photons_;
+  std::vector<std::unique_ptr<PassLight>> passes_;
+  std::optional<cache::LightMapFrames> frames_;
+};
+
+}  // namespace photile

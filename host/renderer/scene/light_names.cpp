@@ -1,0 +1,112 @@
+#include "scene/light_names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <unordered_set>
+#include <utility>
+
+#include "common/ascii_text.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::scene {
+namespace {
+
+/// Names that a message lists before it only counts the rest.
+constexpr std::size_t max_listed_names = 20;
+
+/// Bytes of the UTF-8 sequence at the start of `text`, or 0 where it is none.
+std::size_t utf8_sequence_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  std::size_t length = 0;
+  if (byte(0) < 0x80) {
+    length = 1;
+  } else if (byte(0) >= 0xC2 && byte(0) <= 0xDF) {
+    length = 2;
+  } else if (byte(0) >= 0xE0 && byte(0) <= 0xEF) {
+    length = 3;
+  } else if (byte(0) >= 0xF0 && byte(0) <= 0xF4) {
+    length = 4;
+  }
+  if (length == 0 || length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  return length;
+}
+
+/// Letters to insert, remove or replace.
+std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string clean_light_name(std::string_view name, std::size_t max_bytes) {
+  std::string clean;
+  while (!name.empty()) {
+    const std::size_t length = utf8_sequence_length(name);
+    const std::size_t consumed = std::max<std::size_t>(length, 1);
+    if (clean.size() + consumed > max_bytes) break;
+    const auto first = static_cast<unsigned char>(name[0]);
+    const bool kept = length > 1 || (length == 1 && (std::isalnum(first) || first == '-'));
+    clean += kept ? name.substr(0, length) : std::string_view("_");
+    name.remove_prefix(consumed);
+  }
+  return clean.empty() ? std::string("light").substr(0, max_bytes) : clean;
+}
+
+void make_light_names_unique(std::vector<Light>& lights) {
+  std::unordered_set<std::string> taken, groups;
+  for (Light& light : lights) {
+    if (light.group.empty()) continue;
+    light.group = clean_light_name(light.group, limits::max_light_name_bytes);
+    groups.insert(light.group);
+  }
+  const auto take = [&](const Light& light) {
+    return !(light.group.empty() && groups.contains(light.name)) && taken.insert(light.name).second;
+  };
+  for (Light& light : lights) {
+    const std::string original = light.name;
+    light.name = clean_light_name(original, limits::max_light_name_bytes);
+    for (int number = 2; !take(light); ++number) {
+      const std::string suffix = fmt::format("_{}", number);
+      light.name =
+          clean_light_name(original, limits::max_light_name_bytes - suffix.size()) + suffix;
+    }
+  }
+}
+
+std::string names_like(std::string_view name, std::vector<std::string> names) {
+  const std::string wanted = lower(name);
+  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return edits_between(wanted, lower(a)) < edits_between(wanted, lower(b));
+  });
+  return listed_names(names);
+}
+
+std::string listed_names(std::span<const std::string> names) {
+  if (names.empty()) return "are none";
+  std::string list = names.size() == 1 ? "is " : "are ";
+  for (std::size_t i = 0; i < std::min(names.size(), max_listed_names); ++i) {
+    list += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  }
+  if (names.size() > max_listed_names) {
+    list += fmt::format(" and {} more", names.size() - max_listed_names);
+  }
+  return list;
+}
+
+}  // namespace photile::scene

@@ -1,0 +1,30 @@
+// Light names that EXR layers and the command line can carry.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "photile/scene.hpp"
+
+namespace photile::scene {
+
+/// `name` with every byte that separates things elsewhere ('.' in EXR channel names, '=' in
+/// `--light NAME=POWER`, blanks, ...) or is not valid UTF-8 replaced by '_', cut to at most
+/// `max_bytes` bytes between characters. "light" when nothing is left.
+std::string clean_light_name(std::string_view name, std::size_t max_bytes);
+
+/// Cleans the names of all lights and groups, and numbers lights whose name occurs twice or belongs
+/// to a group that they are not in: lamp, lamp_2, lamp_3.
+void make_light_names_unique(std::vector<Light>& lights);
+
+/// What follows "there" in a message: "are 'a', 'b'", "is 'a'" or "are none". Only counts the rest
+/// of a long list.
+std::string listed_names(std::span<const std::string> names);
+
+/// The same with those first that differ least from `name` (Levenshtein, "Binary codes capable of
+/// correcting deletions, insertions and reversals", 1966; small and capital letters are alike).
+std::string names_like(std::string_view name, std::vector<std::string> names);
+
+}  // namespace photile::scene

@@ -1,0 +1,50 @@
+// How the material models of the file formats map to photile's.
+#pragma once
+
+#include "photile/scene.hpp"
+
+namespace photile::scene {
+
+/// At or below this glTF roughness a metal counts as a perfect mirror.
+inline constexpr double mirror_roughness = 0.05;
+/// At or above this metallic factor a surface counts as a metal.
+inline constexpr double mirror_metallic = 0.99;
+/// At or above this Phong exponent an MTL reflection (illum 3 and 5) counts as a perfect mirror.
+inline constexpr float mirror_phong_exponent = 1000.0f;
+
+/// Lambertian albedo for a surface whose file colour cannot be had.
+inline constexpr float missing_albedo = 0.5f;
+
+/// GGX alpha of a perceptual roughness in [0,1] (glTF, MTL Pr): its square, at least
+/// PHOTILE_MIN_GGX_ALPHA.
+float ggx_alpha_from_roughness(double roughness);
+
+/// GGX alpha with the width of a Blinn-Phong lobe: sqrt(2 / (exponent + 2)), clamped
+/// likewise. Source:
+/// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", section 5.2.
+float ggx_alpha_from_phong_exponent(double exponent);
+
+/// Reflectance at normal incidence between air and a dielectric: ((n-1)/(n+1))^2.
+double f0_from_index_of_refraction(double index);
+
+/// What an opaque surface reflects at a point: the parameters of device/bsdf.h.
+struct Reflectance {
+  glm::vec3 albedo{0.0f};  ///< of the Lambertian base
+  glm::vec3 f0{0.0f};      ///< of the coat
+  float f90 = 1.0f;
+  float alpha = 1.0f;  ///< GGX
+};
+
+/// The model's factors, clamped to what it allows, as albedo, F0, F90 and alpha: glTF 2.0, appendix
+/// B.3.5, and KHR_materials_specular. A dielectric's F0 is that of its index times the specular
+/// colour and factor, its F90 the factor; a metal's are the base colour and 1; between the two they
+/// are mixed. Textures are left out.
+Reflectance reflectance_of(const MetallicRoughness& model);
+
+/// Sets the diffuse and specular part of `material`; smooth metals without textures become mirrors.
+void set_metallic_roughness(const MetallicRoughness& model, Material& material);
+
+/// Scales diffuse and specular together where their sum exceeds 1 in a channel. True if it did.
+bool conserve_energy(Material& material);
+
+}  // namespace photile::scene

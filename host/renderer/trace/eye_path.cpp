@@ -1,0 +1,196 @@
+#include "trace/eye_path.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "photile/defaults.hpp"
+#include "trace/direct_light.hpp"
+#include "trace/holes.hpp"
+#include "trace/lobe_path.hpp"
+#include "trace/opaque_bsdf.hpp"
+#include "trace/sampling.hpp"
+#include "trace/scatter.hpp"
+#include "trace/sobol.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+
+namespace {
+
+void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
+                      ReflectedPart part, const LookSamples& samples, EyeRecord& record) {
+  thread_local std::vector<ReceivedLight> found;
+  found.clear();
+  find_direct_light(setup.direct->rays, setup.direct->lamps, point, ray.direction, part,
+                    setup.direct->count, samples, found);
+  const float weight = ray.share / static_cast<float>(setup.parameters->samples_per_pixel);
+  for (const ReceivedLight& light : found) {
+    record.direct.push_back({ray.pixel, light.layer, ray.radiance_weight() * light.radiance,
+                             weight * static_cast<float>(luminance(light.irradiance))});
+  }
+}
+
+/// Whether rays are to follow the lobe of a surface; `base` is then what else it reflects.
+bool leaves_lobe(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
+                 glm::vec3& base) {
+  if (!setup.lobes || !material_of(*setup.rays->scene, point).glossy()) return false;
+  const OpaqueBsdf bsdf(*setup.rays->scene, point, ray.direction);
+  if (!bsdf.lobe_suits_rays()) return false;
+  base = bsdf.base_reflectance();
+  return true;
+}
+
+/// Makes the hit that was appended last one whose surface has a base alone, as far as light from
+/// all sides tells it.
+void drop_lobe(const glm::vec3& base, EyeRecord& record) {
+  record.hits.back().diffuse_albedo = base;
+  HitLobe& lobe = record.glossy.back().lobe;
+  lobe.specular = glm::vec3(0.0f);
+  lobe.f90 = 0.0f;
+  lobe.roughness = 1.0f;
+}
+
+/// Makes `ray` the one that leaves a mirror or glass with this share of its light.
+void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scattered, float share,
+           EyeRay& ray) {
+  ray.throughput *= share * scattered.weight;
+  ray.share *= share;
+  ray.radiance_factor *= scattered.radiance_factor;
+  ray.straight =
+      ray.straight && scattered.direction == ray.direction && material_of(scene, point).thin;
+  ray.direction = scattered.direction;
+  ray.origin = point.origin_towards(ray.direction);
+  ++ray.depth;
+}
+
+}  // namespace
+
+void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
+                EyeRecord& record) {
+  const scene::Reflectance surface = reflectance(*rays.scene, point);
+  record.hits.push_back({point.position, point.sided_triangle(), ray.pixel, ray.radiance_weight(),
+                         surface.albedo, ray.share});
+  if (!rays.needs.glossy) return;
+  const ShadingNormals normals = shading_normals(*rays.scene, point, ray.direction);
+  record.glossy.push_back(
+      {-ray.direction, {surface.f0, surface.alpha, normals.seen, surface.f90, normals.smooth}});
+}
+
+std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
+                                     EyeRecord& record, const LampTechnique* other,
+                                     const LookSamples* looks, std::vector<EyeRay>* parted) {
+  const Scene& scene = *setup.rays->scene;
+  const glm::vec3 start = ray.origin;
+  // Lamps seen in mirrors or through refracting glass are found by following alone.
+  const bool sees_near_lamps = other == nullptr || !other->distant_only;
+  const auto weight_against = [&](float found) {
+    return ray.straight ? power_heuristic(other->density, found) : 1.0f;
+  };
+  for (;;) {
+    const bool seen_directly = setup.reflections_only && ray.straight;
+    const bool sees_lamps = setup.emitted_radiance != nullptr && !seen_directly &&
+                            (ray.straight || other == nullptr || !other->only);
+    ++record.rays;
+    const auto met =
+        next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, ray.holes);
+    if (!met) {
+      if (!sees_lamps) return std::nullopt;
+      for (const std::uint32_t index : setup.distant->towards(ray.direction)) {
+        const DistantLight& light = (*setup.distant)[index];
+        const glm::vec3 radiance = light.radiance(ray.direction);
+        if (radiance == glm::vec3(0.0f)) continue;
+        const float weight =
+            other
+                ? weight_against(other->lamps.density(light, start, ray.direction, other->chances))
+                : 1.0f;
+        record.emission.push_back(
+            {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});
+      }
+      return std::nullopt;
+    }
+    const SurfacePoint& point = *met;
+    if (emits(scene, point) && sees_lamps && (sees_near_lamps || !ray.straight)) {
+      const std::uint32_t light = scene.triangle_light[point.where.triangle];
+      const float weight =
+          other ? weight_against(other->lamps.density(start, point, other->chances)) : 1.0f;
+      record.emission.push_back({ray.pixel, light,
+                                 weight * ray.radiance_weight() * (*setup.emitted_radiance)[light] *
+                                     emission_towards(scene, point, -ray.direction)});
+    }
+    if (material_of(scene, point).interaction == Interaction::opaque) {
+      if (seen_directly && !material_of(scene, point).glossy()) return std::nullopt;
+      append_hit(*setup.rays, point, ray, record);
+      if (seen_directly) record.hits.back().diffuse_albedo = glm::vec3(0.0f);
+      glm::vec3 base;
+      const bool lobe_left = leaves_lobe(setup, point, ray, base);
+      if (lobe_left) drop_lobe(base, record);
+      if (setup.direct) {
+        const ReflectedPart part = seen_directly ? ReflectedPart::but_the_base
+                                   : lobe_left   ? ReflectedPart::but_the_lobe
+                                                 : ReflectedPart::all;
+        add_direct_light(setup, point, ray, part, *looks, record);
+      }
+      if (!lobe_left) return std::nullopt;
+      return EyeEnd{point, ray};
+    }
+    if (ray.depth >= setup.parameters->max_specular_depth) return std::nullopt;
+    if (parted) {
+      if (const auto parts = both_parts(scene, point, ray.direction)) {
+        const float lesser = std::min(parts->reflectance, 1.0f - parts->reflectance);
+        if (ray.share * lesser >= defaults::least_glass_share) {
+          EyeRay reflected = ray;
+          go_on(scene, point, parts->reflected, parts->reflectance, reflected);
+          go_on(scene, point, parts->transmitted, 1.0f - parts->reflectance, ray);
+          if (parts->reflectance > 0.5f) std::swap(ray, reflected);
+          parted->push_back(reflected);
+          continue;
+        }
+      }
+    }
+    const RandomBlock numbers = random.block(Purpose::eye_scattering, ray.depth);
+    go_on(scene, point, scatter_specular(scene, point, ray.direction, numbers.uniform(choice_word)),
+          1.0f, ray);
+  }
+}
+
+void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record,
+                    EyeRecord& reflected) {
+  const PrimaryHitParameters& film = *setup.parameters;
+  const auto pixel = static_cast<std::uint32_t>(y) * film.width + x;
+  const std::uint64_t path = std::uint64_t{pixel} * film.samples_per_pixel + sample;
+  const RandomStream random(film.seed, path, 0);
+  // All samples of a pixel share their sequences.
+  const RandomStream of_pixel(film.seed, pixel, 0);
+  const auto index = static_cast<std::uint32_t>(sample);
+  const glm::dvec2 offset = sobol_point(index, of_pixel.block(Purpose::film_position, 0));
+  const auto place = static_cast<std::uint32_t>(sample * film.runs / film.samples_per_pixel) +
+                     pixel * static_cast<std::uint32_t>(film.runs);
+  const glm::vec3 direction((*setup.film)(x + offset.x, y + offset.y));
+  if (direction == glm::vec3(0.0f)) return;  // beyond the circle of a fisheye
+  EyeRay ray{setup.eye + glm::vec3(setup.film->offset(x + offset.x, y + offset.y)), direction,
+             glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), place};
+  std::optional<LookSamples> looks;
+  if (setup.direct) {
+    looks.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
+  }
+  thread_local std::vector<EyeRay> waiting;  // empty but within this function
+  std::vector<EyeRay>* const parted = film.part_at_glass ? &waiting : nullptr;
+  for (;;) {
+    auto end =
+        follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr, parted);
+    if (end) {
+      const OpaqueBsdf bsdf(*setup.rays->scene, end->point, end->ray.direction);
+      const auto rays = static_cast<std::uint32_t>(bsdf.lobe_rays());
+      end->ray.throughput /= static_cast<float>(rays);
+      for (std::uint32_t i = 0; i < rays; ++i) {
+        follow_lobes(setup, *end, {of_pixel, index * rays + i, path, i}, reflected);
+      }
+    }
+    if (!parted || parted->empty()) return;
+    ray = parted->back();
+    parted->pop_back();
+  }
+}
+
+}  // namespace photile::trace

@@ -1,0 +1,222 @@
+#include "trace/hemisphere_rays.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+
+#include "photile/defaults.hpp"
+#include "trace/diffuse_part.hpp"
+#include "trace/direct_light.hpp"
+#include "trace/flush_denormals.hpp"
+#include "trace/hit_point.hpp"
+#include "trace/largest.hpp"
+#include "trace/sampling.hpp"
+#include "trace/sobol.hpp"
+
+namespace photile::trace {
+namespace {
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t points_per_task = 16;
+
+struct TaskEnds {
+  EyeRecord ends;
+  std::vector<std::size_t> count, emission_count, direct_count;  ///< of each point
+  std::vector<float> inverse_distances;                          ///< of each point
+  std::vector<glm::vec3> direction;                              ///< of each ray
+};
+
+/// What the rays of a run share.
+struct RunSetup {
+  const RayScene& rays;
+  const HemisphereParameters& parameters;
+  EyeSetup first;  ///< of rays that leave a point
+  EyeSetup later;  ///< of those that go on from near surface
+};
+
+/// Replaces the last end by light that reaches it, as long as it is surface near the point that
+/// reflects light from everywhere alike, or nearly so.
+///   from     the point
+///   before   ends of the rays before
+///   stream   of the ray; those of later ones are `streams` apart
+///   looks    at lamps, to which those from near surface are added; their tag is the pixel
+void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_t number,
+                     std::size_t before, std::uint32_t stream, std::uint32_t streams,
+                     LampLooks& looks, EyeRecord& ends) {
+  const Scene& scene = run.rays.scene();
+  const LightSampler& lamps = *run.parameters.lamps;
+  for (int bounce = 1; bounce <= defaults::most_near_surfaces && ends.hits.size() > before;
+       ++bounce) {
+    const EyeHit hit = ends.hits.back();
+    if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
+    const std::uint32_t triangle = triangle_of(hit.sided_triangle);
+    const EndReflection reflection = reflection_of(ends, ends.hits.size() - 1);
+    if (reflection.strong_lobe) return;
+    ends.hits.pop_back();
+    if (!ends.glossy.empty()) ends.glossy.pop_back();
+    const SurfacePoint point =
+        surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
+                      side_of(hit.sided_triangle));
+    const RandomStream random(run.parameters.seed, number,
+                              stream + static_cast<std::uint32_t>(bounce) * streams);
+    const RandomBlock numbers = random.block(Purpose::hemisphere_direction, 0);
+    const float survival =
+        std::min(1.0f, defaults::survival_of_reflectance * largest(reflection.reflectance));
+    if (!(numbers.uniform(2) < survival)) return;
+    const glm::vec3 throughput = hit.throughput * reflection.reflectance / survival;
+    looks.add(lamps, point,
+              {random.block(Purpose::direct_light, 0), random.block(Purpose::direct_light, 1)},
+              glm::one_over_pi<float>() * throughput, 1.0f, by_shares_alone, hit.pixel);
+    const glm::vec3 direction =
+        Frame(point.normal)
+            .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
+    const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
+    const LampTechnique look{lamps, cosine * glm::one_over_pi<float>(), true};
+    const std::size_t seen_before = ends.emission.size();
+    follow_eye_ray(run.later, {point.origin_towards(direction), direction, throughput, hit.pixel},
+                   random, ends, &look);
+    for (std::size_t i = seen_before; i < ends.emission.size(); ++i) {
+      const SeenEmission& seen = ends.emission[i];
+      ends.direct.push_back({seen.pixel, lamps.layer(seen.light), seen.radiance});
+    }
+    ends.emission.resize(seen_before);
+  }
+}
+
+/// All rays of a point. Returns the sum of their inverse distances to what they meet first.
+///   run_point   its place in the run
+float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t number,
+                  std::uint32_t run_point, TaskEnds& found) {
+  EyeRecord& ends = found.ends;
+  const HemisphereParameters& parameters = run.parameters;
+  const auto batches = static_cast<std::uint32_t>(parameters.batches);
+  const auto rays = static_cast<std::uint32_t>(parameters.rays);
+  const RandomStream of_point(parameters.seed, number, 0);
+  const Frame frame(point.normal);
+  const glm::vec3 throughput(glm::pi<float>() / static_cast<float>(rays));
+  thread_local LampChances chances;
+  thread_local LampLooks near_looks;
+  near_looks.clear();
+  if (parameters.rays_per_look > 0) parameters.lamps->weigh(point.position, point.normal, chances);
+  float inverse_distances = 0;
+  for (std::uint32_t batch = 0; batch < batches; ++batch) {
+    const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
+    for (std::uint32_t i = 0; i < rays; ++i) {
+      const glm::vec2 place(sobol_point(i, scramble));
+      const glm::vec3 direction =
+          frame.to_world(sample_cosine_hemisphere(std::min(place.x, 0x1.fffffep-1f), place.y));
+      if (run.rays.needs().smooth_shading) found.direction.push_back(direction);
+      // A stream for each, apart from the point's own.
+      const std::uint32_t stream = batch * rays + i + 1;
+      const RandomStream random(parameters.seed, number, stream);
+      const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
+      const LampTechnique looks{*parameters.lamps,
+                                parameters.rays_per_look * cosine * glm::one_over_pi<float>(), true,
+                                chances};
+      const std::size_t before = ends.hits.size();
+      follow_eye_ray(run.first,
+                     {point.origin_towards(direction), direction, throughput,
+                      (run_point * batches + batch) * rays + i},
+                     random, ends, &looks);
+      if (ends.hits.size() == before) continue;
+      inverse_distances +=
+          1 / std::max(1e-6f, glm::distance(point.position, ends.hits.back().position));
+      if (parameters.near > 0) {
+        go_on_from_near(run, point, number, before, stream, batches * rays, near_looks, ends);
+      }
+    }
+  }
+  for (const LampLooks::Found& light : near_looks.found(run.rays)) {
+    ends.direct.push_back({light.tag, light.layer, light.irradiance});
+  }
+  return inverse_distances;
+}
+
+HemisphereRays join(std::vector<TaskEnds> tasks) {
+  HemisphereRays all;
+  all.first.push_back(0);
+  all.first_emission.push_back(0);
+  all.first_direct.push_back(0);
+  std::vector<std::size_t> first_of;
+  const auto extend = [](std::vector<std::size_t>& first, const std::vector<std::size_t>& counts) {
+    for (const std::size_t count : counts) first.push_back(first.back() + count);
+  };
+  for (const TaskEnds& task : tasks) {
+    first_of.push_back(all.first.back());
+    extend(all.first, task.count);
+    extend(all.first_emission, task.emission_count);
+    extend(all.first_direct, task.direct_count);
+    const auto append = [](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(all.ends.emission, task.ends.emission);
+    append(all.ends.direct, task.ends.direct);
+    append(all.inverse_distances, task.inverse_distances);
+    append(all.direction, task.direction);
+    all.ends.rays += task.ends.rays;
+  }
+  all.ends.hits.resize(all.first.back());
+  const bool glossy = std::any_of(tasks.begin(), tasks.end(),
+                                  [](const TaskEnds& task) { return !task.ends.glossy.empty(); });
+  if (glossy) all.ends.glossy.resize(all.first.back());
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
+    const EyeRecord& ends = tasks[task].ends;
+    const auto at = static_cast<std::ptrdiff_t>(first_of[task]);
+    std::copy(ends.hits.begin(), ends.hits.end(), all.ends.hits.begin() + at);
+    if (glossy) std::copy(ends.glossy.begin(), ends.glossy.end(), all.ends.glossy.begin() + at);
+  });
+  return all;
+}
+
+}  // namespace
+
+EndReflection reflection_of(const EyeRecord& ends, std::size_t end) {
+  const glm::vec3& albedo = ends.hits[end].diffuse_albedo;
+  if (ends.glossy.empty() || ends.glossy[end].lobe.f90 == 0.0f) return {albedo, false};
+  const GlossyEyeHit& glossy = ends.glossy[end];
+  const scene::Reflectance surface{albedo, glossy.lobe.specular, glossy.lobe.f90,
+                                   glossy.lobe.roughness};
+  const float cosine = std::max(glm::dot(glossy.lobe.normal, glossy.outgoing), 1e-6f);
+  PhotileAlbedoFit fit;
+  photile_albedo_fit(surface.alpha, &fit);
+  float f0_weight = 0, f90_weight = 0;
+  photile_lobe_albedo(&fit, cosine, &f0_weight, &f90_weight);
+  const glm::vec3 lobe = f0_weight * surface.f0 + f90_weight * surface.f90;
+  return {lobe + diffuse_reflectance(diffuse_part(surface, cosine), surface.alpha),
+          largest(lobe) > defaults::strong_lobe};
+}
+
+HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points, std::size_t first,
+                                 std::size_t count, std::span<const std::uint64_t> number,
+                                 const HemisphereParameters& parameters) {
+  PrimaryHitParameters specular;
+  specular.max_specular_depth = parameters.max_specular_depth;
+  const EyeSetup later{.rays = &impl_of(rays),
+                       .parameters = &specular,
+                       .emitted_radiance = parameters.emitted_radiance,
+                       .distant = &parameters.lamps->distant()};
+  EyeSetup leaving = later;
+  if (!(parameters.rays_per_look > 0)) leaving.emitted_radiance = nullptr;
+  const RunSetup run{rays, parameters, leaving, later};
+  std::vector<TaskEnds> tasks((count + points_per_task - 1) / points_per_task);
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
+    const FlushDenormals flush_denormals;
+    TaskEnds& found = tasks[task];
+    const std::size_t last = std::min(count, (task + 1) * points_per_task);
+    for (std::size_t i = task * points_per_task; i < last; ++i) {
+      const std::size_t before = found.ends.hits.size();
+      const std::size_t emission_before = found.ends.emission.size();
+      const std::size_t direct_before = found.ends.direct.size();
+      found.inverse_distances.push_back(trace_point(run, point_of(rays.scene(), points, first + i),
+                                                    number[first + i],
+                                                    static_cast<std::uint32_t>(i), found));
+      found.direct_count.push_back(found.ends.direct.size() - direct_before);
+      found.count.push_back(found.ends.hits.size() - before);
+      found.emission_count.push_back(found.ends.emission.size() - emission_before);
+    }
+  });
+  return join(std::move(tasks));
+}
+
+}  // namespace photile::trace

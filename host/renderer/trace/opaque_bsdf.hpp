@@ -1,0 +1,104 @@
+// The BSDF of an opaque surface (device/bsdf.h) at one point, for the ray that arrives there: its
+// value, directions drawn from it, and their density.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "photile/device/bsdf.h"
+#include "trace/diffuse_part.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/sampling.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+
+/// Where the rays of a path come from. With a normal map the BSDF is not reciprocal.
+enum class PathStart : std::uint8_t { eye, light };
+
+/// Directions are unit and point away from the surface. Cosines are those to the geometric normal,
+/// as in the radiance estimate; the lobe turns with the shading normal, and a normal map weighs
+/// light by its cosine to the mapped one. The base of a surface without a normal map may be made to
+/// weigh light by its cosine to the interpolated normal.
+class OpaqueBsdf {
+ public:
+  /// `direction`: of the ray that arrives at the point, unit.
+  OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
+             PathStart start = PathStart::eye);
+
+  /// Lets the base weigh light by its cosine to the shading normal, as an eye is to see it: light
+  /// between surfaces goes by the geometric one, so that none is lost or made. Light from below the
+  /// geometric surface is not seen in either case. Does nothing where there is a normal map.
+  void shade_smoothly(const Scene& scene, const SurfacePoint& point);
+
+  /// Leaves the reflection of the base out; directions are drawn as before.
+  void drop_diffuse();
+
+  /// Leaves all but the reflection of one facet out: directions are those of the lobe.
+  void keep_lobe();
+
+  /// Leaves the reflection of one facet out; directions follow the cosine.
+  void drop_lobe();
+
+  /// Whether rays find what the lobe reflects better than photons do: it is narrow, or reflects
+  /// little.
+  bool lobe_suits_rays() const;
+
+  /// Rays by which to follow the lobe of one sample: one where it reflects little or hardly
+  /// scatters, more where all light of the surface is its, and comes from many directions.
+  int lobe_rays() const;
+
+  /// Share of the directions drawn that are the lobe's, in [0, 1]: about its part of what the
+  /// surface reflects.
+  float lobe_share() const { return lobe_ ? lobe_->share : 0.0f; }
+
+  /// Share of light from all sides that is reflected, but for one facet's reflection.
+  glm::vec3 base_reflectance() const;
+
+  /// What reflection but for one facet's is at a direction, f x cosine per steradian, less what it
+  /// is in the mean over all of them: a coat lets less through at grazing angles.
+  glm::vec3 base_deviation(const glm::vec3& direction) const;
+
+  /// Whether it is a Lambertian lobe about the geometric normal, and nothing else.
+  bool lambertian() const { return !lobe_ && base_normal_ == normal_; }
+
+  /// Whether it is more than a Lambertian lobe.
+  bool glossy() const { return lobe_.has_value(); }
+  const glm::vec3& albedo() const { return surface_.albedo; }  ///< of the Lambertian lobe
+
+  /// A direction from the Lambertian or the GGX lobe, picked in proportion to estimates of their
+  /// albedos. Nothing where it would enter the surface. Uses the words `choice_word`,
+  /// `direction_word` and the one after it.
+  std::optional<glm::vec3> sample(const RandomBlock& random) const;
+
+  /// Density of such directions per steradian; 0 below the surface.
+  float density(const glm::vec3& direction) const;
+
+  /// f x cosine, per steradian; black below the surface.
+  glm::vec3 reflected(const glm::vec3& direction) const;
+
+ private:
+  struct Lobe {
+    Frame frame;           ///< of the shading normal
+    glm::vec3 view{0.0f};  ///< against the ray that arrived, in `frame`
+    float n_dot_view = 0;  ///< kept above 0
+    PhotileAlbedoFit fit{};
+    DiffusePart diffuse{};
+    float albedo = 0;     ///< of one facet's reflection, of the channel that reflects most
+    float share = 0;      ///< of the directions drawn, in [0, 1]
+    bool mapped = false;  ///< there is a normal map
+    glm::vec3 smooth_normal{0.0f};
+  };
+  /// What a normal map multiplies f by at a direction in the frame of the lobe.
+  float bump_at(const glm::vec3& out) const;
+  Lobe lobe_of(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) const;
+
+  scene::Reflectance surface_;
+  glm::vec3 normal_;
+  glm::vec3 base_normal_;  ///< that the base weighs light by
+  PathStart start_;
+  std::optional<Lobe> lobe_;  ///< none where the surface is Lambertian
+};
+
+}  // namespace photile::trace

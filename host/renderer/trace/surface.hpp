@@ -1,0 +1,96 @@
+// A point on a triangle, with everything scattering asks about it.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "photile/scene.hpp"
+#include "scene/surface_models.hpp"
+#include "trace/triangle_hit.hpp"
+
+namespace photile::trace {
+
+/// Clearance over the largest coordinate of the triangle's corners. The position is interpolated in
+/// double precision and rounded once (2^-24 of a coordinate), and Embree's plane distance is wrong
+/// by a few roundings of the corners' distances, so 2^-19 leaves a margin of an order of magnitude.
+/// The idea of an offset in units of rounding is Waechter and Binder's ("A fast and robust method
+/// for avoiding self-intersection", Ray Tracing Gems, 2019); theirs scales with the point, which
+/// is too little at the origin of a large triangle and too much on a small scene.
+inline constexpr double clearance_per_coordinate = 0x1p-19;
+
+/// A point on one side of a triangle.
+struct SurfacePoint {
+  TriangleHit where;
+  std::uint32_t side = 0;
+  glm::vec3 position{0.0f};  ///< metres
+  glm::vec3 normal{0.0f};    ///< unit geometric normal on this side
+  /// How far from the position a ray has to start so that it cannot meet its own triangle, metres.
+  float clearance = 0;
+
+  std::uint32_t sided_triangle() const { return sided(where.triangle, side); }
+  /// Origin of a ray that leaves in `direction`, to this side or the other.
+  glm::vec3 origin_towards(const glm::vec3& direction) const {
+    return position + (glm::dot(direction, normal) < 0.0f ? -clearance : clearance) * normal;
+  }
+};
+
+/// The point of a triangle nearest to `position` (metres), which lies on it within rounding.
+TriangleHit nearest_on_triangle(const Scene& scene, std::uint32_t triangle,
+                                const glm::dvec3& position);
+
+/// The point `where` on the given side of its triangle.
+SurfacePoint surface_point(const Scene& scene, const TriangleHit& where, std::uint32_t side);
+
+/// The point `where` on the side that a ray of this direction arrives at.
+SurfacePoint surface_hit(const Scene& scene, const TriangleHit& where, const glm::vec3& direction);
+
+/// Material of the point's triangle.
+inline const Material& material_of(const Scene& scene, const SurfacePoint& point) {
+  return scene.materials[scene.triangle_material[point.where.triangle]];
+}
+
+/// Whether the point lies on the side that the file calls the front.
+inline bool on_front(const Scene& scene, const SurfacePoint& point) {
+  return scene.front_side[point.where.triangle] == point.side;
+}
+
+/// Whether the light of the point's triangle, if any, shines from this side.
+inline bool emits(const Scene& scene, const SurfacePoint& point) {
+  const std::uint32_t light = scene.triangle_light[point.where.triangle];
+  return light != none && (on_front(scene, point) || scene.lights[light].two_sided);
+}
+
+/// Texel of the emission of the point's light; white where it has no texture.
+glm::vec3 emission_texel(const Scene& scene, const SurfacePoint& point);
+
+/// What the point's light emits in a unit direction away from it, over its mean radiance: its texel
+/// times, where the light has a distribution, the intensity there over that of an even surface.
+glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
+                           const glm::vec3& direction);
+
+/// What an opaque surface reflects there, textured. Without a specular lobe F0 and F90 are 0.
+scene::Reflectance reflectance(const Scene& scene, const SurfacePoint& point);
+
+/// Share of the surface that is there, in [0, 1]; 1 where its material has no holes.
+float opacity(const Scene& scene, const SurfacePoint& point);
+
+/// The unit interpolated normal of a point's corners, on its side: the same from wherever it is
+/// seen. The geometric one where the file has none, or where the two are more than a right angle
+/// apart.
+glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point);
+/// The same at a place, metres, on a side of a triangle.
+glm::vec3 shading_normal(const Scene& scene, std::uint32_t sided_triangle,
+                         const glm::vec3& position);
+
+/// Unit shading normals at a point where a ray arrives, on its side.
+struct ShadingNormals {
+  /// Of the corners; the geometric one where the file has none, or where the ray would arrive at
+  /// the shading normal's back.
+  glm::vec3 smooth;
+  glm::vec3 mapped;  ///< `smooth` as the material's normal map turns it; the same without one
+  glm::vec3 seen;    ///< `mapped`, or `smooth` where the ray would arrive at the mapped one's back
+};
+ShadingNormals shading_normals(const Scene& scene, const SurfacePoint& point,
+                               const glm::vec3& direction);
+
+}  // namespace photile::trace

@@ -1,0 +1,173 @@
+// Light maps as textures: what a bilinear lookup gives at points of the surface, and how rectangles
+// lie on a picture.
+#include "bake/baked_light.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "cache/node_sources.hpp"
+#include "photile/errors.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+float gentle(const glm::vec3& p, std::uint32_t s) {
+  const float brighter = side_of(s) == 0 ? 1.0f : 3.0f;
+  return brighter * (3.0f + std::sin(2 * p.x) * std::cos(p.y) + std::sin(1.5f * p.z));
+}
+
+/// As a graphics processor looks a texture up.
+float bilinear(const std::vector<glm::vec3>& texels, std::uint32_t width, std::uint32_t height,
+               const glm::vec2& uv) {
+  const float x = uv.x * static_cast<float>(width) - 0.5f;
+  const float y = uv.y * static_cast<float>(height) - 0.5f;
+  const float fx = std::floor(x), fy = std::floor(y);
+  const auto at = [&](float column, float row) {
+    const auto c =
+        static_cast<std::size_t>(std::clamp(column, 0.0f, static_cast<float>(width - 1)));
+    const auto r = static_cast<std::size_t>(std::clamp(row, 0.0f, static_cast<float>(height - 1)));
+    return texels[r * width + c].x;
+  };
+  return glm::mix(glm::mix(at(fx, fy), at(fx + 1, fy), x - fx),
+                  glm::mix(at(fx, fy + 1), at(fx + 1, fy + 1), x - fx), y - fy);
+}
+
+bake::BakeParameters baking(double texel = 0, int most_side = 4096) {
+  bake::BakeParameters parameters;
+  parameters.texel = texel;
+  parameters.most_side = most_side;
+  parameters.powers = {1.0};
+  return parameters;
+}
+
+/// Baked light and what it needs.
+struct BakedRoom {
+  BakedRoom(const Scene& scene, LightMaps& maps, NodeSource& source,
+            const bake::BakeParameters& parameters)
+      : rays(scene),
+        sight(rays, maps),
+        baked(scene, maps, source, sight, parameters, Progress::none()),
+        texels(baked.layer(0)) {}
+
+  float read(const Scene& scene, const glm::vec3& position, std::uint32_t side) const {
+    const auto [a, b, c] = scene.corners(triangle_of(side));
+    const auto uv = baked.corners(side);
+    // The weights of the corners.
+    const glm::vec3 normal = glm::cross(b - a, c - a);
+    const float v = glm::dot(glm::cross(b - a, position - a), normal) / glm::dot(normal, normal);
+    const float u = glm::dot(glm::cross(position - a, c - a), normal) / glm::dot(normal, normal);
+    return bilinear(texels, baked.width(), baked.height(),
+                    uv[0] + u * (uv[1] - uv[0]) + v * (uv[2] - uv[0]));
+  }
+
+  RayScene rays;
+  cache::NodeSight sight;
+  bake::BakedLight baked;
+  std::vector<glm::vec3> texels;
+};
+
+}  // namespace
+
+TEST_CASE("Baked textures hold the irradiance of both sides at points of the surface",
+          "[baked_light]") {
+  const Scene scene = with_one_lamp(furnished_room(2));
+  FormulaSource source(gentle);
+  LightMaps maps(scene, quiet_parameters());
+  const BakedRoom room(scene, maps, source, baking(0.03));
+  REQUIRE(room.texels.size() == std::size_t{room.baked.width()} * room.baked.height());
+  // Second derivatives of the light are at most 3 x 4.25 a square metre; texels and nodes of 4 cm
+  // each are off by an eighth of it, both ways.
+  const double bound = 2 * 2 * 3 * 4.25 * 0.04 * 0.04 / 8;
+  const PrimaryHits points = points_on(scene, 5);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t side = points.sided_triangle[i];
+    REQUIRE(std::abs(room.read(scene, points.position[i], side) -
+                     gentle(points.position[i], side)) < bound + 1e-3);
+  }
+}
+
+TEST_CASE("Lookups beside a box on the floor take nothing of what lies under it", "[baked_light]") {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
+  builder.box({0.313f, 0.313f, 0.0f}, {0.687f, 0.687f, 0.2f}, white, false);
+  const Scene scene = with_one_lamp(std::move(builder).build());
+  FormulaSource source([](const glm::vec3& p, std::uint32_t) {
+    const bool under = p.x > 0.313f && p.x < 0.687f && p.y > 0.313f && p.y < 0.687f && p.z == 0;
+    return under ? 0.0f : 10.0f;
+  });
+  LightMaps maps(scene, quiet_parameters());
+  const BakedRoom room(scene, maps, source, baking(0.03));
+  const PrimaryHits points = points_on(scene, 60);
+  std::size_t beside = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t side = points.sided_triangle[i];
+    const glm::vec3& p = points.position[i];
+    if (triangle_of(side) > 1 || sided_normal(scene, side).z < 0)
+      continue;  // the floor, from above
+    const float away =
+        std::max(std::max(0.313f - p.x, p.x - 0.687f), std::max(0.313f - p.y, p.y - 0.687f));
+    if (away < 1e-4f) continue;
+    if (away < 0.03f) ++beside;
+    CAPTURE(p.x, p.y);
+    CHECK(room.read(scene, p, side) == Approx(10).epsilon(1e-5));
+  }
+  CHECK(beside > 20);
+}
+
+TEST_CASE("The brighter side of a triangle is baked, and the other where any light falls",
+          "[baked_light]") {
+  const Scene scene = with_one_lamp(furnished_room(2));
+  const auto sides_under = [&](const FormulaSource::Formula& light) {
+    FormulaSource source(light);
+    LightMaps maps(scene, quiet_parameters());
+    const BakedRoom room(scene, maps, source, baking(0.1));
+    return std::vector<std::uint32_t>(room.baked.sides().begin(), room.baked.sides().end());
+  };
+  const auto backs =
+      sides_under([](const glm::vec3&, std::uint32_t s) { return side_of(s) == 1 ? 1.0f : 0.0f; });
+  REQUIRE(backs.size() == scene.triangle_count());
+  for (std::uint32_t t = 0; t < backs.size(); ++t) CHECK(backs[t] == sided(t, 1));
+  CHECK(sides_under(gentle).size() == 2 * std::size_t{scene.triangle_count()});
+}
+
+TEST_CASE("Texels become coarser until they fit, and those asked for are refused where they do not",
+          "[baked_light]") {
+  const Scene scene = with_one_lamp(furnished_room(2));
+  FormulaSource source(gentle);
+  LightMaps maps(scene, quiet_parameters());
+  const BakedRoom small(scene, maps, source, baking(0, 256));
+  CHECK(small.baked.width() <= 256);
+  CHECK(small.baked.height() <= 256);
+  CHECK(small.baked.texel() > 0.02);
+  CHECK_THROWS_AS(BakedRoom(scene, maps, source, baking(0.001, 256)), UsageError);
+}
+
+TEST_CASE("Rectangles on an atlas do not overlap", "[baked_light]") {
+  std::mt19937 random(5);
+  std::vector<bake::TexelRectangle> rectangles(300);
+  for (auto& r : rectangles) {
+    r.width = 1 + random() % 40;
+    r.height = 1 + random() % 25;
+  }
+  const auto atlas = bake::pack(rectangles, 1024);
+  REQUIRE(atlas);
+  std::vector<int> covered(std::size_t{atlas->width} * atlas->height, 0);
+  for (const auto& r : rectangles) {
+    REQUIRE(r.x + r.width <= atlas->width);
+    REQUIRE(r.y + r.height <= atlas->height);
+    for (std::uint32_t y = r.y; y < r.y + r.height; ++y) {
+      for (std::uint32_t x = r.x; x < r.x + r.width; ++x) ++covered[y * atlas->width + x];
+    }
+  }
+  CHECK(*std::max_element(covered.begin(), covered.end()) == 1);
+  std::vector<bake::TexelRectangle> wide{{0, 0, 65, 1}};
+  CHECK_FALSE(bake::pack(wide, 64));
+  std::vector<bake::TexelRectangle> many(65, {0, 0, 64, 1});
+  CHECK_FALSE(bake::pack(many, 64));
+}
+
+}  // namespace photile::test

@@ -1,0 +1,281 @@
+// Light maps whose nodes gather light: closed forms, and on what they depend.
+#define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include "cache/gathered_nodes.hpp"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "cache/node_sources.hpp"
+#include "estimate/reflected_radiance.hpp"
+#include "gathering.hpp"
+#include "photile/light_maps.hpp"
+#include "test_scenes.hpp"
+#include "validation/form_factors.hpp"
+
+namespace photile::test {
+namespace {
+
+/// Light maps of a scene, and what values them.
+struct GatheredMaps {
+  GatheredMaps(GatheringScene& scene, const cache::GatheredNodesParameters& rays,
+               double spacing = 0.16)
+      : gather(scene.gather({})),
+        parameters(parameters_of(scene, spacing)),
+        nodes(scene.scene, gather, scene.estimators.layer_powers(), rays),
+        maps(scene.scene, parameters) {}
+
+  static LightMapParameters parameters_of(GatheringScene& scene, double spacing) {
+    LightMapParameters parameters;
+    parameters.spacing = spacing;
+    parameters.levels = 3;
+    const std::span<const double> powers = scene.estimators.layer_powers();
+    parameters.powers.assign(powers.begin(), powers.end());
+    return parameters;
+  }
+
+  void fill(const PrimaryHits& hits) { maps.fill(hits, nodes, Progress::none()); }
+
+  /// Illuminance of all lights at a hit.
+  double lux(const PrimaryHits& hits, std::size_t hit) const {
+    NodeBlend blend;
+    REQUIRE(maps.find(hits.sided_triangle[hit], hits.position[hit], blend));
+    double sum = 0;
+    for (std::size_t i = 0; i < blend.node.size(); ++i) {
+      estimate::for_each_estimate(maps.values(), blend.node[i], parameters.powers.size(),
+                                  [&](std::size_t layer, std::size_t value) {
+                                    sum += double{blend.weight[i]} * parameters.powers[layer] *
+                                           luminance(glm::dvec3(maps.values().irradiance[value]));
+                                  });
+    }
+    return sum;
+  }
+
+  std::vector<double> all_lux(const PrimaryHits& hits) const {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < hits.size(); ++i) result.push_back(lux(hits, i));
+    return result;
+  }
+
+  cache::IrradianceGather gather;
+  LightMapParameters parameters;
+  cache::GatheredNodes nodes;
+  LightMaps maps;
+};
+
+constexpr cache::GatheredNodesParameters few_rays{{32, 32}, {16, 16}, 1e-4};
+
+/// The hits of one half of the room, and of the other.
+std::array<PrimaryHits, 2> halves(const PrimaryHits& hits) {
+  std::array<PrimaryHits, 2> parts;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    add_hit(parts[hits.position[i].x < 2.0f ? 0 : 1], hits.position[i], hits.sided_triangle[i]);
+  }
+  return parts;
+}
+
+/// Relative root mean square of the differences from a formula, and their mean.
+template <class Truth>
+std::array<double, 2> errors_of(const GatheredMaps& maps, const PrimaryHits& hits,
+                                const Truth& truth) {
+  double squares = 0, sum = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const double relative = maps.lux(hits, i) / truth(hits.position[i]) - 1;
+    squares += relative * relative;
+    sum += relative;
+  }
+  const auto count = static_cast<double>(hits.size());
+  return {std::sqrt(squares / count), sum / count};
+}
+
+}  // namespace
+
+TEST_CASE("gathered nodes: a furnace is the same all over, corners and edges among it") {
+  constexpr double albedo = 0.5;
+  Scene box = closed_box(diffuse(glm::vec3(albedo)));
+  box.lights = {area_light("walls")};
+  for (std::uint32_t t = 0; t < box.triangle_count(); ++t) {
+    box.triangle_light[t] = 0;
+    box.lights[0].triangles.push_back(t);
+  }
+  GatheringScene furnace(box, looked_up(200'000));
+  GatheredMaps maps(furnace, few_rays);
+  PrimaryHits inside;
+  const PrimaryHits all = points_on(box, 12);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (side_of(all.sided_triangle[i]) == box.front_side[triangle_of(all.sided_triangle[i])]) {
+      add_hit(inside, all.position[i], all.sided_triangle[i]);
+    }
+  }
+  maps.fill(inside);
+  const double truth = 1.0 / 6 / (1 - albedo);  // 1 lm over 6 m2, and each bounce returns half
+  const auto [rms, mean] = errors_of(maps, inside, [&](const glm::vec3&) { return truth; });
+  CAPTURE(rms, mean);
+  CHECK(rms < 0.05);
+  CHECK(std::abs(mean) < 0.02);
+}
+
+TEST_CASE("gathered nodes: direct light is that of form factors, closer than rays alone tell it") {
+  SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))),
+               builder.add(area_light("lamp")));
+  GatheringScene plain(builder.build(), looked_up(20'000));
+  PrimaryHits floor;
+  const PrimaryHits all = points_on(plain.scene, 14);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::uint32_t triangle = triangle_of(all.sided_triangle[i]);
+    if (triangle < 8 && side_of(all.sided_triangle[i]) == plain.scene.front_side[triangle]) {
+      add_hit(floor, all.position[i], all.sided_triangle[i]);
+    }
+  }
+  const auto truth = [](const glm::vec3& position) {
+    return validation::rectangle_factor(glm::dvec3(position), {0, 0, 1}, {0.5, -0.5, 1}, {1, 0, 0},
+                                        {0, 1, 0});
+  };
+  GatheredMaps maps(plain, few_rays, 0.04);
+  maps.fill(floor);
+  const auto [rms, mean] = errors_of(maps, floor, truth);
+  const cache::GatheredIrradiance raw =
+      plain.gather({.rays = 32, .looks = 32}).gather(floor, numbers(floor.size()));
+  double squares = 0;
+  for (std::size_t i = 0; i < floor.size(); ++i) {
+    squares +=
+        std::pow(luminance(glm::dvec3(raw.mean.irradiance[i])) / truth(floor.position[i]) - 1, 2) /
+        static_cast<double>(floor.size());
+  }
+  CAPTURE(rms, mean, std::sqrt(squares));
+  CHECK(rms < 0.75 * std::sqrt(squares));  // points that are in doubt look again, filter or not
+  CHECK(rms < 0.02);
+  CHECK(std::abs(mean) < 0.01);
+}
+
+TEST_CASE("gathered nodes: a wall is dark below the horizon of a bright lamp beside it") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-0.6f, 0, -0.6f}, {1.2f, 0, 0}, {0, 0, 1.2f}, 1, black);  // its front to y < 0
+  // A lamp that shines upwards, 2 mm from the wall; and a faint one far away.
+  const glm::dvec3 corner{-0.11, -0.102, 0}, far{-0.5, -3, -0.5};
+  builder.grid(glm::vec3(corner), {0.22f, 0, 0}, {0, 0.1f, 0}, 1, black,
+               builder.add(area_light("sconce", 1)));
+  builder.grid(glm::vec3(far), {0, 0, 1}, {1, 0, 0}, 1, black,
+               builder.add(area_light("window", 1)));
+  GatheringScene plain(builder.build(), looked_up(20'000));
+  const auto by_window = [&](const glm::vec3& position) {
+    return validation::rectangle_factor(glm::dvec3(position), {0, -1, 0}, far, {1, 0, 0},
+                                        {0, 0, 1});
+  };
+  PrimaryHits below;
+  const PrimaryHits all = points_on(plain.scene, 60);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const glm::vec3& at = all.position[i];
+    if (triangle_of(all.sided_triangle[i]) < 2 && at.z < -0.015f && at.z > -0.2f &&
+        sided_normal(plain.scene, all.sided_triangle[i]).y < 0 && std::abs(at.x) < 0.3f) {
+      add_hit(below, at, all.sided_triangle[i]);
+    }
+  }
+  REQUIRE(below.size() > 100);
+  GatheredMaps maps(plain, few_rays, 0.04);
+  maps.fill(below);
+  const auto [rms, mean] = errors_of(maps, below, by_window);
+  CAPTURE(rms, mean);
+  CHECK(rms < 0.1);
+  CHECK(std::abs(mean) < 0.02);
+}
+
+TEST_CASE("gathered nodes: the same bits whatever was looked at before, on any number of threads") {
+  GatheringScene room(furnished_room(2), looked_up(50'000));
+  const PrimaryHits hits = points_on(room.scene, 5);
+  const auto [here, there] = halves(hits);
+  GatheredMaps at_once(room, few_rays);
+  at_once.fill(hits);
+  const std::vector<double> expected = at_once.all_lux(hits);
+  for (const std::size_t threads : {1u, 2u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    GatheredMaps forwards(room, few_rays), backwards(room, few_rays);
+    forwards.fill(here);
+    forwards.fill(there);
+    backwards.fill(there);
+    backwards.fill(here);
+    CHECK(forwards.all_lux(hits) == expected);
+    CHECK(backwards.all_lux(hits) == expected);
+  }
+}
+
+TEST_CASE("gathered nodes: those found after others were saved or forgotten are the same bits") {
+  GatheringScene room(furnished_room(2), looked_up(50'000));
+  const PrimaryHits hits = points_on(room.scene, 5);
+  const auto [here, there] = halves(hits);
+  GatheredMaps at_once(room, few_rays), first(room, few_rays), second(room, few_rays);
+  at_once.fill(hits);
+  const std::vector<double> expected = at_once.all_lux(hits);
+  first.fill(here);
+  SECTION("taken in by other light maps, whose source knows none of them") {
+    second.maps.restore(first.maps.contents());
+    second.fill(there);
+    CHECK(second.all_lux(hits) == expected);
+    first.fill(there);  // the nodes may have another order
+    const auto errors_of = [](const GatheredMaps& maps) {
+      std::vector<float> errors = maps.maps.contents().error;
+      std::sort(errors.begin(), errors.end());
+      return errors;
+    };
+    CHECK((errors_of(second) == errors_of(first)));
+  }
+  SECTION("forgotten by the source alone") {
+    CHECK(first.nodes.bytes() > 0);
+    first.nodes.forget();
+    CHECK(first.nodes.bytes() == 0);
+    first.fill(there);
+    CHECK(first.all_lux(hits) == expected);
+  }
+  SECTION("forgotten by both") {
+    std::vector<std::uint8_t> keep(first.maps.statistics().nodes, 0);
+    for (std::size_t node = 0; node < keep.size(); node += 3) keep[node] = 1;
+    first.maps.forget(keep);
+    first.nodes.forget();
+    first.fill(hits);
+    CHECK(first.all_lux(hits) == expected);
+  }
+}
+
+TEST_CASE("gathered nodes: many lights, each in its layer, are what their group is") {
+  Scene scene = furnished_room();
+  add_lamps(scene, 12);
+  RenderParameters parameters = looked_up(50'000);
+  parameters.radius = 0.3;
+  const PrimaryHits hits = points_on(scene, 3);
+  GatheringScene alone(scene, parameters);
+  GatheredMaps layers(alone, few_rays);
+  layers.fill(hits);
+  for (Light& light : scene.lights) light.group = "all";
+  GatheringScene grouped(scene, parameters);
+  GatheredMaps together(grouped, few_rays);
+  together.fill(hits);
+  // Each layer is averaged by its own noise: what is left of it differs, the light does not.
+  const cache::GatheredIrradiance many_rays =
+      grouped.gather({.rays = 400, .looks = 400}).gather(hits, numbers(hits.size()));
+  const auto errors = [&](const std::vector<double>& lux) {
+    double sum = 0, truth = 0, squares = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const double light = many_rays.total(i, grouped.estimators.layer_powers()).luminance;
+      sum += lux[i];
+      truth += light;
+      squares += std::pow(lux[i] - light, 2);
+    }
+    const auto count = static_cast<double>(hits.size());
+    return std::array{sum / truth, std::sqrt(squares * count) / truth};
+  };
+  const auto [mean_of_layers, rms_of_layers] = errors(layers.all_lux(hits));
+  const auto [mean_of_group, rms_of_group] = errors(together.all_lux(hits));
+  CAPTURE(mean_of_layers, rms_of_layers, mean_of_group, rms_of_group);
+  CHECK(mean_of_layers == Approx(1).margin(0.01));
+  CHECK(mean_of_group == Approx(1).margin(0.01));
+  CHECK(rms_of_layers < 1.2 * rms_of_group);
+}
+
+}  // namespace photile::test

@@ -1,0 +1,209 @@
+// The filter over linked points, on values whose truth is known.
+#define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include "cache/irradiance_filter.hpp"
+
+#include <tbb/global_control.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+
+#include "trace/random_stream.hpp"
+
+namespace photile::test {
+namespace {
+
+constexpr int side = 48, batches = 8, border = 8;
+
+std::size_t index(int x, int y) { return static_cast<std::size_t>(y * side + x); }
+
+/// A square lattice, each point linked to its four neighbours.
+cache::PointLinks lattice() {
+  cache::PointLinks links;
+  links.first.push_back(0);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      if (x > 0) links.to.push_back(static_cast<std::uint32_t>(index(x - 1, y)));
+      if (x + 1 < side) links.to.push_back(static_cast<std::uint32_t>(index(x + 1, y)));
+      if (y > 0) links.to.push_back(static_cast<std::uint32_t>(index(x, y - 1)));
+      if (y + 1 < side) links.to.push_back(static_cast<std::uint32_t>(index(x, y + 1)));
+      links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
+    }
+  return links;
+}
+
+/// About normal, mean 0, standard deviation 1.
+double noise(std::uint64_t seed, std::uint64_t number) {
+  double sum = -6;
+  for (std::uint32_t block = 0; block < 3; ++block) {
+    const auto random = trace::RandomStream(seed, number, 0).block(trace::Purpose::emission, block);
+    for (int word = 0; word < 4; ++word) sum += double{random.uniform(word)};
+  }
+  return sum;
+}
+
+using Truth = std::function<double(int x, int y)>;
+
+/// Grey light of `lights` layers, each the truth with noise of its own in every batch.
+///   error   standard error of each layer
+cache::GatheredIrradiance noisy(const Truth& truth, double error, std::uint64_t seed,
+                                int lights = 1) {
+  cache::GatheredIrradiance result;
+  result.batches = batches;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      for (int light = 0; light < lights; ++light) {
+        double sum = 0;
+        for (int b = 0; b < batches; ++b) {
+          const std::uint64_t number = (index(x, y) * 8 + static_cast<std::uint64_t>(light)) * 64 +
+                                       static_cast<std::uint64_t>(b);
+          const double value =
+              truth(x, y) + std::sqrt(double{batches}) * error * noise(seed, number);
+          result.batch.push_back(static_cast<float>(value));
+          sum += value;
+        }
+        result.mean.irradiance.emplace_back(static_cast<float>(sum / batches));
+      }
+  return result;
+}
+
+/// Over the columns [from, to), but for the border.
+double rms_error(const cache::GatheredIrradiance& light, const Truth& truth, int from, int to) {
+  double sum = 0;
+  int count = 0;
+  for (int y = border; y < side - border; ++y)
+    for (int x = from; x < to; ++x, ++count) {
+      const double difference = double{light.mean.irradiance[index(x, y)].g} - truth(x, y);
+      sum += difference * difference;
+    }
+  return std::sqrt(sum / count);
+}
+
+const std::vector<double> one_light{1.0};
+
+}  // namespace
+
+TEST_CASE("filter: noise on an even surface falls, and its error is known afterwards") {
+  const Truth even = [](int, int) { return 1.0; };
+  constexpr int inner = side - 2 * border;
+  double known = 0, found = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const cache::GatheredIrradiance after =
+        cache::filter_irradiance(noisy(even, 0.05, seed), lattice(), one_light);
+    found += std::pow(rms_error(after, even, border, side - border), 2) / 8;
+    for (int y = border; y < side - border; ++y)
+      for (int x = border; x < side - border; ++x) {
+        known += std::pow(after.total(index(x, y), one_light).error, 2) / (8.0 * inner * inner);
+      }
+  }
+  CHECK(std::sqrt(found) < 0.05 / 3);
+  CHECK(std::sqrt(known / found) == Approx(1).margin(0.2));
+}
+
+TEST_CASE("filter: steps that exceed the noise stay, slopes stay what they are") {
+  const double height = GENERATE(0.5, 1.0);  // 7 and 14 standard errors of a difference
+  const Truth step = [&](int x, int) { return x < side / 2 ? 1.0 : 1.0 + height; };
+  const cache::GatheredIrradiance after =
+      cache::filter_irradiance(noisy(step, 0.05, 3), lattice(), one_light);
+  double left = 0, right = 0;  // beside the step
+  for (int y = border; y < side - border; ++y) {
+    left += double{after.mean.irradiance[index(side / 2 - 1, y)].g} / (side - 2 * border);
+    right += double{after.mean.irradiance[index(side / 2, y)].g} / (side - 2 * border);
+  }
+  CHECK(right - left == Approx(height).epsilon(0.1));
+  const Truth slope = [](int x, int) { return 1.0 + 0.02 * x; };
+  CHECK(rms_error(cache::filter_irradiance(noisy(slope, 0.05, 4), lattice(), one_light), slope, 12,
+                  side - 12) < 0.05 / 2.5);
+}
+
+TEST_CASE("filter: without noise nothing changes, and what is dark stays dark") {
+  const Truth waves = [](int x, int y) { return 2 + std::sin(x * 0.7) * std::cos(y * 0.9); };
+  const cache::GatheredIrradiance before = noisy(waves, 0, 1);
+  const cache::GatheredIrradiance after = cache::filter_irradiance(before, lattice(), one_light);
+  for (std::size_t i = 0; i < before.mean.irradiance.size(); ++i) {
+    REQUIRE(after.mean.irradiance[i].g == Approx(before.mean.irradiance[i].g).epsilon(1e-6));
+  }
+  const Truth black = [](int, int) { return 0.0; };
+  for (const glm::vec3& value :
+       cache::filter_irradiance(noisy(black, 0, 1), lattice(), one_light).mean.irradiance) {
+    REQUIRE(value == glm::vec3(0.0f));
+  }
+}
+
+TEST_CASE("filter: light that few rays find is spread over the points that found none of it") {
+  // As of a sky through a small window: a batch finds it in one of ten times, so that two points of
+  // five found nothing, and do not know that they err.
+  constexpr double found = 0.1;
+  const Truth even = [](int, int) { return 1.0; };
+  cache::GatheredIrradiance rare = noisy(even, 0, 1);
+  for (std::size_t point = 0; point < rare.mean.irradiance.size(); ++point) {
+    double sum = 0;
+    for (std::size_t b = 0; b < batches; ++b) {
+      const auto random = trace::RandomStream(5, point, b).block(trace::Purpose::emission, 0);
+      const double value = random.uniform_double(0) < found ? 1 / found : 0;
+      rare.batch[point * batches + b] = static_cast<float>(value);
+      sum += value;
+    }
+    rare.mean.irradiance[point] = glm::vec3(static_cast<float>(sum / batches));
+  }
+  const double before = rms_error(rare, even, border, side - border);
+  const cache::NoiseTolerance of_looks{.errors = 3, .ratio = 2};
+  const cache::GatheredIrradiance after =
+      cache::filter_irradiance(rare, lattice(), one_light, {.rounds = 8, .tolerated = of_looks});
+  double mean = 0, of_found = 0;
+  for (std::size_t point = 0; point < after.mean.irradiance.size(); ++point) {
+    mean += double{after.mean.irradiance[point].g};
+    of_found += double{rare.mean.irradiance[point].g};
+  }
+  CAPTURE(before, mean / of_found);
+  CHECK(mean / of_found == Approx(1).margin(0.05));
+  CHECK(rms_error(after, even, border, side - border) < 0.35 * before);
+}
+
+TEST_CASE("filter: noise of a lamp falls beside the border of the sun as it does without the sun") {
+  const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 90.0; };
+  const Truth even = [](int, int) { return 2.0; };
+  const cache::GatheredIrradiance sun = noisy(step, 0.5, 5), lamp = noisy(even, 0.1, 6);
+  cache::GatheredIrradiance both;
+  both.batches = batches;
+  for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
+    for (const cache::GatheredIrradiance* one : {&sun, &lamp}) both.append(*one, i, 1);
+  }
+  const cache::GatheredIrradiance layers =
+      cache::filter_irradiance(both, lattice(), std::vector<double>{1, 1});
+  cache::GatheredIrradiance of_sun, of_lamp;
+  for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
+    of_sun.mean.irradiance.push_back(layers.mean.irradiance[2 * i]);
+    of_lamp.mean.irradiance.push_back(layers.mean.irradiance[2 * i + 1]);
+  }
+  const auto beside_border = [](const cache::GatheredIrradiance& light, const Truth& truth) {
+    return rms_error(light, truth, side / 2 - 2, side / 2 + 2);
+  };
+  const double alone = beside_border(cache::filter_irradiance(lamp, lattice(), one_light), even);
+  CHECK(alone < 0.5 * beside_border(lamp, even));
+  CHECK(beside_border(of_lamp, even) < 1.1 * alone);
+  CHECK(beside_border(of_sun, step) < 0.5);  // and the border stays
+}
+
+TEST_CASE("filter: sparse layers are filtered as dense ones, on any number of threads") {
+  const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 1.6; };
+  const cache::GatheredIrradiance dense = noisy(step, 0.05, 6, 2);
+  cache::GatheredIrradiance sparse = dense;
+  sparse.mean.first.push_back(0);
+  for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
+    sparse.mean.light.push_back(0);
+    sparse.mean.light.push_back(1);
+    sparse.mean.first.push_back(2 * (i + 1));
+  }
+  const std::vector<double> powers{1, 1};
+  const cache::GatheredIrradiance expected = cache::filter_irradiance(dense, lattice(), powers);
+  for (const std::size_t threads : {1u, 2u, 3u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const cache::GatheredIrradiance after = cache::filter_irradiance(sparse, lattice(), powers);
+    CHECK(after.mean.irradiance == expected.mean.irradiance);
+    CHECK(after.batch == expected.batch);
+    CHECK(after.mean.first == sparse.mean.first);
+  }
+}
+
+}  // namespace photile::test

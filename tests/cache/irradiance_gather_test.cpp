@@ -1,0 +1,359 @@
+// Irradiance gathered by rays, against closed forms and the path tracer.
+#define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include "cache/irradiance_gather.hpp"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "gathering.hpp"
+#include "photile/environment_map.hpp"
+#include "photile/errors.hpp"
+#include "render/path_estimate.hpp"
+#include "statistical_tests.hpp"
+#include "test_scenes.hpp"
+#include "validation/form_factors.hpp"
+
+namespace photile::test {
+namespace {
+
+using std::numbers::pi;
+
+const glm::dvec3 up(0, 0, 1);
+
+double lux(const cache::GatheredIrradiance& light, std::size_t estimate) {
+  return luminance(glm::dvec3(light.mean.irradiance[estimate]));
+}
+
+/// A closed cube of one metre whose walls all emit and reflect, the same everywhere.
+Scene furnace(const Material& wall) {
+  Scene scene = closed_box(wall);
+  scene.lights = {area_light("walls")};
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    scene.triangle_light[t] = 0;
+    scene.lights[0].triangles.push_back(t);
+  }
+  return scene;
+}
+
+/// A floor, and a lamp that shines up, away from it, at a mirror 0.2 m above. Material 0 is black.
+SceneBuilder lamp_below_mirror() {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, black);
+  builder.grid({-9, -9, 1.2f}, {0, 18, 0}, {18, 0, 0}, 1, builder.add(mirror({1, 1, 1})));
+  builder.grid({1.1f, -0.2f, 1}, {0.2f, 0, 0}, {0, 0.4f, 0}, 1, black,
+               builder.add(area_light("lamp")));
+  return builder;
+}
+
+/// What that floor gets at unit power, W/m2: the lamp's image is 1.4 m above it.
+double lux_of_image(const glm::dvec3& position) {
+  return validation::rectangle_factor(position, up, {1.1, -0.2, 1.4}, {0.2, 0, 0}, {0, 0.4, 0}) /
+         (0.2 * 0.4);
+}
+
+/// Mean and squared error of the mean over paths, per light and sensor, row-major [sensor][light].
+struct PathReference {
+  std::vector<double> lux, variance;
+};
+
+PathReference by_paths(const RayScene& rays, const std::vector<Sensor>& sensors, int paths) {
+  const std::size_t lights = rays.needs().light_count;
+  PathReference result{std::vector<double>(sensors.size() * lights),
+                       std::vector<double>(sensors.size() * lights)};
+  const PrimaryHits hits = trace::sensor_hits(rays, sensors);
+  std::vector<double> squares(result.lux.size(), 0.0);
+  const reference::PathEstimator estimator(rays, 7);
+  for (int path = 0; path < paths; ++path) {
+    std::vector<std::uint64_t> number = numbers(sensors.size());
+    for (std::uint64_t& one : number) one = one * static_cast<std::uint64_t>(paths) + path;
+    const Estimates estimates = estimator.estimate(hits, number);
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      const double value = luminance(glm::dvec3(estimates.irradiance[i]));
+      result.lux[i] += value / paths;
+      squares[i] += value * value / paths;
+    }
+  }
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    result.variance[i] = (squares[i] - result.lux[i] * result.lux[i]) / (paths - 1);
+  }
+  return result;
+}
+
+/// Floor, wall and table top of the furnished room, corners among them.
+std::vector<Sensor> room_sensors(int count) {
+  std::vector<Sensor> sensors = sensors_on({0, 0, 0}, {2.2, 0, 0}, {0, 1.5, 0}, up, count);
+  for (const auto& more : {sensors_on({0, 0, 0}, {4, 0, 0}, {0, 0, 2.4}, {0, 1, 0}, count),
+                           sensors_on({2.3, 0.5, 0.6}, {0.8, 0, 0}, {0, 0.8, 0}, up, count)}) {
+    sensors.insert(sensors.end(), more.begin(), more.end());
+  }
+  return sensors;
+}
+
+/// Whether light gathered in a room is that of the path tracer, layer by layer.
+///   bias   root mean square of what photons are wrong by, relative
+void check_against_paths(const Scene& scene, double bias,
+                         const cache::IrradianceGatherParameters& parameters = {}) {
+  GatheringScene room(scene, looked_up(400'000));
+  const std::vector<Sensor> sensors = room_sensors(5);
+  const cache::GatheredIrradiance light = room.at(sensors, parameters);
+  const PathReference truth = by_paths(room.rays, sensors, 4096);
+  REQUIRE(light.mean.irradiance.size() == truth.lux.size());
+  double squares = 0, relative = 0, error = 0;
+  const auto count = static_cast<double>(truth.lux.size());
+  for (std::size_t i = 0; i < truth.lux.size(); ++i) {
+    const double difference = lux(light, i) - truth.lux[i];
+    const double allowed =
+        std::pow(light.error(i), 2) + truth.variance[i] + std::pow(bias * truth.lux[i], 2);
+    CAPTURE(i, lux(light, i), light.error(i), truth.lux[i], std::sqrt(truth.variance[i]));
+    CHECK(difference * difference < 25 * allowed);
+    squares += difference * difference / allowed / count;
+    relative += difference / truth.lux[i] / count;
+    error += light.error(i) / truth.lux[i] / count;
+  }
+  CAPTURE(error);
+  CHECK(squares < 1.5);
+  CHECK(std::abs(relative) < 0.01);
+}
+
+}  // namespace
+
+TEST_CASE("gathering: a furnace reads its closed form, in corners, too") {
+  constexpr double albedo = 0.5;
+  const Scene scene = furnace(diffuse(glm::vec3(albedo)));
+  std::vector<Sensor> sensors{{{0.4, 0.6, 0}, up}};
+  for (const double x : {0.02, 0.98})
+    for (const double y : {0.03, 0.97}) sensors.push_back({{x, y, 0}, up});
+  std::vector<double> middle, corners;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    GatheringScene box(scene, looked_up(100'000, seed));
+    cache::IrradianceGatherParameters parameters;
+    parameters.seed = seed;
+    const cache::GatheredIrradiance light = box.at(sensors, parameters);
+    middle.push_back(lux(light, 0));
+    corners.push_back((lux(light, 1) + lux(light, 2) + lux(light, 3) + lux(light, 4)) / 4);
+  }
+  const double truth = 1.0 / 6 / (1 - albedo);  // 1 lm over 6 m2, and each bounce returns half
+  CHECK_VERDICT(mean_is(middle, truth, 0.04 * truth));
+  CHECK_VERDICT(mean_is(corners, truth, 0.04 * truth));
+}
+
+TEST_CASE("gathering: direct light is that of form factors, within its own error") {
+  SceneBuilder builder;
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))),
+               builder.add(area_light("lamp")));
+  GatheringScene plain(builder.build(), looked_up(20'000));
+  const std::vector<Sensor> sensors = sensors_on({-1.5, -1.5, 0}, {3, 0, 0}, {0, 3, 0}, up, 20);
+  const cache::GatheredIrradiance light = plain.at(sensors);
+  double squares = 0, errors = 0, relative = 0;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const double truth =
+        validation::rectangle_factor(sensors[i].position, up, {0.5, -0.5, 1}, {1, 0, 0}, {0, 1, 0});
+    squares += std::pow(lux(light, i) - truth, 2);
+    errors += std::pow(light.error(i), 2);
+    relative += light.error(i) / truth / static_cast<double>(sensors.size());
+  }
+  // Nothing but the floor lies around: what rays find is nothing.
+  CHECK(relative < 0.05);
+  CHECK(std::sqrt(squares / errors) == Approx(1).margin(0.2));
+}
+
+TEST_CASE("gathering: layers of a furnished room are those of paths") {
+  check_against_paths(furnished_room(), 0.03);
+}
+
+TEST_CASE("gathering: light gathered from near surface is that of paths, with less bias") {
+  Scene scene = furnished_room();
+  check_against_paths(scene, 0.015, {.near = 0.6});
+}
+
+TEST_CASE("gathering: light gathered from near coats is that of paths, with less bias", "[slow]") {
+  Scene scene = furnished_room();
+  for (Material& material : scene.materials) {
+    material = glossy(glm::vec3(0.5f), glm::vec3(0.04f), 0.3f);
+  }
+  check_against_paths(scene, 0.02, {.near = 0.6});
+}
+
+TEST_CASE("gathering: layers of glossy rooms are those of paths", "[slow]") {
+  Scene scene = furnished_room();
+  SECTION("a coat on the floor and the walls") {
+    scene.materials[0] = glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.3f);
+  }
+  SECTION("a metal") { scene.materials[1] = glossy(glm::vec3(0.0f), {0.9f, 0.7f, 0.5f}, 0.3f); }
+  SECTION("a mirror") { scene.materials[1] = mirror({0.9f, 0.8f, 0.7f}); }
+  scene.lights.pop_back();  // paths cannot find caustics of lamps without size
+  check_against_paths(scene, 0.04);
+}
+
+TEST_CASE("gathering: the light of a caustic arrives once") {
+  const Scene scene = lamp_below_mirror().build();
+  const std::vector<Sensor> sensors = sensors_on({-0.3, -0.3, 0}, {0.6, 0, 0}, {0, 0.6, 0}, up, 6);
+  std::vector<double> ratio;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    GatheringScene place(scene, looked_up(60'000, seed));
+    const cache::GatheredIrradiance light = place.at(sensors);
+    double sum = 0, truth = 0;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+      sum += lux(light, i);
+      truth += lux_of_image(sensors[i].position);
+      CHECK(light.error(i) > 0.05 * lux(light, i));  // that of 100 photons at least, about
+      CHECK(light.error(i) < 0.2 * lux(light, i));
+    }
+    ratio.push_back(sum / truth);
+  }
+  CHECK_VERDICT(mean_is(ratio, 1.0, 0.1));
+}
+
+TEST_CASE("gathering: no caustic shines through a screen that stands on the floor") {
+  SceneBuilder builder = lamp_below_mirror();
+  builder.grid({0, -2, 0}, {0, 4, 0}, {0, 0, 1.1f}, 1, 0);
+  const Scene scene = builder.build();
+  GatheringScene place(scene, looked_up(60'000, 1));
+  const cache::GatheredIrradiance behind =
+      place.at(sensors_on({-0.2, -0.3, 0}, {0.19, 0, 0}, {0, 0.6, 0}, up, 6));
+  for (std::size_t i = 0; i < 36; ++i) CHECK(lux(behind, i) == 0.0);
+
+  // Farther from it than all neighbours are, the floor is lit as without it.
+  const std::vector<Sensor> before = sensors_on({0.35, -0.3, 0}, {0.35, 0, 0}, {0, 0.6, 0}, up, 6);
+  const cache::GatheredIrradiance lit = place.at(before);
+  double sum = 0, truth = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    sum += lux(lit, i);
+    truth += lux_of_image(before[i].position);
+  }
+  CHECK(sum / truth == Approx(1).margin(0.1));
+}
+
+TEST_CASE("gathering: surroundings are direct light, and seen once") {
+  SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.add_surroundings("sky", EnvironmentMap("sky", 1, 1, {glm::vec3(1.0f)}));
+  const Scene scene = builder.build();
+  GatheringScene open(scene, looked_up(50'000));
+  const std::vector<Sensor> sensors = sensors_on({-0.9, -0.9, 0}, {1.8, 0, 0}, {0, 1.8, 0}, up, 4);
+  const cache::GatheredIrradiance light = open.at(sensors);
+  // Its flux falls on the disc of the scene's sphere: illuminance on a plane is 1 / that, times pi
+  // over 4 pi's share of the sky's hemisphere.
+  const double radius = bounding_sphere(scene).radius;
+  const double truth = pi * (1 / (pi * radius * radius)) / (4 * pi);
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    CHECK(lux(light, i) == Approx(truth).epsilon(0.01).margin(5 * light.error(i)));
+  }
+}
+
+TEST_CASE("gathering: the stated error is the scatter of other random numbers") {
+  GatheringScene room(furnished_room(), looked_up(200'000));
+  const std::vector<Sensor> sensors = room_sensors(4);
+  constexpr int trials = 24;
+  const std::size_t values = 2 * sensors.size();
+  std::vector<double> sum(values, 0.0), squares(values, 0.0), stated(values, 0.0);
+  for (int trial = 0; trial < trials; ++trial) {
+    cache::IrradianceGatherParameters parameters;
+    parameters.seed = 100 + static_cast<std::uint64_t>(trial);
+    const cache::GatheredIrradiance light = room.at(sensors, parameters);
+    for (std::size_t i = 0; i < values; ++i) {
+      sum[i] += lux(light, i) / trials;
+      squares[i] += lux(light, i) * lux(light, i) / trials;
+      stated[i] += std::pow(light.error(i), 2) / trials;
+    }
+  }
+  double mean_ratio = 0;
+  for (std::size_t i = 0; i < values; ++i) {
+    const double scatter = (squares[i] - sum[i] * sum[i]) * trials / (trials - 1);
+    mean_ratio += scatter / stated[i] / static_cast<double>(values);
+  }
+  // Each ratio has a relative standard deviation of about 0.3.
+  CHECK(mean_ratio == Approx(1).margin(0.15));
+}
+
+TEST_CASE("gathering: the same bits in any order of points and on any number of threads") {
+  Scene scene = furnished_room(2);
+  scene.materials[1] = mirror(glm::vec3(0.9f));
+  scene.materials[2] = glossy(glm::vec3(0.2f), glm::vec3(0.4f), 0.2f);
+  GatheringScene room(scene, looked_up(50'000));
+  std::vector<Sensor> sensors = room_sensors(16);  // more than one run of rays
+  sensors.resize(700);
+  const PrimaryHits hits = trace::sensor_hits(room.rays, sensors);
+  const std::vector<std::uint64_t> number = numbers(sensors.size());
+  cache::IrradianceGatherParameters parameters;
+  parameters.rays = 512;
+  parameters.looks = 16;
+  const cache::GatheredIrradiance expected = room.gather(parameters).gather(hits, number);
+
+  // Every seventh point after another: 700 has to be put in another order without a remainder.
+  std::vector<Sensor> shuffled(sensors.size());
+  std::vector<std::uint64_t> shuffled_number(sensors.size());
+  const auto place = [&](std::size_t i) { return i % 7 * 100 + i / 7; };
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    shuffled[place(i)] = sensors[i];
+    shuffled_number[place(i)] = number[i];
+  }
+  const PrimaryHits shuffled_hits = trace::sensor_hits(room.rays, shuffled);
+  for (const std::size_t threads : {1u, 2u, 3u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const cache::GatheredIrradiance light =
+        room.gather(parameters).gather(shuffled_hits, shuffled_number);
+    bool same = true;
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+      for (std::size_t layer = 0; layer < 2; ++layer) {
+        const std::size_t a = 2 * i + layer, b = 2 * place(i) + layer;
+        same = same && expected.mean.irradiance[a] == light.mean.irradiance[b] &&
+               expected.error(a) == light.error(b);
+      }
+    CHECK(same);
+  }
+}
+
+TEST_CASE("gathering: layers are the same whatever the powers") {
+  Scene scene = furnished_room();
+  scene.lights.pop_back();  // half of the looks at lamps go by power; at a single lamp all do
+  scene.materials[1] = mirror(glm::vec3(0.9f));
+  RenderParameters parameters = looked_up(50'000);
+  parameters.photons.quota = PhotonQuota::equal;
+  const std::vector<Sensor> sensors = room_sensors(3);
+  const cache::GatheredIrradiance dim = GatheringScene(scene, parameters).at(sensors);
+  scene.lights[0].power *= 1000;
+  const cache::GatheredIrradiance bright = GatheringScene(scene, parameters).at(sensors);
+  CHECK(dim.mean.irradiance == bright.mean.irradiance);
+  CHECK(dim.batch == bright.batch);
+}
+
+TEST_CASE("gathering: many lights, each in its layer, are what their group is") {
+  Scene scene = furnished_room();
+  add_lamps(scene, 12);
+  RenderParameters parameters = looked_up(50'000);
+  parameters.radius = 0.3;
+  const std::vector<Sensor> sensors = room_sensors(3);
+  GatheringScene alone(scene, parameters);
+  const cache::GatheredIrradiance layers = alone.at(sensors);
+  REQUIRE(layers.mean.first.size() == sensors.size() + 1);
+  double power = 0;
+  for (const Light& light : scene.lights) power += light.power;
+  for (Light& light : scene.lights) light.group = "all";
+  const cache::GatheredIrradiance together = GatheringScene(scene, parameters).at(sensors);
+  REQUIRE(together.mean.irradiance.size() == sensors.size());
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const cache::GatheredIrradiance::Total total = layers.total(i, alone.estimators.layer_powers());
+    CHECK(power * lux(together, i) == Approx(total.luminance).epsilon(1e-4));
+    CHECK(power * together.error(i) == Approx(total.error).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("gathering: parameters out of range are refused") {
+  GatheringScene box(closed_box(diffuse(glm::vec3(0.5f))), looked_up(1'000));
+  const auto refused = [&](const cache::IrradianceGatherParameters& parameters) {
+    CHECK_THROWS_AS(box.gather(parameters), UsageError);
+  };
+  refused({.rays = -1});
+  refused({.rays = 1'000'000});
+  refused({.looks = -1});
+  refused({.batches = 1});
+}
+
+}  // namespace photile::test

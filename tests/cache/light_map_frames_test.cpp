@@ -1,0 +1,173 @@
+// Quick frames from light maps: what they show while nodes are lacking, and once none is.
+#include "cache/light_map_frames.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "cache/node_sources.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+constexpr double all = std::numeric_limits<double>::infinity();
+constexpr int width = 96, height = 64;
+
+float waves(const glm::vec3& p, std::uint32_t) {
+  return 2.0f + std::sin(9 * p.x) * std::cos(7 * p.y) + std::sin(5 * p.z);
+}
+
+/// A room whose light is a formula, and frames of it.
+struct DrawnRoom {
+  explicit DrawnRoom(FormulaSource::Formula light = waves)
+      : scene(with_one_lamp(furnished_room(2))),
+        rays(scene),
+        source(std::move(light)),
+        maps(scene, quiet_parameters()),
+        frames(rays, maps, source) {}
+
+  std::vector<glm::vec3> draw(const Camera& camera, double seconds, float power = 1.0f,
+                              int samples = 1) {
+    std::vector<glm::vec3> picture(std::size_t{width} * height);
+    const std::vector<glm::vec3> powers{glm::vec3(power)};
+    drawn =
+        frames.draw(camera, {width, height, samples}, powers, seconds, picture, Progress::none());
+    return picture;
+  }
+
+  const Scene scene;
+  const RayScene rays;
+  FormulaSource source;
+  LightMaps maps;
+  cache::LightMapFrames frames;
+  DrawnFrame drawn;
+};
+
+Camera in_the_room(double x) { return Camera::look_at({x, 0.3, 1.5}, {2, 2, 0.5}, {0, 0, 1}, 1.0); }
+
+bool same_pixels(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("Frames that value a few nodes at a time come to the bits of one that values all",
+          "[light_map_frames]") {
+  DrawnRoom at_once, step_by_step;
+  const auto expected = at_once.draw(in_the_room(0.5), all);
+  CHECK(at_once.drawn.lacking == 0);
+  std::vector<glm::vec3> picture;
+  int frames = 0;
+  std::size_t lacking = std::numeric_limits<std::size_t>::max();
+  do {
+    picture = step_by_step.draw(in_the_room(0.5), 1e-3);
+    ++frames;
+    REQUIRE(frames < 100'000);
+    lacking = step_by_step.drawn.lacking;
+  } while (lacking > 0);
+  CHECK(frames > 2);
+  CHECK(same_pixels(picture, expected));
+  CHECK(step_by_step.maps.statistics().nodes == at_once.maps.statistics().nodes);
+}
+
+TEST_CASE("A frame without time values nothing, and one with a little the nearest surface",
+          "[light_map_frames]") {
+  std::vector<glm::vec3> asked;
+  DrawnRoom room([&](const glm::vec3& p, std::uint32_t) {
+    asked.push_back(p);
+    return 1.0f;
+  });
+  const Camera camera = in_the_room(0.5);
+  room.draw(camera, 0);
+  CHECK(asked.empty());
+  CHECK(room.drawn.lacking > 0);
+  CHECK(room.drawn.empty == room.drawn.lacking);
+  CHECK(room.drawn.fill_seconds == 0);
+  room.draw(camera, 1e-7);
+  const auto first = asked;
+  REQUIRE_FALSE(first.empty());
+  room.draw(camera, all);
+  const auto distance = [&](const glm::vec3& p) {
+    return glm::distance(p, glm::vec3(camera.position));
+  };
+  double nearest = all, first_farthest = 0;
+  for (const glm::vec3& p : asked) nearest = std::min<double>(nearest, distance(p));
+  for (const glm::vec3& p : first) first_farthest = std::max<double>(first_farthest, distance(p));
+  CHECK(first.size() < asked.size() / 10);
+  CHECK(first_farthest < nearest + 0.2);  // some cells of 4 cm
+}
+
+TEST_CASE("Surface whose finer nodes are lacking shows coarser ones, and none is black",
+          "[light_map_frames]") {
+  DrawnRoom room;
+  int with_nodes = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const auto picture = room.draw(in_the_room(0.5), 1e-4);
+    if (room.maps.statistics().nodes == 0) continue;
+    ++with_nodes;
+    for (const glm::vec3& pixel : picture) REQUIRE(pixel.x + pixel.y + pixel.z > 0);
+  }
+  CHECK(with_nodes >= 15);
+}
+
+TEST_CASE("A camera that stands still, or comes back, sees the same bits", "[light_map_frames]") {
+  DrawnRoom room;
+  const auto first = room.draw(in_the_room(0.5), all);
+  CHECK(same_pixels(room.draw(in_the_room(0.5), all), first));
+  room.draw(in_the_room(1.5), all, 0.3f);
+  CHECK(same_pixels(room.draw(in_the_room(0.5), all), first));
+}
+
+TEST_CASE("Several rays a pixel smooth edges, and leave smooth light as it is",
+          "[light_map_frames]") {
+  DrawnRoom room;
+  const auto one = room.draw(in_the_room(0.5), all);
+  const auto nine = room.draw(in_the_room(0.5), all, 1.0f, 9);
+  std::size_t near = 0;
+  double sum_of_one = 0, sum_of_nine = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    near += std::abs(nine[i].x - one[i].x) < 0.05f * one[i].x ? 1 : 0;
+    sum_of_one += double{one[i].x}, sum_of_nine += double{nine[i].x};
+  }
+  CHECK(near > one.size() * 8 / 10);
+  CHECK(near < one.size());
+  CHECK(sum_of_nine == Approx(sum_of_one).epsilon(0.01));
+}
+
+TEST_CASE("Cells that were seen least recently are forgotten, and come back to the same bits",
+          "[light_map_frames]") {
+  DrawnRoom free, bounded;
+  const Camera behind = Camera::look_at({0.5, 0.3, 1.5}, {0.4, 0.1, 2.5}, {0, 0, 1}, 0.5);
+  const auto first = free.draw(in_the_room(0.5), all);
+  const LightMapStatistics one_view = free.maps.statistics();
+  const auto second = free.draw(behind, all);
+  const std::uint64_t both = free.maps.statistics().nodes;
+  REQUIRE(both > one_view.nodes);
+
+  bounded.frames.bound(one_view.value_bytes + one_view.index_bytes - 1);
+  for (int turn = 0; turn < 3; ++turn) {
+    CHECK(same_pixels(bounded.draw(in_the_room(0.5), all), first));
+    CHECK(same_pixels(bounded.draw(behind, all), second));
+    CHECK(same_pixels(bounded.draw(behind, all, 2.0f), free.draw(behind, all, 2.0f)));
+    free.draw(behind, all);
+    CHECK(bounded.maps.statistics().nodes < both);
+  }
+}
+
+TEST_CASE("Walking changes no light of a wall between frames", "[light_map_frames]") {
+  DrawnRoom room;
+  const PrimaryHits points = points_on(room.scene, 6);
+  std::vector<float> before;
+  for (int frame = 0; frame < 4; ++frame) {
+    room.draw(in_the_room(0.5 + 0.1 * frame), all);
+    const std::vector<float> now = read_all(room.maps, points);
+    for (std::size_t i = 0; i < now.size() && frame > 0; ++i) {
+      if (before[i] >= 0) REQUIRE(now[i] == before[i]);  // what was seen stays as it is
+    }
+    before = now;
+  }
+}
+
+}  // namespace photile::test

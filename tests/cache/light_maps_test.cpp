@@ -1,0 +1,273 @@
+// Light maps filled from formulas: what is read between nodes, and on what it depends.
+#include "photile/light_maps.hpp"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "cache/node_sources.hpp"
+#include "photile/errors.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+/// A shadow border along x = 0.4137 that is 2 mm wide: within a cell of every level.
+float shadow(const glm::vec3& p, std::uint32_t) {
+  return 1.0f + 9.0f * glm::clamp((p.x - 0.4137f) / 0.002f, 0.0f, 1.0f);
+}
+
+}  // namespace
+
+TEST_CASE("Light maps give back uniform light", "[light_maps]") {
+  const Scene room = with_one_lamp(furnished_room(3));
+  FormulaSource source([](const glm::vec3&, std::uint32_t) { return 3.25f; });
+  LightMaps maps(room, quiet_parameters());
+  const PrimaryHits hits = points_on(room, 9);
+  maps.fill(hits, source, Progress::none());
+  for (const float value : read_all(maps, hits)) REQUIRE(value == Approx(3.25).epsilon(1e-6));
+  CHECK(source.asked == maps.statistics().nodes);
+}
+
+TEST_CASE("Light maps give back light that varies linearly over a wall", "[light_maps]") {
+  const Scene room = closed_box(diffuse(glm::vec3(0.5f)), 3);
+  const auto light = [](const glm::vec3& p, std::uint32_t) { return 5.0f + p.x - 2 * p.y + p.z; };
+  FormulaSource source(light);
+  LightMaps maps(room, quiet_parameters());
+  const PrimaryHits hits = points_on(room, 12);
+  maps.fill(hits, source, Progress::none());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const double expected = light(hits.position[i], 0);
+    REQUIRE(read(maps, hits.position[i], hits.sided_triangle[i]) == Approx(expected).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("Between nodes curved light is off by an eighth of its second difference",
+          "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f, 2));
+  // Second derivatives at most 36 each: so far is a chord of 4 cm from its arc, twice.
+  const auto light = [](const glm::vec3& p, std::uint32_t) {
+    return 20.0f + std::sin(6 * p.x) + std::cos(6 * p.y);
+  };
+  FormulaSource source(light);
+  LightMaps maps(floor, quiet_parameters());
+  const PrimaryHits hits = points_on(floor, 40);
+  maps.fill(hits, source, Progress::none());
+  const double bound = 2 * 36 * 0.04 * 0.04 / 8;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    REQUIRE(std::abs(read(maps, hits.position[i], hits.sided_triangle[i]) -
+                     light(hits.position[i], 0)) <= bound + 1e-4);
+  }
+}
+
+TEST_CASE("Cells are split where light varies, down to the finest level", "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 2.0f));
+  FormulaSource source(shadow);
+  LightMaps maps(floor, quiet_parameters());
+  const PrimaryHits hits = points_on(floor, 200);
+  maps.fill(hits, source, Progress::none());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const float x = hits.position[i].x;
+    const float value = read(maps, hits.position[i], hits.sided_triangle[i]);
+    if (x < 0.4099f) REQUIRE(value == Approx(1.0).epsilon(1e-5));
+    if (x > 0.4201f) REQUIRE(value == Approx(10.0).epsilon(1e-5));
+    REQUIRE(value >= 1.0f - 1e-5f);
+    REQUIRE(value <= 10.0f + 1e-4f);
+  }
+  // Both sides: 51^2 coarse nodes, and along 2 m of border columns of 2, 1 and 0.5 cm.
+  const std::uint64_t nodes = maps.statistics().nodes / 2;
+  CHECK(nodes > 51 * 51);
+  CHECK(nodes < 51 * 51 + 4 * (101 + 201 + 401));
+}
+
+TEST_CASE("What is read does not depend on what was looked at before, or on threads",
+          "[light_maps]") {
+  const Scene room = with_one_lamp(furnished_room(2));
+  const auto light = [](const glm::vec3& p, std::uint32_t s) {
+    return 1.0f + std::abs(std::sin(11 * p.x) + std::sin(9 * p.y) * std::cos(13 * p.z)) +
+           static_cast<float>(s % 2);
+  };
+  const PrimaryHits hits = points_on(room, 11);
+  FormulaSource source(light);
+  LightMaps at_once(room, quiet_parameters());
+  at_once.fill(hits, source, Progress::none());
+  const std::vector<float> expected = read_all(at_once, hits);
+  CHECK(*std::min_element(expected.begin(), expected.end()) >= 1.0f);
+
+  // One hit after another, from the last on, by one thread.
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  LightMaps one_by_one(room, quiet_parameters());
+  for (std::size_t i = hits.size(); i-- > 0;) {
+    PrimaryHits single;
+    add_hit(single, hits.position[i], hits.sided_triangle[i]);
+    one_by_one.fill(single, source, Progress::none());
+  }
+  CHECK(read_all(one_by_one, hits) == expected);
+  CHECK(one_by_one.statistics().nodes == at_once.statistics().nodes);
+}
+
+TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks", "[light_maps]") {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
+  builder.grid({0, 0, 0.001f}, {1, 0, 0}, {0, 1, 0}, 3, white);
+  builder.grid({0.3f, 0.3f, 0.001f}, {0.2f, 0, 0}, {0, 0.2f, 0}, 1, white);  // coincident
+  builder.add(point_light("lamp", {0, 0, 1}));
+  const Scene scene = builder.build();
+  // A number of its own for each side of each plate.
+  const auto light = [&](const glm::vec3&, std::uint32_t s) {
+    const std::uint32_t t = triangle_of(s);
+    const std::uint32_t plate = t < 8 ? 0 : t < 8 + 18 ? 1 : 2;
+    return std::exp2(static_cast<float>(2 * plate + side_of(s)));
+  };
+  FormulaSource source(light);
+  LightMaps maps(scene, quiet_parameters());
+  const PrimaryHits hits = points_on(scene, 7);
+  maps.fill(hits, source, Progress::none());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    REQUIRE(read(maps, hits.position[i], hits.sided_triangle[i]) ==
+            Approx(light({}, hits.sided_triangle[i])).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("A failing source leaves light maps as they were", "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const PrimaryHits hits = points_on(floor, 10);
+  LightMaps maps(floor, quiet_parameters());
+  FormulaSource failing(
+      [](const glm::vec3&, std::uint32_t) -> float { throw DeviceError("gone"); });
+  CHECK_THROWS_AS(maps.fill(hits, failing, Progress::none()), DeviceError);
+  CHECK(maps.statistics().nodes == 0);
+  FormulaSource source(shadow);
+  maps.fill(hits, source, Progress::none());
+  LightMaps untroubled(floor, quiet_parameters());
+  untroubled.fill(hits, source, Progress::none());
+  CHECK(read_all(maps, hits) == read_all(untroubled, hits));
+}
+
+TEST_CASE("Light maps are taken in whole, and filled on as if they had never been away",
+          "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const PrimaryHits hits = points_on(floor, 60);
+  PrimaryHits some;
+  for (std::size_t i = 0; i < hits.size(); i += 7) {
+    if (hits.position[i].x < 0.5f) add_hit(some, hits.position[i], hits.sided_triangle[i]);
+  }
+  FormulaSource source(shadow);
+  LightMaps before(floor, quiet_parameters());
+  before.fill(some, source, Progress::none());
+  LightMaps after(floor, quiet_parameters());
+  after.restore(before.contents());
+  CHECK(after.statistics().nodes == before.statistics().nodes);
+  CHECK(after.statistics().cells == before.statistics().cells);
+  CHECK(read_all(after, hits) == read_all(before, hits));
+  const std::size_t asked = source.asked;
+  after.fill(some, source, Progress::none());
+  CHECK(source.asked == asked);
+  after.fill(hits, source, Progress::none());
+  LightMaps fresh(floor, quiet_parameters());
+  fresh.fill(hits, source, Progress::none());
+  CHECK(read_all(after, hits) == read_all(fresh, hits));
+  CHECK(after.statistics().nodes == fresh.statistics().nodes);
+}
+
+TEST_CASE("What is forgotten is valued again to the same bits, and the rest stays",
+          "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const PrimaryHits hits = points_on(floor, 60);
+  FormulaSource source(shadow);
+  LightMaps maps(floor, quiet_parameters());
+  maps.fill(hits, source, Progress::none());
+  const std::vector<float> before = read_all(maps, hits);
+  const std::uint64_t nodes = maps.statistics().nodes;
+  std::vector<std::uint8_t> keep(nodes, 0);
+  for (std::size_t node = 0; node < nodes; node += 5) keep[node] = 1;
+  const std::vector<std::uint32_t> former = maps.forget(keep);
+  CHECK(former.size() == maps.statistics().nodes);
+  CHECK(former.size() < nodes);
+  CHECK(std::is_sorted(former.begin(), former.end()));
+  std::size_t still_there = 0;
+  const std::vector<float> between = read_all(maps, hits);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (between[i] < 0) continue;
+    ++still_there;
+    REQUIRE(between[i] == before[i]);
+  }
+  CHECK(still_there > 0);
+  CHECK(still_there < hits.size());
+  maps.fill(hits, source, Progress::none());
+  CHECK(read_all(maps, hits) == before);
+  CHECK(maps.statistics().nodes == nodes);
+}
+
+TEST_CASE("Contents that do not fit the scene are refused", "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  FormulaSource source(shadow);
+  LightMaps maps(floor, quiet_parameters());
+  maps.fill(points_on(floor, 30), source, Progress::none());
+  const LightMapContents whole = maps.contents();
+  const auto refused = [&](const std::function<void(LightMapContents&)>& spoil) {
+    LightMapContents contents = whole;
+    spoil(contents);
+    LightMaps other(floor, quiet_parameters());
+    CHECK_THROWS_AS(other.restore(std::move(contents)), InputError);
+  };
+  refused([](auto& c) { c.nodes.pop_back(); });
+  refused([](auto& c) { c.nodes[3] = c.nodes[4]; });
+  refused([](auto& c) { c.nodes[5].x += 1; });
+  refused([](auto& c) { c.values.irradiance.pop_back(); });
+  refused([](auto& c) { c.values.irradiance[9].y = std::nanf(""); });
+  refused([](auto& c) { c.values.first.push_back(0); });
+  refused([](auto& c) { c.values.by_normal.resize(c.values.irradiance.size()); });  // not smooth
+  refused([](auto& c) { c.tiles[0].chart = 99; });
+  refused([](auto& c) { c.tiles[0].level = 4; });
+  refused([](auto& c) { c.tiles[0].x = 4; });
+  refused([](auto& c) { c.tiles[0].x = 1 << 20; });
+  refused([](auto& c) { c.tiles[0].known = 0, c.tiles[0].split = 1; });
+  refused([](auto& c) { c.tiles.push_back(c.tiles[0]); });
+  refused([](auto& c) {  // children without their tile
+    c.tiles.erase(std::find_if(c.tiles.begin(), c.tiles.end(),
+                               [](const auto& tile) { return tile.split != 0; }));
+  });
+}
+
+TEST_CASE("Light maps refuse what makes no lattice", "[light_maps]") {
+  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  for (const double spacing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    CHECK_THROWS_AS(LightMaps(floor, quiet_parameters(spacing)), UsageError);
+  }
+  for (const int levels : {0, 13}) {
+    CHECK_THROWS_AS(LightMaps(floor, quiet_parameters(0.04, levels)), UsageError);
+  }
+}
+
+TEST_CASE(
+    "hits read from the coarsest nodes alone have the same light whoever looked closer before",
+    "[light_maps]") {
+  SceneBuilder builder;
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  const Scene scene = with_one_lamp(std::move(builder).build());
+  const PrimaryHits hits = points_on(scene, 20);
+  const auto light = [](const glm::vec3& p, std::uint32_t) { return p.x > 0.41f ? 10.0f : 0.0f; };
+  FormulaSource fresh(light), refined(light);
+  LightMaps coarse(scene, quiet_parameters()), fine(scene, quiet_parameters());
+  coarse.fill(hits, fresh, Progress::none(), LightMaps::all_rounds, 1);
+  fine.fill(hits, refined, Progress::none());
+  CHECK(fresh.asked < refined.asked);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const auto read_coarse = [&](const LightMaps& maps) {
+      NodeBlend blend;
+      REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend, 1));
+      float sum = 0;
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        sum += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
+      }
+      return sum;
+    };
+    CHECK(read_coarse(coarse) == read_coarse(fine));
+  }
+}
+
+}  // namespace photile::test

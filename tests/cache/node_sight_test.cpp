@@ -1,0 +1,202 @@
+// Nodes under things that stand on a floor: what is read beside these.
+#include "cache/node_sight.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "cache/node_sources.hpp"
+#include "photile/defaults.hpp"
+#include "photile/scene_builder.hpp"
+#include "test_scenes.hpp"
+#include "trace/flush_denormals.hpp"
+
+namespace photile::test {
+namespace {
+
+constexpr float between_from = 0.5015f, between_to = 0.5035f;  ///< metres, along x
+
+/// Two boxes on a floor of 1 m, with a slot between them that no node of 5 mm lies in.
+Scene boxes_on_floor() {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
+  builder.box({0.313f, 0.313f, 0.0f}, {between_from, 0.687f, 0.2f}, white, false);
+  builder.box({between_to, 0.313f, 0.0f}, {0.687f, 0.687f, 0.2f}, white, false);
+  return with_one_lamp(std::move(builder).build());
+}
+
+/// 10 lx where the sky is seen, and none under the boxes.
+float open_floor(const glm::vec3& p, std::uint32_t) {
+  const bool beside = p.x < 0.313f || p.x > 0.687f || p.y < 0.313f || p.y > 0.687f;
+  const bool between = p.x > between_from && p.x < between_to;
+  return beside || between ? 10.0f : 0.0f;
+}
+
+/// Two plates that lie 2 mm above the floor, 8 mm apart: in the slits below them it is dark.
+Scene plates_above_floor() {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
+  builder.box({0.2f, 0.2f, 0.002f}, {0.4963f, 0.8f, 0.02f}, white, true);
+  builder.box({0.5043f, 0.2f, 0.002f}, {0.8f, 0.8f, 0.02f}, white, true);
+  return with_one_lamp(std::move(builder).build());
+}
+
+/// 10 lx in the gap between the plates and beside them; knows how near these are.
+class PlateSource : public NodeSource {
+ public:
+  NodeValues value(const NodeBatch& batch, const Progress&) override {
+    NodeValues values;
+    for (const glm::vec3& p : batch.points.position) {
+      const bool open =
+          p.y < 0.2f || p.y > 0.8f || p.x < 0.2f || p.x > 0.8f || (p.x > 0.4963f && p.x < 0.5043f);
+      values.irradiance.irradiance.emplace_back(open ? 10.0f : 0.0f);
+      values.error.push_back(0.0f);
+      values.distance.push_back(open ? 1.0f : 0.003f);
+    }
+    return values;
+  }
+};
+
+/// Floor triangles come first; the side that looks up.
+std::uint32_t floor_under(const Scene& scene, const glm::vec3& p) {
+  for (std::uint32_t t = 0; t < 8; ++t) {
+    const auto corners = scene.corners(t);
+    const glm::vec3 a = corners[0], b = corners[1], c = corners[2];
+    const auto left = [&](const glm::vec3& from, const glm::vec3& to) {
+      return glm::cross(to - from, p - from).z * glm::cross(b - a, c - a).z >= 0.0f;
+    };
+    if (left(a, b) && left(b, c) && left(c, a)) {
+      return sided(t, sided_normal(scene, sided(t, 0)).z > 0 ? 0 : 1);
+    }
+  }
+  return none;
+}
+
+}  // namespace
+
+TEST_CASE("light beside a box on the floor is that of the floor, not of what it stands on",
+          "[light_maps]") {
+  const trace::FlushDenormals flush_denormals;
+  const Scene scene = boxes_on_floor();
+  const RayScene rays(scene);
+  FormulaSource source(open_floor);
+  LightMaps maps(scene, quiet_parameters());
+  const cache::NodeSight sight(rays, maps);
+  PrimaryHits hits;
+  for (const float away : {0.0005f, 0.001f, 0.002f, 0.004f, 0.006f, 0.01f}) {
+    for (float y = 0.32f; y < 0.68f; y += 0.0171f) {
+      for (const float x : {0.313f - away, 0.687f + away}) {
+        const glm::vec3 place(x, y, 0);
+        add_hit(hits, place, floor_under(scene, place));
+      }
+    }
+  }
+  maps.fill(hits, source, Progress::none());
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    CAPTURE(hits.position[i].x, hits.position[i].y);
+    const std::uint32_t sided_triangle = hits.sided_triangle[i];
+    if (read(maps, hits.position[i], sided_triangle) < 9.0f) ++dark;
+    NodeBlend blend;
+    REQUIRE(maps.find(sided_triangle, hits.position[i], blend));
+    REQUIRE(sight.look(sided_triangle, hits.position[i], blend));
+    float light = 0, weight = 0;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      light += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
+      weight += blend.weight[corner];
+    }
+    CHECK(weight == Approx(1).epsilon(1e-5));
+    CHECK(light == Approx(10).epsilon(1e-5));
+  }
+  CHECK(dark > hits.size() / 4);  // without a look
+}
+
+TEST_CASE("a place in a slot sees none of the nodes under its sides", "[light_maps]") {
+  const trace::FlushDenormals flush_denormals;
+  const Scene scene = boxes_on_floor();
+  const RayScene rays(scene);
+  FormulaSource source(open_floor);
+  LightMaps maps(scene, quiet_parameters());
+  const cache::NodeSight sight(rays, maps);
+  PrimaryHits hits;
+  for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
+    const glm::vec3 place(0.5f * (between_from + between_to), y, 0);
+    add_hit(hits, place, floor_under(scene, place));
+  }
+  maps.fill(hits, source, Progress::none());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    NodeBlend blend;
+    REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend));
+    const NodeBlend before = blend;
+    CHECK_FALSE(sight.look(hits.sided_triangle[i], hits.position[i], blend));
+    CHECK(blend.weight == before.weight);
+  }
+}
+
+TEST_CASE(
+    "a gap between plates is as bright as its own nodes, not as those in the slits below them",
+    "[light_maps]") {
+  const trace::FlushDenormals flush_denormals;
+  const Scene scene = plates_above_floor();
+  const RayScene rays(scene);
+  PlateSource source;
+  LightMaps maps(scene, quiet_parameters());
+  const cache::NodeSight sight(rays, maps);
+  PrimaryHits hits;
+  for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
+    for (const float x : {0.4985f, 0.4995f, 0.5005f, 0.5015f}) {
+      const glm::vec3 place(x, y, 0);
+      add_hit(hits, place, floor_under(scene, place));
+    }
+  }
+  maps.fill(hits, source, Progress::none());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    CAPTURE(hits.position[i].x, hits.position[i].y);
+    NodeBlend blend;
+    REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend));
+    CHECK(sight.look(hits.sided_triangle[i], hits.position[i], blend));
+    float light = 0;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      light += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
+    }
+    CHECK(light == Approx(10).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("all nodes of open floor and of a bowl are seen", "[light_maps]") {
+  const trace::FlushDenormals flush_denormals;
+  // A strip that turns by 15 degrees over 20 cm, hollow above and vaulted below.
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  constexpr int steps = 30;
+  const auto place = [](int i) {
+    const double angle = glm::radians(15.0) * (static_cast<double>(i) / steps - 0.5);
+    const double radius = 0.2 / glm::radians(15.0);
+    return glm::vec3(radius * std::sin(angle), 0, radius * (1 - std::cos(angle)));
+  };
+  const glm::vec3 across(0, 0.2f, 0);
+  for (int i = 0; i < steps; ++i) {
+    builder.quad(place(i), place(i + 1), place(i + 1) + across, place(i) + across, white);
+  }
+  const Scene scene = with_one_lamp(std::move(builder).build());
+  const RayScene rays(scene);
+  // Uneven everywhere, so that all nodes are looked at.
+  FormulaSource source([](const glm::vec3& p, std::uint32_t) { return std::exp(200 * p.y); });
+  LightMaps maps(scene, quiet_parameters());
+  const cache::NodeSight sight(rays, maps);
+  const PrimaryHits hits = points_on(scene, 8);
+  maps.fill(hits, source, Progress::none());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    NodeBlend blend;
+    REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend));
+    const NodeBlend before = blend;
+    REQUIRE(maps.uneven(blend, defaults::light_map_contrast));
+    REQUIRE(sight.look(hits.sided_triangle[i], hits.position[i], blend));
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      CHECK(blend.weight[corner] == Approx(before.weight[corner]).epsilon(1e-5));
+    }
+  }
+}
+
+}  // namespace photile::test

@@ -1,0 +1,292 @@
+#!/usr/bin/python3
+"""Processes that share a rendering give the bits of one, and end together.
+
+    mpi_test.py PHOTILE MPIEXEC CASE
+
+Each case is a function below.
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+import OpenImageIO as oiio
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BOX = SOURCE / "scenes/cornell-box/cornell-box.gltf"
+ROOM = SOURCE / "scenes/living-room/living-room.gltf"
+SKIPPED = 77
+
+# More ranks than cores, as root in a container, without a network: for OpenMPI. Others do not look.
+SETTINGS = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_hwloc_base_binding_policy": "none",
+    "OMPI_MCA_btl": "self,vader",
+    "OMPI_MCA_plm": "isolated",
+}
+
+photile, mpiexec = sys.argv[1], sys.argv[2]
+
+
+def fail(text):
+    sys.exit(f"mpi_test.py: error: {text}")
+
+
+def check(condition, text):
+    if not condition:
+        fail(text)
+
+
+def command(ranks, arguments):
+    """Of so many ranks; 0: photile on its own."""
+    start = [] if ranks == 0 else [mpiexec, "-n", str(ranks)]
+    return start + [photile] + [str(argument) for argument in arguments]
+
+
+def run(ranks, arguments):
+    return subprocess.run(command(ranks, arguments), env=os.environ | SETTINGS, text=True,
+                          capture_output=True, check=False)
+
+
+def run_whole(ranks, arguments):
+    done = run(ranks, arguments)
+    check(done.returncode == 0, f"{ranks} ranks of {arguments} ended with {done.returncode}: {done.stderr}")
+    return done
+
+
+def channels(file):
+    picture = oiio.ImageBuf(str(file))
+    check(not picture.has_error, f"{file}: {picture.geterror()}")
+    return picture.spec().channelnames, picture.get_pixels(oiio.FLOAT)
+
+
+def picture_of(folder, ranks, arguments, scene=BOX):
+    file = folder / f"{ranks}.exr"
+    done = run_whole(ranks, ["render", scene, "-o", file, *arguments])
+    check(done.stderr.count("device: ") == 1, f"several ranks tell of their progress: {done.stderr}")
+    return channels(file)
+
+
+def same_pictures(ranks, arguments, scene=BOX, by=0):
+    """All the same as those of `by` ranks; returns these."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        names, expected = picture_of(folder, by, arguments, scene)
+        check(expected.max() > 0, "the picture is black")
+        for count in ranks:
+            found_names, found = picture_of(folder, count, arguments, scene)
+            check(found_names == names, f"{count} ranks: other channels {found_names}")
+            differing = np.argwhere(found != expected)
+            check(differing.size == 0,
+                  f"{count} ranks: {len(differing)} values differ, the first at {differing[:1]}: "
+                  f"{found[found != expected][:1]} is not {expected[found != expected][:1]}")
+    return expected
+
+
+SMALL = ["--photons", "20k", "--size", "32x24", "--samples", "2", "--seed", "3"]
+
+
+def light_maps():
+    """Light maps that photons value: the bits of photile on its own."""
+    same_pictures([2, 3], [*SMALL, "--quality", "draft"])
+
+
+def hits():
+    """Estimates at hits: the same bits for any ranks, and those of photile on its own but for roundings."""
+    arguments = [*SMALL, "--quality", "draft", "--set", "light_maps=off"]
+    shared = same_pictures([2, 3], arguments, by=1)
+    alone = same_pictures([], arguments)
+    check(np.allclose(shared, alone, rtol=1e-4, atol=1e-6 * alone.max()),
+          "the light of several ranks is not that of one process")
+
+
+def nodes():
+    """Nodes that gather light by rays, the default."""
+    same_pictures([2, 3], [*SMALL[:-4], "--samples", "1", "--set", "light_map_rays=8"])
+
+
+def readings(ranks, folder, arguments=()):
+    file, points = folder / f"{ranks}.json", folder / "points.pts"
+    points.write_text("".join(f"{0.1 + 0.05 * i} 0.4 {0.1 + 0.03 * i} 0 1 0\n" for i in range(7)))
+    done = run_whole(ranks, ["measure", BOX, "--points", points, "--photons", "10k", "--rays", "16", "--repeats", "2",
+                             "-o", file, *arguments])
+    return done.stdout, json.loads(file.read_text())
+
+
+def measure():
+    """Lux at points, by estimates where rays end."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        expected = readings(1, folder)
+        check(expected[0].strip() != "", "nothing was measured")
+        for count in (2, 3):
+            check(readings(count, folder) == expected, f"{count} ranks read other values")
+
+
+def error_lines(done):
+    return [line for line in done.stderr.splitlines() if line.startswith("photile: error: ")]
+
+
+def errors():
+    """One line for all, a code that tells, and files as they were."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        picture = folder / "old.exr"
+        picture.write_text("old")
+        render = ["render", BOX, "-o", picture, *SMALL]
+        for arguments, code, words in [
+                ([*render, "--light", "nobody=off"], 2, "nobody"),
+                ([*render, "--integrator", "path"], 2, "--integrator path"),
+                ([*render, "--save-maps", folder / "maps"], 2, "--save-maps"),
+                ([*render, "--target-error", "5"], 2, "--target-error"),
+                (["bake", BOX, "-o", folder / "baked"], 2, "photile bake"),
+                (["trace", BOX, "-o", folder / "photons"], 2, "--shard"),
+                (["render", folder / "none.gltf", "-o", picture], 3, "none.gltf")]:
+            done = run(3, arguments)
+            lines = error_lines(done)
+            check(done.returncode == code, f"{arguments} ended with {done.returncode}: {done.stderr}")
+            check(len(lines) == 1 and words in lines[0], f"{arguments}: {lines}")
+            check(picture.read_text() == "old", f"{arguments} changed the picture")
+            check(os.listdir(folder) == ["old.exr"], f"{arguments} left {os.listdir(folder)}")
+        # Where one rank alone fails, the others do not wait for it.
+        alone = "test $OMPI_COMM_WORLD_RANK = 1 && set -- \"$@\" --device nobody; exec \"$0\" \"$@\""
+        done = subprocess.run([mpiexec, "-n", "3", "sh", "-c", alone, photile, *map(str, render)],
+                              env=os.environ | SETTINGS, text=True, capture_output=True, timeout=60, check=False)
+        check(done.returncode == 4 and len(error_lines(done)) == 1 and "nobody" in error_lines(done)[0],
+              f"a rank without a device: {done.returncode}, {done.stderr}")
+        check(picture.read_text() == "old", "a rank without a device changed the picture")
+
+
+def ranks():
+    """Any number of ranks and threads."""
+    for arguments in ([*SMALL, "--quality", "draft"], SMALL):
+        same_pictures([1, 4, 7], arguments)
+        same_pictures([3], [*arguments, "--threads", "1"])
+    same_pictures([4, 7], [*SMALL, "--quality", "draft", "--set", "light_maps=off"], by=1)
+    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "maps=triangle"])
+    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "maps=naive", "--set", "light_maps=on"])
+
+
+def walk():
+    """Frames, quick ones too; finished ones are kept."""
+    path = json.dumps([{"time": 0, "position": [0.28, 0.27, -0.8], "look_at": [0.28, 0.27, 0]},
+                       {"time": 1, "position": [0.3, 0.27, -0.5], "look_at": [0.28, 0.27, 0]}])
+    for more in ([], ["--quick"], ["--quality", "draft", "--png", "f.#.png"]):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "path.json").write_text(path)
+            frames = {}
+            for count in (0, 3):
+                (folder / str(count)).mkdir()
+                own = [folder / str(count) / word if "#" in word else word for word in more]
+                arguments = ["walk", BOX, "-o", folder / str(count) / "f.#.exr", "--camera-path",
+                             folder / "path.json", "--fps", "2", *SMALL[:4], "--samples", "1", *own]
+                run_whole(count, arguments)
+                frames[count] = [channels(folder / str(count) / f"f.{i}.exr")[1] for i in (1, 2, 3)]
+                if count > 0:
+                    (folder / "3/f.2.exr").unlink()
+                    check("2 of 3 frames are finished" in run_whole(count, arguments).stderr,
+                          "finished frames were made again")
+            check(all(np.array_equal(a, b) for a, b in zip(frames[0], frames[3])), f"walk {more} differs")
+            for png in (folder / "0").glob("*.png"):
+                check(png.read_bytes() == (folder / "3" / png.name).read_bytes(), f"{png.name} differs")
+
+
+def passes():
+    """Several photon passes, in light maps and in the mean of pictures."""
+    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "light_maps=on"])
+    same_pictures([2], [*SMALL[:4], "--samples", "4", "--set", "light_map_rays=8"])
+    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "passes=2"], by=1)
+
+
+def many_lights():
+    """More lights than have planes of their own: sparse layers."""
+    with tempfile.TemporaryDirectory() as name:
+        scene = pathlib.Path(name) / "lamps.gltf"
+        content = json.loads(BOX.read_text())
+        shutil.copy(BOX.with_suffix(".bin"), name)
+        count = 40
+        content.setdefault("extensionsUsed", []).append("KHR_lights_punctual")
+        content.setdefault("extensions", {})["KHR_lights_punctual"] = {
+            "lights": [{"type": "point", "intensity": 10, "name": f"lamp{i}"} for i in range(count)]}
+        roots = content["scenes"][content.get("scene", 0)]["nodes"]
+        for i in range(count):
+            roots.append(len(content["nodes"]))
+            content["nodes"].append({"translation": [0.05 + 0.45 * i / count, 0.4 + 0.003 * i, 0.1],
+                                     "extensions": {"KHR_lights_punctual": {"light": i}}})
+        scene.write_text(json.dumps(content))
+        for more in (["--quality", "draft"], ["--set", "light_map_rays=8"]):
+            same_pictures([3], [*SMALL[:4], "--samples", "1", *more], scene)
+
+
+def glossy():
+    """Lobes and several lights."""
+    small = ["--photons", "50k", "--size", "48x36", "--samples", "2"]
+    same_pictures([3], [*small, "--quality", "draft"], ROOM)
+    same_pictures([2], [*small, "--set", "light_map_rays=8"], ROOM)
+    same_pictures([2, 3], [*small, "--quality", "draft", "--set", "light_maps=off"], ROOM, by=1)
+
+
+def children_of(process):
+    listed = subprocess.run(["pgrep", "-P", str(process), "photile"], text=True, capture_output=True, check=False)
+    return [int(line) for line in listed.stdout.split()]
+
+
+def signals():
+    """SIGTERM ends all with one line; so does the death of a rank, and what was there stays whole."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        picture = folder / "old.exr"
+        picture.write_text("old")
+        arguments = ["render", BOX, "-o", picture, "--photons", "100M", "--set", "passes=1"]
+        for what in ("job", "rank", "killed rank"):
+            job = subprocess.Popen(command(3, arguments), env=os.environ | SETTINGS, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            while len(children_of(job.pid)) < 3:
+                time.sleep(0.05)
+            time.sleep(1)
+            ranks_of_job = children_of(job.pid)
+            if what == "job":
+                job.terminate()
+            else:
+                os.kill(ranks_of_job[1], signal.SIGTERM if what == "rank" else signal.SIGKILL)
+            _, told = job.communicate(timeout=60)
+            check(job.returncode != 0, f"{what}: the job ended well")
+            lines = [line for line in told.splitlines() if line.startswith("photile: error: ")]
+            check(len(lines) <= 1 and all("interrupted" in line for line in lines), f"{what}: {lines}")
+            check(what == "killed rank" or len(lines) == 1, f"{what}: no line tells: {told}")
+            patience = time.time() + 10
+            while any(pathlib.Path(f"/proc/{rank}").exists() for rank in ranks_of_job):
+                check(time.time() < patience, f"{what}: ranks are left")
+                time.sleep(0.1)
+            check(picture.read_text() == "old", f"{what}: the picture is not what it was")
+            check(os.listdir(folder) == ["old.exr"], f"{what}: left {os.listdir(folder)}")
+
+
+def network():
+    """Ranks in network namespaces of their own, with delay and loss between them (needs root)."""
+    arguments = [*SMALL, "--quality", "draft"]
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        _, expected = picture_of(folder, 0, arguments)
+        file = folder / "network.exr"
+        done = subprocess.run([sys.executable, str(SOURCE / "tests/cluster/lossy_network.py"), "--delay", "2", "--loss",
+                               "1", "--ranks", "3", "--", mpiexec, photile, "render", str(BOX), "-o", str(file),
+                               *arguments], text=True, capture_output=True, check=False)
+        print(done.stdout, done.stderr)
+        if done.returncode == SKIPPED:
+            sys.exit(SKIPPED)
+        check(done.returncode == 0, f"ended with {done.returncode}")
+        check(np.array_equal(channels(file)[1], expected), "the picture is another")
+
+
+globals()[sys.argv[3]]()

@@ -1,0 +1,154 @@
+// `photile info` against what the written scene is known to hold.
+#include <catch2/catch.hpp>
+#include <glm/gtc/constants.hpp>
+#include <nlohmann/json.hpp>
+
+#include "box_scene.hpp"
+#include "child_process.hpp"
+#include "command/scene_report.hpp"
+#include "file_folder.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+nlohmann::json info(const std::string& scene, std::vector<std::string> options = {}) {
+  options.insert(options.begin(), {"info", "--json", scene});
+  const Outcome outcome = run_photile(options);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(outcome.errors.empty());
+  return nlohmann::json::parse(outcome.output);
+}
+
+}  // namespace
+
+TEST_CASE("info counts the triangles, materials, lights and extents of a box") {
+  const FileFolder folder;
+  const auto facts = info(write_box(folder));
+  CHECK(facts["triangles"] == 16);  // 6 walls and 2 lamps, two triangles each
+  REQUIRE(facts["materials"].size() == 3);
+  std::size_t triangles = 0;
+  for (const auto& material : facts["materials"]) {
+    triangles += material["triangles"].get<std::size_t>();
+    if (material["name"] == "wall") CHECK(material["triangles"] == 12);
+  }
+  CHECK(triangles == 16);
+  CHECK(facts["lights"].size() == 2);
+  CHECK(facts["cameras"].size() == 1);
+  CHECK(facts["extents"]["size"] == nlohmann::json::array({2.0, 2.0, 2.0}));
+  CHECK(facts["warnings"].empty());
+}
+
+TEST_CASE("info gives a lamp's power as pi x area x luminance of its radiance") {
+  const FileFolder folder;
+  const auto facts = info(write_box(folder));
+  const auto& left = facts["lights"][0];
+  CHECK(left["name"] == "left");
+  const double radiance = 0.2126 * 20 + 0.7152 * 5 + 0.0722 * 5;
+  const double watts = glm::pi<double>() * 0.4 * 0.4 * radiance;
+  CHECK(left["watts"].get<double>() == Approx(watts).epsilon(1e-6));
+  CHECK(left["lumens"].get<double>() == Approx(683 * watts).epsilon(1e-6));
+}
+
+TEST_CASE("info lists the groups that it is given, with the sum of their lights' powers") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  CHECK(info(scene)["groups"].empty());
+  const auto facts = info(scene, {"--light-group", "*t=both"});
+  CHECK(facts["lights"][0]["group"] == "both");
+  REQUIRE(facts["groups"].size() == 1);
+  CHECK(facts["groups"][0]["name"] == "both");
+  CHECK(facts["groups"][0]["lights"] == nlohmann::json{"left", "right"});
+  const auto watts = [](const nlohmann::json& light) { return light["watts"].get<double>(); };
+  CHECK(watts(facts["groups"][0]) ==
+        Approx(watts(facts["lights"][0]) + watts(facts["lights"][1])).epsilon(1e-12));
+
+  const Outcome text = run_photile({"info", scene, "--light-group", "left=own"});
+  CHECK_THAT(text.output, Contains("group: own: 1 light, ") && Contains(", of group own"));
+  const Outcome none = run_photile({"info", scene, "--light-group", "lamp*=lamps"});
+  CHECK(none.exit_code == 2);
+  CHECK_THAT(none.errors, Contains("'left', 'right'"));
+}
+
+TEST_CASE("info applies the emissive scale and the lumens per watt that it is given") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const double plain = info(scene)["lights"][0]["watts"];
+  const auto scaled = info(scene, {"--set", "emissive_scale=10", "--set", "lumen_per_watt=179"});
+  CHECK(scaled["lights"][0]["watts"].get<double>() == Approx(10 * plain).epsilon(1e-6));
+  CHECK(scaled["lights"][0]["lumens"].get<double>() == Approx(1790 * plain).epsilon(1e-6));
+}
+
+TEST_CASE("info as text names every light and material") {
+  const FileFolder folder;
+  const Outcome outcome = run_photile({"info", write_box(folder)});
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("light: left: area") && Contains("light: right: area") &&
+                                 Contains("material: wall: diffuse, 12 triangles"));
+}
+
+TEST_CASE("info counts what the import dropped, and says so") {
+  const FileFolder folder;
+  folder.write("box.mtl", box_mtl());
+  // The first wall again, the other way round, and a triangle without area.
+  const std::string scene =
+      folder.write("box.obj", box_obj() + "usemtl wall\nf 4 3 2 1\nf 1 2 2\n");
+  const auto facts = info(scene);
+  CHECK(facts["triangles"] == 16);
+  CHECK(facts["degenerate_triangles"] == 1);
+  CHECK(facts["duplicate_triangles"] == 2);
+  const Outcome text = run_photile({"info", scene});
+  CHECK_THAT(text.output, Contains("warning: 1 triangles without area are dropped"));
+}
+
+TEST_CASE("info names rough glass, which it treats as smooth") {
+  const FileFolder folder;
+  folder.write("box.mtl", box_mtl() + "newmtl frosted\nillum 7\nNs 80\n");
+  const std::string scene = folder.write(
+      "box.obj", box_obj() + "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nusemtl frosted\nf -3 -2 -1\n");
+  const Outcome text = run_photile({"info", scene});
+  CHECK_THAT(text.output,
+             Contains("warning: material 'frosted': rough glass (Ns 80) is treated as smooth"));
+}
+
+TEST_CASE(
+    "info takes the scene of a glTF file that --scene names, and refuses one that is not there") {
+  const FileFolder folder;
+  const std::string scene = folder.write("two.gltf", R"({"asset": {"version": "2.0"},
+    "scenes": [{"name": "day", "nodes": [0]}, {"name": "night", "nodes": [0, 1]}],
+    "nodes": [{"name": "a", "mesh": 0}, {"name": "b", "mesh": 0, "translation": [0, 0, 1]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+    "materials": [{"emissiveFactor": [1, 1, 1]}],
+    "buffers": [{"byteLength": 36, "uri":
+      "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]})");
+  CHECK(info(scene)["lights"].size() == 1);
+  CHECK(info(scene, {"--scene", "night"})["lights"].size() == 2);
+  CHECK(info(scene, {"--scene", "1"})["lights"].size() == 2);
+  const Outcome dusk = run_photile({"info", scene, "--scene", "dusk"});
+  CHECK_THAT(only_error(dusk, 2), Contains("0 'day', 1 'night'"));
+}
+
+TEST_CASE("info names solid glass on a single sheet") {
+  const FileFolder folder;
+  const std::string pane = "v 0.5 0.5 0.5\nv 1 0.5 0.5\nv 1 1 0.5\nusemtl pane\nf -3 -2 -1\n";
+  const auto scene = folder.write("box.obj", box_obj() + pane);
+  folder.write("box.mtl", box_mtl() + "newmtl pane\nillum 7\nNi 1.5\n");
+  const auto warnings = info(scene)["warnings"];
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0].get<std::string>(), Contains("material pane") && Contains("3 edges"));
+}
+
+TEST_CASE("only a scene of a doubtful size is doubted") {
+  const auto doubt = [](double size) {
+    return app::doubtful_unit({glm::dvec3(0.0), glm::dvec3(size, 1e-3, 1e-3)});
+  };
+  CHECK_THAT(doubt(3000), Contains("3000 m") && Contains("millimetres"));
+  CHECK(doubt(5).empty());
+  CHECK(doubt(100).empty());
+  CHECK_THAT(doubt(0.005), Contains("0.005 m"));
+}
+
+}  // namespace photile::test

@@ -1,0 +1,272 @@
+// `photile render` as a whole: what it writes, and that the same seed gives the same bits.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "box_scene.hpp"
+#include "child_process.hpp"
+#include "command/run_record.hpp"
+#include "file_folder.hpp"
+#include "photile/image.hpp"
+#include "render/render_costs.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+void render(const FileFolder& folder, const std::vector<std::string>& options) {
+  std::vector<std::string> arguments{"render", write_box(folder), "--photons",
+                                     "100k",   "--quality",       "draft"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  const Outcome outcome = run_photile(arguments);
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+}
+
+double mean(const Image& picture, const std::string& channel) {
+  const auto* plane = picture.find(channel);
+  REQUIRE(plane != nullptr);
+  double sum = 0;
+  for (const float value : *plane) sum += static_cast<double>(value);
+  return sum / static_cast<double>(plane->size());
+}
+
+/// The names of a record's stages, whose times add up to those of the process.
+std::vector<std::string> checked_stages(const nlohmann::json& record) {
+  double seconds = 0, processor_seconds = 0;
+  std::vector<std::string> names;
+  for (const auto& stage : record["stages"]) {
+    INFO(stage["stage"]);
+    names.push_back(stage["stage"]);
+    seconds += stage["seconds"].get<double>();
+    processor_seconds += stage["processor_seconds"].get<double>();
+    // What two rows counted would be missing from the last, "everything else".
+    constexpr double rounding = 1e-6;
+    CHECK(stage["seconds"] >= -rounding);
+    CHECK(stage["processor_seconds"] >= -rounding);
+  }
+  REQUIRE_FALSE(names.empty());
+  CHECK(names.back() == "everything else");
+  CHECK(std::set<std::string>(names.begin(), names.end()).size() == names.size());
+  CHECK(seconds == Approx(record["total_seconds"].get<double>()));
+  CHECK(processor_seconds == Approx(record["total_processor_seconds"].get<double>()));
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("the same seed gives the same bits on one and on two threads") {
+  const std::string maps = GENERATE("auto", "patch", "triangle", "naive");
+  const FileFolder folder;
+  const std::vector<std::string> options{"--size", "32x24", "--seed", "7", "--set", "maps=" + maps};
+  const auto with = [&](const char* threads, const char* name) {
+    auto all = options;
+    all.insert(all.end(), {"--threads", threads, "-o", folder / name});
+    render(folder, all);
+    return read_image(folder / name);
+  };
+  const Image one = with("1", "one.exr"), two = with("2", "two.exr");
+  REQUIRE(one.channel_names == two.channel_names);
+  CHECK(one.channels == two.channels);
+  CHECK(mean(one, "G") > 0);
+}
+
+TEST_CASE("another seed gives another picture of the same brightness") {
+  const FileFolder folder;
+  render(folder, {"--size", "32x24", "--seed", "1", "-o", folder / "a.exr"});
+  render(folder, {"--size", "32x24", "--seed", "2", "-o", folder / "b.exr"});
+  const Image a = read_image(folder / "a.exr"), b = read_image(folder / "b.exr");
+  CHECK(*a.find("G") != *b.find("G"));
+  // 100,000 photons: the mean of a picture is known to well below a percent.
+  CHECK(mean(a, "G") == Approx(mean(b, "G")).epsilon(0.02));
+}
+
+TEST_CASE("the layers of an EXR sum to the picture") {
+  const FileFolder folder;
+  render(folder, {"--size", "32x24", "-o", folder / "out.exr"});
+  const Image picture = read_image(folder / "out.exr");
+  for (const std::string component : {"R", "G", "B"}) {
+    const auto& root = *picture.find(component);
+    const auto* left = picture.find("Combined_left." + component);
+    const auto* right = picture.find("Combined_right." + component);
+    REQUIRE(left != nullptr);
+    REQUIRE(right != nullptr);
+    for (std::size_t i = 0; i < root.size(); ++i) {
+      if (root[i] != (*left)[i] + (*right)[i]) FAIL(component << " of pixel " << i);
+    }
+    CHECK(mean(picture, "Combined_left." + component) > 0);
+    CHECK(mean(picture, "Combined_right." + component) > 0);
+  }
+  CHECK(mean(picture, "Illuminance_left.Y") > 0);
+  CHECK(mean(picture, "A") == 1);
+}
+
+TEST_CASE("naive maps take whole discs, and the EXR says so") {
+  const FileFolder folder;
+  render(folder, {"--size", "16x12", "--set", "maps=naive", "-o", folder / "out.exr"});
+  const Image picture = read_image(folder / "out.exr");
+  CHECK(picture.attributes.at("photile.maps") == "naive");
+  CHECK(picture.attributes.at("photile.area") == "disc");
+}
+
+TEST_CASE("an EXR tells how it was made") {
+  const FileFolder folder;
+  render(folder, {"--size", "16x12", "--seed", "9", "-k", "30", "--set", "radius=0.25", "--set",
+                  "angle_degrees=45", "--set", "lumen_per_watt=179", "-o", folder / "out.exr"});
+  const Image picture = read_image(folder / "out.exr");
+  const auto attribute = [&](const char* name) { return picture.attributes.at(name); };
+  CHECK(attribute("photile.scene") == "box.obj");
+  CHECK(attribute("photile.seed") == "9");
+  CHECK(attribute("photile.photons_emitted") == "100000");
+  CHECK(attribute("photile.neighbours") == "30");
+  CHECK(attribute("photile.radius") == "0.25 m");
+  CHECK(attribute("photile.angle_degrees") == "45 degrees");
+  CHECK(attribute("photile.least_neighbours") == "0");
+  CHECK(attribute("photile.area") == "clipped");
+  CHECK(attribute("photile.kernel") == "constant");
+  CHECK(attribute("photile.maps") == "auto");
+  CHECK(attribute("photile.efficacy") == "179");
+  CHECK(attribute("photile.units") == "W/(m2 sr)");
+  CHECK_FALSE(attribute("photile.device").empty());
+  CHECK_FALSE(attribute("photile.version").empty());
+  CHECK(std::stoull(attribute("photile.photons_stored")) > 0);
+  CHECK(nlohmann::json::parse(attribute("photile.times")).contains("load scene"));
+  CHECK(nlohmann::json::parse(attribute("photile.lights")).size() == 2);
+  CHECK(picture.matrices.size() == 2);  // worldToCamera and worldToNDC
+}
+
+TEST_CASE("a render writes every output that it is asked for, in the size asked for") {
+  const FileFolder folder;
+  render(folder, {"--size", "20x10", "-o", folder / "a.exr", "-o", folder / "b.png", "-o",
+                  folder / "c.png"});
+  for (const char* name : {"a.exr", "b.png", "c.png"}) {
+    const Image picture = read_image(folder / name);
+    CHECK(picture.width == 20);
+    CHECK(picture.height == 10);
+  }
+  CHECK(folder.read("b.png") == folder.read("c.png"));
+}
+
+TEST_CASE("the statistics are JSON with every stage, the parameters and the lights") {
+  const FileFolder folder;
+  render(folder, {"--size", "16x12", "-o", folder / "a.png", "--stats", folder / "a.json"});
+  const auto statistics = nlohmann::json::parse(folder.read("a.json"));
+  CHECK(statistics["scene"] == "box.obj");
+  CHECK(statistics["parameters"]["photons_emitted"] == 100'000);
+  CHECK(statistics["lights"].size() == 2);
+  CHECK(statistics["photons_stored"] > 0);
+  const std::vector<std::string> names = checked_stages(statistics);
+  CHECK_THAT(names, Catch::VectorContains(std::string("load libraries")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("open devices")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("load scene")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("automatic radius")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("release memory")));
+  CHECK_THAT(names, Catch::VectorContains(std::string("write pictures")));
+  CHECK(names.size() >= 6);  // and trace, group, build, estimate between them
+}
+
+TEST_CASE("the stages add up with maps that are kept, with reflections and by paths") {
+  const FileFolder folder;
+  const auto names_with = [&](std::vector<std::string> options) {
+    options.insert(options.end(),
+                   {"--size", "16x12", "-o", folder / "a.png", "--stats", folder / "a.json"});
+    render(folder, options);
+    return checked_stages(nlohmann::json::parse(folder.read("a.json")));
+  };
+  using Catch::VectorContains;
+  CHECK_THAT(
+      names_with({"--save-maps", folder / "a.maps", "--glare", folder / "glare.png"}),
+      VectorContains(std::string("save photons")) && VectorContains(std::string("reflections")));
+  CHECK_THAT(names_with({"--load-maps", folder / "a.maps"}),
+             VectorContains(std::string("load photons")));
+  const FileFolder by_paths;
+  const Outcome outcome =
+      run_photile({"render", write_box(by_paths), "--integrator", "path", "--size", "16x12", "-o",
+                   by_paths / "a.png", "--stats", by_paths / "a.json"});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  checked_stages(nlohmann::json::parse(by_paths.read("a.json")));
+}
+
+TEST_CASE("naive maps are darker than those of neighbour groups at borders, hence in the mean") {
+  const FileFolder folder;
+  render(folder, {"--size", "32x24", "-o", folder / "neighbour-groups.exr"});
+  render(folder, {"--size", "32x24", "-o", folder / "naive.exr", "--set", "maps=naive"});
+  CHECK(mean(read_image(folder / "naive.exr"), "G") <
+        mean(read_image(folder / "neighbour-groups.exr"), "G"));
+}
+
+TEST_CASE("a profiled render lists the time of each kernel") {
+  const FileFolder folder;
+  const Outcome outcome =
+      run_photile({"render", write_box(folder), "--photons", "10k", "--size", "16x12", "-o",
+                   folder / "a.png", "--quality", "draft", "--set", "profile=on"});
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.errors, Contains("\nkernel ") && Contains("launches"));
+}
+
+TEST_CASE("the last row is what no other one has taken") {
+  app::RunRecord record;
+  add_time(record.stages, "load scene", {.seconds = 1, .processor_seconds = 2});
+  add_time(record.stages, "release memory", {.seconds = 0.5, .processor_seconds = 0.25});
+  add_time(record.stages, "release memory", {.seconds = 0.5, .processor_seconds = 0.25});
+  close(record, {.seconds = 5, .processor_seconds = 8});
+  REQUIRE(record.stages.size() == 3);
+  CHECK(record.stages[1].stage == "release memory");
+  CHECK(record.stages[1].seconds == 1);
+  CHECK(record.stages[2].stage == "everything else");
+  CHECK(record.stages[2].seconds == 3);
+  CHECK(record.stages[2].processor_seconds == 5.5);
+  CHECK(record.total.seconds == 5);
+}
+
+TEST_CASE("microseconds per hit leave out what compiling kernels took") {
+  RenderCosts costs;
+  costs.estimate.add({.seconds = 2.0, .processor_seconds = 4.0});
+  costs.estimate_compile_seconds = 1.5;
+  costs.hit_count = 1'000'000;
+  const RunStatistics stages = costs.statistics();
+  const auto stage = std::find_if(stages.begin(), stages.end(), [](const StageStatistics& one) {
+    return one.stage == "radiance estimate";
+  });
+  REQUIRE(stage != stages.end());
+  const auto figure =
+      std::find_if(stage->figures.begin(), stage->figures.end(),
+                   [](const auto& one) { return one.first == "microseconds per hit"; });
+  REQUIRE(figure != stage->figures.end());
+  CHECK(figure->second == Approx(0.5));
+}
+
+TEST_CASE("the statistics tell the mean, median and largest number of photons a map") {
+  RenderCosts costs;
+  costs.map_sizes = {40, 3, 300, 5};
+  costs.largest_map = 300;
+  std::map<std::string, double> figures;
+  for (const StageStatistics& stage : costs.statistics()) {
+    if (stage.stage == "build photon maps")
+      figures.insert(stage.figures.begin(), stage.figures.end());
+  }
+  CHECK(figures.at("photons per map, mean") == Approx(87));
+  CHECK(figures.at("photons per map, median") == Approx(22.5));
+  CHECK(figures.at("photons per map, largest") == Approx(300));
+}
+
+TEST_CASE("where no surface stores photons the lamps are seen, and a line says that it is all") {
+  const FileFolder folder;
+  const std::string scene = folder.write(
+      "lamp.obj", "mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lamp\nusemtl lamp\nf 1 2 3\n");
+  folder.write("lamp.mtl", "newmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
+  const std::string quality = GENERATE("draft", "good");
+  const Outcome outcome = run_photile({"render", scene, "-o", folder / "out.exr", "--photons",
+                                       "100", "--size", "4x4", "--quality", quality});
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.errors, Contains("lamp.obj: no surface but mirrors and glass is lit"));
+  const Image picture = read_image(folder / "out.exr");
+  const std::vector<float>& red = *picture.find("R");
+  CHECK(*std::max_element(red.begin(), red.end()) == Approx(1));
+}
+
+}  // namespace photile::test

@@ -1,0 +1,235 @@
+// Copies of scene files with other lights: what is written reads back as the same powers.
+#include "writing/edited_scene.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <iterator>
+#include <numbers>
+
+#include "photile/light_mix.hpp"
+#include "scene_files.hpp"
+#include "source_folder.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+std::string bytes_in(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+const MixedLight& light_of(const LightMix& mix, const std::string& name) {
+  for (const MixedLight& light : mix.lights) {
+    if (light.name == name) return light;
+  }
+  throw std::runtime_error("no light " + name);
+}
+
+/// The lights of a copy beside what they were to be: lamps that are off are gone.
+void check_reads_back(const std::filesystem::path& copy, const LightMix& wanted,
+                      const SceneLoadOptions& options = {}) {
+  const LightMix read = LightMix::of(load_scene(copy, options), 683);
+  std::size_t lit = 0;
+  for (const MixedLight& light : wanted.lights) {
+    if (light.power == 0) continue;
+    ++lit;
+    const MixedLight& again = light_of(read, light.name);
+    INFO(light.name);
+    CHECK(again.power == Approx(light.power).epsilon(1e-6));
+    for (int c = 0; c < 3; ++c) {
+      CHECK(again.color[c] == Approx(light.color[c] * light.tint[c]).epsilon(1e-5).margin(1e-6));
+    }
+  }
+  CHECK(read.lights.size() == lit);
+}
+
+/// Two nodes with one mesh, "panel" and "second", two with one point light, "lamp" and "bulb".
+nlohmann::json instances_document() {
+  nlohmann::json document = square_document();
+  document["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_emissive_strength"};
+  document["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"intensity", 10}, {"color", {1, 0.5, 0.25}}}};
+  document["nodes"].push_back({{"name", "second"}, {"mesh", 0}, {"translation", {0, 0, 3}}});
+  for (const char* name : {"lamp", "bulb"}) {
+    nlohmann::json node{{"name", name}, {"translation", {0, 0, 2}}};
+    node["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    document["nodes"].push_back(node);
+  }
+  document["scenes"][0]["nodes"] = {0, 1, 2, 3};
+  return document;
+}
+
+/// The same, each in a group alone.
+nlohmann::json shared_document() {
+  nlohmann::json document = instances_document();
+  for (nlohmann::json& node : document["nodes"]) node["extras"]["photile_group"] = node["name"];
+  return document;
+}
+
+std::filesystem::path write_scene(const SceneFolderOnDisk& folder, const nlohmann::json& document) {
+  folder.write("square.bin", square_buffer());
+  return folder.write("room.gltf", document.dump());
+}
+
+}  // namespace
+
+TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a glTF file") {
+  const SceneFolderOnDisk folder;
+  const auto file = write_scene(folder, shared_document());
+  const std::string before = bytes_in(file);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"lamp", "50"},
+                      {"bulb", "x3"},
+                      {"bulb", "2700K"},
+                      {"panel", "x0.25"},
+                      {"second", "#80ff40"}});
+  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "late evening");
+  CHECK(copy.file.filename() == "room.late_evening.gltf");
+  CHECK(copy.left_out.empty());
+  check_reads_back(copy.file, mix);
+  CHECK(bytes_in(file) == before);
+}
+
+TEST_CASE("instances of one lamp stay one in a copy of a glTF file") {
+  const SceneFolderOnDisk folder;
+  nlohmann::json document = instances_document();
+  document["meshes"].push_back(document["meshes"][0]);  // of the same material, set by itself
+  document["nodes"].push_back({{"name", "third"}, {"mesh", 1}, {"translation", {0, 0, 5}}});
+  document["scenes"][0]["nodes"].push_back(4);
+  const auto file = write_scene(folder, document);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  REQUIRE(mix.lights.size() == 3);
+  change_lights(mix, {{"lamp", "50"}, {"lamp", "2700K"}, {"panel", "x0.25"}});
+  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "evening");
+  CHECK(copy.left_out.empty());
+  check_reads_back(copy.file, mix);
+}
+
+TEST_CASE("nodes outside the scene may name what no file can hold") {
+  const SceneFolderOnDisk folder;
+  nlohmann::json document = shared_document();
+  for (const nlohmann::json& number : {nlohmann::json(1e300), nlohmann::json(-7)}) {
+    nlohmann::json node{{"name", "stray"}, {"mesh", number}};
+    node["extensions"]["KHR_lights_punctual"]["light"] = number;
+    document["nodes"].push_back(node);
+  }
+  const auto file = write_scene(folder, document);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"lamp", "50"}, {"panel", "x0.25"}});
+  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "evening");
+  CHECK(copy.left_out.empty());
+  check_reads_back(copy.file, mix);
+}
+
+TEST_CASE("a lamp that is off is written with intensity 0") {
+  const SceneFolderOnDisk folder;
+  const auto file = write_scene(folder, shared_document());
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"lamp", "off"}, {"panel", "off"}});
+  check_reads_back(writing::write_edited_scene(file, {}, mix, "dark").file, mix);
+}
+
+TEST_CASE("what photile_lumens and photile_kelvin say follows in a copy") {
+  const SceneFolderOnDisk folder;
+  nlohmann::json document = shared_document();
+  document["nodes"][0]["extras"].update(
+      nlohmann::json{{"photile_lumens", 1200}, {"photile_kelvin", 4000}});
+  document["nodes"][2]["extras"].update(
+      nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
+  document["nodes"][3]["extras"].update(
+      nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
+  const auto file = write_scene(folder, document);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"panel", "500"}, {"panel", "5000K"}, {"lamp", "100"}, {"bulb", "#ff0000"}});
+  check_reads_back(writing::write_edited_scene(file, {}, mix, "a").file, mix);
+}
+
+TEST_CASE("lights of a group are scaled and tinted together in a copy") {
+  const SceneFolderOnDisk folder;
+  nlohmann::json document = shared_document();
+  for (const int node : {0, 2}) document["nodes"][node]["extras"]["photile_group"] = "all";
+  const auto file = write_scene(folder, document);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"all", "x0.5"}, {"all", "#ffc080"}});
+  check_reads_back(writing::write_edited_scene(file, {}, mix, "a").file, mix);
+}
+
+TEST_CASE("a copy of a GLB keeps what follows its JSON") {
+  const SceneFolderOnDisk folder;
+  nlohmann::json document = shared_document();
+  document["buffers"][0].erase("uri");
+  std::string text = document.dump(), buffer = square_buffer();
+  text.append((4 - text.size() % 4) % 4, ' ');
+  const auto word = [](std::size_t value) {
+    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(value)});
+  };
+  const auto file = folder.write(
+      "room.glb", "glTF" + word(2) + word(28 + text.size() + buffer.size()) + word(text.size()) +
+                      "JSON" + text + word(buffer.size()) + std::string("BIN\0", 4) + buffer);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"lamp", "x0.1"}, {"second", "x7"}});
+  const auto copy = writing::write_edited_scene(file, {}, mix, "a");
+  CHECK(copy.file.extension() == ".glb");
+  check_reads_back(copy.file, mix);
+}
+
+TEST_CASE("the bundled living room is copied with a mood") {
+  const SceneFolderOnDisk folder;
+  std::filesystem::copy(test::source_folder() / "scenes/living-room", folder.path,
+                        std::filesystem::copy_options::recursive);
+  const auto file = folder.path / "living-room.gltf";
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"daylight", "off"},
+                      {"floor_lamp", "400"},
+                      {"desk_lamp", "3000K"},
+                      {"sconce_left", "#ffd9a0"},
+                      {"picture_spot", "x2"}});
+  const auto copy = writing::write_edited_scene(file, {}, mix, "evening");
+  CHECK(copy.left_out.empty());
+  check_reads_back(copy.file, mix);
+}
+
+TEST_CASE("an OBJ file is copied with a library of its own") {
+  const SceneFolderOnDisk folder;
+  folder.write("materials.mtl", lamp_and_wall);
+  const auto file = folder.write(
+      "room.obj", "mtllib materials.mtl\n" + unit_square +
+                      "o panel\nusemtl lamp\nf 1 2 3 4\no floor\nusemtl wall\nf 1 2 3\n");
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"panel", "x0.3"}, {"panel", "#ff8000"}});
+  const auto copy = writing::write_edited_scene(file, {}, mix, "warm");
+  CHECK(copy.file.filename() == "room.warm.obj");
+  check_reads_back(copy.file, mix);
+  CHECK(bytes_in(folder.path / "materials.mtl") == lamp_and_wall);
+}
+
+TEST_CASE("lamps of one MTL material that are set differently are told and keep theirs") {
+  const SceneFolderOnDisk folder;
+  folder.write("materials.mtl", lamp_and_wall);
+  const auto file = folder.write("room.obj", "mtllib materials.mtl\n" + unit_square +
+                                                 "usemtl lamp\no one\nf 1 2 3\no two\nf 1 3 4\n");
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, {{"one", "x2"}});
+  const auto copy = writing::write_edited_scene(file, {}, mix, "a");
+  REQUIRE(copy.left_out.size() == 1);
+  CHECK_THAT(copy.left_out[0], Contains("one") && Contains("two") && Contains("lamp"));
+  CHECK(LightMix::of(load_scene(copy.file), 683).lights[0].power == Approx(mix.lights[1].power));
+}
+
+TEST_CASE("lights of options are told, and no file is written over another") {
+  const SceneFolderOnDisk folder;
+  const auto file = write_scene(folder, square_document());
+  SceneLoadOptions options;
+  options.sky = Sky{SkyKind::uniform, 1000};
+  LightMix mix = LightMix::of(load_scene(file, options), 683);
+  change_lights(mix, {{"sky", "x0.5"}, {"panel", "x2"}});
+  const auto copy = writing::write_edited_scene(file, options, mix, "a");
+  REQUIRE(copy.left_out.size() == 1);
+  CHECK_THAT(copy.left_out[0], Contains("sky") && Contains("option"));
+  CHECK_THROWS_WITH(writing::write_edited_scene(file, options, mix, "a"),
+                    Contains("room.a.gltf") && Contains("there already"));
+}
+
+}  // namespace photile::test

@@ -1,0 +1,228 @@
+// Environments, suns and skies against closed forms, and pictures that are none.
+#include <OpenImageIO/imageio.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "loading/sky_map.hpp"
+#include "scene_files.hpp"
+
+namespace photile::test {
+namespace {
+
+using std::numbers::pi;
+
+/// Illuminance of a surface that faces `normal` under all of the map: the midpoint rule over each
+/// texel.
+double illuminance(const EnvironmentMap& map, const glm::dvec3& normal) {
+  double sum = 0;
+  for (int row = 0; row < map.height(); ++row) {
+    for (int column = 0; column < map.width(); ++column) {
+      for (int part = 0; part < 64; ++part) {  // a texel may be as wide as the sky
+        const double cosine =
+            glm::dot(normal, map.direction_at(column + (part + 0.5) / 64, row, 0.5));
+        sum +=
+            luminance(map.texel(column, row)) * map.solid_angle(row) * std::max(0.0, cosine) / 64;
+      }
+    }
+  }
+  return sum;
+}
+
+/// A map whose texels say where they are: red their column, green their row.
+EnvironmentMap numbered(double rotation = 0) {
+  std::vector<glm::vec3> texels;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 8; ++column) texels.emplace_back(column, row, 1);
+  }
+  return {"numbered", 8, 4, texels, rotation};
+}
+
+std::string write_picture(const SceneFolderOnDisk& folder, const std::string& name, int width,
+                          int height, const std::vector<float>& pixels,
+                          OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT) {
+  const std::string file = (folder.path / name).string();
+  const auto output = OIIO::ImageOutput::create(file);
+  REQUIRE(output);
+  REQUIRE(output->open(file, OIIO::ImageSpec(width, height, 3, type)));
+  REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+  REQUIRE(output->close());
+  return file;
+}
+
+Scene load_under(const SceneLoadOptions& options) {
+  nlohmann::json document = square_document();
+  document["materials"][0]["emissiveFactor"] = {0, 0, 0};
+  return load_gltf(document, options);
+}
+
+TEST_CASE("the middle of a map lies towards -z, its right half towards +x, its top towards +y",
+          "[environment]") {
+  const EnvironmentMap map = numbered();
+  CHECK(map.radiance({0.01f, 0.1f, -1}) == glm::vec3(4, 1, 1));
+  CHECK(map.radiance({-0.01f, -0.1f, -1}) == glm::vec3(3, 2, 1));
+  CHECK(map.radiance({1, 0.1f, -0.01f}) == glm::vec3(5, 1, 1));
+  CHECK(map.radiance({1, 0.1f, 0.01f}) == glm::vec3(6, 1, 1));
+  CHECK(map.radiance({0.01f, 0.1f, 1}) == glm::vec3(7, 1, 1));
+  CHECK(map.radiance({-0.01f, 0.1f, 1}) == glm::vec3(0, 1, 1));
+  CHECK(map.radiance({0.01f, 1, -0.01f}).g == 0);
+  CHECK(map.radiance({0.01f, -1, -0.01f}).g == 3);
+  // A quarter turn clockwise from above takes the middle from north to east.
+  CHECK(numbered(90).radiance({1, 0.1f, 0.01f}) == glm::vec3(4, 1, 1));
+  for (const double rotation : {0.0, 77.0, -200.0}) {
+    const EnvironmentMap turned = numbered(rotation);
+    for (int row = 0; row < 4; ++row) {
+      for (int column = 0; column < 8; ++column) {
+        CHECK(turned.radiance(glm::vec3(turned.direction_at(column + 0.3, row, 0.7))) ==
+              glm::vec3(column, row, 1));
+      }
+    }
+  }
+}
+
+TEST_CASE("texels of a map cover the sphere", "[environment]") {
+  const EnvironmentMap even("even", 5, 7, std::vector<glm::vec3>(35, glm::vec3(2.0f)));
+  CHECK(even.integral().g == Approx(8 * pi));
+}
+
+TEST_CASE("an even environment of L gives the flux 4 pi L times the disc", "[environment]") {
+  const SceneFolderOnDisk folder;
+  SceneLoadOptions options;
+  for (const char* name : {"sky.exr", "sky.hdr"}) {
+    options.environment.file = write_picture(folder, name, 4, 2, std::vector<float>(24, 0.5f));
+    options.environment.scale = 20;
+    const Scene scene = load_under(options);
+    REQUIRE(scene.lights.size() == 1);
+    CHECK(scene.lights[0].name == "environment");
+    CHECK(scene.lights[0].kind == LightKind::environment);
+    CHECK(scene.lights[0].power == Approx(4 * pi * 10 * pi * 0.5));  // radius sqrt(2) / 2
+  }
+}
+
+TEST_CASE("a picture that is no environment is refused by name", "[environment]") {
+  const SceneFolderOnDisk folder;
+  const auto error_of = [&](const std::string& file) {
+    SceneLoadOptions options;
+    options.environment.file = file;
+    return input_error_of([&] { load_under(options); });
+  };
+  CHECK_THAT(error_of("gone.exr"), Catch::Contains("gone.exr"));
+  CHECK_THAT(error_of(folder.write("text.exr", "no picture").string()),
+             Catch::Contains("text.exr"));
+  CHECK_THAT(error_of(write_picture(folder, "low.png", 2, 2, std::vector<float>(12, 0.5f),
+                                    OIIO::TypeDesc::UINT8)),
+             Catch::Contains("low.png") && Catch::Contains("floating-point"));
+  CHECK_THAT(error_of(write_picture(folder, "black.exr", 2, 2, std::vector<float>(12, 0.0f))),
+             Catch::Contains("is black"));
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -0.25f}) {
+    std::vector<float> pixels(2 * 3 * 3, 1.0f);
+    pixels[4] = pixels[16] = bad;  // texels (1, 0) and (2, 1)
+    CHECK_THAT(error_of(write_picture(folder, "bad.exr", 3, 2, pixels)),
+               Catch::Contains("bad.exr") &&
+                   Catch::Contains("2 of 6 texels are NaN, infinite or negative") &&
+                   Catch::Contains("column 1, row 0"));
+  }
+}
+
+TEST_CASE("a sun gives its lux to a surface that faces it, whatever its size", "[sun]") {
+  for (const double diameter : {0.0, 0.533, 60.0}) {
+    SceneLoadOptions options;
+    options.sun = Sun{90, 30, 1000, diameter};
+    const Scene scene = load_under(options);
+    REQUIRE(scene.lights.size() == 1);
+    const Light& sun = scene.lights[0];
+    CHECK(sun.name == "sun");
+    CHECK(glm::distance(-sun.direction, glm::vec3(std::sqrt(0.75f), 0.5f, 0)) < 1e-6f);
+    // E = L pi sin^2, and the flux is L times the solid angle times the disc.
+    const double half = diameter * pi / 360;
+    const double over = diameter > 0 ? 2 * (1 - std::cos(half)) / std::pow(std::sin(half), 2) : 1;
+    CHECK(sun.power == Approx(1000 * over * pi * 0.5));
+    CHECK(sun.has_size() == (diameter > 0));
+  }
+}
+
+TEST_CASE("skies give their lux to the ground", "[sky]") {
+  const glm::dvec3 to_sun = loading::direction_to(Sun{200, 35, 1});
+  for (const SkyKind kind : {SkyKind::uniform, SkyKind::overcast, SkyKind::clear}) {
+    const EnvironmentMap sky = loading::sky_map(kind, 12'000, to_sun);
+    CHECK(illuminance(sky, {0, 1, 0}) == Approx(12'000).epsilon(1e-4));
+    CHECK(illuminance(sky, {0, -1, 0}) == 0);
+  }
+}
+
+TEST_CASE("luminances of uniform and overcast skies follow their closed forms", "[sky]") {
+  const EnvironmentMap uniform = loading::sky_map(SkyKind::uniform, 1000, {});
+  CHECK(uniform.radiance({0.6f, 0.8f, 0}).g == Approx(1000 / pi));
+  const EnvironmentMap overcast = loading::sky_map(SkyKind::overcast, 10'000, {});
+  const double zenith = 9 * 10'000 / (7 * pi);
+  CHECK(overcast.radiance({0.001f, 1, 0}).g == Approx(zenith).epsilon(1e-3));
+  CHECK(overcast.radiance({0.8f, 0.6f, 0}).g == Approx(zenith * 2.2 / 3).epsilon(5e-3));
+  CHECK(overcast.radiance({0, 0.001f, 1}).g == Approx(zenith / 3).epsilon(2e-2));
+  // On a wall: E = Lz (pi/2 + 4/3... ) by integrating L cos over the half of the sky it sees.
+  CHECK(illuminance(overcast, {1, 0, 0}) == Approx(zenith / 3 * (pi / 2 + 4.0 / 3)).epsilon(1e-3));
+}
+
+TEST_CASE("a clear sky is brightest at its sun and darkest about 90 degrees from it", "[sky]") {
+  const glm::dvec3 to_sun = loading::direction_to(Sun{0, 45, 1});
+  const EnvironmentMap sky = loading::sky_map(SkyKind::clear, 10'000, to_sun);
+  const auto relative = [&](const glm::dvec3& direction) {
+    // ISO 15469, type 12, as the standard writes it: zenith angle and angle from the sun.
+    const double zenith = std::acos(direction.y), from_sun = std::acos(glm::dot(direction, to_sun));
+    return (1 - std::exp(-0.32 / std::cos(zenith))) *
+           (1 + 10 * (std::exp(-3 * from_sun) - std::exp(-1.5 * pi)) +
+            0.45 * std::pow(std::cos(from_sun), 2));
+  };
+  const double factor = double{sky.radiance({0.001f, 1, 0}).g} / relative({0, 1, 0});
+  for (const glm::dvec3& direction :
+       {glm::normalize(glm::dvec3(0, 1, -0.9)), glm::normalize(glm::dvec3(1, 1, 0.5)),
+        glm::normalize(glm::dvec3(0.2, 0.3, 1))}) {
+    CHECK(sky.radiance(glm::vec3(direction)).g ==
+          Approx(factor * relative(direction)).epsilon(0.03));
+  }
+}
+
+TEST_CASE("a clear sky needs a sun above the horizon", "[sky]") {
+  SceneLoadOptions options;
+  options.sky = Sky{SkyKind::clear, 10'000};
+  CHECK_THROWS_AS(load_under(options), UsageError);
+  options.sun = Sun{0, -5, 1000};
+  CHECK_THROWS_AS(load_under(options), UsageError);
+  options.sun = Sun{0, 5, 1000};
+  const Scene scene = load_under(options);
+  REQUIRE(scene.lights.size() == 2);
+  CHECK(scene.lights[1].name == "sky");
+  CHECK(scene.lights[1].power > 0);
+}
+
+TEST_CASE("lux become watts in an OBJ scene, by the luminous efficacy", "[sky]") {
+  SceneLoadOptions options;
+  options.sun = Sun{0, 90, 683, 0};
+  options.lumen_per_watt = 179;
+  const std::string wall = "newmtl wall\nKd 0.5 0.5 0.5\n";
+  const Scene scene = load_obj(unit_square + "usemtl wall\nf 1 2 3 4\n", wall, options);
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].power == Approx(683.0 / 179 * pi * 0.5));
+}
+
+TEST_CASE("texts of suns and skies are checked", "[sun]") {
+  CHECK(Sun::parse("135,40,8e4").illuminance == 80'000);
+  CHECK(Sun::parse("135,40,8e4").diameter_degrees == 0.533);
+  CHECK(Sun::parse("-90,-5.5,1,2").diameter_degrees == 2);
+  for (const char* text : {"", "1,2", "1,2,3,4,5", "1,2,x", "1,91,3", "400,1,3", "1,2,0", "1,2,-3",
+                           "1,2,nan", "1,2,3,91", "1,2,3,-1", "1;2;3"}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(Sun::parse(text), UsageError);
+  }
+  CHECK(Sky::parse("clear=5000").kind == SkyKind::clear);
+  for (const char* text :
+       {"", "overcast", "overcast=", "=1", "cloudy=1", "clear=-1", "clear=0", "clear=1lx"}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(Sky::parse(text), UsageError);
+  }
+}
+
+}  // namespace
+}  // namespace photile::test
