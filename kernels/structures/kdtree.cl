@@ -2,12 +2,9 @@
 // Source of the bound: Arya & Mount, "Algorithms for fast vector quantization" (1993): the squared
 // distance to a subtree's region is kept up to date axis by axis.
 
-#include "grid/entry.clh"
+#include "grid/cell.clh"
 #include "photile/device/kdtree.h"
 #include "structures/search.clh"
-
-// Symbols the host defines:
-//   TREE_2D    splits are in the plane of the map's triangle, else in space
 
 typedef struct {
   uint node;
@@ -17,8 +14,8 @@ typedef struct {
 // Offers every photon of the subtree that can be among the nearest.
 //   point     where splits are compared: the hit, or its coordinates (u, v, 0) in the plane
 //   slack     what rounding may add to the distance of a projected point, metres
-void nearest_in_subtree(Search* search, uint root, __global const PhotileTreeNode* nodes,
-                        float3 point, float slack, NearestList* list) {
+static void nearest_in_subtree(Search* search, uint root, __global const PhotileTreeNode* nodes,
+                               float3 point, float slack, NearestList* list) {
   // A region is skipped if even its border is beyond the cut, by more than rounding explains.
   const float slack_squared = 2.0f * slack * sqrt(list->outer_bound) + slack * slack;
   Pending stack[PHOTILE_TREE_DEPTH];
@@ -26,7 +23,7 @@ void nearest_in_subtree(Search* search, uint root, __global const PhotileTreeNod
   Pending here = {root, (float3)(0.0f, 0.0f, 0.0f)};
   for (;;) {
     if (squared_length(here.offset) <= cut_of(list) * 1.000002f + slack_squared) {
-      COUNT_NODE(search);
+      ++search->nodes;
       PhotileTreeNode node = nodes[here.node];
       while (node.axis != PHOTILE_TREE_LEAF) {
         const float coordinate = node.axis == 0 ? point.x : node.axis == 1 ? point.y : point.z;
@@ -43,7 +40,7 @@ void nearest_in_subtree(Search* search, uint root, __global const PhotileTreeNod
           here.node = node.first;
         }
         stack[depth++] = farther;
-        COUNT_NODE(search);
+        ++search->nodes;
         node = nodes[here.node];
       }
       offer_entries(search, node.first, node.last, list);
@@ -54,15 +51,18 @@ void nearest_in_subtree(Search* search, uint root, __global const PhotileTreeNod
 }
 
 // Nodes are PhotileTreeNode.
-void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
+static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
   const uint root = in->root[map];
   if (root == 0xFFFFFFFFu) return;
   __global const PhotileTreeNode* tree = (__global const PhotileTreeNode*)in->nodes;
-#ifdef TREE_2D
-  __global const PhotileGrid* frame = &in->frames[map];
-  const float2 uv = project(search->hit, frame);
-  nearest_in_subtree(search, root, tree, (float3)(uv.x, uv.y, 0.0f), frame->slack, list);
-#else
-  nearest_in_subtree(search, root, tree, search->hit, 0.0f, list);
-#endif
+  float3 point = search->hit;
+  float slack = 0.0f;
+  if (TREE_2D) {
+    __global const PhotileGrid* frame = &in->frames[map];
+    point = (float3)(project(search->hit, frame), 0.0f);
+    slack = frame->slack;
+  }
+  nearest_in_subtree(search, root, tree, point, slack, list);
 }
+
+#include "structures/kernels.clh"

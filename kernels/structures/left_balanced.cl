@@ -10,7 +10,7 @@
 #include "structures/search.clh"
 
 // Words hold the axes of entries, two bits each: entry i's at 2 (i % 16) of word i / 16.
-void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
+static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
   const uint entry_count = in->entry_count;
   const uint outside = 0xFFFFFFFFu;  // the parent of the root
   uint node = 0, from = outside;
@@ -27,8 +27,8 @@ void find_nearest(Search* search, const Structure* in, uint map, NearestList* li
     const float dy = search->position[search->stride + node] - search->hit.y;
     const float dz = search->position[2 * search->stride + node] - search->hit.z;
     if (from_parent) {
-      COUNT_NODE(search);
-      COUNT_PHOTONS(search, 1);
+      ++search->nodes;
+      ++search->photons;
       const float squared_distance = (dx * dx + dy * dy) + dz * dz;
       if (squared_distance <= cut_of(list)) offer_entry(search, squared_distance, node, list);
     }
@@ -46,3 +46,5 @@ void find_nearest(Search* search, const Structure* in, uint map, NearestList* li
     node = next;
   }
 }
+
+#include "structures/kernels.clh"

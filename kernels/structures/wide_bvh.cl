@@ -11,12 +11,12 @@ typedef struct {
 } Pending;
 
 // How far the hit lies outside of the intervals of eight boxes along an axis.
-float8 distances_along(float hit, __global const float* low, __global const float* high) {
+static float8 distances_along(float hit, __global const float* low, __global const float* high) {
   return fmax(fmax(vload8(0, low) - hit, hit - vload8(0, high)), (float8)(0.0f));
 }
 
 // Nodes are those of photile/device/wide_bvh.h, the root first.
-void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
+static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
   Pending stack[PHOTILE_WIDE_STACK];
   int depth = 0;
   Pending here = {0, 0.0f};
@@ -26,7 +26,7 @@ void find_nearest(Search* search, const Structure* in, uint map, NearestList* li
         const uint first = (here.node & ~PHOTILE_WIDE_LEAF) * 8;
         offer_entries(search, first, min(first + 8, in->entry_count), list);
       } else {
-        COUNT_NODE(search);
+        ++search->nodes;
         __global const uint* node = in->nodes + (size_t)here.node * PHOTILE_WIDE_NODE_WORDS;
         __global const float* box = (__global const float*)node;
         const float8 dx = distances_along(search->hit.x, box, box + 24);
@@ -52,3 +52,5 @@ void find_nearest(Search* search, const Structure* in, uint map, NearestList* li
     here = stack[--depth];
   }
 }
+
+#include "structures/kernels.clh"

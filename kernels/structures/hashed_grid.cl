@@ -4,12 +4,12 @@
 #include "structures/search.clh"
 
 // How far a place lies outside of cell i along an axis, in cells.
-float cells_to(float place, int i) {
+static float cells_to(float place, int i) {
   return fmax(fmax((float)i - place, place - (float)(i + 1)), 0.0f);
 }
 
 // Words hold one PhotileHashedGrid.
-void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
+static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
   __global const PhotileHashedGrid* grid = (__global const PhotileHashedGrid*)in->nodes;
   search->grid = grid;
   const float3 hit = search->hit;
@@ -44,7 +44,7 @@ void find_nearest(Search* search, const Structure* in, uint map, NearestList* li
           const float gap =
               fmax(sqrt((dx * dx + dy * dy) + dz * dz) - 2.0f * slack, 0.0f) * grid->cell_side;
           if (gap * gap > cut_of(list)) continue;
-          COUNT_NODE(search);
+          ++search->nodes;
           search->cell = (int3)(x, y, z);
           const uint bucket = bucket_of(grid, search->cell);
           offer_entries(search, in->cell_start[bucket], in->cell_start[bucket + 1], list);
@@ -53,3 +53,5 @@ void find_nearest(Search* search, const Structure* in, uint map, NearestList* li
     }
   }
 }
+
+#include "structures/kernels.clh"

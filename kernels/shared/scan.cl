@@ -1,20 +1,20 @@
 // Exclusive prefix sum of unsigned integers, in blocks: sum each block, scan the sums (by these
 // same kernels), scan each block from its sum. On CPUs a work-item does a block, without barriers
 // and local memory: barriers inside loops crawl there, and a scan is a hundredth of the build.
-// Elsewhere a group does, in local memory.
-//
-// Symbols the host defines:
-//   IN_GROUPS   work-items of a group do a block together
+// Elsewhere (IN_GROUPS) a group does, in local memory.
+
+#include "photile/device/constants.h"
+#include "shared/symbols.clh"
 
 // Arguments of both kernels:
-//   block_size   values of a block (512 - 8192), a multiple of SCAN_GROUP
+//   block_size   values of a block (512 - 8192), a multiple of PHOTILE_COOPERATIVE_GROUP
 
-#ifdef IN_GROUPS
+#if IN_GROUPS
 
-#define SCAN_GROUP 256
+#define SCAN_GROUP PHOTILE_COOPERATIVE_GROUP
 
 // The sum of the work-item's part of a block, consecutive values.
-uint sum_of_part(__global const uint* values, uint begin, uint end) {
+static uint sum_of_part(__global const uint* values, uint begin, uint end) {
   uint sum = 0;
   for (uint i = begin; i < end; ++i) sum += values[i];
   return sum;
@@ -22,7 +22,7 @@ uint sum_of_part(__global const uint* values, uint begin, uint end) {
 
 // Hillis and Steele, "Data parallel algorithms" (1986). After: sums[SCAN_GROUP - 1] is the sum of
 // all values; returned is that of the work-items before this one.
-uint scan_group(uint value, __local uint* sums) {
+static uint scan_group(uint value, __local uint* sums) {
   const uint item = (uint)get_local_id(0);
   sums[item] = value;
   barrier(CLK_LOCAL_MEM_FENCE);
