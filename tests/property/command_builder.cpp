@@ -78,13 +78,18 @@ void CommandBuilder::scene() {
 void CommandBuilder::settings(const std::vector<std::string_view>& without) {
   for (const Setting& setting : photile::settings()) {
     const bool cost = setting.name == "photons_emitted" || setting.name == "samples_per_pixel";
-    if (setting.option.empty() || !dice_.chance(cost ? 1 : 0.12) ||
+    if (setting.option == "size" || !dice_.chance(cost ? 1 : 0.12) ||
         std::find(without.begin(), without.end(), setting.name) != without.end() ||
         (changes_kernels(setting.name) && !place_.any_kernel)) {
       continue;
     }
-    const std::string_view option = setting.option.substr(setting.option.rfind(',') + 1);
-    add({fmt::format("--{}={}", option, value_of(setting, place_.scene.size, dice_))});
+    const std::string value = value_of(setting, place_.scene.size, dice_);
+    if (setting.option.empty()) {
+      add({"--set", fmt::format("{}={}", setting.name, value)});
+    } else {
+      const std::string_view option = setting.option.substr(setting.option.rfind(',') + 1);
+      add({fmt::format("--{}={}", option, value)});
+    }
   }
 }
 
@@ -126,8 +131,12 @@ void CommandBuilder::film() {
   add({"--quality", dice_.chance(0.7) ? "draft" : "good"});
 }
 
-void CommandBuilder::false_colour() {
+void CommandBuilder::scale() {
   maybe(0.2, {"--scale", dice_.one_of({"auto", "100", "nan", "0", "1e-30", "1e30"})});
+}
+
+void CommandBuilder::false_colour() {
+  scale();
   maybe(0.1, {"--steps", dice_.one_of({"1", "8", "100", "0"})});
   maybe(0.1, {"--log", dice_.one_of({"3", "0.1", "31"})});
   maybe(0.1, {"--pal", dice_.one_of({"turbo", "heat", "grey"})});
@@ -150,7 +159,6 @@ void CommandBuilder::run() {
 void CommandBuilder::drawings(double probability) {
   if (dice_.chance(probability)) output("--illuminance", "lux.png");
   if (dice_.chance(probability)) output("--luminance", "luminance.png");
-  false_colour();
   tone_mapping();
   maybe(0.1, {"--set", "auto_exposure=off"});
 }

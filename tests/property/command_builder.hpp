@@ -36,6 +36,7 @@ class CommandBuilder {
   void sky();
   void mood();
   void film();
+  void scale();
   void false_colour();
   void tone_mapping();
   void run();

@@ -25,9 +25,9 @@ class Generator : CommandBuilder {
     using Make = void (Generator::*)();
     static constexpr std::pair<double, Make> kinds[] = {
         // in these shares
-        {0.40, &Generator::render}, {0.18, &Generator::relight}, {0.09, &Generator::measure},
+        {0.40, &Generator::render}, {0.14, &Generator::relight}, {0.09, &Generator::measure},
         {0.07, &Generator::walk},   {0.07, &Generator::info},    {0.05, &Generator::compare},
-        {0.03, &Generator::bake},   {0.03, &Generator::glare},   {0.02, &Generator::daylight},
+        {0.03, &Generator::bake},   {0.07, &Generator::glare},   {0.02, &Generator::daylight},
         {0.03, &Generator::ies},    {1.00, &Generator::shards}};  // all that are left
     double left = dice_.unit();
     for (const auto& [share, make] : kinds) {
@@ -50,6 +50,7 @@ class Generator : CommandBuilder {
     if (dice_.chance(0.1)) output("--errors", "errors.exr");
     maybe(0.03, {"--set", "glare_limit=" + dice_.one_of({"1000", "0", "nan"})});
     drawings(0.1);
+    scale();
     film();
     maybe(0.06, {"--projection", dice_.one_of({"fisheye", "angular", "equirectangular",
                                                "orthographic", "perspective", "mercator"})});
@@ -81,6 +82,7 @@ class Generator : CommandBuilder {
     maybe(0.02, {"--time", "2026-06-21T14:00", "--site", "52.5,13.4,1", "--sky", "perez=600,120"});
     if (dice_.chance(0.9)) output("-o", dice_.one_of({"relit.exr", "relit.png"}));
     drawings(0.2);
+    false_colour();
   }
 
   void measure() {
@@ -209,13 +211,14 @@ class Generator : CommandBuilder {
     add({"glare"});
     scene();
     add({"--observers", points().string(), "--rays", std::to_string(dice_.whole(1, 8)), "--repeats",
-         "2", "--picture-size", std::to_string(dice_.whole(15, 20))});
+         "2", "--picture-size", std::to_string(dice_.chance(0.03) ? 15 : dice_.whole(16, 20))});
     if (dice_.chance(0.9)) output("-o", dice_.one_of({"glare.csv", "glare.json"}));
     if (dice_.chance(0.2)) output("--pictures", "views");
-    maybe(0.5, {"--ratings", dice_.one_of({"ugr", "dgp", "ugr,dgi", "", "vcp"})});
-    maybe(0.1, {"--camera", dice_.one_of({"0", "nobody"})});
-    maybe(0.1, {"--source-luminance", dice_.one_of({"5", "1e30", "0"})});
-    maybe(0.2, {"--target", dice_.one_of({"office-desk", "UGR=19", "UGR=-1", "hall"})});
+    maybe(0.5, {"--ratings", dice_.one_of({"ugr", "dgp", "dgi", "ugr,dgi", "ugr,dgp,dgi"})});
+    maybe(0.05, {"--ratings", dice_.one_of({"", "vcp"})});
+    maybe(0.1, {"--camera", dice_.one_of({"0", "default", "0", "nobody"})});
+    maybe(0.1, {"--source-luminance", dice_.one_of({"5", "1000", "1e30", "0"})});
+    maybe(0.2, {"--target", dice_.one_of({"office-desk", "UGR=19", "UGR=22", "UGR=-1", "hall"})});
     light_changes(0.25);
     lights();
     if (dice_.chance(0.3)) {
