@@ -11,7 +11,7 @@ namespace photile::view {
 namespace {
 
 /// Seconds that the first picture of a scene may take to have light everywhere.
-constexpr double patience = 3;
+constexpr double patience = 10;
 /// Of a viewer at rest: seconds of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
@@ -191,6 +191,7 @@ void FrameWorker::work(std::stop_token stop) {
   while (next_task(stop, task)) {
     try {
       std::shared_ptr<const Frame> frame = render(stop, task);
+      task.maps->shown = true;
       const std::lock_guard lock(mutex_);
       latest_ = std::move(frame);
       done_version_ = task.version;

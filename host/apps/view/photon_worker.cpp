@@ -1,6 +1,7 @@
 #include "view/photon_worker.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "photile/errors.hpp"
@@ -68,6 +69,11 @@ void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
     if (!prepared) {
       first = build(first_picture_parameters(parameters_), false, nullptr);
       deliver_(first);
+      // All processors are to work for the first picture.
+      while (!first->shown) {
+        listener_->throw_if_cancelled();
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      }
     }
     const std::shared_ptr<MapGeneration> whole =
         build(parameters_, true, prepared ? &*prepared : nullptr);

@@ -27,7 +27,8 @@ struct MapGeneration {
   /// Of a first picture: shown where the light maps of this one have no node yet; null = none.
   std::shared_ptr<MapGeneration> coarser;
   std::uint64_t emitted_photons = 0;
-  bool whole = false;  ///< of all photons that were asked for
+  bool whole = false;              ///< of all photons that were asked for
+  std::atomic<bool> shown{false};  ///< set once a frame was made of it
   EstimateNoise noise;
   std::shared_ptr<const InspectablePhotons> photons;
 };
@@ -39,8 +40,8 @@ struct WorkProgress {
 };
 
 /// Traces photons and builds maps on a thread of its own: first those of a first picture
-/// (render/first_picture.hpp), so that there is something to see at once, then those that `render`
-/// builds from the same parameters.
+/// (render/first_picture.hpp), so that there is something to see at once, then, when that was
+/// shown, those that `render` builds from the same parameters.
 class PhotonWorker {
  public:
   using OpenDevices = std::function<std::vector<Device>()>;
