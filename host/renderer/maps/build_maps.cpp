@@ -19,11 +19,10 @@
 #include "maps/map_numbers.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
+#include "maps/other_structures.hpp"
 #include "maps/page_queue.hpp"
 #include "maps/photon_crowding.hpp"
 #include "maps/photon_pages.hpp"
-#include "structures/global_structures.hpp"
-#include "structures/kdtree_builder.hpp"
 
 namespace photile::maps {
 namespace {

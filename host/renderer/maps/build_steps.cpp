@@ -7,10 +7,10 @@
 #include <span>
 
 #include "maps/entry_defines.hpp"
+#include "maps/other_structures.hpp"
 #include "maps/prefix_sum.hpp"
 #include "photile/device/grid.h"
 #include "photile/errors.hpp"
-#include "structures/kdtree_builder.hpp"
 
 namespace photile::maps {
 

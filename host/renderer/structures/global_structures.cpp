@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "structures/kdtree_builder.hpp"
+#include "maps/other_structures.hpp"
 
 namespace photile::maps {
 

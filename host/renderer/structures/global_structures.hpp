@@ -11,10 +11,8 @@
 
 namespace photile::maps {
 
-/// Builds the structure of `store`, which is global, for hits of maps [page.first_map,
-/// page.last_map). After: page.entry_photon and what finds entries are set. Errors:
-/// DeviceMemoryError.
-void build_global_structure(const MapStore& store, const Photons& photons, MapPage& page);
+/// One kd-tree over all photons, which every map's root refers to.
+void build_global_tree(device::Context& context, const Photons& photons, MapPage& page);
 
 /// What a builder on the host makes.
 struct OrderedPoints {

@@ -1,11 +1,11 @@
-#include "structures/kdtree_builder.hpp"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "maps/grid_cells.hpp"
+#include "maps/other_structures.hpp"
+#include "structures/global_structures.hpp"
 #include "structures/kdtree.hpp"
 
 namespace photile::maps {

@@ -1,4 +1,5 @@
-// The kd-trees of a page of photon maps.
+// What the build asks of a structure other than the uniform grid. host/renderer/structures has them,
+// and their queries (estimate/query.hpp).
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,9 @@ bool is_tree(MapStructure structure);
 void build_trees(device::Context& context, MapStructure structure, const Photons& photons,
                  std::span<const std::uint32_t> map_count, MapPage& page);
 
-/// One tree over all photons, which every map's root refers to.
-void build_global_tree(device::Context& context, const Photons& photons, MapPage& page);
+/// Builds the structure of `store`, which is global, for hits of maps [page.first_map,
+/// page.last_map). After: page.entry_photon and what finds entries are set. Errors:
+/// DeviceMemoryError.
+void build_global_structure(const MapStore& store, const Photons& photons, MapPage& page);
 
 }  // namespace photile::maps
