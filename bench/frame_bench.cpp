@@ -1,7 +1,7 @@
 // A frame of a walkthrough: the camera moved, photon maps stay. One sample a pixel.
 #include "photile/estimator.hpp"
 #include "photile/light_layers.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/statistics.hpp"
 #include "render/film.hpp"
 #include "support/bench_record.hpp"

@@ -4,7 +4,7 @@
 
 #include "estimate/plane_sample.hpp"
 #include "photile/estimator.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "support/bench_record.hpp"
 #include "support/device_limits.hpp"
 #include "support/estimate_check.hpp"

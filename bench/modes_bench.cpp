@@ -3,7 +3,7 @@
 #include <sys/resource.h>
 
 #include "photile/estimator.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"

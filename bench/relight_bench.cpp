@@ -5,8 +5,8 @@
 #include <cstring>
 #include <random>
 
+#include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
-#include "photile/light_mix.hpp"
 #include "support/bench_record.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "photile/scene_renderer.hpp"
+#include "photile/renderer.hpp"
 #include "support/bench_record.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"

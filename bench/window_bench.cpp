@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"

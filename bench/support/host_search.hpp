@@ -11,7 +11,7 @@
 
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::bench {

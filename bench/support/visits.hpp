@@ -2,7 +2,7 @@
 #pragma once
 
 #include "photile/photon_maps.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 
 namespace photile::bench {
 

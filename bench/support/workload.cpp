@@ -4,7 +4,7 @@
 #include <random>
 
 #include "estimate/map_order.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/scene_builder.hpp"
 #include "support/morton_order.hpp"
 

@@ -9,9 +9,7 @@
 #include <string>
 
 #include "photile/neighbour_groups.hpp"
-#include "photile/patches.hpp"
 #include "photile/photons.hpp"
-#include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 

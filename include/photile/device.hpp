@@ -36,7 +36,7 @@ struct DeviceInfo {
   bool denormals = false, exact_division = false;
   bool is_pocl = false;
   /// Of the last test of this device, with this driver and these kernels: "passed", what was found
-  /// wrong, or "" where none is remembered; see photile/device_test.hpp.
+  /// wrong, or "" where none is remembered; see test_device.
   std::string test_result;
 };
 
@@ -89,5 +89,15 @@ class Device {
 /// Opens every device that the selector means, in its order; never none. Errors: DeviceError as for
 /// Device, when a device is named twice, or cannot be split as asked for.
 std::vector<Device> open_devices(const DeviceOptions& options = {});
+
+/// Builds photon maps of 20,000 uniform photons on a square metre and asks the device for the 50
+/// nearest of a thousand hits and for their irradiance. Both are compared with a search of all
+/// photons in double precision, and the mean irradiance with that which the photons were made for.
+/// Takes seconds, most of them for compiling kernels. Returns "" where all agree, else what does
+/// not, in one line; an error of the device is such a line, too.
+std::string test_device(Device& device);
+
+/// The same, and keeps the result for later runs (DeviceInfo::test_result).
+std::string test_device_and_remember(Device& device);
 
 }  // namespace photile

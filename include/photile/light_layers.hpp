@@ -6,9 +6,30 @@
 #include <string>
 #include <vector>
 
-#include "photile/light_groups.hpp"
+#include "photile/scene.hpp"
 
 namespace photile {
+
+/// What one layer of the picture holds: a light, or all lights of a group at their powers. Its
+/// power scales them together.
+struct LightGroup {
+  std::string name;                   ///< of the group, or of the light alone
+  std::vector<std::uint32_t> lights;  ///< into Scene::lights, ascending
+  double power = 0;                   ///< sum of the lights' powers, in Scene::unit
+  glm::vec3 color{0.0f};              ///< of their light together; luminance 1
+};
+
+/// The layers of a scene and what each light gives to its own.
+struct LightGroups {
+  std::vector<LightGroup> groups;       ///< in the order of their first lights
+  std::vector<std::uint32_t> group_of;  ///< per light
+  /// Per light: its part of its group's power; exactly 1 for a light alone. Lights of a group that
+  /// is off share equally.
+  std::vector<double> share;
+};
+
+/// Lights with the same non-empty Light::group share a layer; every other light has its own.
+LightGroups light_groups_of(const Scene& scene);
 
 /// Radiance and illuminance per pixel and light, each light at power 1; a group of lights is one.
 /// With up to max_dense_lights lights a plane for each; with more, per pixel the lights that reach
@@ -41,6 +62,14 @@ struct LightLayers {
   std::uint64_t bytes() const;
   /// The same with a plane per light: 16 bytes per pixel and light.
   LightLayers dense() const;
+};
+
+/// What becomes of the lights' layers: each is multiplied by a number and added to another. Of
+/// hundreds of patches of a sky one layer is left, which costs a film as much as one lamp.
+struct LightPooling {
+  std::vector<std::string> layers;      ///< of the film
+  std::vector<std::uint32_t> layer_of;  ///< per layer of the scene: into `layers`
+  std::vector<float> scale;             ///< per layer of the scene
 };
 
 }  // namespace photile

@@ -13,8 +13,8 @@
 #include "photile/communicator.hpp"
 #include "photile/defaults.hpp"
 #include "photile/estimator.hpp"
-#include "photile/primary_hits.hpp"
 #include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile {

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "photile/density_kernel.hpp"
 #include "photile/device.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photon_maps.hpp"

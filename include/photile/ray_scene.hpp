@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
+#include <span>
+#include <vector>
 
+#include "photile/camera.hpp"
+#include "photile/defaults.hpp"
 #include "photile/scene.hpp"
-#include "photile/scene_needs.hpp"
 
 namespace photile {
 
@@ -30,5 +34,88 @@ class RayScene {
 
   std::unique_ptr<Impl> impl_;
 };
+
+/// Specular lobe at a hit, for the estimate of glossy reflection (device/bsdf.h).
+struct HitLobe {
+  glm::vec3 specular;             ///< F0
+  float roughness;                ///< GGX alpha
+  glm::vec3 normal;               ///< unit shading normal, on the side of the ray
+  float f90 = 1.0f;               ///< reflectance at grazing incidence
+  glm::vec3 smooth_normal{0.0f};  ///< `normal` without a normal map; only in scenes that have one
+};
+
+/// Hits on opaque surfaces, after mirrors and glass were followed. Structure of arrays. Sorted by
+/// photon map, then along a space-filling curve, so that neighbours in memory share a map.
+struct PrimaryHits {
+  std::vector<glm::vec3> position;  ///< metres
+  std::vector<std::uint32_t> sided_triangle;
+  std::vector<std::uint32_t> pixel;       ///< y * width + x
+  std::vector<glm::vec3> throughput;      ///< what the hit's radiance counts in its pixel
+  std::vector<glm::vec3> diffuse_albedo;  ///< textured Lambertian albedo at the hit
+  std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
+  std::vector<HitLobe> lobe;              ///< empty unless glossy
+  std::vector<float> share;  ///< of its sample, for its illuminance; empty where all are whole
+  /// Whether a coarse answer suffices, for its noise will not show (reflection_noise.hpp); empty
+  /// where it does nowhere.
+  std::vector<std::uint8_t> coarse;
+
+  std::size_t size() const { return position.size(); }
+};
+
+/// Light that needs no estimate: a lamp seen directly or through mirrors and glass, or what a hit
+/// gets straight from one. Adds to the layer of its light.
+struct SeenEmission {
+  std::uint32_t pixel;
+  std::uint32_t light;    ///< layer, into LightGroups::groups
+  glm::vec3 radiance;     ///< throughput x radiance where the layer's power is 1
+  float illuminance = 0;  ///< of the surface seen, where the layer's power is 1, lux
+};
+
+struct PrimaryHitParameters {
+  int width = defaults::image_width;
+  int height = defaults::image_height;
+  int samples_per_pixel = defaults::samples_per_pixel;
+  std::uint64_t seed = defaults::seed;
+  int max_specular_depth = defaults::max_specular_depth;
+  /// Only samples pass, pass + passes, pass + 2 passes ... of each pixel are traced.
+  int pass = 0;
+  int passes = 1;
+  /// > 0: each hit gets the light that comes straight from lamps by so many looks at them, and so
+  /// many directions of its own, and photons have to bring the rest alone
+  /// (PhotonTracerParameters::store_direct).
+  int direct_rays = 0;
+  /// Lobes that are narrow, or reflect little, are left out of hits: a ray of each hit follows them
+  /// to the surfaces that they reflect (PrimaryHitBatch::reflected).
+  bool lobe_rays = false;
+  /// Samples follow both the reflection and the refraction of glass, as long as both count
+  /// (defaults::least_glass_share), and have a hit for each; else one by chance.
+  bool part_at_glass = false;
+  /// > 1: samples of a pixel belong to so many runs, and the pixel of what they see is that of a
+  /// film so many times as wide, y * width * runs + x * runs + run. Runs follow each other in the
+  /// sequence of the pixel.
+  int runs = 1;
+};
+
+struct PrimaryHitBatch {
+  PrimaryHits hits;
+  PrimaryHits reflected;  ///< on surfaces seen in lobes; their illuminance is not the pixel's
+  std::vector<SeenEmission> emission;
+  std::uint64_t rays = 0;
+};
+
+/// Traces the samples of the rows [first_row, last_row) that belong to the pass. Each sample
+/// carries weight 1 / samples_per_pixel in `throughput` and `radiance`, so that summing gives pixel
+/// means. Depends on the scene, camera, parameters and seed only, not on how rows are split or on
+/// threads.
+///   map_of   map of each sided triangle (PhotonMaps::map_of), for the order of hits; empty
+///            where a sided triangle is the map itself
+PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
+                                   const PrimaryHitParameters& parameters, int first_row,
+                                   int last_row, std::span<const std::uint32_t> map_of = {});
+
+/// Radiance that each light emits towards the front of its triangles where its layer's power is 1:
+/// its share of the layer / (pi A) x colour, A counting both sides of two-sided lights; of textured
+/// lights that of a white texel. Zero for lights without area.
+std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene);
 
 }  // namespace photile

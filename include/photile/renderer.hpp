@@ -2,9 +2,18 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "photile/camera.hpp"
@@ -15,9 +24,9 @@
 #include "photile/light_maps.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
-#include "photile/photon_tracer.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/photons.hpp"
 #include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 #include "photile/statistics.hpp"
 
@@ -108,5 +117,188 @@ RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> 
                     const RenderParameters& parameters, Progress& progress = Progress::none());
 RenderResult render(const Scene& scene, const Camera& camera, Device& device,
                     const RenderParameters& parameters, Progress& progress = Progress::none());
+
+struct PathTracerResult {
+  LightLayers layers;
+  RunStatistics statistics;
+};
+
+/// Renders the picture of `camera`, one layer per light, from film.samples_per_pixel paths a pixel.
+/// Next event estimation and multiple importance sampling; paths end by Russian roulette, so that
+/// no bounce is left out. What point, spot and directional lights throw through mirrors and
+/// refracting glass onto other surfaces cannot be found and is missing. The picture depends on the
+/// scene, the camera and the film (its seed; `pass` and `passes` are ignored) only, bit for bit,
+/// whatever the number of threads. Errors: UsageError for values out of limits.hpp; InputError for
+/// an area light without area; Interrupted.
+PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
+                             const PrimaryHitParameters& film,
+                             Progress& progress = Progress::none());
+
+/// Whether lights of the scene have such caustics, which path tracing leaves out.
+bool has_unseen_caustics(const Scene& scene);
+
+enum class Quality {
+  draft,  ///< the photon estimate at each hit: quick, mottled
+  good,   ///< light maps whose nodes gather: clean to the eye
+  best    ///< the same with four times the rays, photons and samples
+};
+
+/// "draft", "good", "final".
+std::string_view name_of(Quality quality);
+inline constexpr std::array all_qualities = {Quality::draft, Quality::good, Quality::best};
+
+/// Its place in all_qualities.
+constexpr std::size_t index_of(Quality quality) { return static_cast<std::size_t>(quality); }
+
+/// What its pictures are like.
+std::string_view description_of(Quality quality);
+
+/// Sets what the table of settings (docs/settings.md) has for the quality, and leaves all others.
+void set_quality(RenderParameters& parameters, Quality quality);
+
+/// Names of all settings, such as "photons_emitted", in the order of the table.
+std::vector<std::string_view> setting_names();
+
+/// Sets one by its name: for programs whose users name settings. Whole numbers serve where any
+/// number does. Errors: UsageError, one line that begins with the name, for an unknown name or a
+/// value out of the range of the table.
+void set_by_name(RenderParameters& parameters, std::string_view name,
+                 const std::variant<std::uint64_t, double, std::string_view>& value);
+
+/// What photon maps are built from: all that depends on random numbers or takes long on the host.
+struct PreparedPhotons {
+  Photons photons;
+  NeighbourGroups groups;  ///< empty: found when maps are built
+  double radius = 0;       ///< metres: of the maps; 0 where groups are not there
+  /// Of them, those that came by mirrors and glass alone; where rays gather.
+  std::optional<Photons> caustics = std::nullopt;
+  /// What light maps of these photons held, if they are kept. Where its settings are those of the
+  /// rendering, maps are built from the photons when an estimate is first needed.
+  std::optional<LightMapContents> light_maps = std::nullopt;
+
+  bool has_groups() const { return radius > 0; }
+};
+using KeepPhotons = std::function<void(const PreparedPhotons&)>;
+
+/// How long a quick frame may value nodes that it lacks.
+struct FrameFilling {
+  /// So many seconds; infinite: until none is lacking. Implicit: a frame knows no other number.
+  ///   ends   asked from time to time: true ends it at once; empty = never
+  FrameFilling(double limit, std::function<bool()> ends = {})
+      : seconds(limit), ended(std::move(ends)) {}
+
+  double seconds;
+  std::function<bool()> ended;
+
+  /// What is left after so many seconds.
+  double left(double spent) const { return ended && ended() ? 0 : seconds - spent; }
+};
+
+/// What a quick frame shows.
+struct DrawnFrame {
+  /// Cells of light maps that it shows coarser than they should be.
+  std::size_t lacking = 0;
+  std::size_t empty = 0;     ///< of them, those without any light: they are grey
+  double lacking_share = 0;  ///< of the surface that is seen, in [0, 1]
+  double fill_seconds = 0;   ///< that went into nodes which were lacking
+};
+
+/// The photon maps of a scene, kept on the devices while pictures are rendered from them.
+class SceneRenderer {
+ public:
+  /// Traces the photons and builds the maps. The scene and the devices must outlive it.
+  ///   prepared   in place of tracing, of the same scene and parameters; left empty. Null: none
+  ///   keep       is called with what the maps are built from, before they are. Empty: nothing
+  /// Of several photon passes pictures are the mean of all; `prepared` and `keep` are of the first.
+  /// Errors: those of `render`, and of `keep`; UsageError where the photons do not fit in memory at
+  /// once, or where rays gather and `prepared` has no caustics apart.
+  SceneRenderer(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
+                PreparedPhotons* prepared = nullptr, const KeepPhotons& keep = {},
+                Progress& progress = Progress::none());
+  ~SceneRenderer();
+
+  /// The picture that `render` gives with this film, bit for bit. Statistics contain the costs of
+  /// the maps each time.
+  ///   pooling   of its layers, before they take memory; null = each for itself
+  RenderResult render(const Camera& camera, const Film& film, Progress& progress = Progress::none(),
+                      const LightPooling* pooling = nullptr);
+
+  /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a sample,
+  /// glossy surfaces as if they were matt (host/renderer/cache/light_map_frames.hpp). For
+  /// parameters that ask for light maps.
+  ///   powers    per layer: power x tint
+  ///   filling   of nodes which pixels lack: the nearest to the eye come first, other pixels show a
+  ///             coarser level
+  ///   picture   of the film's size, linear RGB radiance
+  ///   coarser   of the same scene: shown where these light maps have no node yet, and filled
+  ///             before them; null = none
+  /// Once nothing is lacking, a frame does not depend on what was drawn before. Errors: those of
+  /// `render`.
+  DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
+                  const FrameFilling& filling, std::span<glm::vec3> picture,
+                  Progress& progress = Progress::none(), SceneRenderer* coarser = nullptr);
+
+  /// From now on light maps take about so many bytes: `draw` forgets what was seen least recently,
+  /// but nothing of the latest picture. It comes back to the same bits when it is seen again.
+  void bound_light_maps(std::uint64_t bytes);
+
+  /// Whether `draw` has light maps to draw from.
+  bool draws() const;
+
+  /// What the light maps hold by now; none where they are not read, or cannot be kept.
+  std::optional<LightMapContents> light_maps() const;
+
+  /// The part of that picture which comes by a mirror, by glass that bends or reflects it, or by a
+  /// glossy lobe.
+  RenderResult render_reflections(const Camera& camera, const Film& film,
+                                  Progress& progress = Progress::none(),
+                                  const LightPooling* pooling = nullptr);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What leads a denoiser over edges: means of each pixel, row by row from the top. Mirrors and
+/// glass show what is seen by them, in their tint.
+struct DenoisingGuides {
+  std::vector<glm::vec3> albedo;  ///< in [0, 1]; 1 where a lamp or the surroundings are seen
+  std::vector<glm::vec3> normal;  ///< in world space, of the mean of the samples, not longer than 1
+};
+
+/// The guides of a picture.
+///   film   its size; at most defaults::denoising_samples of its samples are traced
+DenoisingGuides denoising_guides(const RayScene& rays, const Camera& camera, const Film& film,
+                                 std::uint64_t seed);
+
+/// A loaded library of Open Image Denoise 2, and its device on the processor
+/// (https://www.openimagedenoise.org/documentation.html).
+class Denoiser {
+ public:
+  /// Loads the library.
+  ///   library   name or path of the shared library, as the dynamic linker takes it
+  ///   threads   0 = all cores
+  /// Errors: UsageError where there is none, it lacks a function, or has no device.
+  explicit Denoiser(const std::filesystem::path& library, int threads = 0);
+  ~Denoiser();
+
+  /// "Open Image Denoise 2.3.0".
+  const std::string& version() const { return version_; }
+
+  /// The layers with the radiance of each denoised on its own, led by the guides; the illuminance
+  /// as it is. What a layer has does not depend on the powers of lamps, so that mixing stays
+  /// linear; but the sum of denoised layers is not the denoised sum. A plane for each light: 16
+  /// bytes per pixel and light.
+  ///   errors   standard errors of the layers, where they are known: a value moves by at most
+  ///            defaults::denoising_errors of them. Null: by any amount
+  /// Errors: DeviceError of the library.
+  LightLayers denoised(const LightLayers& layers, const DenoisingGuides& guides,
+                       const LightLayers* errors) const;
+
+ private:
+  struct Library;
+  std::unique_ptr<Library> library_;
+  std::string version_;
+};
 
 }  // namespace photile

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -12,11 +13,127 @@
 
 #include "photile/camera.hpp"
 #include "photile/defaults.hpp"
-#include "photile/environment_map.hpp"
-#include "photile/intensity_distribution.hpp"
 #include "photile/light_options.hpp"
 
 namespace photile {
+
+/// An equirectangular picture of radiance. Its rows run from the zenith (+y) to the nadir, its
+/// columns along the horizon; the middle column lies towards -z, turned by `rotation` towards +x,
+/// and azimuths grow to the right, as for an observer inside. Each texel is an even patch of sky,
+/// so that integrals over it are exact.
+class EnvironmentMap {
+ public:
+  /// `texels`: width x height, row 0 at the top, linear RGB, finite and not negative.
+  /// `rotation`: degrees clockwise as seen from above. Errors: std::invalid_argument.
+  EnvironmentMap(std::string name, int width, int height, std::vector<glm::vec3> texels,
+                 double rotation = 0);
+
+  /// Radiance that arrives from a unit direction, cd/m2 or W/(m2 sr).
+  const glm::vec3& radiance(const glm::vec3& direction) const {
+    return texels_[texel_towards(direction)];
+  }
+
+  /// Integral of the radiance over the sphere, lm/m2 or W/m2 per channel.
+  const glm::dvec3& integral() const { return integral_; }
+
+  /// Solid angle of each texel of a row, steradian.
+  double solid_angle(int row) const;
+  /// Index of the texel that a unit direction points to.
+  std::size_t texel_towards(const glm::vec3& direction) const;
+  /// Direction of a place of the picture; `column` in [0, width], and the share `v` in [0, 1] of
+  /// the solid angle of its row that lies above.
+  glm::dvec3 direction_at(double column, int row, double v) const;
+
+  const std::string& name() const { return name_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const glm::vec3& texel(int column, int row) const {
+    return texels_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+                   static_cast<std::size_t>(column)];
+  }
+
+ private:
+  std::string name_;
+  int width_ = 0, height_ = 0;
+  double rotation_ = 0;  ///< radians
+  std::vector<glm::vec3> texels_;
+  glm::dvec3 integral_{0.0};
+};
+
+/// Axes of the spherical coordinates in which a lamp was measured, in the space of the lamp: its
+/// -z axis is where it is aimed, as for lights of glTF.
+struct PhotometricAxes {
+  glm::dvec3 pole{0.0, 0.0, -1.0};    ///< unit; polar angle 0
+  glm::dvec3 zero{1.0, 0.0, 0.0};     ///< unit; polar angle 90 degrees, azimuth 0
+  glm::dvec3 quarter{0.0, 1.0, 0.0};  ///< unit; polar angle 90 degrees, azimuth 90 degrees
+};
+
+/// The part of a lamp that shines, as its photometric file gives it: a box, or an upright cylinder
+/// on a circle or an ellipse, around the lamp's axis. All zero where the file says nothing.
+struct LuminousOpening {
+  double along_zero = 0;     ///< metres along PhotometricAxes::zero; of a round one a diameter
+  double along_quarter = 0;  ///< metres along PhotometricAxes::quarter
+  double height = 0;         ///< metres along the pole, of sides that shine too
+  bool round = false;
+
+  /// m2 of its projection onto a plane that faces `direction`.
+  ///   direction   unit, in the lamp's space, away from it
+  double projected_area(const PhotometricAxes& axes, const glm::dvec3& direction) const;
+};
+
+/// Intensities on a grid of polar angles and azimuths, bilinear in the two angles between them and
+/// zero beyond the outermost. One point emits all light: the lamp's own size is left out, which is
+/// the approximation of the files themselves (far-field photometry).
+class IntensityDistribution {
+ public:
+  /// `polar`, `azimuth`: degrees, strictly ascending, at least two of each; polar angles within
+  /// [0, 180], azimuths within 360 degrees. `intensity`: cd, [azimuth][polar], not negative.
+  /// Errors: std::invalid_argument.
+  IntensityDistribution(std::string name, const PhotometricAxes& axes,
+                        const std::vector<double>& polar, const std::vector<double>& azimuth,
+                        std::vector<float> intensity);
+
+  /// cd in a unit direction of the lamp's space.
+  double intensity(const glm::dvec3& direction) const;
+
+  /// lm: the integral of `intensity` over the sphere, in closed form.
+  double flux() const { return flux_; }
+
+  const std::string& name() const { return name_; }
+  const PhotometricAxes& axes() const { return axes_; }
+
+  const LuminousOpening& opening() const { return opening_; }
+  void set_opening(const LuminousOpening& opening) { opening_ = opening; }
+
+  // Cells of the grid: column of azimuths x row of polar angles.
+  std::size_t columns() const { return azimuth_.size() - 1; }
+  std::size_t rows() const { return polar_.size() - 1; }
+  /// lm that a cell emits.
+  double cell_flux(std::size_t column, std::size_t row) const;
+
+  /// A place in a cell; `u` of the way from its first azimuth to its last, `v` of the way between
+  /// the cosines of its polar angles, each in [0, 1].
+  struct Place {
+    glm::dvec3 direction;  ///< unit, in the lamp's space
+    double intensity;      ///< cd
+  };
+  Place in_cell(std::size_t column, std::size_t row, double u, double v) const;
+  /// Largest intensity in a cell, cd.
+  double cell_maximum(std::size_t column, std::size_t row) const;
+
+ private:
+  double at(std::size_t column, std::size_t row) const {
+    return intensity_[column * polar_.size() + row];
+  }
+  double interpolated(std::size_t column, std::size_t row, double azimuth, double polar) const;
+
+  std::string name_;
+  PhotometricAxes axes_;
+  std::vector<double> polar_, azimuth_;  ///< radians
+  std::vector<float> intensity_;
+  LuminousOpening opening_;
+  double flux_ = 0;
+};
 
 inline constexpr std::uint32_t none = 0xFFFF'FFFFu;  ///< "no light", "no texture", ...
 
@@ -324,5 +441,32 @@ struct SceneLoadOptions {
 /// axis, the file has no such scene, a grouping matches no light, or its group bears the name of a
 /// light outside it.
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
+
+/// Up to this many layers (see light_groups.hpp) each has a value at every hit and pixel. With
+/// more, memory and time grow with the lights that reach a hit, not with all.
+inline constexpr std::uint32_t max_dense_lights = 8;
+
+/// What later stages must provide for; whatever is false costs nothing anywhere. From it follow the
+/// records of photons and hits, the buffers of maps and estimates, the symbols that kernels are
+/// compiled with, and what shadow rays look at (docs/kernels.md, "Records").
+struct SceneNeeds {
+  bool glossy = false;       ///< some opaque material has a specular lobe or a normal map
+  bool normal_maps = false;  ///< some opaque material has a normal map
+  /// Some opaque surface without a normal map has vertex normals that differ from its triangles'.
+  bool smooth_shading = false;
+  bool textures = false;        ///< some material has a texture
+  bool specular_paths = false;  ///< some material is a mirror or glass
+  bool see_through = false;  ///< some material is thin glass or has holes, which shadow rays pass
+  std::uint32_t light_count = 0;  ///< layers: a group of lights counts as one
+
+  /// Whether photons and estimates tell lights apart.
+  bool several_lights() const { return light_count > 1; }
+  /// Whether only the lights that reach a point are kept for it.
+  bool many_lights() const { return light_count > max_dense_lights; }
+};
+
+/// Looks at every triangle: RayScene::needs() and MapStore::needs keep the answer. Materials that
+/// no triangle has ask for nothing.
+SceneNeeds needs_of(const Scene& scene);
 
 }  // namespace photile

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "parts.hpp"
-#include "photile/device_test.hpp"
+#include "photile/device.hpp"
 
 namespace py = pybind11;
 

@@ -5,7 +5,7 @@
 
 #include "arrays.hpp"
 #include "parts.hpp"
-#include "photile/illuminance.hpp"
+#include "photile/sensors.hpp"
 #include "work.hpp"
 
 namespace photile::python {

@@ -10,10 +10,9 @@
 
 #include "arrays.hpp"
 #include "parts.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_cloud.hpp"
-#include "photile/photon_tracer.hpp"
 #include "work.hpp"
 
 namespace photile::python {

@@ -9,12 +9,9 @@
 
 #include "arrays.hpp"
 #include "parts.hpp"
-#include "photile/camera_attributes.hpp"
 #include "photile/defaults.hpp"
 #include "photile/layered_picture.hpp"
-#include "photile/light_mix.hpp"
-#include "photile/path_tracer.hpp"
-#include "photile/settings.hpp"
+#include "photile/renderer.hpp"
 #include "work.hpp"
 
 namespace photile::python {

@@ -8,7 +8,7 @@
 
 #include "arrays.hpp"
 #include "parts.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "work.hpp"

@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "gathering.hpp"
-#include "photile/environment_map.hpp"
 #include "photile/errors.hpp"
+#include "photile/scene.hpp"
 #include "render/path_estimate.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "photile/errors.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/light_maps.hpp"
-#include "photile/photon_tracer.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/photons.hpp"
+#include "photile/renderer.hpp"
+#include "photile/scene.hpp"
 #include "photile/sensors.hpp"
-#include "photile/settings.hpp"
 #include "smooth_meshes.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -128,7 +128,8 @@ TEST_CASE(
   REQUIRE(needs_of(scene).many_lights() == are_drawn);
   const std::vector<SmoothMesh::Place> places = sphere.places();
   const LightLayers layers = by_nodes(scene, sensors_of(places));
-  const std::vector<double> of_all = radiance_of(scene, layers), powers = estimate::layer_powers(scene);
+  const std::vector<double> of_all = radiance_of(scene, layers),
+                            powers = estimate::layer_powers(scene);
   REQUIRE(layers.layers.size() == to_sun.size());
   std::vector<double> lit(to_sun.size(), 0.0), ratios = lit;
   for (std::size_t i = 0; i < places.size(); ++i) {

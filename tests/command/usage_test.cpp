@@ -4,7 +4,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
-#include "photile/settings.hpp"
+#include "photile/renderer.hpp"
 
 namespace photile::test {
 namespace {

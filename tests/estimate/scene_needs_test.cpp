@@ -1,6 +1,4 @@
 // What a scene does not need is not there: no bytes in its records.
-#include "photile/scene_needs.hpp"
-
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -8,8 +6,9 @@
 #include "maps/entry_defines.hpp"
 #include "maps/map_store.hpp"
 #include "photile/neighbour_groups.hpp"
-#include "photile/photon_tracer.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/photons.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/scene.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 

@@ -15,7 +15,7 @@
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/light_options.hpp"
 #include "photile/scene_builder.hpp"
 #include "render/setting.hpp"

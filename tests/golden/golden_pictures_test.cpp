@@ -12,9 +12,7 @@
 #include <iterator>
 
 #include "estimate/neighbour_choice.hpp"
-#include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
-#include "photile/settings.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"
 #include "tile_means.hpp"

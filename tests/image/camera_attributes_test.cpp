@@ -1,7 +1,6 @@
-#include "photile/camera_attributes.hpp"
-
 #include <cmath>
 
+#include "photile/layered_picture.hpp"
 #include "picture_support.hpp"
 
 namespace photile::test {

@@ -5,9 +5,9 @@
 #include <glm/gtc/constants.hpp>
 #include <sstream>
 
-#include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
+#include "photile/layered_picture.hpp"
 #include "temporary_folder.hpp"
 
 namespace photile::test {

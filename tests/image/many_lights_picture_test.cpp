@@ -7,7 +7,7 @@
 #include "memory_meter.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 #include "picture_support.hpp"
 
 namespace photile::test {

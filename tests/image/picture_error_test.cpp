@@ -1,9 +1,8 @@
-#include "photile/picture_error.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "photile/errors.hpp"
+#include "photile/image.hpp"
 
 namespace photile::test {
 namespace {

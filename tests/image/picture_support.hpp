@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "photile/errors.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "temporary_folder.hpp"
 
 namespace photile::test {

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "photile/image.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 

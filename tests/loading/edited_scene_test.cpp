@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "scene_files.hpp"
 #include "source_folder.hpp"
 

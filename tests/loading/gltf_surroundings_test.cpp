@@ -5,7 +5,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "srgb_oracle.hpp"
 #include "textured_square.hpp"
 #include "writing/edited_scene.hpp"

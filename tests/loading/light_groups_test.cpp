@@ -1,8 +1,7 @@
 // Which lights share a layer: the file's groups and those that the user asks for.
-#include "photile/light_groups.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "photile/light_layers.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

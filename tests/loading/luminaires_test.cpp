@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/sensors.hpp"
 #include "photometric_texts.hpp"
 #include "scene_files.hpp"

@@ -11,7 +11,6 @@
 
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
-#include "photile/scene_needs.hpp"
 #include "temporary_folder.hpp"
 
 namespace photile::test {

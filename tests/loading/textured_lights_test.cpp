@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "path_irradiance.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "scene/emission_cells.hpp"
 #include "scene_files.hpp"
 #include "statistical_tests.hpp"

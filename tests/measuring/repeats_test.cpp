@@ -5,7 +5,7 @@
 
 #include "measuring/measure_grids.hpp"
 #include "measuring/measurement.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {

@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "photile/density_kernel.hpp"
+#include "photile/estimator.hpp"
 #include "photile/photons.hpp"
 #include "photile/scene.hpp"
 #include "photile/surface_index.hpp"

@@ -1,7 +1,7 @@
 // The kernels of the density estimate, written down afresh in double precision.
 #pragma once
 
-#include "photile/density_kernel.hpp"
+#include "photile/estimator.hpp"
 
 namespace photile::reference {
 

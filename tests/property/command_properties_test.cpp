@@ -19,7 +19,7 @@
 
 #include "command_run.hpp"
 #include "photile/image.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "random_command.hpp"
 #include "temporary_folder.hpp"
 

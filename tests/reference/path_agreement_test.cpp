@@ -5,7 +5,6 @@
 
 #include "../render/pictures.hpp"
 #include "photile/image.hpp"
-#include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
 #include "shared_scenes.hpp"
 #include "skipped.hpp"

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "../render/pictures.hpp"
-#include "photile/path_tracer.hpp"
+#include "photile/renderer.hpp"
 #include "render/hit_source.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"

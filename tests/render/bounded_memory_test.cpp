@@ -4,7 +4,6 @@
 #include "device/context.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
-#include "photile/scene_renderer.hpp"
 #include "photon_sets.hpp"
 #include "pictures.hpp"
 #include "test_device.hpp"

@@ -1,14 +1,13 @@
 // The optional last step of a picture, --denoise. What it is given and what is kept of its answer
 // are tested with a denoiser of means, which is known in closed form.
-#include "photile/denoiser.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/renderer.hpp"
+#include "photile/scene.hpp"
 #include "pictures.hpp"
 #include "test_scenes.hpp"
 

@@ -4,8 +4,7 @@
 #include <numbers>
 
 #include "photile/errors.hpp"
-#include "photile/path_tracer.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
 #include "statistical_tests.hpp"

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "photile/errors.hpp"
-#include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
 #include "picture_in_parts.hpp"
 #include "pictures.hpp"

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "photile/path_tracer.hpp"
 #include "photile/renderer.hpp"
-#include "photile/scene_renderer.hpp"
 #include "photile/sensors.hpp"
 #include "pictures.hpp"
 #include "statistical_tests.hpp"

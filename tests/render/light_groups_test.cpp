@@ -1,9 +1,8 @@
 // The layer of a group of lights beside the layers of its lights alone.
-#include "photile/light_groups.hpp"
-
 #include <catch2/catch.hpp>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
 #include "test_device.hpp"

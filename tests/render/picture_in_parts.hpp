@@ -4,8 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "photile/light_groups.hpp"
-#include "photile/light_pooling.hpp"
+#include "photile/light_layers.hpp"
 #include "render/hit_source.hpp"
 #include "render/render_session.hpp"
 #include "test_device.hpp"

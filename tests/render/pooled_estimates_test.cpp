@@ -5,7 +5,7 @@
 #include <map>
 #include <random>
 
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::test {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "photile/settings.hpp"
+#include "photile/renderer.hpp"
 #include "render/setting.hpp"
 
 namespace photile::test {

@@ -6,7 +6,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/neighbour_groups.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/renderer.hpp"
 #include "photile/surface_index.hpp"
 #include "pictures.hpp"

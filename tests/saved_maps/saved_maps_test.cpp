@@ -9,7 +9,6 @@
 
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
-#include "photile/scene_renderer.hpp"
 #include "temporary_folder.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "photile/photons.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::test {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "photile/estimate_tuning.hpp"
+#include "photile/estimator.hpp"
 
 namespace photile::test {
 

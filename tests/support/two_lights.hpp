@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace photile::test {
 

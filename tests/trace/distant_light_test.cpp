@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "path_irradiance.hpp"
-#include "photile/photon_tracer.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/photons.hpp"
+#include "photile/ray_scene.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "photile/errors.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 #include "trace/light_emitter.hpp"

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
 
-#include "photile/photon_tracer.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/photons.hpp"
+#include "photile/ray_scene.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 #include "trace/ray_query.hpp"

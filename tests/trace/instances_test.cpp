@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "instanced_scenes.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
 #include "photon_sets.hpp"
 #include "trace/ray_scene_impl.hpp"

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "path_irradiance.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 #include "trace/lamp_intensity.hpp"

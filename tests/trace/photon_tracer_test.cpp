@@ -1,12 +1,11 @@
 // Photon tracing: energy, weights, what is stored, and what is refused.
-#include "photile/photon_tracer.hpp"
-
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <numeric>
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/photons.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "photile/errors.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/sensors.hpp"
 #include "room_with_window.hpp"
 #include "statistical_tests.hpp"

@@ -1,10 +1,9 @@
 // What the camera sees, against geometry worked out by hand.
-#include "photile/primary_hits.hpp"
-
 #include <catch2/catch.hpp>
 #include <set>
 
 #include "photile/errors.hpp"
+#include "photile/ray_scene.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 #include "trace/hit_batch.hpp"

@@ -7,8 +7,8 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "photile/photon_tracer.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/photons.hpp"
+#include "photile/ray_scene.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "photile/layered_picture.hpp"
-#include "photile/path_tracer.hpp"
+#include "photile/renderer.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"
 

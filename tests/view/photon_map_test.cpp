@@ -3,7 +3,7 @@
 #include <set>
 
 #include "photile/neighbour_groups.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
 #include "test_scenes.hpp"
 #include "view/photon_map_overlay.hpp"

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "photile/errors.hpp"
-#include "photile/scene_renderer.hpp"
+#include "photile/renderer.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 #include "view/frame_worker.hpp"

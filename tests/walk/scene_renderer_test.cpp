@@ -1,6 +1,4 @@
 // Many pictures from one set of maps are those of one rendering each.
-#include "photile/scene_renderer.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "photile/errors.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/baked_light.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::bake {

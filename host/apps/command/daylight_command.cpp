@@ -21,9 +21,9 @@
 #include "common/run_files.hpp"
 #include "measuring/measure_grids.hpp"
 #include "photile/errors.hpp"
-#include "photile/illuminance.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
+#include "photile/sensors.hpp"
 #include "report/honeybee_files.hpp"
 #include "weather/weather_file.hpp"
 

@@ -9,7 +9,7 @@
 #include "daylight/sky_states.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/defaults.hpp"
-#include "photile/illuminance.hpp"
+#include "photile/sensors.hpp"
 #include "report/daylight_tables.hpp"
 
 namespace photile::app {

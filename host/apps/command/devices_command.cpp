@@ -12,7 +12,6 @@
 #include "command/processes.hpp"
 #include "command/terminal_progress.hpp"
 #include "photile/device.hpp"
-#include "photile/device_test.hpp"
 #include "photile/errors.hpp"
 #include "photile/statistics.hpp"
 #include "render/kernel_preparation.hpp"

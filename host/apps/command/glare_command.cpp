@@ -20,7 +20,6 @@
 #include "glare/measure_glare.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
-#include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"

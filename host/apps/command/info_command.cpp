@@ -9,7 +9,7 @@
 #include "command/scene_options.hpp"
 #include "command/scene_report.hpp"
 #include "command/setting_options.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::app {

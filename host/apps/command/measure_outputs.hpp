@@ -10,7 +10,7 @@
 #include "measuring/measure_grids.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour.hpp"
 #include "report/included_results.hpp"

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "photile/renderer.hpp"
-#include "photile/settings.hpp"
 #include "render/refinement.hpp"
 
 namespace CLI {

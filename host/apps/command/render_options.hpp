@@ -11,12 +11,12 @@
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
 #include "photile/camera.hpp"
+#include "photile/communicator.hpp"
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
-#include "photile/shard.hpp"
 
 namespace CLI {
 class App;

@@ -11,7 +11,7 @@
 #include "command/scene_report.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "report/false_colour_picture.hpp"
 #include "report/plan_surroundings.hpp"
 #include "report/print_page.hpp"

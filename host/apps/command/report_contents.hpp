@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour.hpp"
 #include "report/report.hpp"

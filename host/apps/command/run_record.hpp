@@ -12,10 +12,9 @@
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
 #include "photile/image.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
-#include "photile/settings.hpp"
 #include "photile/statistics.hpp"
 #include "render/refinement.hpp"
 

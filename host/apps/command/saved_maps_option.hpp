@@ -6,7 +6,6 @@
 
 #include "command/render_options.hpp"
 #include "photile/renderer.hpp"
-#include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
 #include "saved_maps/saved_maps.hpp"
 

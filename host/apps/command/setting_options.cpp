@@ -14,7 +14,7 @@
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
-#include "photile/settings.hpp"
+#include "photile/renderer.hpp"
 
 namespace photile::app {
 namespace {

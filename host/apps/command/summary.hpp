@@ -8,7 +8,7 @@
 #include "command/run_record.hpp"
 #include "device/context.hpp"
 #include "photile/device.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
 #include "photile/statistics.hpp"

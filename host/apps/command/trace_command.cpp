@@ -20,7 +20,7 @@
 #include "command/validators.hpp"
 #include "common/run_files.hpp"
 #include "photile/limits.hpp"
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
 #include "render/render_plan.hpp"
 #include "saved_maps/saved_maps.hpp"

@@ -23,7 +23,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
-#include "photile/path_tracer.hpp"
+#include "photile/renderer.hpp"
 #include "trace/random_stream.hpp"
 #include "trade/trade.hpp"
 

@@ -21,7 +21,7 @@
 #include "common/output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "photile/quiet_progress.hpp"
+#include "photile/progress.hpp"
 #include "validation/validate.hpp"
 
 namespace photile::app {

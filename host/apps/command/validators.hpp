@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/value_range.hpp"
-#include "photile/shard.hpp"
+#include "photile/communicator.hpp"
 
 namespace photile::app {
 

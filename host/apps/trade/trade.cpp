@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "photile/layered_picture.hpp"
-#include "photile/quiet_progress.hpp"
-#include "photile/settings.hpp"
+#include "photile/progress.hpp"
+#include "photile/renderer.hpp"
 #include "render/refinement.hpp"
 #include "render/setting.hpp"
 

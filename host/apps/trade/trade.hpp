@@ -9,8 +9,7 @@
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
 #include "photile/image.hpp"
-#include "photile/light_mix.hpp"
-#include "photile/picture_error.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 

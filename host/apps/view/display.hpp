@@ -8,7 +8,7 @@
 #include "measuring/grid_statistics.hpp"
 #include "photile/defaults.hpp"
 #include "photile/image.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "report/false_colour.hpp"
 #include "view/frame.hpp"
 

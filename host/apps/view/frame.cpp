@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 
 namespace photile::view {
 namespace {

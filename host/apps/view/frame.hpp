@@ -9,7 +9,6 @@
 
 #include "photile/camera.hpp"
 #include "photile/light_layers.hpp"
-#include "photile/light_pooling.hpp"
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
 #include "view/photon_map_view.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "photile/light_mix.hpp"
-#include "photile/light_pooling.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/light_layers.hpp"
 #include "view/moving_sky.hpp"
 
 namespace photile::view {

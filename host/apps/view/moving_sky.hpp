@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "photile/defaults.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "weather/sky_patches.hpp"
 #include "weather/sun_position.hpp"

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "photile/scene_renderer.hpp"
+#include "photile/renderer.hpp"
 
 namespace photile::view {
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "photile/scene_renderer.hpp"
+#include "photile/renderer.hpp"
 #include "view/frame.hpp"
 #include "view/photon_map_view.hpp"
 

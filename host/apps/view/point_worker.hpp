@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "measuring/grid_statistics.hpp"
-#include "photile/light_mix.hpp"
-#include "photile/light_pooling.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::view {

@@ -6,7 +6,6 @@
 
 #include "common/output_file.hpp"
 #include "image/srgb.hpp"
-#include "photile/camera_attributes.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "writing/edited_scene.hpp"

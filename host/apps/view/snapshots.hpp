@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "view/frame.hpp"
 #include "view/moods.hpp"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "loading/luminaires.hpp"
-#include "photile/light_mix.hpp"
-#include "photile/scene_renderer.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/renderer.hpp"
 #include "view/photon_worker.hpp"
 
 namespace photile::view {

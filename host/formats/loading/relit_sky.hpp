@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/light_options.hpp"
 #include "weather/sky_patches.hpp"
 

@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "photile/environment_map.hpp"
 #include "photile/light_options.hpp"
 #include "photile/scene.hpp"
 #include "weather/perez_sky.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "files/warnings.hpp"
-#include "photile/intensity_distribution.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::photometry {
 

@@ -6,7 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <string>
 
-#include "photile/environment_map.hpp"
+#include "photile/scene.hpp"
 #include "pictures/texture_decoder.hpp"
 
 namespace photile::pictures {

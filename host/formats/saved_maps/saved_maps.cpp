@@ -22,7 +22,7 @@
 #include "maps/check_photons.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 #include "scene/scene_hash.hpp"
 
 namespace photile::saved_maps {

@@ -6,9 +6,9 @@
 #include <span>
 #include <string>
 
+#include "photile/communicator.hpp"
+#include "photile/renderer.hpp"
 #include "photile/scene.hpp"
-#include "photile/scene_renderer.hpp"
-#include "photile/shard.hpp"
 
 namespace photile::saved_maps {
 

@@ -8,7 +8,7 @@
 
 #include "loading/sourced_scene.hpp"
 #include "photile/errors.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_names.hpp"
 #include "writing/light_setting.hpp"

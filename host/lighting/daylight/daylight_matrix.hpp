@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "photile/illuminance.hpp"
 #include "photile/ray_scene.hpp"
+#include "photile/sensors.hpp"
 #include "weather/sky_patches.hpp"
 
 namespace photile::daylight {

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "photile/defaults.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/lamp_intensity.hpp"
 #include "trace/ray_query.hpp"

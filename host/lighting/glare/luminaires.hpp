@@ -8,8 +8,8 @@
 
 #include "glare/position_index.hpp"
 #include "glare/ratings.hpp"
-#include "photile/light_groups.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/surface.hpp"
 

@@ -7,8 +7,7 @@
 
 #include "measuring/grid_statistics.hpp"
 #include "measuring/measure_grids.hpp"
-#include "photile/path_tracer.hpp"
-#include "photile/scene_renderer.hpp"
+#include "photile/renderer.hpp"
 
 namespace photile::glare {
 

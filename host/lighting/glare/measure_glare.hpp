@@ -12,9 +12,9 @@
 #include "glare/position_index.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/device.hpp"
-#include "photile/illuminance.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/progress.hpp"
+#include "photile/sensors.hpp"
 #include "trace/room.hpp"
 
 namespace photile::glare {

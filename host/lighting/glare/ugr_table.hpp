@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photile/defaults.hpp"
-#include "photile/intensity_distribution.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::glare {
 

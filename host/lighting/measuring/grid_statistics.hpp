@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "photile/illuminance.hpp"
+#include "photile/sensors.hpp"
 
 namespace photile::measuring {
 

@@ -1,11 +1,10 @@
-#include "photile/illuminance.hpp"
-
 #include <fmt/format.h>
 
 #include "measuring/grid_statistics.hpp"
 #include "measuring/measure_grids.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/sensors.hpp"
 
 namespace photile {
 

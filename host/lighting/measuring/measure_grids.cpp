@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "photile/light_groups.hpp"
-#include "photile/quiet_progress.hpp"
+#include "photile/light_layers.hpp"
+#include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/portal_search.hpp"

@@ -8,7 +8,7 @@
 #include "measuring/measurement.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/device.hpp"
-#include "photile/illuminance.hpp"
+#include "photile/sensors.hpp"
 
 namespace photile::measuring {
 

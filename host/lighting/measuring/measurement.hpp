@@ -8,8 +8,8 @@
 
 #include "measuring/grid_statistics.hpp"
 #include "measuring/sensor_grid.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
-#include "photile/light_mix.hpp"
 
 namespace photile::measuring {
 

@@ -9,7 +9,7 @@
 
 #include "image/layer_set.hpp"
 #include "photile/errors.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour_picture.hpp"
 #include "report/palette.hpp"

@@ -7,7 +7,6 @@
 
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
-#include "photile/picture_error.hpp"
 
 namespace photile::report {
 

@@ -10,7 +10,6 @@
 #include "cache/gathered_irradiance.hpp"
 #include "photile/defaults.hpp"
 #include "photile/scene.hpp"
-#include "photile/scene_needs.hpp"
 
 namespace photile::cache {
 

@@ -13,7 +13,6 @@
 #include "estimate/light_at_points.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_maps.hpp"
-#include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/hemisphere_rays.hpp"
 

@@ -11,11 +11,11 @@
 #include "cache/node_mix.hpp"
 #include "cache/tiles.hpp"
 #include "photile/camera.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
-#include "photile/scene_renderer.hpp"
+#include "photile/renderer.hpp"
 #include "trace/distant_light.hpp"
 
 namespace photile::cache {

@@ -9,7 +9,7 @@
 #include "cache/node_batch.hpp"
 #include "cache/tiles.hpp"
 #include "photile/light_maps.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 
 namespace photile {
 

@@ -9,7 +9,7 @@
 
 #include "cache/charts.hpp"
 #include "photile/light_maps.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 
 namespace photile::cache {
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "photile/scene.hpp"
-#include "photile/scene_needs.hpp"
 
 namespace photile::cache {
 namespace {

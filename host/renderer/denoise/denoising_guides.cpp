@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "photile/defaults.hpp"
-#include "photile/denoiser.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/renderer.hpp"
 
 namespace photile {
 namespace {

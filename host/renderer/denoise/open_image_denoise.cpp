@@ -6,8 +6,8 @@
 
 #include "common/module.hpp"
 #include "photile/defaults.hpp"
-#include "photile/denoiser.hpp"
 #include "photile/errors.hpp"
+#include "photile/renderer.hpp"
 
 namespace photile {
 

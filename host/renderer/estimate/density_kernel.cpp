@@ -1,4 +1,4 @@
-#include "photile/density_kernel.hpp"
+#include "photile/estimator.hpp"
 
 namespace photile {
 

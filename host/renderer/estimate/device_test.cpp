@@ -1,4 +1,4 @@
-#include "photile/device_test.hpp"
+#include "photile/device.hpp"
 
 #include <fmt/format.h>
 

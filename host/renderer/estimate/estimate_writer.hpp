@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "photile/estimator.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::estimate {
 

@@ -7,7 +7,7 @@
 #include "device/context.hpp"
 #include "estimate/surface_buffers.hpp"
 #include "photile/device/query.h"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 
 namespace photile::estimate {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "photile/estimator.hpp"
-#include "photile/primary_hits.hpp"
 #include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
 
 namespace photile::estimate {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "device/context.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::estimate {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "photile/estimator.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 
 namespace photile::estimate {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photile/estimator.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 
 namespace photile::estimate {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "photile/photons.hpp"
-#include "photile/primary_hits.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::estimate {
 

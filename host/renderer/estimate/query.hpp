@@ -11,10 +11,9 @@
 #include "estimate/hit_buffers.hpp"
 #include "estimate/surface_buffers.hpp"
 #include "maps/map_store.hpp"
-#include "photile/density_kernel.hpp"
 #include "photile/device/constants.h"
 #include "photile/device/query.h"
-#include "photile/estimate_tuning.hpp"
+#include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 
 namespace photile::estimate {

@@ -9,7 +9,6 @@
 
 #include "photile/estimator.hpp"
 #include "photile/photons.hpp"
-#include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
 
 namespace photile::estimate {

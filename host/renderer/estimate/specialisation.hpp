@@ -6,8 +6,8 @@
 
 #include "device/context.hpp"
 #include "estimate/light_sums.hpp"
-#include "photile/estimate_tuning.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/estimator.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::estimate {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "photile/estimate_tuning.hpp"
+#include "photile/estimator.hpp"
 
 namespace photile::estimate {
 

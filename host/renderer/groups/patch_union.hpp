@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "photile/patches.hpp"
+#include "photile/neighbour_groups.hpp"
 
 namespace photile::groups {
 

@@ -1,8 +1,7 @@
-#include "photile/patches.hpp"
-
 #include <glm/gtc/constants.hpp>
 
 #include "groups/patch_splitter.hpp"
+#include "photile/neighbour_groups.hpp"
 #include "photile/scene_builder.hpp"
 
 namespace photile {

@@ -1,11 +1,11 @@
-#include "photile/camera_attributes.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <optional>
+
+#include "photile/layered_picture.hpp"
 
 namespace photile {
 namespace {

@@ -10,7 +10,7 @@
 #include "image/channel_rows.hpp"
 #include "image/light_change.hpp"
 #include "photile/errors.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace photile {
 namespace {

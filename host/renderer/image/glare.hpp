@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace photile::image {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "photile/image.hpp"
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace photile::image {
 

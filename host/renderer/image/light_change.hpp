@@ -5,7 +5,7 @@
 #include <optional>
 #include <variant>
 
-#include "photile/light_mix.hpp"
+#include "photile/layered_picture.hpp"
 
 namespace photile::image {
 

@@ -1,6 +1,6 @@
 #include "photile/light_layers.hpp"
 
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 
 namespace photile {
 namespace {

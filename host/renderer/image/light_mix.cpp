@@ -1,6 +1,6 @@
-#include "photile/light_mix.hpp"
-
 #include <utility>
+
+#include "photile/layered_picture.hpp"
 
 namespace photile {
 

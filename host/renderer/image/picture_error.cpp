@@ -1,11 +1,10 @@
-#include "photile/picture_error.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "photile/errors.hpp"
+#include "photile/image.hpp"
 #include "photile/scene.hpp"
 
 namespace photile {

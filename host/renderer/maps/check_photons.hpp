@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "photile/photons.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::maps {
 

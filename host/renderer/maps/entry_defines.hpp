@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "device/context.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::maps {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "maps/candidate_maps.hpp"
-#include "photile/patches.hpp"
+#include "photile/neighbour_groups.hpp"
 
 namespace photile::maps {
 

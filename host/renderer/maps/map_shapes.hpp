@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "photile/device/map_shape.h"
-#include "photile/patches.hpp"
+#include "photile/neighbour_groups.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::maps {

@@ -8,8 +8,8 @@
 #include "maps/resident_maps.hpp"
 #include "photile/device/constants.h"
 #include "photile/photon_maps.hpp"
-#include "photile/primary_hits.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::maps {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "photile/patches.hpp"
+#include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
 #include "photile/scene.hpp"
 

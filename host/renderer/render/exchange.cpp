@@ -11,7 +11,7 @@
 
 #include "common/byte_stream.hpp"
 #include "estimate/map_order.hpp"
-#include "photile/shard.hpp"
+#include "photile/communicator.hpp"
 #include "render/pass_count.hpp"
 
 namespace photile {

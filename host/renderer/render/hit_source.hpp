@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "photile/path_tracer.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
 #include "photile/sensors.hpp"
 #include "trace/light_sampler.hpp"

@@ -11,7 +11,7 @@
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
-#include "photile/settings.hpp"
+#include "photile/renderer.hpp"
 
 namespace photile {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "photile/settings.hpp"
+#include "photile/renderer.hpp"
 #include "render/setting.hpp"
 
 namespace photile {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "photile/estimator.hpp"
-#include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/light_sampler.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 
 namespace photile {
 

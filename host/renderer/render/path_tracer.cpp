@@ -1,8 +1,7 @@
-#include "photile/path_tracer.hpp"
-
 #include <algorithm>
 #include <vector>
 
+#include "photile/renderer.hpp"
 #include "render/film.hpp"
 #include "render/hit_source.hpp"
 #include "render/path_estimate.hpp"

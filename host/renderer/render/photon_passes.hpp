@@ -11,7 +11,7 @@
 #include "cache/surface_cache.hpp"
 #include "estimate/photon_estimate.hpp"
 #include "photile/ray_scene.hpp"
-#include "photile/scene_renderer.hpp"
+#include "photile/renderer.hpp"
 #include "photile/surface_index.hpp"
 #include "render/kernel_preparation.hpp"
 #include "render/map_owners.hpp"

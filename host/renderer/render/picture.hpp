@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photile/device.hpp"
-#include "photile/light_pooling.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
 #include "render/hit_source.hpp"

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "estimate/reflected_radiance.hpp"
-#include "photile/scene_needs.hpp"
+#include "photile/scene.hpp"
 
 namespace photile {
 namespace {

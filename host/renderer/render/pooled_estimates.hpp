@@ -2,8 +2,8 @@
 #pragma once
 
 #include "photile/estimator.hpp"
-#include "photile/light_pooling.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/light_layers.hpp"
+#include "photile/ray_scene.hpp"
 
 namespace photile {
 

@@ -1,4 +1,4 @@
-#include "photile/settings.hpp"
+#include "photile/renderer.hpp"
 #include "render/setting.hpp"
 
 namespace photile {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "photile/errors.hpp"
-#include "photile/settings.hpp"
+#include "photile/renderer.hpp"
 #include "render/setting.hpp"
 
 namespace photile {

@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "photile/renderer.hpp"
-#include "photile/scene_renderer.hpp"
 #include "render/hit_source.hpp"
 #include "render/picture.hpp"
 #include "render/render_session.hpp"

@@ -11,8 +11,8 @@
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
-#include "photile/photon_tracer.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/photons.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
 
 namespace photile {

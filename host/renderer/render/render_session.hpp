@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cache/light_map_frames.hpp"
-#include "photile/scene_renderer.hpp"
+#include "photile/renderer.hpp"
 #include "render/hit_source.hpp"
 #include "render/photon_passes.hpp"
 

@@ -1,10 +1,10 @@
-#include "photile/environment_map.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
+
+#include "photile/scene.hpp"
 
 namespace photile {
 namespace {

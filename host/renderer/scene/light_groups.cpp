@@ -1,7 +1,7 @@
-#include "photile/light_groups.hpp"
-
 #include <map>
 #include <string_view>
+
+#include "photile/light_layers.hpp"
 
 namespace photile {
 namespace {

@@ -1,10 +1,9 @@
-#include "photile/scene_needs.hpp"
-
 #include <algorithm>
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
+#include "photile/scene.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile {

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "photile/scene.hpp"
-#include "photile/scene_needs.hpp"
 
 namespace photile::scene {
 

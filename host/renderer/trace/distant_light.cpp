@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "trace/sampling.hpp"
 
 namespace photile::trace {

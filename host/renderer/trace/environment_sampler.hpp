@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "photile/environment_map.hpp"
+#include "photile/scene.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile::trace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "photile/camera.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/distant_light.hpp"
 #include "trace/light_sampler.hpp"

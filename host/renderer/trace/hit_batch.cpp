@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 
 namespace photile::trace {
 

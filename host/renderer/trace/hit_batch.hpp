@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/eye_path.hpp"
 #include "trace/hit_order.hpp"

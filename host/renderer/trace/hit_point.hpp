@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/surface.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "photile/defaults.hpp"
-#include "photile/primary_hits.hpp"
+#include "photile/ray_scene.hpp"
 #include "trace/lamp_intensity.hpp"
 #include "trace/photon_quota.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
 #include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 #include "trace/light_emitter.hpp"
 #include "trace/ray_scene_impl.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "photile/photon_tracer.hpp"
+#include "photile/photons.hpp"
 
 namespace photile::trace {
 

@@ -1,5 +1,3 @@
-#include "photile/photon_tracer.hpp"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,8 +9,9 @@
 
 #include "common/value_range.hpp"
 #include "photile/errors.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
+#include "photile/photons.hpp"
 #include "photile/statistics.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/photon_path.hpp"

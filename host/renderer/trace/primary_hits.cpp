@@ -1,5 +1,3 @@
-#include "photile/primary_hits.hpp"
-
 #include <tbb/parallel_for.h>
 
 #include <glm/gtc/constants.hpp>
@@ -9,8 +7,9 @@
 
 #include "common/value_range.hpp"
 #include "photile/errors.hpp"
-#include "photile/light_groups.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
+#include "photile/ray_scene.hpp"
 #include "trace/eye_path.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"

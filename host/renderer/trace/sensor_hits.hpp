@@ -3,7 +3,6 @@
 
 #include <span>
 
-#include "photile/primary_hits.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/sensors.hpp"
 #include "trace/light_sampler.hpp"
