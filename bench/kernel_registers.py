@@ -20,7 +20,6 @@ from report_section import replace_section
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/kernels.md"
-INCLUDE = re.compile(r'\s*#\s*include "([^"]+)"')
 
 # Of each work-group: the kernels that ask for none run in groups of this (host/renderer/maps/work_groups.hpp).
 GROUP = 64
@@ -36,54 +35,31 @@ def capacity(k, lanes):
 def estimate(k, lanes=0, **more):
     symbols = {"VECTOR_WIDTH": lanes or 1, "CAPACITY": capacity(k, lanes),
                "NEAR_CAPACITY": k if lanes else 128, "HITS_PER_ITEM": 4 if lanes else 1, **more}
-    return {"LANES": "", **symbols} if lanes else symbols
+    return {"LANES": 1, **symbols} if lanes else symbols
 
 
-def structure(name):
-    return {"LIST_CAPACITY": 64, "VECTOR_WIDTH": 1, name: ""}
-
-
-GLOSSY = {"GLOSSY": "", "CLIPPED": ""}
-MANY = {"MANY_LIGHTS": "", "LIGHT_INDEX": "uchar", "LIGHT_SLOTS": 20, "LIGHT_TABLE": 32,
-        "CLIPPED": ""}
+GLOSSY = {"GLOSSY": 1, "CLIPPED": 1}
+MANY = {"LIGHT_BYTES": 1, "LIGHT_SLOTS": 20, "LIGHT_TABLE": 32, "CLIPPED": 1}
 
 # (name, file, kernel, symbols, work-items of a group)
 VARIANTS = [
-    *((kernel, "grid/build.cl", kernel, {"IN_GROUPS": ""}, GROUP)
+    *((kernel, "grid/build.cl", kernel, {"IN_GROUPS": 1}, GROUP)
       for kernel in ("find_entered", "count_cells", "scatter", "sort_cells", "gather_entries")),
-    ("sort_crowded", "grid/build.cl", "sort_crowded", {"IN_GROUPS": ""}, 256),
-    ("one work-item a hit, k = 50, disc", "estimate/estimate.cl", "estimate", estimate(50), GROUP),
-    ("the same, clipped", "estimate/estimate.cl", "estimate", estimate(50, CLIPPED=""), GROUP),
+    ("sort_crowded", "grid/build.cl", "sort_crowded", {"IN_GROUPS": 1}, 256),
+    ("one work-item a hit, k = 50, disc", "estimate/estimate.cl", "estimate_by_selection", estimate(50), GROUP),
+    ("the same, clipped", "estimate/estimate.cl", "estimate_by_selection", estimate(50, CLIPPED=1), GROUP),
     *((f"{lanes} lanes, k = {k}, {'clipped' if clipped else 'disc'}", "estimate/estimate.cl",
-       "estimate", estimate(k, lanes, **({"CLIPPED": ""} if clipped else {})), lanes)
+       "estimate_by_selection", estimate(k, lanes, **({"CLIPPED": 1} if clipped else {})), lanes)
       for lanes in (32, 64) for k, clipped in ((50, False), (50, True), (1000, True))),
-    *((f"{lanes} lanes, k = 50, disc, distances in private memory", "estimate/estimate.cl", "estimate",
-       estimate(50, lanes, DISTANCES_ARE_PRIVATE=""), lanes) for lanes in (32, 64)),
-    *((f"{lanes} lanes, k = 50, clipped, glossy", "estimate/estimate.cl", "estimate",
+    *((f"{lanes} lanes, k = 50, disc, distances in private memory", "estimate/estimate.cl", "estimate_by_selection",
+       estimate(50, lanes, PRIVATE_DISTANCES=1), lanes) for lanes in (32, 64)),
+    *((f"{lanes} lanes, k = 50, clipped, glossy", "estimate/estimate.cl", "estimate_by_selection",
        estimate(50, lanes, **GLOSSY), lanes) for lanes in (32, 64)),
-    *((f"{lanes} lanes, k = 50, clipped, 20 lights", "estimate/estimate.cl", "estimate",
+    *((f"{lanes} lanes, k = 50, clipped, 20 lights", "estimate/estimate.cl", "estimate_by_selection",
        estimate(50, lanes, **MANY), lanes) for lanes in (32, 64)),
-    *((f"heap, k = 50, {name}", "structures/estimate.cl", "estimate", structure(symbol), GROUP)
-      for name, symbol in (("kd-tree", "KDTREE"), ("wide BVH", "WIDE_BVH"))),
+    *((f"heap, k = 50, {name}", f"structures/{file}.cl", "estimate_by_list", {"LIST_CAPACITY": 64}, GROUP)
+      for name, file in (("kd-tree", "kdtree"), ("wide BVH", "wide_bvh"))),
 ]
-
-
-def assembled(name, seen=None):
-    """The text of a kernel file with what it includes, each file once, as photile assembles it."""
-    seen = set() if seen is None else seen
-    if name in seen:
-        return ""
-    seen.add(name)
-    file = next(folder / name for folder in (ROOT / "kernels", ROOT / "include")
-                if (folder / name).exists())
-    lines = []
-    for line in file.read_text().splitlines(keepends=True):
-        included = INCLUDE.match(line)
-        if included:
-            lines.append(assembled(included[1], seen))
-        elif "#pragma once" not in line:
-            lines.append(line)
-    return "".join(lines)
 
 
 def run(command):
@@ -99,7 +75,8 @@ class Compiler:
 
     def compile(self, text, symbols, target, processor, library, out):
         # All is inlined, as drivers do, but for what the kernels keep apart.
-        run([self.clang, "-x", "cl", "-cl-std=CL1.2", "-D__OPENCL_VERSION__=120", "-target", target, "-nogpulib", "-O3", "-w",
+        run([self.clang, "-x", "cl", "-cl-std=CL1.2", "-target", target, "-nogpulib", "-O3", "-w",
+             "-I", str(ROOT / "kernels"), "-I", str(ROOT / "include"),
              "-mllvm", "-inline-threshold=100000", "-Xclang", "-finclude-default-header",
              "-Xclang", "-target-cpu", "-Xclang", processor,
              "-Xclang", "-mlink-builtin-bitcode", "-Xclang", str(self.libclc / library),
@@ -162,9 +139,7 @@ class Amd:
 def rows(processors):
     with tempfile.TemporaryDirectory() as folder:
         for name, file, kernel, symbols, group in VARIANTS:
-            source = pathlib.Path(folder, "kernel.cl")
-            source.write_text(assembled(file))
-            yield name, [processor.measure(str(source), kernel, symbols, group, folder)
+            yield name, [processor.measure(str(ROOT / "kernels" / file), kernel, symbols, group, folder)
                          for processor in processors]
 
 

@@ -126,7 +126,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   cache::ValuedBy by_photons(light);
   LightMapParameters light_maps =
       cache::light_map_parameters(scene, photons, settings.neighbours, radius,
-                                  defaults::group_angle_degrees, settings.detail, powers);
+                                  defaults::group_angle_degrees, 0, settings.detail, powers);
   if (settings.coarsest > 0) {
     light_maps.levels +=
         static_cast<int>(std::lround(std::log2(settings.coarsest / light_maps.spacing)));

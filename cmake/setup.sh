@@ -45,6 +45,7 @@ xvfb                   | tests: a screen without a screen
 xauth                  | the same
 xdotool                | tests: keys and mouse for the window
 libgl1-mesa-dri        | tests: OpenGL in software
+clang                  | tests: compiles every kernel file as it lies there
 oclgrind               | tests: checks every memory access of the kernels
 python3-pil            | tests: another reader and writer of pictures
 openimageio-tools      | tests: reads the pictures as other tools do

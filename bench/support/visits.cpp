@@ -36,12 +36,12 @@ Visits count_visits(const PhotonMaps& maps, const PrimaryHits& hits, int k) {
   estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
     device::Defines defines;
     defines.set("COUNT_VISITS");
-    defines.set("LIST_IN_GLOBAL_MEMORY");
-    maps::set_structure_defines(defines, store.parameters.structure);
+    if (store.parameters.structure == MapStructure::kdtree_2d) defines.set("TREE_2D");
     if (page_hits.page.entry_normal.size() > 0) defines.set("NORMALS");
-    device::Launch launch(context, context.kernel("structures/nearest.cl", "nearest", defines));
-    estimate::set_page_arguments(launch, page_hits, parameters);
-    estimate::set_normal_arguments(launch, store, page_hits, nullptr);
+    device::Launch launch(context, context.kernel(maps::kernel_file(store.parameters.structure),
+                                                  "nearest_by_list", defines));
+    launch.set("query", estimate::query_of(store, page_hits, parameters));
+    estimate::set_page_arguments(launch, page_hits);
     maps::set_structure_arguments(launch, page_hits.page);
     launch.set("neighbours", photons)
         .set("squared_radius", squared_radius)

@@ -120,8 +120,12 @@ inline constexpr int reference_samples = 1024;  ///< paths per pixel
 // The walkthrough: what is aimed at while moving, and how far a picture is refined at rest
 inline constexpr double view_frames_per_second = 30;
 inline constexpr int view_samples_per_pixel = 16;
-inline constexpr std::uint64_t view_first_photons = 8192;  ///< paths of the first picture
-inline constexpr int clicked_rays = 1'024;                 ///< of each repeat at a clicked point
+/// Paths of the first picture, k of its estimates, and metres between its coarsest nodes: ends of
+/// rays that gather average over many estimates.
+inline constexpr std::uint64_t view_first_photons = 32'768;
+inline constexpr int view_first_neighbours = 25;
+inline constexpr double view_first_spacing = 0.5;
+inline constexpr int clicked_rays = 1'024;  ///< of each repeat at a clicked point
 inline constexpr std::size_t clicked_repeats = 64;
 inline constexpr int view_sky_patches = 145;   ///< Tregenza's, of a sky that hours move
 inline constexpr int view_day = 80;            ///< of the year: the 21st of March

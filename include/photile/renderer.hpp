@@ -79,7 +79,8 @@ struct RenderParameters {
   /// > 0: nodes of light maps gather light by so many rays each, and as many looks at lamps, fewer
   /// at finer levels (docs/light-maps.md). 0 = the photon estimate values them.
   int light_map_rays = 0;
-  double light_map_detail = 0;  ///< metres between the finest nodes, at most; 0 = by the photons
+  double light_map_spacing = 0;  ///< metres between the coarsest nodes; 0 = by the photons
+  double light_map_detail = 0;   ///< metres between the finest nodes, at most; 0 = by the photons
   /// Processes that share the rendering (docs/clusters.md), all with the same arguments: paths,
   /// photon maps and rows of the film are split between them, and rank 0 has the result. Null: this
   /// process has all. Kept as a reference.

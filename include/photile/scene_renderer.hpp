@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "photile/light_maps.hpp"
@@ -31,12 +32,27 @@ struct PreparedPhotons {
 };
 using KeepPhotons = std::function<void(const PreparedPhotons&)>;
 
+/// How long a quick frame may value nodes that it lacks.
+struct FrameFilling {
+  /// So many seconds; infinite: until none is lacking. Implicit: a frame knows no other number.
+  ///   ends   asked from time to time: true ends it at once; empty = never
+  FrameFilling(double limit, std::function<bool()> ends = {})
+      : seconds(limit), ended(std::move(ends)) {}
+
+  double seconds;
+  std::function<bool()> ended;
+
+  /// What is left after so many seconds.
+  double left(double spent) const { return ended && ended() ? 0 : seconds - spent; }
+};
+
 /// What a quick frame shows.
 struct DrawnFrame {
   /// Cells of light maps that it shows coarser than they should be.
   std::size_t lacking = 0;
-  std::size_t empty = 0;    ///< of them, those without light of their own: they are grey
-  double fill_seconds = 0;  ///< that went into nodes which were lacking
+  std::size_t empty = 0;     ///< of them, those without any light: they are grey
+  double lacking_share = 0;  ///< of the surface that is seen, in [0, 1]
+  double fill_seconds = 0;   ///< that went into nodes which were lacking
 };
 
 /// The photon maps of a scene, kept on the devices while pictures are rendered from them.
@@ -62,15 +78,17 @@ class SceneRenderer {
   /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a sample,
   /// glossy surfaces as if they were matt (host/renderer/cache/light_map_frames.hpp). For
   /// parameters that ask for light maps.
-  ///   powers         per layer: power x tint
-  ///   fill_seconds   that may go into valuing nodes which pixels lack: the nearest to the eye come
-  ///                  first, other pixels show a coarser level; infinite: all of them
-  ///   picture        of the film's size, linear RGB radiance
+  ///   powers    per layer: power x tint
+  ///   filling   of nodes which pixels lack: the nearest to the eye come first, other pixels show a
+  ///             coarser level
+  ///   picture   of the film's size, linear RGB radiance
+  ///   coarser   of the same scene: shown where these light maps have no node yet, and filled
+  ///             before them; null = none
   /// Once nothing is lacking, a frame does not depend on what was drawn before. Errors: those of
   /// `render`.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
-                  double fill_seconds, std::span<glm::vec3> picture,
-                  Progress& progress = Progress::none());
+                  const FrameFilling& filling, std::span<glm::vec3> picture,
+                  Progress& progress = Progress::none(), SceneRenderer* coarser = nullptr);
 
   /// From now on light maps take about so many bytes: `draw` forgets what was seen least recently,
   /// but nothing of the latest picture. It comes back to the same bits when it is seen again.

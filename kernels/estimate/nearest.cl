@@ -3,46 +3,36 @@
 
 #include "estimate/neighbourhood.clh"
 
-// One work-item, or with LANES one group, per hit of one map page; arguments as in estimate.cl.
+// One worker per hit of one map page; arguments as in estimate.cl.
 // After: neighbours[hit * k ...] holds photon indices in any order, 0xFFFFFFFF beyond the last;
 // squared_radius[hit] is that of the estimate's disc.
-__kernel GROUP_OF_LANES void nearest(
-    uint hit_count, uint first_hit, __global const float* hit_position,
-    __global const uint* hit_map, uint first_map, __global const PhotileGrid* grids,
-    __global const uint* cell_start, uint entry_stride, __global const float* entry_position,
-    __global const uint* entry_photon,
-#ifdef NORMALS
-    __global const float* entry_normal, __global const float* hit_face_normal, float least_cosine,
-#endif
-    uint k, float radius, __global uint* neighbours, __global float* squared_radius) {
-  LANE_MEMORY
-  for (uint h = WORKER; h < hit_count; h += WORKERS) {
-    const uint hit = first_hit + h;
-    __global uint* list = neighbours + hit * k;
-    if (FIRST_LANE) {
+__kernel WORKER_GROUP void nearest_by_selection(
+    const PhotileQuery query, __global const PhotileHit* hits,
+    __global const PhotileHitSurface* hit_surfaces, __global const PhotileGrid* grids,
+    __global const uint* cell_start, __global const uint* entry_photon,
+    __global const float* entry_position, __global const float* entry_normal,
+    __global uint* neighbours, __global float* squared_radius) {
+  WORKER_SPACE WorkerMemory memory;
+  const uint k = query.k;
+  for (uint h = WORKER; h < query.hit_count; h += WORKERS) {
+    const uint index = query.first_hit + h;
+    __global uint* list = neighbours + (size_t)index * k;
+    if (LANE == 0) {
       for (uint i = 0; i < k; ++i) list[i] = 0xFFFFFFFFu;
-      squared_radius[hit] = radius * radius;
+      squared_radius[index] = query.radius * query.radius;
     }
 
-    __global const PhotileGrid* grid = &grids[hit_map[hit] - first_map];
+    __global const PhotileGrid* grid = &grids[hits[index].map - query.first_map];
     if (grid->columns == 0) continue;
 
+    Hit hit;
+    hit.position = vload3(0, hits[index].position);
+    if (NORMALS) hit.face_normal = vload3(0, hit_surfaces[index].normal);
     Candidates candidates;
-#ifdef LANES
-    candidates.lanes = lanes;
-#endif
-    candidates.hit = vload3(hit, hit_position);
-    candidates.cell_start = cell_start;
-    candidates.position = entry_position;
-    candidates.stride = entry_stride;
-#ifdef NORMALS
-    const NormalFilter filter = {grid->mixed != 0, entry_normal, entry_stride,
-                                 vload3(hit, hit_face_normal), least_cosine};
-    candidates.filter = filter;
-#endif
+    begin_candidates(&candidates, &query, grid, cell_start, entry_position, entry_normal, &hit);
     Chunks chunks;
     Neighbourhood near;
-    find_neighbourhood(&candidates, &chunks, k, k, radius, 0.0f, grid, &near);
+    find_neighbourhood(&candidates, &chunks, k, k, query.radius, 0.0f, grid, &near, &memory);
 
     float farthest = 0.0f;
     uint found = 0;
@@ -56,7 +46,7 @@ __kernel GROUP_OF_LANES void nearest(
           const bool is_near =
               pass == 0 ? d < near.below : d == near.below && entry_photon[entry] <= last_tied;
           if (!is_near) continue;
-          if (FIRST_LANE) list[found] = entry_photon[entry];
+          if (LANE == 0) list[found] = entry_photon[entry];
           ++found;
           farthest = fmax(farthest, d);
         }
@@ -65,8 +55,8 @@ __kernel GROUP_OF_LANES void nearest(
       last_tied = last_tied_photon(&candidates, near.below, near.tied, entry_photon);
     }
     // The k-th is the farthest of the neighbours.
-    if (FIRST_LANE) {
-      squared_radius[hit] = near.squared_radius > 0.0f ? near.squared_radius : farthest;
+    if (LANE == 0) {
+      squared_radius[index] = near.squared_radius > 0.0f ? near.squared_radius : farthest;
     }
   }
 }

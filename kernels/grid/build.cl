@@ -7,4 +7,4 @@
 #include "grid/gather_entries.cl"
 #include "grid/size_grids.cl"
 #include "grid/sort_cells.cl"
-#include "shared/scan.clh"
+#include "shared/scan.cl"

@@ -2,22 +2,17 @@
 
 #include "photile/device/grid.h"
 #include "photile/device/map_shape.h"
-#include "shared/vectors.clh"
-
-// Symbols the host defines:
-//   PATCHES   maps serve several triangles, whose normals may differ
+#include "shared/symbols.clh"
 
 // Cells of a grid at most, per side: a bound for needle triangles.
-#ifndef MAX_CELLS_PER_SIDE
 #define MAX_CELLS_PER_SIDE 8192
-#endif
 
 // One work-item per map of a page.
 //   first_map        the page's first map
 //   shapes           one per pair of maps
 //   map_count        photons per map, from count_photons
 //   map_crowding     per map: density around a photon over the mean density of the surface
-//   map_mixed        per map, from count_photons (PATCHES)
+//   map_mixed        per map, from count_photons; with PATCHES
 //   radius           metres
 //   photons_per_cell aimed at
 // After: grids[i] is complete but for first_cell; cell_total[i] = columns * rows, 0 without
@@ -27,11 +22,8 @@
 // Minkowski sum with a disc), which is where photons of the map can be.
 __kernel void size_grids(uint map_total, uint first_map, __global const PhotileMapShape* shapes,
                          __global const uint* map_count, __global const float* map_crowding,
-#ifdef PATCHES
-                         __global const uint* map_mixed,
-#endif
-                         float radius, float photons_per_cell, __global PhotileGrid* grids,
-                         __global uint* cell_total) {
+                         __global const uint* map_mixed, float radius, float photons_per_cell,
+                         __global PhotileGrid* grids, __global uint* cell_total) {
   for (uint i = get_global_id(0); i < map_total; i += get_global_size(0)) {
     const uint map = first_map + i;
     const uint count = map_count[map];
@@ -71,9 +63,7 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
     grid.slack = 16.0f * FLT_EPSILON * (width_u + width_v);
     grid.columns = (uint)ceil(width_u / cell_width);
     grid.rows = (uint)ceil(width_v / cell_height);
-#ifdef PATCHES
-    grid.mixed = map_mixed[map];
-#endif
+    if (PATCHES) grid.mixed = map_mixed[map];
     grids[i] = grid;
     cell_total[i] = grid.columns * grid.rows;
   }

@@ -1,15 +1,14 @@
 // Build, step 6: bring the photons of each cell into ascending order. Work-items scatter in any
 // order; sorted, the map is the same on every run and runtime.
-
-// Symbols the host defines:
-//   IN_GROUPS   work-items of a group sort a crowded cell together: on a GPU one alone takes minutes
 //
-// Cells up to PHOTILE_INSERTION_LIMIT are sorted by insertion, larger ones by heap sort, or by a
-// group (a million photons may lie in one point).
+// Cells up to PHOTILE_INSERTION_LIMIT are sorted by insertion, larger ones by heap sort, or with
+// IN_GROUPS by a group: on a GPU one work-item alone takes minutes (a million photons may lie in
+// one point).
 
-#include "photile/device/grid.h"
+#include "photile/device/constants.h"
+#include "shared/symbols.clh"
 
-void insertion_sort(__global uint* values, uint count) {
+static void insertion_sort(__global uint* values, uint count) {
   for (uint i = 1; i < count; ++i) {
     const uint value = values[i];
     uint j = i;
@@ -18,12 +17,51 @@ void insertion_sort(__global uint* values, uint count) {
   }
 }
 
-#ifdef IN_GROUPS
+// Moves values[root] down until the max-heap below it is restored.
+static void sift_down(__global uint* values, uint root, uint count) {
+  const uint value = values[root];
+  uint child = 2 * root + 1;
+  while (child < count) {
+    if (child + 1 < count && values[child + 1] > values[child]) ++child;
+    if (values[child] <= value) break;
+    values[root] = values[child];
+    root = child;
+    child = 2 * root + 1;
+  }
+  values[root] = value;
+}
 
-#define CROWDED_ARGUMENTS , __global uint *crowded, __global uint *crowded_cell
-#define SORT_CROWDED crowded_cell[atomic_inc(crowded)] = cell
+static void heap_sort(__global uint* values, uint count) {
+  for (uint root = count / 2; root-- > 0;) sift_down(values, root, count);
+  for (uint last = count - 1; last > 0; --last) {
+    const uint largest = values[0];
+    values[0] = values[last];
+    values[last] = largest;
+    sift_down(values, 0, last);
+  }
+}
 
-#define SORT_GROUP 256
+// One work-item per cell: sorts it, or with IN_GROUPS lists crowded ones in crowded_cell. Before:
+// crowded[0] is zero.
+__kernel void sort_cells(uint cell_count, __global const uint* cell_start,
+                         __global uint* entry_photon, __global uint* crowded,
+                         __global uint* crowded_cell) {
+  for (uint cell = get_global_id(0); cell < cell_count; cell += get_global_size(0)) {
+    const uint start = cell_start[cell];
+    const uint count = cell_start[cell + 1] - start;
+    if (count <= PHOTILE_INSERTION_LIMIT) {
+      insertion_sort(entry_photon + start, count);
+    } else if (IN_GROUPS) {
+      crowded_cell[atomic_inc(crowded)] = cell;
+    } else {
+      heap_sort(entry_photon + start, count);
+    }
+  }
+}
+
+#if IN_GROUPS
+
+#define SORT_GROUP PHOTILE_COOPERATIVE_GROUP
 
 // One group per crowded cell, in turn. The order of the list does not matter: the exchanges of a
 // cell are those of Batcher's merge exchange (Knuth, "The Art of Computer Programming", 5.2.2,
@@ -58,48 +96,4 @@ __kernel __attribute__((reqd_work_group_size(SORT_GROUP, 1, 1))) void sort_crowd
   }
 }
 
-#else
-
-// Moves values[root] down until the max-heap below it is restored.
-void sift_down(__global uint* values, uint root, uint count) {
-  const uint value = values[root];
-  uint child = 2 * root + 1;
-  while (child < count) {
-    if (child + 1 < count && values[child + 1] > values[child]) ++child;
-    if (values[child] <= value) break;
-    values[root] = values[child];
-    root = child;
-    child = 2 * root + 1;
-  }
-  values[root] = value;
-}
-
-void heap_sort(__global uint* values, uint count) {
-  for (uint root = count / 2; root-- > 0;) sift_down(values, root, count);
-  for (uint last = count - 1; last > 0; --last) {
-    const uint largest = values[0];
-    values[0] = values[last];
-    values[last] = largest;
-    sift_down(values, 0, last);
-  }
-}
-
-#define CROWDED_ARGUMENTS
-#define SORT_CROWDED heap_sort(entry_photon + start, count)
-
 #endif
-
-// One work-item per cell: sorts it, or in groups lists crowded ones in crowded_cell. Before:
-// crowded[0] is zero.
-__kernel void sort_cells(uint cell_count, __global const uint* cell_start,
-                         __global uint* entry_photon CROWDED_ARGUMENTS) {
-  for (uint cell = get_global_id(0); cell < cell_count; cell += get_global_size(0)) {
-    const uint start = cell_start[cell];
-    const uint count = cell_start[cell + 1] - start;
-    if (count <= PHOTILE_INSERTION_LIMIT) {
-      insertion_sort(entry_photon + start, count);
-    } else {
-      SORT_CROWDED;
-    }
-  }
-}

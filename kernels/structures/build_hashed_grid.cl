@@ -4,7 +4,7 @@
 // is kept at b + 1: scanned, that is where b starts, and scattering moves it to where b ends.
 
 #include "grid/sort_cells.cl"
-#include "shared/scan.clh"
+#include "shared/scan.cl"
 #include "structures/hashed_cells.clh"
 
 // One work-item per photon, in both kernels.

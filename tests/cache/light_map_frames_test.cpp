@@ -1,6 +1,7 @@
 // Quick frames from light maps: what they show while nodes are lacking, and once none is.
 #include "cache/light_map_frames.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -29,11 +30,11 @@ struct DrawnRoom {
         frames(rays, maps, source) {}
 
   std::vector<glm::vec3> draw(const Camera& camera, double seconds, float power = 1.0f,
-                              int samples = 1) {
+                              int samples = 1, cache::LightMapFrames* coarser = nullptr) {
     std::vector<glm::vec3> picture(std::size_t{width} * height);
     const std::vector<glm::vec3> powers{glm::vec3(power)};
-    drawn =
-        frames.draw(camera, {width, height, samples}, powers, seconds, picture, Progress::none());
+    drawn = frames.draw(camera, {width, height, samples}, powers, seconds, picture,
+                        Progress::none(), coarser);
     return picture;
   }
 
@@ -110,6 +111,47 @@ TEST_CASE("Surface whose finer nodes are lacking shows coarser ones, and none is
     for (const glm::vec3& pixel : picture) REQUIRE(pixel.x + pixel.y + pixel.z > 0);
   }
   CHECK(with_nodes >= 15);
+}
+
+TEST_CASE("Where there is no node yet, other light maps are shown, which are filled before",
+          "[light_map_frames]") {
+  const auto constant = [](float light) {
+    return [light](const glm::vec3&, std::uint32_t) { return light; };
+  };
+  DrawnRoom coarse(constant(1.0f)), fine(constant(2.0f));
+  const Camera camera = in_the_room(0.5);
+  const auto of_coarse = coarse.draw(camera, all);
+  CHECK(same_pixels(fine.draw(camera, 0, 1.0f, 1, &coarse.frames), of_coarse));
+  CHECK(fine.drawn.lacking > 0);
+  CHECK(fine.drawn.empty == 0);
+  CHECK(fine.drawn.lacking_share == 1);
+  fine.draw(camera, 1e-7, 1.0f, 1, &coarse.frames);  // a few nodes
+  CHECK(fine.drawn.lacking_share > 0);
+  CHECK(fine.drawn.lacking_share < 1);
+  const auto of_fine = fine.draw(camera, all, 1.0f, 1, &coarse.frames);
+  CHECK(fine.drawn.lacking == 0);
+  CHECK(fine.drawn.lacking_share == 0);
+  CHECK(same_pixels(of_fine, fine.draw(camera, all)));
+
+  DrawnRoom empty(constant(1.0f)), waiting(constant(2.0f));
+  waiting.draw(camera, 1e-7, 1.0f, 1, &empty.frames);
+  CHECK(waiting.maps.statistics().nodes == 0);
+  CHECK(empty.maps.statistics().nodes > 0);
+}
+
+TEST_CASE("A frame that nobody waits for any longer values no more nodes", "[light_map_frames]") {
+  DrawnRoom room;
+  std::vector<glm::vec3> picture(std::size_t{width} * height);
+  const std::vector<glm::vec3> powers{glm::vec3(1.0f)};
+  int asked = 0;
+  const DrawnFrame drawn =
+      room.frames.draw(in_the_room(0.5), {width, height, 1}, powers,
+                       FrameFilling(1e6, [&] { return ++asked > 3; }), picture, Progress::none());
+  CHECK(drawn.lacking > 0);
+  CHECK(room.maps.statistics().nodes > 0);
+  CHECK(*std::min_element(picture.begin(), picture.end(), [](const auto& a, const auto& b) {
+    return a.x < b.x;
+  }) != glm::vec3(0.0f));
 }
 
 TEST_CASE("A camera that stands still, or comes back, sees the same bits", "[light_map_frames]") {

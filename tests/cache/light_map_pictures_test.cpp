@@ -88,7 +88,7 @@ TEST_CASE("Nodes are as far apart as the radius asks, and no closer than half th
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 2'000}).photons;
   const std::vector<double> powers = estimate::layer_powers(scene);
   const auto spacing = [&](double radius) {
-    return cache::light_map_parameters(scene, photons, 100, radius, 60, 0, powers).spacing;
+    return cache::light_map_parameters(scene, photons, 100, radius, 60, 0, 0, powers).spacing;
   };
   CHECK(spacing(0.4) == 2 * spacing(0.2));
   CHECK(spacing(0.4) < 0.4);
@@ -149,6 +149,7 @@ TEST_CASE("A first picture shows a lamp's closed form, whatever brings that ligh
   parameters.maps = GENERATE(MapMode::automatic, MapMode::naive);
   parameters.light_maps = LightMapMode::automatic;
   parameters.direct_rays = GENERATE(0, 1);
+  parameters.light_map_rays = GENERATE(0, 64);
   constexpr double power = 3;
   const int width = parameters.film.width, height = parameters.film.height;
   std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));

@@ -196,7 +196,7 @@ TEST_CASE("a build error names file and line and carries the log") {
 
 TEST_CASE("definitions become options that round-trip") {
   CHECK(Defines().set("K", 50ll).set("FLAG").set("X", 0.1).set("ONE", 1.0).options() ==
-        "-D K=50 -D FLAG -D X=0.1f -D ONE=1.0f");
+        "-D K=50 -D FLAG=1 -D X=0.1f -D ONE=1.0f");
   CHECK(Defines().set("N", -3ll).options() == "-D N=-3");
   CHECK(Defines().options().empty());
   CHECK_THROWS_AS(Defines().set("X", 1e300), photile::DeviceError);

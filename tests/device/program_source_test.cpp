@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "device/embedded_files.hpp"
+#include "device/launch.hpp"
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 
@@ -29,6 +30,45 @@ TEST_CASE("includes are resolved once each, with line markers") {
         "#line 3 \"source/a.cl\"\n"
         "#line 4 \"source/a.cl\"\n"
         "#include <stdint.h>\nlast\n");
+}
+
+TEST_CASE("a file under a condition is there for whoever includes it without one") {
+  // Compilers see what is wrong: with the guards of the first include alone, `value` is missing.
+  register_kernel_source("source/value.clh", "#pragma once\nconstant int value = 3;\n");
+  register_kernel_source("source/twice.clh",
+                         "#pragma once\n#include \"source/value.clh\"\n"
+                         "static int twice(void) { return 2 * value; }\n");
+  register_kernel_source("source/conditional.cl",
+                         "#if FIRST\n#include \"source/twice.clh\"\n#endif\n"
+                         "#include \"source/twice.clh\"\n#include \"source/value.clh\"\n"
+                         "kernel void k(global int* out) { *out = twice() + value; }\n");
+  photile::device::Context context({});
+  for (const long long first : {0ll, 1ll}) {
+    CAPTURE(first);
+    photile::device::Defines defines;
+    defines.set("FIRST", first);
+    auto out = context.allocate<int>(1, "result");
+    photile::device::Launch(context, context.kernel("source/conditional.cl", "k", defines))
+        .set("out", out)
+        .run_no_more(1, 1);
+    int result = 0;
+    context.read(out, std::span(&result, 1));
+    CHECK(result == 9);
+  }
+}
+
+TEST_CASE("a classic guard may stand around includes") {
+  register_kernel_source(
+      "source/guarded.h",
+      "#ifndef GUARDED\n#define GUARDED\n#include \"source/value2.h\"\n#endif\n");
+  register_kernel_source("source/value2.h",
+                         "#ifndef VALUE2\n#define VALUE2\nconstant int value2 = 4;\n#endif\n");
+  register_kernel_source("source/guards.cl",
+                         "#include \"source/guarded.h\"\n#include \"source/guarded.h\"\n"
+                         "#include \"source/value2.h\"\n"
+                         "kernel void k(global int* out) { *out = value2; }\n");
+  photile::device::Context context({});
+  CHECK_NOTHROW(context.kernel("source/guards.cl", "k", {}));
 }
 
 TEST_CASE("an unknown include names itself and its includer") {

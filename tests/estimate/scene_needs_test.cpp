@@ -1,23 +1,15 @@
-// What a scene does not need is not there: no bytes in its records, no text in its kernels.
+// What a scene does not need is not there: no bytes in its records.
 #include "photile/scene_needs.hpp"
 
 #include <fmt/format.h>
 
-#include <array>
 #include <catch2/catch.hpp>
-#include <cstdio>
-#include <fstream>
-#include <memory>
-#include <regex>
 
-#include "device/program_source.hpp"
-#include "estimate/specialisation.hpp"
 #include "maps/entry_defines.hpp"
 #include "maps/map_store.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_tracer.hpp"
 #include "photile/primary_hits.hpp"
-#include "temporary_folder.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
@@ -42,39 +34,6 @@ std::size_t bytes_per_reference(const maps::MapPage& page) {
   return planes(page.entry_position) + planes(page.entry_flux) + planes(page.entry_incoming) +
          planes(page.entry_normal) + page.entry_light.size() / page.entry_stride +
          page.entry_photon.size() * sizeof(std::uint32_t) / page.entry_count;
-}
-
-/// A kernel file as a runtime's compiler sees it: its includes, then the C preprocessor.
-std::string preprocessed(const std::string& file, const device::Defines& defines) {
-  const TemporaryFolder folder;
-  const std::filesystem::path source = folder.path / "kernel.c";
-  std::ofstream(source) << device::assemble_source(file);
-  const std::string command = fmt::format("'{}' -E -P -x c -D __OPENCL_VERSION__=120 {} '{}'",
-                                          PHOTILE_C_COMPILER, defines.options(), source.string());
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
-  REQUIRE(pipe != nullptr);
-  std::string text;
-  std::array<char, 4096> part{};
-  while (const std::size_t read = std::fread(part.data(), 1, part.size(), pipe.get())) {
-    text.append(part.data(), read);
-  }
-  REQUIRE(text.find("__kernel") != std::string::npos);
-  return text;
-}
-
-bool has_word(const std::string& text, const std::string& word) {
-  return std::regex_search(text, std::regex("\\b" + word + "\\b"));
-}
-
-/// Which of the words the text has, as "all" or "none", or those that are there.
-std::string found(const std::string& text, const std::vector<std::string>& words) {
-  std::vector<std::string> there;
-  for (const std::string& word : words) {
-    if (has_word(text, word)) there.push_back(word);
-  }
-  if (there.empty()) return "none";
-  if (there.size() == words.size()) return "all";
-  return fmt::format("{}", fmt::join(there, " "));
 }
 
 constexpr SceneNeeds diffuse_of(std::uint32_t lights) { return {.light_count = lights}; }
@@ -124,37 +83,6 @@ TEST_CASE("a diffuse scene of one light has the smallest records, others what th
   REQUIRE(hits.size() > 0);
   CHECK(hits.outgoing.size() == (needs.glossy ? hits.size() : 0));
   CHECK(hits.lobe.size() == (needs.glossy ? hits.size() : 0));
-}
-
-TEST_CASE("kernels hold no text of lobes or lights that the scene does not have", "[needs]") {
-  const std::vector<std::string> glossy_words{"entry_incoming", "hit_outgoing", "hit_normal",
-                                              "radiance"};
-  const std::vector<std::string> light_words{"entry_light"};
-  const std::vector<std::string> many_words{"slot_light", "slots_taken"};
-  for (const EstimateStrategy strategy : all_estimate_strategies) {
-    const bool lanes = strategy == EstimateStrategy::lanes;
-    for (const SceneNeeds& needs : {diffuse_of(1), diffuse_of(5), diffuse_of(300), glossy_of(1),
-                                    glossy_of(5), glossy_of(300)}) {
-      const estimate::Specialisation choice =
-          estimate::specialise({.strategy = strategy, .vector_width = lanes ? 32 : 1}, needs, 50);
-      CAPTURE(lanes, needs.glossy, needs.light_count);
-      const std::string text = preprocessed("estimate/estimate.cl", choice.defines());
-      CHECK(found(text, glossy_words) == (needs.glossy ? "all" : "none"));
-      CHECK(found(text, light_words) == (needs.several_lights() ? "all" : "none"));
-      CHECK(found(text, many_words) == (needs.many_lights() ? "all" : "none"));
-    }
-  }
-}
-
-TEST_CASE("kernels that build maps copy what the scene's records hold, and no more", "[needs]") {
-  for (const SceneNeeds& needs : {diffuse_of(1), diffuse_of(5), glossy_of(1), glossy_of(5)}) {
-    CAPTURE(needs.glossy, needs.light_count);
-    device::Defines defines;
-    maps::set_entry_defines(defines, needs);
-    const std::string text = preprocessed("grid/build.cl", defines);
-    CHECK(found(text, {"incoming", "entry_incoming"}) == (needs.glossy ? "all" : "none"));
-    CHECK(found(text, {"light", "entry_light"}) == (needs.several_lights() ? "all" : "none"));
-  }
 }
 
 TEST_CASE("only what triangles have is needed: unused materials ask for nothing", "[needs]") {

@@ -11,7 +11,7 @@ namespace photile::test {
 namespace {
 
 device::KernelSet kernels() {
-  return {device::context_of(test::device()), "shared/scan.clh",
+  return {device::context_of(test::device()), "shared/scan.cl",
           maps::group_defines(test::device().info())};
 }
 

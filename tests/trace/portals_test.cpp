@@ -1,6 +1,7 @@
 // Photons and looks through windows: what they find is what there is without them, sooner.
 #include "trace/portals.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -168,6 +169,43 @@ TEST_CASE("each of two windows is found once", "[portals]") {
     const glm::vec3 middle = portals[i].corner + 0.5f * (portals[i].u + portals[i].v);
     CHECK(glm::distance(middle, glm::vec3(1.8f, 1.4f, i == 0 ? 0.0f : Room::depth)) < 0.2f);
   }
+}
+
+TEST_CASE(
+    "what lights a window's frame from outside comes by the portal that is found: no photon in the "
+    "room weighs many times as much as others",
+    "[portals]") {
+  // In a reveal of 30 cm, a pane at its outer end, and bars of a frame 5 cm behind it.
+  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.8f)));
+  const std::uint32_t pane = builder.add(glass(1.5f, true));
+  constexpr float left = Room::left, right = Room::right, sill = Room::sill, head = Room::head;
+  constexpr float out = -0.3f, at = -0.25f, bar = 0.06f;
+  builder.quad({left, sill, out}, {right, sill, out}, {right, head, out}, {left, head, out}, pane);
+  builder.quad({left, sill, out}, {left, sill, 0}, {right, sill, 0}, {right, sill, out}, white);
+  builder.quad({left, head, out}, {right, head, out}, {right, head, 0}, {left, head, 0}, white);
+  builder.quad({left, sill, out}, {left, head, out}, {left, head, 0}, {left, sill, 0}, white);
+  builder.quad({right, sill, out}, {right, sill, 0}, {right, head, 0}, {right, head, out}, white);
+  const auto beam = [&](float x0, float x1, float y0, float y1) {
+    builder.quad({x0, y0, at}, {x1, y0, at}, {x1, y1, at}, {x0, y1, at}, white);
+  };
+  beam(left, left + bar, sill, head);
+  beam(right - bar, right, sill, head);
+  beam(left, right, sill, sill + bar);
+  beam(left, right, head - bar, head);
+  Scene scene = builder.build();
+  add_environment(scene, even_surroundings());
+  scene.portals = find_portals(scene);
+  REQUIRE(scene.portals.size() == 1);
+  const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 200'000}).photons;
+  std::vector<float> fluxes;
+  for (std::size_t i = 0; i < photons.size(); ++i) {
+    if (Room::inside(scene, photons.sided_triangle[i]))
+      fluxes.push_back(luminance(photons.flux[i]));
+  }
+  REQUIRE(fluxes.size() > 10'000);
+  std::sort(fluxes.begin(), fluxes.end());
+  CHECK(fluxes.back() < 10 * fluxes[fluxes.size() / 2]);
 }
 
 TEST_CASE("photons through portals start before all of the scene, wherever it lies", "[portals]") {

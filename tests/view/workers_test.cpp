@@ -1,4 +1,5 @@
 // Photon maps that get better in the background, and the frames that are rendered from them.
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <thread>
@@ -34,7 +35,7 @@ Camera from_above() { return Camera::look_at({0, 1, 1}, {0, 0, 0}, {0, 1, 0}, gl
 
 RenderParameters few_photons() {
   RenderParameters parameters;
-  parameters.photons.emitted_photons = 16'000;
+  parameters.photons.emitted_photons = 40'000;
   return parameters;
 }
 
@@ -55,21 +56,13 @@ void wait_for(const Condition& condition) {
 
 }  // namespace
 
-TEST_CASE("photons grow from few to all that were asked for") {
-  CHECK(generations_to(16'000'000) ==
-        std::vector<std::uint64_t>{8192, 1'000'000, 4'000'000, 16'000'000});
-  CHECK(generations_to(500'000) == std::vector<std::uint64_t>{8192, 125'000, 500'000});
-  CHECK(generations_to(100'000) == std::vector<std::uint64_t>{6250, 25'000, 100'000});
-  CHECK(generations_to(1) == std::vector<std::uint64_t>{1});
-}
-
 TEST_CASE("a viewer that stands still sees what render gives, bit for bit") {
   const Scene scene = lit_floor();
   FrameWorker frames(4, 30);
   frames.show({from_above(), 40, 30, false});
   PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 16'000; });
+  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
   const auto frame = frames.latest();
   CHECK(frame->samples_per_pixel == 4);
 
@@ -99,7 +92,7 @@ TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what
   frames.show({camera, 40, 30, true, false, powers});
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 16'000; });
+  wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 40'000; });
   const auto quick = frames.latest();
   REQUIRE(quick->mixed.size() == 40 * 30);
   CHECK(quick->mixed[15 * 40 + 20].x > 0);
@@ -118,7 +111,7 @@ TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what
 TEST_CASE("of several passes a viewer at rest sees what render gives of all") {
   const Scene scene = lit_floor();
   RenderParameters parameters = few_photons();
-  parameters.photons.emitted_photons = 15'000;
+  parameters.photons.emitted_photons = 45'000;
   parameters.passes = 3;
   parameters.film = {40, 30, 4};
   parameters.light_maps = LightMapMode::off;
@@ -127,9 +120,44 @@ TEST_CASE("of several passes a viewer at rest sees what render gives of all") {
   frames.show({from_above(), 40, 30, false, false, powers});
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 15'000; });
+  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 45'000; });
   const RenderResult expected = render(scene, from_above(), test::device(), parameters);
   CHECK(frames.latest()->layers.layers[0].radiance == expected.layers.layers[0].radiance);
+  CHECK_FALSE(frames.take_error());
+  CHECK_FALSE(photons.take_error());
+}
+
+TEST_CASE(
+    "the first picture of nodes that gather has light everywhere, and no samples are made of it") {
+  const Scene scene = lit_floor();
+  RenderParameters parameters = few_photons();
+  parameters.light_map_rays = 16;
+  FrameWorker frames(4, 30);
+  frames.show({from_above(), 40, 30, false, false, {glm::vec3(100.0f)}});
+  std::vector<std::shared_ptr<MapGeneration>> delivered;
+  std::atomic<int> count{0};
+  PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
+                       [&](std::shared_ptr<MapGeneration> maps) {
+                         if (delivered.empty()) frames.use(maps);
+                         delivered.push_back(std::move(maps));
+                         ++count;
+                       });
+  wait_for([&] { return count == 2; });
+  const std::shared_ptr<MapGeneration> first = delivered[0], whole = delivered[1];
+  CHECK_FALSE(first->whole);
+  CHECK(whole->whole);
+  CHECK(whole->coarser == first);
+  CHECK(first->shown);
+  wait_for([&] { return frames.latest() && frames.latest()->lacking == 0; });
+  const auto smooth = frames.latest();
+  REQUIRE(smooth->mixed.size() == 40 * 30);
+  // Of 100 lm over the floor: 8 cd/sr, at a metre below it, half of which is reflected evenly.
+  CHECK(smooth->mixed[15 * 40 + 20].y ==
+        Approx(100 / (4 * glm::pi<double>()) * 0.5 / glm::pi<double>()).epsilon(0.03));
+  CHECK_FALSE(frames.finished());
+  frames.use(whole);
+  wait_for([&] { return frames.finished(); });
+  CHECK(frames.latest()->mixed.empty());
   CHECK_FALSE(frames.take_error());
   CHECK_FALSE(photons.take_error());
 }
@@ -142,7 +170,7 @@ TEST_CASE("a lamp that is turned down is seen in the next quick frame") {
   frames.show({from_above(), 40, 30, true, false, {glm::vec3(100.0f)}});
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 16'000; });
+  wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 40'000; });
   std::shared_ptr<const Frame> bright, dark;
   for (int i = 0; i < 20; ++i) {  // until all nodes are there
     bright = frames.latest();
@@ -174,7 +202,7 @@ TEST_CASE("pooled layers of a frame are the sums of its lights at their powers")
   frames.show({from_above(), 40, 30, false, false, {}, std::make_shared<LightPooling>(pooling)});
   PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 16'000; });
+  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
   const auto frame = frames.latest();
   REQUIRE(frame->layers.layers.size() == 2);
   REQUIRE(frame->noise.paths.size() == 2);
@@ -199,7 +227,7 @@ TEST_CASE("reflections come with a frame where they are asked for: none of a mat
   frames.show({from_above(), 40, 30, false, true});
   PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 16'000; });
+  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
   const auto frame = frames.latest();
   REQUIRE(frame->reflections);
   REQUIRE(frame->reflections->layers[0].radiance.size() == 40 * 30);
@@ -219,7 +247,7 @@ TEST_CASE("a frame is of the last viewpoint that was asked for") {
     frames.show({camera, 40, 30, true});
   }
   frames.show({camera, 44, 33, false});
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 16'000; });
+  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
   CHECK(frames.latest()->camera.position == camera.position);
   CHECK(frames.latest()->layers.width == 44);
 }

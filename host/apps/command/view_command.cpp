@@ -98,7 +98,7 @@ void run_view(ViewOptions& options) {
 
 void add_view_command(CLI::App& photile) {
   auto options = std::make_shared<ViewOptions>();
-  options->render.parameters.film.samples_per_pixel = defaults::view_samples_per_pixel;
+  set_quality(options->render.quality_options(), Quality::good);
   CLI::App* command =
       photile.add_subcommand("view", "Walk through a scene in a window, and set its lamps");
   command

@@ -37,6 +37,7 @@ struct Frame {
   std::shared_ptr<const Scene> scene;                 ///< that it shows, as the maps hold it
   Camera camera;                                      ///< in the scene's coordinates
   int samples_per_pixel = 1;
+  double lacking = 0;                 ///< share of the surface whose light is not yet final
   std::uint64_t emitted_photons = 0;  ///< paths of the maps it was estimated from
   EstimateNoise noise;
   double seconds = 0;        ///< that it took

@@ -8,6 +8,17 @@
 #include "photile/errors.hpp"
 
 namespace photile::view {
+namespace {
+
+/// Seconds that the first picture of a scene may take to have light everywhere.
+constexpr double patience = 10;
+/// Of a viewer at rest: seconds of valuing nodes for each second of drawing.
+constexpr double filled_over_drawn = 5;
+/// Samples of the first whole picture after quick ones, and by how much each has more than the one
+/// before: each starts anew.
+constexpr int first_samples = 4, more_samples = 4;
+
+}  // namespace
 
 /// Ends a frame that nobody waits for any longer.
 class FrameWorker::Interruption : public Progress {
@@ -71,33 +82,40 @@ std::exception_ptr FrameWorker::take_error() {
   return std::exchange(error_, nullptr);
 }
 
+/// Whether something else is wanted by now.
+bool FrameWorker::outdated(const Task& task) const {
+  const std::lock_guard lock(mutex_);
+  return task.version != version_;
+}
+
 /// Waits until there is something to do. False: the end.
 bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   std::unique_lock lock(mutex_);
   const auto has_work = [&] {
-    const bool still = !request_.moving && done_samples_ < most_samples_;
+    const bool still = maps_ && maps_->whole && !request_.moving && done_samples_ < most_samples_;
     return maps_ && request_.width > 0 && (done_version_ != version_ || lacking_ || still);
   };
   if (!wake_.wait(lock, stop, has_work) || stop.stop_requested()) return false;
   const bool shown = done_version_ == version_;
   const bool refines = !request_.moving && shown && done_samples_ > 0;
   const bool whole = shown && !lacking_ && !request_.moving;
-  task = {request_, maps_, refines ? std::min(2 * done_samples_, most_samples_) : 1, version_,
-          !request_.powers.empty() && !whole && maps_->renderer->draws()};
+  const bool draws = !request_.powers.empty() && maps_->renderer->draws();
+  const int first = draws && !request_.moving ? first_samples : 1;
+  task = {request_, maps_, std::min(refines ? more_samples * done_samples_ : first, most_samples_),
+          version_, draws && !whole};
   return true;
 }
 
-/// What a frame leaves of its time, and a little in any case: nodes must come at last. At rest no
-/// frame has to be in time, and drawing what hardly changed would take most of it: nodes that
-/// gather are dear.
+/// What a moving viewer's frame leaves of its time, and a little in any case: nodes must come at
+/// last. At rest no frame has to be in time, and drawing what hardly changed would take most of it.
 double FrameWorker::time_to_fill(bool moving) const {
-  const double least = 0.25 * frame_seconds_;
-  return std::max(frame_seconds_ - draw_seconds_, moving ? least : 2 * draw_seconds_ + least);
+  if (!moving) return filled_over_drawn * draw_seconds_ + frame_seconds_;
+  return std::max(frame_seconds_ - draw_seconds_, 0.25 * frame_seconds_);
 }
 
 /// The whole window, however many nodes are missing: new surface is seen coarsely at once, and
-/// finer from frame to frame, by what there is time for. New maps are seen once they show all
-/// surface.
+/// finer from frame to frame, by what there is time for. The first picture of a scene shows light
+/// on all surface, or on as much of it as there is patience for.
 std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, const Task& task) {
   const Stopwatch stopwatch;
   const FrameRequest& wanted = task.request;
@@ -106,31 +124,24 @@ std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, cons
   frame.layers.height = wanted.height;
   frame.mixed.resize(static_cast<std::size_t>(wanted.width) *
                      static_cast<std::size_t>(wanted.height));
-  const auto draw_from = [&](MapGeneration& maps, double fill_seconds) {
-    const Stopwatch of_drawing;
-    const Film film{wanted.width, wanted.height, 1};
-    const DrawnFrame drawn =
-        maps.renderer->draw(wanted.camera, film, wanted.powers, fill_seconds, frame.mixed);
-    draw_seconds_ = of_drawing.seconds() - drawn.fill_seconds;
-    return drawn;
-  };
-  if (drawn_maps_ && drawn_maps_->scene != task.maps->scene) drawn_maps_ = nullptr;
-  DrawnFrame drawn = draw_from(*task.maps, time_to_fill(wanted.moving));
-  std::shared_ptr<MapGeneration> maps = task.maps;
-  if (drawn.empty > 0 && drawn_maps_ && drawn_maps_ != task.maps) {
-    maps = drawn_maps_;
-    draw_from(*maps, 0);
-  }
-  while (drawn.empty > 0 && !drawn_maps_ && !stop.stop_requested()) {  // the first picture
-    drawn = draw_from(*maps, time_to_fill(wanted.moving));
-  }
-  drawn_maps_ = maps;
+  MapGeneration& maps = *task.maps;
+  const bool is_first = drawn_scene_ != maps.scene;
+  const FrameFilling filling(is_first ? patience : time_to_fill(wanted.moving), [&] {
+    return stop.stop_requested() || (!is_first && !wanted.moving && outdated(task));
+  });
+  const Stopwatch of_drawing;
+  const DrawnFrame drawn = maps.renderer->draw(
+      wanted.camera, {wanted.width, wanted.height, 1}, wanted.powers, filling, frame.mixed,
+      Progress::none(), maps.coarser ? maps.coarser->renderer.get() : nullptr);
+  draw_seconds_ = of_drawing.seconds() - drawn.fill_seconds;
+  drawn_scene_ = maps.scene;
+  frame.lacking = drawn.lacking_share;
   lacks_nodes_ = drawn.lacking > 0;
-  frame.photons = maps->photons;
-  frame.scene = maps->scene;
+  frame.photons = maps.photons;
+  frame.scene = maps.scene;
   frame.camera = wanted.camera;
-  frame.emitted_photons = maps->emitted_photons;
-  frame.noise = maps->noise;
+  frame.emitted_photons = maps.emitted_photons;
+  frame.noise = maps.noise;
   frame.seconds = stopwatch.seconds();
   return std::make_shared<Frame>(std::move(frame));
 }
@@ -144,10 +155,8 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   if (task.request.moving) std::tie(film.width, film.height) = size_.fit(film.width, film.height);
   film.samples_per_pixel = task.samples;
   // What is asked for while the viewer moves would end no frame at all.
-  Interruption progress([&] {
-    const std::lock_guard lock(mutex_);
-    return stop.stop_requested() || (!task.request.moving && task.version != version_);
-  });
+  Interruption progress(
+      [&] { return stop.stop_requested() || (!task.request.moving && outdated(task)); });
   const Stopwatch stopwatch;
   const LightPooling* const pooling = task.request.pooling.get();
   RenderResult result = task.maps->renderer->render(task.request.camera, film, progress, pooling);
@@ -162,7 +171,6 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   if (std::exchange(timed_maps_, task.maps.get()) == task.maps.get()) {
     size_.record(static_cast<double>(film.width) * film.height * task.samples, seconds);
   }
-  drawn_maps_ = task.maps;
   return std::make_shared<Frame>(
       Frame{std::move(result.layers),
             {},
@@ -171,6 +179,7 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
             task.maps->scene,
             task.request.camera,
             result.used.film.samples_per_pixel,
+            0.0,
             task.maps->emitted_photons,
             pooling ? task.maps->noise.pooled(*pooling) : task.maps->noise,
             seconds,
@@ -182,6 +191,7 @@ void FrameWorker::work(std::stop_token stop) {
   while (next_task(stop, task)) {
     try {
       std::shared_ptr<const Frame> frame = render(stop, task);
+      task.maps->shown = true;
       const std::lock_guard lock(mutex_);
       latest_ = std::move(frame);
       done_version_ = task.version;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -70,6 +71,7 @@ class FrameWorker {
   bool next_task(std::stop_token stop, Task& task);
   std::shared_ptr<const Frame> render(const std::stop_token& stop, const Task& task);
   std::shared_ptr<const Frame> draw(const std::stop_token& stop, const Task& task);
+  bool outdated(const Task& task) const;
   double time_to_fill(bool moving) const;
 
   const int most_samples_;
@@ -86,8 +88,8 @@ class FrameWorker {
   // The worker's alone:
   const double frame_seconds_;  ///< aimed at while moving
   FrameSize size_;
-  std::shared_ptr<MapGeneration> drawn_maps_;  ///< those of the frame before
-  bool lacks_nodes_ = false;                   ///< the frame in the making
+  std::optional<std::shared_ptr<const Scene>> drawn_scene_;  ///< that of the frame before
+  bool lacks_nodes_ = false;                                 ///< the frame in the making
   double draw_seconds_ = 0;                    ///< of the newest quick frame, its nodes left out
   const MapGeneration* timed_maps_ = nullptr;  ///< those of the frame before
   std::jthread thread_;                        // last: it uses all of the above

@@ -61,6 +61,13 @@ void draw_frame_times(const PanelReadings& readings) {
   const std::string newest = times.empty() ? "" : time_text(times.back());
   ImGui::PlotLines("##times", times.data(), static_cast<int>(times.size()), 0, newest.c_str(), 0,
                    FLT_MAX, ImVec2(ImGui::GetContentRegionAvail().x, 50));
+  if (frame && frame->samples_per_pixel < readings.most_samples) {
+    const bool fills = !frame->mixed.empty();
+    const double share = fills ? 1 - frame->lacking
+                               : static_cast<double>(frame->samples_per_pixel) /
+                                     static_cast<double>(readings.most_samples);
+    ImGui::ProgressBar(static_cast<float>(share), ImVec2(-1, 0), fills ? "light" : "samples");
+  }
   if (!readings.work.stage.empty()) {
     ImGui::ProgressBar(static_cast<float>(readings.work.share), ImVec2(-1, 0),
                        readings.work.stage.c_str());

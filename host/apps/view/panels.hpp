@@ -49,6 +49,7 @@ struct PanelState {
 struct PanelReadings {
   const Frame* frame = nullptr;
   WorkProgress work;
+  int most_samples = 1;                         ///< of a finished frame, per pixel
   const std::deque<float>& frame_milliseconds;  ///< newest last
   const PhotonMapView* photon_map = nullptr;    ///< that is shown
   bool loading = false;                         ///< the scene, with other luminaires

@@ -1,11 +1,10 @@
 #include "view/photon_worker.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
-#include "photile/defaults.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "render/first_picture.hpp"
 
 namespace photile::view {
@@ -43,21 +42,6 @@ class PhotonWorker::Listener : public Progress {
   std::atomic<bool> stopped_{false};
 };
 
-std::vector<std::uint64_t> generations_to(std::uint64_t total) {
-  std::vector<std::uint64_t> paths{total};
-  for (std::uint64_t fewer = total / 4; paths.size() < 3 && fewer >= limits::min_photons;
-       fewer /= 4) {
-    paths.push_back(fewer);
-  }
-  if (paths.back() > 4 * defaults::view_first_photons) {
-    paths.push_back(defaults::view_first_photons);
-  } else if (paths.size() > 1) {
-    paths.back() = std::min(paths.back(), defaults::view_first_photons);
-  }
-  std::reverse(paths.begin(), paths.end());
-  return paths;
-}
-
 PhotonWorker::PhotonWorker(const Scene& scene, OpenDevices open_devices,
                            const RenderParameters& parameters,
                            std::optional<PreparedPhotons> prepared, KeepPhotons keep,
@@ -81,15 +65,20 @@ std::exception_ptr PhotonWorker::take_error() {
 
 void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
   try {
-    const std::uint64_t paths = parameters_.photons.emitted_photons;
+    std::shared_ptr<MapGeneration> first;
     if (!prepared) {
-      std::vector<std::uint64_t> before = generations_to(paths);
-      before.pop_back();
-      for (const std::uint64_t fewer : before) {
-        deliver_(build(fewer, fewer == before.front() ? Step::first : Step::next, nullptr));
+      first = build(first_picture_parameters(parameters_), false, nullptr);
+      deliver_(first);
+      // All processors are to work for the first picture.
+      while (!first->shown) {
+        listener_->throw_if_cancelled();
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
       }
     }
-    deliver_(build(paths, Step::last, prepared ? &*prepared : nullptr));
+    const std::shared_ptr<MapGeneration> whole =
+        build(parameters_, true, prepared ? &*prepared : nullptr);
+    if (whole->renderer->draws()) whole->coarser = std::move(first);
+    deliver_(whole);
   } catch (const Interrupted&) {
     // The window was closed, or other parameters were asked for.
   } catch (...) {
@@ -98,24 +87,19 @@ void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
   }
 }
 
-std::shared_ptr<MapGeneration> PhotonWorker::build(std::uint64_t paths, Step step,
+std::shared_ptr<MapGeneration> PhotonWorker::build(const RenderParameters& parameters, bool whole,
                                                    PreparedPhotons* prepared) {
   listener_->throw_if_cancelled();
-  RenderParameters parameters =
-      step == Step::first ? first_picture_parameters(parameters_) : parameters_;
-  if (step != Step::last) {
-    parameters.photons.emitted_photons = paths;
-    parameters.passes = 1;
-  }
   auto generation = std::make_shared<MapGeneration>();
   generation->devices = open_devices_();
   const KeepPhotons keep = [&](const PreparedPhotons& photons) {
     generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
-    if (step == Step::last && keep_) keep_(photons);
+    if (whole && keep_) keep_(photons);
   };
   generation->renderer = std::make_unique<SceneRenderer>(scene_, generation->devices, parameters,
                                                          prepared, keep, *listener_);
-  generation->emitted_photons = paths;
+  generation->emitted_photons = parameters.photons.emitted_photons;
+  generation->whole = whole;
   generation->noise = EstimateNoise::of(scene_, parameters);
   return generation;
 }

@@ -24,7 +24,11 @@ struct MapGeneration {
   std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where somebody else holds it
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
+  /// Of a first picture: shown where the light maps of this one have no node yet; null = none.
+  std::shared_ptr<MapGeneration> coarser;
   std::uint64_t emitted_photons = 0;
+  bool whole = false;              ///< of all photons that were asked for
+  std::atomic<bool> shown{false};  ///< set once a frame was made of it
   EstimateNoise noise;
   std::shared_ptr<const InspectablePhotons> photons;
 };
@@ -36,10 +40,8 @@ struct WorkProgress {
 };
 
 /// Traces photons and builds maps on a thread of its own: first those of a first picture
-/// (render/first_picture.hpp), so that there is something to see at once, then with a sixteenth of
-/// all paths, a quarter, and all. The last maps are those that `render` builds from the same
-/// parameters. Of several passes that is the first;
-/// the others are handed over to it one after another.
+/// (render/first_picture.hpp), so that there is something to see at once, then, when that was
+/// shown, those that `render` builds from the same parameters.
 class PhotonWorker {
  public:
   using OpenDevices = std::function<std::vector<Device>()>;
@@ -60,10 +62,9 @@ class PhotonWorker {
  private:
   class Listener;
 
-  enum class Step { first, next, last };
-
   void work(std::optional<PreparedPhotons> prepared);
-  std::shared_ptr<MapGeneration> build(std::uint64_t paths, Step step, PreparedPhotons* prepared);
+  std::shared_ptr<MapGeneration> build(const RenderParameters& parameters, bool whole,
+                                       PreparedPhotons* prepared);
 
   const Scene& scene_;
   const OpenDevices open_devices_;
@@ -75,9 +76,5 @@ class PhotonWorker {
   std::exception_ptr error_;
   std::jthread thread_;  // last: it uses all of the above
 };
-
-/// The numbers of paths of the generations that lead to `total`, ascending, `total` the last: where
-/// those are many, the first are so few that the set-up alone takes time.
-std::vector<std::uint64_t> generations_to(std::uint64_t total);
 
 }  // namespace photile::view

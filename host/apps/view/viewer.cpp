@@ -314,9 +314,10 @@ class Viewer {
                      *scene_,
                      luminaires_ ? &luminaires_->tool() : nullptr,
                      closing()};
-    return draw_panels(state, {frame_.get(), photons_.progress(), milliseconds_,
-                               display_.photon_map ? inspector_->map() : nullptr,
-                               luminaires_ && luminaires_->loading()});
+    return draw_panels(
+        state, {frame_.get(), photons_.progress(), parameters_.render.film.samples_per_pixel,
+                milliseconds_, display_.photon_map ? inspector_->map() : nullptr,
+                luminaires_ && luminaires_->loading()});
   }
 
   void keep_screenshot() {

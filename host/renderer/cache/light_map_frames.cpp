@@ -29,6 +29,8 @@ static_assert(packet_side * packet_side == trace::coherent_rays);
 
 /// Of valuing a place, before it is known: by photons, and by rays at it and around it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 2e-3;
+/// Of valuing places until it is asked whether somebody waits for the frame.
+constexpr double seconds_of_batch = 0.03;
 
 /// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread
 /// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). The same in every
@@ -57,15 +59,18 @@ struct LightMapFrames::View {
   PrimaryHitParameters parameters;
   std::vector<glm::vec2> within_pixel;  ///< of each sample, in [0, 1)^2
   std::span<glm::vec3> picture;
+  const LightMapFrames* coarser;
 
-  View(const Camera& camera, const Film& frame, std::span<glm::vec3> pixels)
+  View(const Camera& camera, const Film& frame, std::span<glm::vec3> pixels,
+       const LightMapFrames* coarser_frames)
       : eye(camera.position),
         forward(camera.forward),
         width(frame.width),
         height(frame.height),
         blocks_across((frame.width + block_side - 1) / block_side),
         film(camera.directions(frame.width, frame.height)),
-        picture(pixels) {
+        picture(pixels),
+        coarser(coarser_frames) {
     const double half_height = std::tan(0.5 * camera.vertical_field_of_view);
     right = glm::vec3(half_height * width / height * camera.right);
     up = glm::vec3(half_height * camera.up);
@@ -123,32 +128,52 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
 }
 
 DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
-                                std::span<const glm::vec3> powers, double fill_seconds,
-                                std::span<glm::vec3> picture, const Progress& progress) {
-  const View view(camera, film, picture);
-  if (bound_ > 0) {
-    ++frame_;
-    forget_unseen();
-  }
+                                std::span<const glm::vec3> powers, const FrameFilling& filling,
+                                std::span<glm::vec3> picture, const Progress& progress,
+                                LightMapFrames* coarser) {
+  const View view(camera, film, picture, coarser);
+  begin_frame();
+  if (coarser) coarser->begin_frame();
   DrawnFrame drawn;
   std::vector<std::size_t> blocks(view.blocks());
   std::iota(blocks.begin(), blocks.end(), std::size_t{0});
-  std::optional<Stopwatch> filling;
+  std::optional<Stopwatch> watch;
+  std::uint64_t places = 0;
   for (;;) {
     progress.throw_if_cancelled();
-    mixed_.mix(maps_.values(), maps_.statistics().nodes, powers);
-    if (bound_ > 0) seen_.resize(maps_.statistics().nodes, 0);
-    ambient_ = mean_of_some(mixed_.light());
-    std::vector<MissingPlace> missing = draw_blocks(view, blocks);
-    drawn.lacking = missing.size();
-    drawn.empty = static_cast<std::size_t>(std::count_if(
-        missing.begin(), missing.end(), [](const auto& place) { return place.empty; }));
-    drawn.fill_seconds = filling ? filling->seconds() : 0;
-    const double left = fill_seconds - drawn.fill_seconds;
-    if (drawn.lacking == 0 || !(left > 0)) return drawn;
-    if (!filling) filling.emplace();
-    fill(missing, left, progress);
+    mix(powers);
+    if (coarser) coarser->mix(powers);
+    const Missing missing = draw_blocks(view, blocks);
+    const std::vector<MissingPlace>& last = coarser ? missing.coarser : missing.places;
+    const bool was_grey = drawn.empty > 0;
+    drawn.lacking = missing.places.size() + missing.coarser.size();
+    drawn.empty = static_cast<std::size_t>(
+        std::count_if(last.begin(), last.end(), [](const auto& place) { return place.empty; }));
+    places = std::max(places, missing.read);  // the first round draws all
+    drawn.lacking_share =
+        places > 0 ? static_cast<double>(missing.lacking) / static_cast<double>(places) : 0.0;
+    drawn.fill_seconds = watch ? watch->seconds() : 0;
+    const bool ends = was_grey && drawn.empty == 0 && std::isfinite(filling.seconds);
+    if (drawn.lacking == 0 || ends || !(filling.left(drawn.fill_seconds) > 0)) return drawn;
+    if (!watch) watch.emplace();
+    if (missing.coarser.empty()) {
+      fill(missing.places, filling, drawn.fill_seconds, progress);
+    } else {
+      coarser->fill(missing.coarser, filling, drawn.fill_seconds, progress);
+    }
   }
+}
+
+void LightMapFrames::begin_frame() {
+  if (bound_ == 0) return;
+  ++frame_;
+  forget_unseen();
+}
+
+void LightMapFrames::mix(std::span<const glm::vec3> powers) {
+  mixed_.mix(maps_.values(), maps_.statistics().nodes, powers);
+  if (bound_ > 0) seen_.resize(maps_.statistics().nodes, 0);
+  ambient_ = mean_of_some(mixed_.light());
 }
 
 /// Before a frame: the latest is the one before.
@@ -181,8 +206,8 @@ void LightMapFrames::forget_unseen() {
 
 /// Draws blocks; leaves those that lack nodes. Returns a place of each cell that is missing, those
 /// without any level first, then the nearest to the eye.
-std::vector<LightMapFrames::MissingPlace> LightMapFrames::draw_blocks(
-    const View& view, std::vector<std::size_t>& blocks) const {
+LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
+                                                    std::vector<std::size_t>& blocks) const {
   tbb::enumerable_thread_specific<Missing> missing_of_threads;
   std::vector<std::uint8_t> lacks(blocks.size());
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
@@ -192,37 +217,50 @@ std::vector<LightMapFrames::MissingPlace> LightMapFrames::draw_blocks(
     draw_block(view, blocks[i], missing);
     lacks[i] = missing.any ? 1 : 0;
   });
-  std::vector<MissingPlace> places;
+  Missing all;
   for (const Missing& missing : missing_of_threads) {
-    places.insert(places.end(), missing.places.begin(), missing.places.end());
+    all.lacking += missing.lacking;
+    all.read += missing.read;
+    all.places.insert(all.places.end(), missing.places.begin(), missing.places.end());
+    all.coarser.insert(all.coarser.end(), missing.coarser.begin(), missing.coarser.end());
   }
-  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.cell, a.distance) < std::tie(b.cell, b.distance);
-  });
-  const auto same_cell = [](const auto& a, const auto& b) { return a.cell == b.cell; };
-  places.erase(std::unique(places.begin(), places.end(), same_cell), places.end());
-  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
-    return std::tuple(!a.empty, a.distance, a.cell) < std::tuple(!b.empty, b.distance, b.cell);
-  });
+  for (std::vector<MissingPlace>* places : {&all.places, &all.coarser}) {
+    std::sort(places->begin(), places->end(), [](const auto& a, const auto& b) {
+      return std::tie(a.cell, a.distance) < std::tie(b.cell, b.distance);
+    });
+    const auto same_cell = [](const auto& a, const auto& b) { return a.cell == b.cell; };
+    places->erase(std::unique(places->begin(), places->end(), same_cell), places->end());
+    std::sort(places->begin(), places->end(), [](const auto& a, const auto& b) {
+      return std::tuple(!a.empty, a.distance, a.cell) < std::tuple(!b.empty, b.distance, b.cell);
+    });
+  }
   std::size_t left = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (lacks[i] != 0) blocks[left++] = blocks[i];
   }
   blocks.resize(left);
-  return places;
+  return all;
 }
 
-/// Values the next level of places, in their order, for about so long: of one at least.
-void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
-                          const Progress& progress) {
+/// Values the next level of places, in their order, as long as there is time: of one at least, and
+/// of grey ones alone where there are some.
+///   spent   seconds
+void LightMapFrames::fill(std::span<const MissingPlace> places, const FrameFilling& filling,
+                          double spent, const Progress& progress) {
+  const auto grey = std::partition_point(places.begin(), places.end(),
+                                         [](const MissingPlace& place) { return place.empty; });
+  if (grey != places.begin()) places = {places.begin(), grey};
   const Stopwatch stopwatch;
   std::size_t first = 0;
+  double left = filling.left(spent);
   do {
     // So many as the time is enough for: a batch too many is a frame too late.
-    const double affordable = std::max(1.0, (seconds - stopwatch.seconds()) / seconds_per_place_);
-    const std::size_t left = places.size() - first;
+    const double seconds = std::min(left, seconds_of_batch);
     const std::size_t count =
-        affordable < static_cast<double>(left) ? static_cast<std::size_t>(affordable) : left;
+        std::isinf(left)
+            ? places.size()
+            : std::clamp<std::size_t>(static_cast<std::size_t>(seconds / seconds_per_place_), 1,
+                                      places.size() - first);
     PrimaryHits hits;
     for (const MissingPlace& place : places.subspan(first, count)) {
       hits.position.push_back(place.position);
@@ -233,7 +271,8 @@ void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
     const double latest = of_batch.seconds() / static_cast<double>(count);
     seconds_per_place_ += 0.5 * (latest - seconds_per_place_);
     first += count;
-  } while (first < places.size() && stopwatch.seconds() < seconds);
+    left = filling.left(spent + stopwatch.seconds());
+  } while (first < places.size() && left > 0);
 }
 
 void LightMapFrames::draw_block(const View& view, std::size_t block, Missing& missing) const {
@@ -293,16 +332,34 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
 
 glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_triangle,
                                      const glm::vec3& position, Missing& missing) const {
+  bool lacks = false;
+  std::optional<glm::vec3> light =
+      known_irradiance(view, sided_triangle, position, missing.places, lacks);
+  if (!light && view.coarser) {
+    light = view.coarser->known_irradiance(view, sided_triangle, position, missing.coarser, lacks);
+  }
+  missing.any |= lacks;
+  missing.lacking += lacks ? 1 : 0;
+  ++missing.read;
+  return light.value_or(view.coarser ? view.coarser->ambient_ : ambient_);
+}
+
+/// None where no level is valued.
+std::optional<glm::vec3> LightMapFrames::known_irradiance(const View& view,
+                                                          std::uint32_t sided_triangle,
+                                                          const glm::vec3& position,
+                                                          std::vector<MissingPlace>& missing,
+                                                          bool& lacks) const {
   NodeBlend blend{};
   if (const auto cell = maps_.tiles().find(
           surfaces_[triangle_of(sided_triangle)].chart[side_of(sided_triangle)], position, blend)) {
     const bool empty = blend.node[0] == none;
-    missing.any = true;
-    if (missing.places.empty() || missing.places.back().cell != *cell) {
-      missing.places.push_back(
+    lacks = true;
+    if (missing.empty() || missing.back().cell != *cell) {
+      missing.push_back(
           {*cell, empty, glm::distance(view.eye, position), position, sided_triangle});
     }
-    if (empty) return ambient_;
+    if (empty) return std::nullopt;
   }
   if (bound_ > 0) {
     const std::atomic_ref<std::uint32_t> seen(seen_[blend.node[0]]);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,15 +34,16 @@ class LightMapFrames {
   void bound(std::uint64_t bytes) { bound_ = bytes; }
 
   /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Pixels whose nodes
-  /// are not valued show the next coarser level; those without any, the light of nodes on the
-  /// average.
-  ///   powers         per layer: power x tint
-  ///   fill_seconds   that may go into valuing nodes which pixels lack and into drawing these
-  ///                  pixels again, level by level, the nearest to the eye first; infinite: all of
-  ///                  them
+  /// are not valued show the next coarser level; those without any, what `coarser` has there; those
+  /// without that, the light of nodes on the average.
+  ///   powers    per layer: power x tint
+  ///   filling   of nodes which pixels lack, level by level, the nearest to the eye first; their
+  ///             pixels are drawn again. A frame ends once none of it is grey any longer.
+  ///   coarser   of the same scene, whose nodes are valued first; null = none
   /// Errors: those of LightMaps::fill.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
-                  double fill_seconds, std::span<glm::vec3> picture, const Progress& progress);
+                  const FrameFilling& filling, std::span<glm::vec3> picture,
+                  const Progress& progress, LightMapFrames* coarser = nullptr);
 
  private:
   /// What a frame needs of a triangle, close together.
@@ -59,19 +62,27 @@ class LightMapFrames {
   };
   struct Missing {
     std::vector<MissingPlace> places;
-    bool any = false;  ///< of the block at hand
+    std::vector<MissingPlace> coarser;    ///< of the coarser light maps, where no level is valued
+    bool any = false;                     ///< of the block at hand
+    std::uint64_t lacking = 0, read = 0;  ///< places, of both light maps together
   };
   struct View;
 
+  void begin_frame();
+  void mix(std::span<const glm::vec3> powers);
   void forget_unseen();
-  std::vector<MissingPlace> draw_blocks(const View& view, std::vector<std::size_t>& blocks) const;
-  void fill(std::span<const MissingPlace> places, double seconds, const Progress& progress);
+  Missing draw_blocks(const View& view, std::vector<std::size_t>& blocks) const;
+  void fill(std::span<const MissingPlace> places, const FrameFilling& filling, double spent,
+            const Progress& progress);
   void draw_block(const View& view, std::size_t block, Missing& missing) const;
   glm::vec3 seen(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                  std::uint32_t triangle, std::uint32_t side, float u, float v, float distance,
                  Missing& missing) const;
   glm::vec3 irradiance(const View& view, std::uint32_t sided_triangle, const glm::vec3& position,
                        Missing& missing) const;
+  std::optional<glm::vec3> known_irradiance(const View& view, std::uint32_t sided_triangle,
+                                            const glm::vec3& position,
+                                            std::vector<MissingPlace>& missing, bool& lacks) const;
   glm::vec3 followed(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                      Missing& missing) const;
   glm::vec3 background(const glm::vec3& direction) const;

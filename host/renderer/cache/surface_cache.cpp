@@ -220,15 +220,15 @@ double ErrorSum::mean() const {
 }
 
 LightMapParameters light_map_parameters(const Scene& scene, const Photons& photons, int neighbours,
-                                        double radius, double angle_degrees, double detail,
-                                        std::span<const double> powers) {
+                                        double radius, double angle_degrees, double spacing,
+                                        double detail, std::span<const double> powers) {
   // The radius is so many times the distance to the k-th photon of a typical estimate.
   const double reach = radius / defaults::radius_over_median_kth_distance;
   LightMapParameters parameters;
   const double steps = std::max(
       std::round(std::log2(reach / defaults::light_map_spacing)),
       std::ceil(std::log2(least_spacing(scene, photons, reach) / defaults::light_map_spacing)));
-  parameters.spacing = defaults::light_map_spacing * std::exp2(steps);
+  parameters.spacing = spacing > 0 ? spacing : defaults::light_map_spacing * std::exp2(steps);
   if (detail > 0) {
     // One more where the division is a rounding above a power of two would halve the detail again.
     const double halvings = std::ceil(std::log2(parameters.spacing / detail) - 1e-9);

@@ -32,11 +32,12 @@ struct ErrorSum {
 ///   neighbours   k
 ///   radius       of the photon maps, metres. One so small that estimates find no photon makes
 ///                nodes no closer than photons
+///   spacing      metres, > 0: of the coarsest nodes; 0 = by the photons
 ///   detail       metres, > 0: spacing of the finest nodes, at most; 0 = an eighth of the coarsest
 ///   powers       per layer of the scene
 LightMapParameters light_map_parameters(const Scene& scene, const Photons& photons, int neighbours,
-                                        double radius, double angle_degrees, double detail,
-                                        std::span<const double> powers);
+                                        double radius, double angle_degrees, double spacing,
+                                        double detail, std::span<const double> powers);
 
 /// Values nodes by what another says of their points.
 class ValuedBy : public PointSource {

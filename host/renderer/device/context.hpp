@@ -127,9 +127,8 @@ struct LocalMemory {
 class Defines {
  public:
   Defines& set(std::string name, long long value);
-  Defines& set(std::string name, double value);           ///< as a float literal that round-trips
-  Defines& set(std::string name);                         ///< defined, without a value
-  Defines& set_word(std::string name, std::string word);  ///< as the name of a type
+  Defines& set(std::string name, double value);  ///< as a float literal that round-trips
+  Defines& set(std::string name);                ///< as 1
   std::string options() const;
 
  private:

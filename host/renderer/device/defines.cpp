@@ -24,12 +24,7 @@ Defines& Defines::set(std::string name, double value) {
 }
 
 Defines& Defines::set(std::string name) {
-  entries_.emplace_back(std::move(name), "");
-  return *this;
-}
-
-Defines& Defines::set_word(std::string name, std::string word) {
-  entries_.emplace_back(std::move(name), std::move(word));
+  entries_.emplace_back(std::move(name), "1");
   return *this;
 }
 
@@ -37,7 +32,7 @@ std::string Defines::options() const {
   std::string text;
   for (const auto& [name, value] : entries_) {
     if (!text.empty()) text += ' ';
-    text += value.empty() ? fmt::format("-D {}", name) : fmt::format("-D {}={}", name, value);
+    text += fmt::format("-D {}={}", name, value);
   }
   return text;
 }

@@ -19,11 +19,12 @@ namespace {
 constexpr std::size_t max_work_items = std::size_t{1} << 31;
 
 /// Below so many work-items PoCL 3.1 compiles a version of the kernel for small grids alone, and
-/// again for a larger one: work-items that have nothing to do cost microseconds, a version 60 ms.
+/// again for a larger one (docs/runtimes.md): work-items that have nothing to do cost microseconds, a
+/// version 60 ms.
 constexpr std::size_t least_unspecialised = std::size_t{1} << 16;
 
 /// Held while PoCL compiles for one of several devices: two threads of a process that compile the
-/// same kernel at the same time crash PoCL 3.1 once in a while.
+/// same kernel at the same time crash PoCL 3.1 once in a while (docs/runtimes.md).
 std::unique_lock<std::mutex> lock_compilation(bool is_pocl) {
   static std::mutex mutex;
   const bool alone = LiveContext::count() < 2;

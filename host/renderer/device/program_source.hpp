@@ -11,11 +11,11 @@ namespace photile::device {
 /// any is a UsageError.
 inline constexpr const char* kernel_folder_variable = "PHOTILE_KERNEL_DIR";
 
-/// The text of kernel file `file` with every `#include "path"` line replaced by that file's text,
-/// once each and whatever the preprocessor's conditions around it. Paths are below kernels/, or
-/// "photile/device/<name>.h". `#line` markers keep the names and lines of build errors right;
-/// `#include <...>` lines stay.
-/// Errors: KernelBuildError for an unknown file, naming who included it.
+/// The text of kernel file `file` with every `#include "path"` line replaced by that file's text.
+/// Each file is compiled at most once, as with `#pragma once`, whatever conditions its includes
+/// stand under. Paths are below kernels/, or "photile/device/<name>.h". `#line` markers keep the
+/// names and lines of build errors right; `#include <...>` lines stay. Errors: KernelBuildError for
+/// an unknown file, naming who included it.
 std::string assemble_source(const std::string& file);
 
 /// Makes `text` known as kernel file `name`, before any embedded one of that name. For tests.

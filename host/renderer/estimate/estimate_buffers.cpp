@@ -90,9 +90,10 @@ Estimates EstimateBuffers::read_slots() {
       .set("first", first)
       .set("slot_light", slot_light)
       .set("slot_irradiance", irradiance)
+      .set("slot_radiance", radiance)
       .set("light", light)
-      .set("irradiance", packed_irradiance);
-  if (sums_.glossy) launch.set("slot_radiance", radiance).set("radiance", packed_radiance);
+      .set("irradiance", packed_irradiance)
+      .set("radiance", packed_radiance);
   launch.run(hits_, maps::work_group_size);
 
   Estimates estimates;

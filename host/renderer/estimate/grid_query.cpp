@@ -25,10 +25,10 @@ class GridQuery : public Query {
 
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
     device::Defines estimate_defines = defines(hits.page);
-    set_density_defines(estimate_defines, parameters_.surface, parameters_.kernel);
-    device::Launch launch(context_,
-                          context_.kernel("estimate/estimate.cl", "estimate", estimate_defines));
-    set_estimate_arguments(launch, store_, hits, parameters_, estimates);
+    set_density_defines(estimate_defines, parameters_.surface != nullptr, parameters_.kernel);
+    device::Launch launch(context_, context_.kernel("estimate/estimate.cl", "estimate_by_selection",
+                                                    estimate_defines));
+    set_estimate_arguments(launch, hits, parameters_, estimates);
     set_grid(launch, hits.page);
     run(launch, hits, [&](std::uint32_t count) {
       launch.run(choice_.work_items(count), choice_.work_group_size);
@@ -37,10 +37,9 @@ class GridQuery : public Query {
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
-    device::Launch launch(context_,
-                          context_.kernel("estimate/nearest.cl", "nearest", defines(hits.page)));
-    set_page_arguments(launch, hits, parameters_);
-    set_normal_arguments(launch, store_, hits, nullptr);
+    device::Launch launch(context_, context_.kernel("estimate/nearest.cl", "nearest_by_selection",
+                                                    defines(hits.page)));
+    set_page_arguments(launch, hits);
     set_grid(launch, hits.page);
     launch.set("neighbours", photons).set("squared_radius", squared_radius);
     const bool lanes = choice_.strategy == EstimateStrategy::lanes;
@@ -57,8 +56,11 @@ class GridQuery : public Query {
     // Work-items and tiles take the same hits together whatever the parts are.
     constexpr std::uint32_t unit = 64;
     static_assert(unit % max_hits_per_item == 0);
+    PhotileQuery query = query_of(store_, hits, parameters_);
     pace_.run(hits.count, unit, [&](std::uint32_t first, std::uint32_t count) {
-      launch.set("first_hit", hits.first + first).set("hit_count", count);
+      query.first_hit = hits.first + first;
+      query.hit_count = count;
+      launch.set("query", query);
       run_part(count);
     });
   }

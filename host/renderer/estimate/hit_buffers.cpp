@@ -1,5 +1,6 @@
 #include "estimate/hit_buffers.hpp"
 
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -8,63 +9,64 @@
 namespace photile::estimate {
 namespace {
 
-std::span<const float> floats(const std::vector<glm::vec3>& values, std::size_t first,
-                              std::size_t count) {
-  return {&values[first].x, 3 * count};
+static_assert(sizeof(PhotileHit) == 4 * 4, "PhotileHit must have no padding");
+static_assert(sizeof(PhotileHitSurface) == 9 * 4, "PhotileHitSurface must have no padding");
+static_assert(sizeof(PhotileHitLobe) == 24 * 4, "PhotileHitLobe must have no padding");
+
+void store(float (&to)[3], const glm::vec3& value) {
+  to[0] = value.x, to[1] = value.y, to[2] = value.z;
 }
 
 /// Makes a buffer hold the values, allocated anew where it has no room for them.
 template <class T>
-void put(device::Context& context, device::Buffer<T>& buffer, std::span<const T> values,
+void put(device::Context& context, device::Buffer<T>& buffer, const std::vector<T>& values,
          std::string_view what) {
   if (buffer.size() < values.size()) {
     buffer = {};
     buffer = context.allocate<T>(values.size(), what);
   }
-  context.write_beside(buffer, values);
+  context.write_beside(buffer, std::span<const T>(values));
 }
 
-/// One member of every lobe, packed for the device.
-template <class Member>
-void put_lobes(device::Context& context, device::Buffer<float>& buffer, const PrimaryHits& hits,
-               std::size_t first, std::size_t count, Member member, std::string_view what) {
-  std::vector<glm::vec3> values(count);
-  for (std::size_t i = 0; i < count; ++i) values[i] = hits.lobe[first + i].*member;
-  put(context, buffer, floats(values, 0, count), what);
+/// The surface at hits whose areas are clipped.
+PhotileHitSurface clipped_surface(const SurfaceBuffers& surface, std::uint32_t sided_triangle,
+                                  const glm::vec3& position) {
+  const SurfaceIndex& index = surface.index;
+  const std::uint32_t triangle = triangle_of(index.original[sided_triangle]);
+  PhotileHitSurface at{};
+  store(at.normal, index.normal[sided_triangle]);
+  store(at.inwards, surface.centroid[triangle] - position);
+  at.facet = index.facet[triangle];
+  at.triangle = triangle;
+  at.sheet = index.sheet_at(sided_triangle, position);
+  return at;
 }
 
-std::vector<trace::DiffusePart> diffuse_of(const PrimaryHits& hits, std::size_t first,
-                                           std::size_t count) {
-  std::vector<trace::DiffusePart> parts(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const HitLobe& lobe = hits.lobe[first + i];
-    parts[i] = trace::diffuse_part(
-        {hits.diffuse_albedo[first + i], lobe.specular, lobe.f90, lobe.roughness},
-        glm::dot(lobe.normal, hits.outgoing[first + i]));
+PhotileHitLobe hit_lobe(const PrimaryHits& hits, std::size_t hit, bool normal_maps) {
+  const HitLobe& lobe = hits.lobe[hit];
+  const trace::DiffusePart diffuse =
+      trace::diffuse_part({hits.diffuse_albedo[hit], lobe.specular, lobe.f90, lobe.roughness},
+                          glm::dot(lobe.normal, hits.outgoing[hit]));
+  PhotileHitLobe on_device{};
+  store(on_device.outgoing, hits.outgoing[hit]);
+  store(on_device.normal, lobe.normal);
+  static_assert(sizeof diffuse == sizeof on_device.diffuse);
+  std::memcpy(on_device.diffuse, &diffuse, sizeof diffuse);
+  store(on_device.f0, lobe.specular);
+  on_device.f90 = lobe.f90;
+  on_device.alpha = lobe.roughness;
+  if (normal_maps) {
+    store(on_device.smooth_normal, lobe.smooth_normal);
+    on_device.most_bump = trace::most_bump(hits.diffuse_albedo[hit] + lobe.specular);
   }
-  return parts;
-}
-
-std::vector<glm::vec4> bumps_of(const PrimaryHits& hits, std::size_t first, std::size_t count) {
-  std::vector<glm::vec4> bumps(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    bumps[i] =
-        glm::vec4(hits.lobe[first + i].smooth_normal,
-                  trace::most_bump(hits.diffuse_albedo[first + i] + hits.lobe[first + i].specular));
-  }
-  return bumps;
+  return on_device;
 }
 
 }  // namespace
 
 std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped) {
-  constexpr std::uint64_t position_and_map = 3 * sizeof(float) + sizeof(std::uint32_t);
-  constexpr std::uint64_t surface = (6 * 3 + 2) * sizeof(float);
-  constexpr std::uint64_t bump = 4 * sizeof(float);
-  constexpr std::uint64_t normal = 3 * sizeof(float);
-  constexpr std::uint64_t place = 3 * sizeof(std::uint32_t) + 3 * sizeof(float);
-  return position_and_map + (needs.glossy ? surface : 0) + (needs.normal_maps ? bump : 0) +
-         (normals || clipped ? normal : 0) + (clipped ? place : 0);
+  return sizeof(PhotileHit) + (normals || clipped ? sizeof(PhotileHitSurface) : 0) +
+         (needs.glossy ? sizeof(PhotileHitLobe) : 0);
 }
 
 void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
@@ -73,44 +75,28 @@ void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t 
   const std::size_t count = maps.size();
   buffers.count = static_cast<std::uint32_t>(count);
   if (count == 0) return;
-  put(context, buffers.position, floats(hits.position, first, count), "hit positions");
-  put(context, buffers.map, maps, "maps of hits");
-  if (surface != nullptr) {
-    const SurfaceIndex& index = surface->index;
-    normals = index.normal;
-    std::vector<std::uint32_t> places;
-    std::vector<glm::vec3> inwards(count);
-    places.reserve(3 * count);
+  std::vector<PhotileHit> positions(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    store(positions[i].position, hits.position[first + i]);
+    positions[i].map = maps[i];
+  }
+  put(context, buffers.hits, positions, "hits");
+  if (surface != nullptr || !normals.empty()) {
+    std::vector<PhotileHitSurface> surfaces(count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t own = hits.sided_triangle[first + i];
-      const std::uint32_t triangle = triangle_of(index.original[own]);
-      places.insert(places.end(), {index.facet[triangle], triangle,
-                                   index.sheet_at(own, hits.position[first + i])});
-      inwards[i] = surface->centroid[triangle] - hits.position[first + i];
+      if (surface != nullptr) {
+        surfaces[i] = clipped_surface(*surface, own, hits.position[first + i]);
+      } else {
+        store(surfaces[i].normal, normals[own]);
+      }
     }
-    put(context, buffers.place, std::span<const std::uint32_t>(places), "places of hits");
-    put(context, buffers.inwards, floats(inwards, 0, count), "ways into triangles of hits");
-  }
-  if (!normals.empty()) {
-    std::vector<glm::vec3> of_hits(count);
-    for (std::size_t i = 0; i < count; ++i) of_hits[i] = normals[hits.sided_triangle[first + i]];
-    put(context, buffers.face_normal, floats(of_hits, 0, count), "hit face normals");
+    put(context, buffers.surfaces, surfaces, "surfaces at hits");
   }
   if (!needs.glossy) return;
-  put(context, buffers.outgoing, floats(hits.outgoing, first, count), "hit directions");
-  put_lobes(context, buffers.normal, hits, first, count, &HitLobe::normal, "hit shading normals");
-  const std::vector<trace::DiffusePart> diffuse = diffuse_of(hits, first, count);
-  put(context, buffers.diffuse, std::span<const float>(&diffuse[0][0].x, 9 * count),
-      "hit diffuse parts");
-  put_lobes(context, buffers.f0, hits, first, count, &HitLobe::specular, "hit F0");
-  std::vector<glm::vec2> shape(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    shape[i] = {hits.lobe[first + i].roughness, hits.lobe[first + i].f90};
-  }
-  put(context, buffers.shape, std::span<const float>(&shape[0].x, 2 * count), "hit lobes");
-  if (!needs.normal_maps) return;
-  const std::vector<glm::vec4> bumps = bumps_of(hits, first, count);
-  put(context, buffers.bump, std::span<const float>(&bumps[0].x, 4 * count), "hit normal maps");
+  std::vector<PhotileHitLobe> lobes(count);
+  for (std::size_t i = 0; i < count; ++i) lobes[i] = hit_lobe(hits, first + i, needs.normal_maps);
+  put(context, buffers.lobes, lobes, "reflections at hits");
 }
 
 }  // namespace photile::estimate

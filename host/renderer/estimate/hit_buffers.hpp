@@ -6,23 +6,17 @@
 
 #include "device/context.hpp"
 #include "estimate/surface_buffers.hpp"
+#include "photile/device/query.h"
 #include "photile/primary_hits.hpp"
 
 namespace photile::estimate {
 
-/// Hits [first, first + count) of PrimaryHits. The lobe's buffers are empty unless glossy.
+/// Hits [first, first + count) of PrimaryHits.
 struct HitBuffers {
   std::uint32_t count = 0;
-  device::Buffer<float> position;          ///< 3 per hit, metres
-  device::Buffer<std::uint32_t> map;       ///< that the hit lies on
-  device::Buffer<float> face_normal;       ///< 3 per hit: of its sided triangle; or empty
-  device::Buffer<std::uint32_t> place;     ///< 3 per hit: facet, triangle, sheet; or empty
-  device::Buffer<float> inwards;           ///< 3 per hit: to its triangle's centroid; or empty
-  device::Buffer<float> outgoing, normal;  ///< 3 per hit, unit
-  device::Buffer<float> diffuse;           ///< 9 per hit: DiffusePart
-  device::Buffer<float> f0;                ///< 3 per hit
-  device::Buffer<float> shape;             ///< 2 per hit: GGX alpha and F90
-  device::Buffer<float> bump;              ///< 4 per hit, with normal maps; or empty
+  device::Buffer<PhotileHit> hits;
+  device::Buffer<PhotileHitSurface> surfaces;  ///< where normals are compared or areas clipped
+  device::Buffer<PhotileHitLobe> lobes;        ///< in glossy scenes
 };
 
 /// Device memory that a hit takes as input.
@@ -35,7 +29,7 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 ///   maps      of those hits
 ///   normals   per sided triangle, if a map is mixed (maps::MapStore::normals), else empty
 ///   surface   where areas are clipped, else null
-///   needs     of which `glossy` and `normal_maps` ask for lobes
+///   needs     of which `glossy` asks for lobes
 void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                  std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
                  const SurfaceBuffers* surface, const SceneNeeds& needs, HitBuffers& buffers);

@@ -14,7 +14,6 @@ LightSums::LightSums(const SceneNeeds& needs, std::uint32_t neighbours)
 
 void LightSums::set_defines(device::Defines& defines) const {
   if (many_lights) {
-    defines.set("MANY_LIGHTS");
     defines.set("LIGHT_SLOTS", static_cast<long long>(per_hit));
     defines.set("LIGHT_TABLE", static_cast<long long>(table));
   } else if (lights > 1) {

@@ -12,6 +12,8 @@
 #include "estimate/surface_buffers.hpp"
 #include "maps/map_store.hpp"
 #include "photile/density_kernel.hpp"
+#include "photile/device/constants.h"
+#include "photile/device/query.h"
 #include "photile/estimate_tuning.hpp"
 #include "photile/neighbour_groups.hpp"
 
@@ -58,12 +60,13 @@ std::unique_ptr<Query> make_grid_query(const maps::MapStore& store,
 std::unique_ptr<Query> make_structure_query(const maps::MapStore& store,
                                             const QueryParameters& parameters);
 
-/// Sets the symbols that kernels/estimate/area.clh and kernels/shared/density_kernel.clh ask for.
-inline void set_density_defines(device::Defines& defines, const SurfaceBuffers* surface,
-                                DensityKernel kernel) {
-  if (surface != nullptr) defines.set("CLIPPED");
-  if (kernel == DensityKernel::cone) defines.set("CONE");
-  if (kernel == DensityKernel::epanechnikov) defines.set("EPANECHNIKOV");
+/// Sets CLIPPED and DENSITY_KERNEL.
+inline void set_density_defines(device::Defines& defines, bool clipped, DensityKernel kernel) {
+  if (clipped) defines.set("CLIPPED");
+  long long symbol = PHOTILE_CONSTANT_KERNEL;
+  if (kernel == DensityKernel::cone) symbol = PHOTILE_CONE_KERNEL;
+  if (kernel == DensityKernel::epanechnikov) symbol = PHOTILE_EPANECHNIKOV_KERNEL;
+  if (symbol != PHOTILE_CONSTANT_KERNEL) defines.set("DENSITY_KERNEL", symbol);
 }
 
 /// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs,
@@ -82,67 +85,47 @@ void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
   }
 }
 
-/// Sets the arguments that every kernel takes.
-inline void set_page_arguments(device::Launch& launch, const PageHits& hits,
-                               const QueryParameters& parameters) {
-  const maps::MapPage& page = hits.page;
-  launch.set("hit_count", hits.count)
-      .set("first_hit", hits.first)
-      .set("hit_position", hits.hits.position)
-      .set("hit_map", hits.hits.map)
-      .set("first_map", page.first_map)
-      .set("entry_stride", page.entry_stride)
-      .set("entry_position", page.entry_position)
-      .set("entry_photon", page.entry_photon)
-      .set("k", parameters.neighbours)
-      .set("radius", parameters.radius);
+/// What kernels are told of a page's hits.
+inline PhotileQuery query_of(const maps::MapStore& store, const PageHits& hits,
+                             const QueryParameters& parameters) {
+  return {.first_hit = hits.first,
+          .hit_count = hits.count,
+          .first_map = hits.page.first_map,
+          .entry_stride = hits.page.entry_stride,
+          .k = parameters.neighbours,
+          .radius = parameters.radius,
+          .least_radius = parameters.least_radius,
+          // The slack of normals_agree, which groups are made with.
+          .least_cosine = static_cast<float>(store.cos_angle - cosine_slack)};
 }
 
-/// Sets the arguments that a page with mixed maps adds, whose kernels are compiled with NORMALS,
-/// and those that clipped areas add.
-inline void set_normal_arguments(device::Launch& launch, const maps::MapStore& store,
-                                 const PageHits& page_hits, const SurfaceBuffers* surface) {
-  const HitBuffers& hits = page_hits.hits;
-  const bool mixed = page_hits.page.entry_normal.size() > 0;
-  if (mixed) launch.set("entry_normal", page_hits.page.entry_normal);
-  if (mixed || surface != nullptr) {
-    // The slack of normals_agree, which groups are made with.
-    launch.set("hit_face_normal", hits.face_normal)
-        .set("least_cosine", static_cast<float>(store.cos_angle - cosine_slack));
-  }
-  if (surface != nullptr) {
-    launch.set("hit_place", hits.place)
-        .set("hit_inwards", hits.inwards)
-        .set("surface_nodes", surface->nodes)
-        .set("surface_leaves", surface->leaves);
-  }
+/// Sets the arguments that every kernel takes, but for the query itself.
+inline void set_page_arguments(device::Launch& launch, const PageHits& hits) {
+  launch.set("hits", hits.hits.hits)
+      .set("hit_surfaces", hits.hits.surfaces)
+      .set("entry_photon", hits.page.entry_photon)
+      .set("entry_position", hits.page.entry_position)
+      .set("entry_normal", hits.page.entry_normal);
 }
 
-/// Sets those of kernels/estimate/arguments.clh and of the disc.
-inline void set_estimate_arguments(device::Launch& launch, const maps::MapStore& store,
-                                   const PageHits& page_hits, const QueryParameters& parameters,
+/// Sets those of every kernel of the estimate. What the scene does not need is empty.
+inline void set_estimate_arguments(device::Launch& launch, const PageHits& hits,
+                                   const QueryParameters& parameters,
                                    const EstimateBuffers& estimates) {
-  const SceneNeeds& needs = store.needs;
-  const auto& [hits, page, first, count] = page_hits;
-  set_page_arguments(launch, page_hits, parameters);
-  set_normal_arguments(launch, store, page_hits, parameters.surface);
-  launch.set("entry_flux", page.entry_flux)
-      .set("least_radius", parameters.least_radius)
-      .set("irradiance", estimates.irradiance);
-  if (needs.light_count > 1) launch.set("entry_light", page.entry_light);
-  if (needs.glossy) {
-    launch.set("entry_incoming", page.entry_incoming)
-        .set("hit_outgoing", hits.outgoing)
-        .set("hit_normal", hits.normal)
-        .set("hit_diffuse", hits.diffuse)
-        .set("hit_f0", hits.f0)
-        .set("hit_shape", hits.shape)
-        .set("radiance", estimates.radiance);
-  }
-  if (needs.normal_maps) launch.set("hit_bump", hits.bump);
-  if (needs.many_lights()) {
-    launch.set("slot_light", estimates.slot_light).set("slots_taken", estimates.slots_taken);
-  }
+  set_page_arguments(launch, hits);
+  launch.set("hit_lobes", hits.hits.lobes)
+      .set("entry_flux", hits.page.entry_flux)
+      .set("entry_light", hits.page.entry_light)
+      .set("entry_incoming", hits.page.entry_incoming)
+      .set("irradiance", estimates.irradiance)
+      .set("radiance", estimates.radiance)
+      .set("slot_light", estimates.slot_light)
+      .set("slots_taken", estimates.slots_taken);
+  const device::Buffer<PhotileSurfaceNode> no_nodes;
+  const device::Buffer<PhotileSurfaceLeaf> no_leaves;
+  const SurfaceBuffers* const surface = parameters.surface;
+  launch.set("surface_nodes", surface != nullptr ? surface->nodes : no_nodes)
+      .set("surface_leaves", surface != nullptr ? surface->leaves : no_leaves);
 }
 
 }  // namespace photile::estimate

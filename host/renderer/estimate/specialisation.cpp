@@ -3,8 +3,7 @@
 #include <algorithm>
 
 #include "maps/entry_defines.hpp"
-#include "photile/device/lane_memory.h"
-#include "photile/device/surface.h"
+#include "photile/device/constants.h"
 
 namespace photile::estimate {
 namespace {
@@ -33,7 +32,7 @@ device::Defines Specialisation::defines() const {
   device::Defines defines;
   const bool lanes = strategy == EstimateStrategy::lanes;
   if (lanes) defines.set("LANES");
-  if (private_distances) defines.set("DISTANCES_ARE_PRIVATE");
+  if (private_distances) defines.set("PRIVATE_DISTANCES");
   defines.set("VECTOR_WIDTH", static_cast<long long>(vector_width));
   defines.set("CAPACITY", static_cast<long long>(capacity));
   // Lanes list the near entries of a hit all at once.
@@ -75,16 +74,21 @@ std::size_t Specialisation::private_bytes() const {
 
 std::size_t Specialisation::local_bytes() const {
   if (strategy != EstimateStrategy::lanes) return 0;
+  // The members of WorkerMemory, in their order; those that a scene does not need have one element.
   const auto width = static_cast<std::size_t>(vector_width);
   const auto kept = static_cast<std::size_t>(capacity);
   const std::size_t chunks = kept / width;
+  const bool many_lights = needs.many_lights();
+  const bool listed = needs.glossy || many_lights;
+  const std::size_t ballot = listed ? chunks * ((width + 31) / 32) : 1;
+  const std::size_t near = listed ? static_cast<std::size_t>(neighbours) : 1;
+  const std::size_t flux = many_lights ? width : 1;
+  const std::size_t radiance = many_lights && needs.glossy ? width : 1;
   constexpr std::size_t word = sizeof(std::uint32_t);
-  std::size_t words = 5 * (width + PHOTILE_LANE_COLUMNS) + (private_distances ? 0 : kept) + chunks;
-  if (needs.glossy || needs.many_lights()) {
-    words += chunks * ((width + 31) / 32) + static_cast<std::size_t>(neighbours);
-  }
-  words += PHOTILE_SURFACE_STACK + PHOTILE_LEAF_QUEUE + PHOTILE_SURFACE_WIDTH;
-  if (needs.many_lights()) words += (needs.glossy ? 7 : 4) * width + sums.table_bytes() / word + 1;
+  const std::size_t words = 5 * (width + PHOTILE_LANE_COLUMNS) + (private_distances ? 1 : kept) +
+                            chunks + ballot + near + 4 * flux + 3 * radiance +
+                            sums.table_bytes() / word + 1 + PHOTILE_SURFACE_STACK +
+                            PHOTILE_LEAF_QUEUE + PHOTILE_SURFACE_WIDTH;
   return words * word;
 }
 

@@ -54,7 +54,7 @@ struct Specialisation {
   std::uint32_t nearest_items(std::uint32_t hits) const;
   /// Of the arrays that one work-item keeps in private memory.
   std::size_t private_bytes() const;
-  /// Of the local memory of a group: kernels/estimate/lane_memory.clh. 0 but for `lanes`.
+  /// Of the local memory of a group: kernels/estimate/lane_path.clh. 0 but for `lanes`.
   std::size_t local_bytes() const;
 };
 

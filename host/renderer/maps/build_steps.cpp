@@ -22,8 +22,9 @@ device::KernelSet build_kernels(const MapStore& store, bool patches) {
 }
 
 device::KernelSet tile_kernels(const MapStore& store) {
-  return {device::context_of(*store.device), "grid/build_tiles.cl",
-          group_defines(store.device->info())};
+  device::Defines defines = group_defines(store.device->info());
+  defines.set("TILE");
+  return {device::context_of(*store.device), "grid/build_tiles.cl", std::move(defines)};
 }
 
 namespace {
@@ -34,21 +35,26 @@ using device::Context;
 /// Groups that sort crowded cells: enough to fill any GPU with what there is of them.
 constexpr std::size_t sorting_groups = 1024;
 
+PhotilePhotonPage photon_page(const PhotonPage& photons, float squared_reach) {
+  return {.photon_count = photons.count,
+          .first_photon = photons.first_photon,
+          .first_list = photons.first_list,
+          .squared_reach = squared_reach};
+}
+
 /// A launch over photons of a page, given what tells which maps they enter.
 device::Launch photon_launch(const Build& build, const device::KernelSet& kernels,
                              const char* kernel, const PhotonPage& photons) {
   device::Launch launch = kernels.launch(kernel);
-  launch.set("photon_count", photons.count)
+  launch.set("page", photon_page(photons, build.squared_reach))
       .set("position", photons.position)
       .set("sided_triangle", photons.sided_triangle)
       .set("map_of", build.map_of)
       .set("list", photons.list)
-      .set("first_list", photons.first_list)
       .set("list_offsets", photons.list_offsets)
       .set("list_members", photons.list_members)
       .set("shapes", build.shapes)
-      .set("corners", build.corners)
-      .set("squared_reach", build.squared_reach);
+      .set("corners", build.corners);
   return launch;
 }
 
@@ -60,11 +66,18 @@ device::Launch entered_launch(const Build& build, const device::KernelSet& kerne
   return launch;
 }
 
-void set_tile(device::Launch& launch, const Rectangle& tile) {
-  launch.set("first_column", tile.first_column)
-      .set("first_row", tile.first_row)
-      .set("last_column", tile.last_column)
-      .set("last_row", tile.last_row);
+/// The maps of a page, and where it holds a tile the cells of that.
+PhotileMapRange map_range(const MapPage& page, const std::optional<Rectangle>& tile) {
+  PhotileMapRange range{};
+  range.first_map = page.first_map;
+  range.last_map = page.last_map;
+  if (tile) {
+    range.first_column = tile->first_column;
+    range.first_row = tile->first_row;
+    range.last_column = tile->last_column;
+    range.last_row = tile->last_row;
+  }
+  return range;
 }
 
 /// With the pages of photons as they are. Errors: DeviceMemoryError where they do not fit.
@@ -73,8 +86,9 @@ void try_to_count(Build& build) {
   build.context.fill(build.counts.mixed, 0u);
   for (const PhotonPage& page : *build.photon_pages) {
     device::Launch launch = entered_launch(build, build.kernels, "count_photons", page);
-    launch.set("map_count", build.counts.photons);
-    if (build.patches) launch.set("normal", build.normals).set("map_mixed", build.counts.mixed);
+    launch.set("map_count", build.counts.photons)
+        .set("normal", build.normals)
+        .set("map_mixed", build.counts.mixed);
     launch.run(page.count, work_group_size);
   }
 }
@@ -106,11 +120,11 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
       .set("shapes", build.shapes)
       .set("map_count", build.counts.photons)
       .set("map_crowding", build.crowding)
+      .set("map_mixed", build.counts.mixed)
       .set("radius", build.radius)
       .set("photons_per_cell", build.photons_per_cell)
       .set("grids", page.grids)
       .set("cell_total", cells);
-  if (build.patches) launch.set("map_mixed", build.counts.mixed);
   launch.run(maps, work_group_size);
   return cells;
 }
@@ -123,16 +137,14 @@ void sort_cells(const device::KernelSet& kernels, const MapPage& page) {
   launch.set("cell_count", page.cell_count)
       .set("cell_start", page.cell_start)
       .set("entry_photon", page.entry_photon);
-  if (!works_in_groups(context.info())) {
-    launch.run(page.cell_count, work_group_size);
-    return;
-  }
-  auto crowded = context.allocate<std::uint32_t>(1, "number of crowded cells");
+  const bool in_groups = works_in_groups(context.info());
+  auto crowded = context.allocate<std::uint32_t>(in_groups ? 1 : 0, "number of crowded cells");
   auto crowded_cell = context.allocate<std::uint32_t>(
-      page.entry_count / PHOTILE_INSERTION_LIMIT + 1, "crowded cells");
+      in_groups ? page.entry_count / PHOTILE_INSERTION_LIMIT + 1 : 0, "crowded cells");
   context.fill(crowded, 0u);
   launch.set("crowded", crowded).set("crowded_cell", crowded_cell);
   launch.run(page.cell_count, work_group_size);
+  if (!in_groups) return;
   kernels.launch("sort_crowded")
       .set("cell_start", page.cell_start)
       .set("entry_photon", page.entry_photon)
@@ -212,19 +224,18 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
   const auto over_photons = [&](const char* kernel, const PhotonPage& photons) {
     device::Launch launch =
         entered_launch(build, tile ? build.tile_kernels : build.kernels, kernel, photons);
-    launch.set("first_map", page.first_map)
-        .set("last_map", page.last_map)
+    launch.set("maps", map_range(page, tile))
         .set("grids", page.grids)
         .set("cell_start", page.cell_start);
-    if (tile) set_tile(launch, *tile);
     return launch;
   };
   const auto over_gaps = [&](const char* kernel) {
     if (!tile) return;
-    device::Launch launch = build.tile_kernels.launch(kernel);
-    launch.set("grid", page.grids).set("cell_start", page.cell_start);
-    set_tile(launch, *tile);
-    launch.run(tile->height(), work_group_size);
+    build.tile_kernels.launch(kernel)
+        .set("tile", map_range(page, tile))
+        .set("grid", page.grids)
+        .set("cell_start", page.cell_start)
+        .run(tile->height(), work_group_size);
   };
   const auto photon_pages = build.photon_pages->entering(page.first_map, page.last_map);
   for (const PhotonPage& photons : photon_pages) {
@@ -240,7 +251,6 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
   if (tile) build.context.fill(page.entry_photon, none);  // that gaps have
   for (const PhotonPage& photons : photon_pages) {
     over_photons("scatter", photons)
-        .set("first_photon", photons.first_photon)
         .set("entry_photon", page.entry_photon)
         .run(photons.count, work_group_size);
   }
@@ -281,24 +291,21 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
     }
     const auto launch_of = [&](const char* kernel) {
       device::Launch launch = build.launch(kernel);
-      launch.set("entry_count", page.entry_count)
+      launch.set("page", photon_page(photons, 0))
+          .set("entry_count", page.entry_count)
           .set("entry_stride", page.entry_stride)
-          .set("entry_photon", page.entry_photon)
-          .set("first_photon", photons.first_photon)
-          .set("photon_count", photons.count);
+          .set("entry_photon", page.entry_photon);
       return launch;
     };
     device::Launch gather = launch_of("gather_entries");
     gather.set("position", photons.position)
         .set("flux", photons.flux)
+        .set("light", photons.light)
+        .set("incoming", photons.incoming)
         .set("entry_position", page.entry_position)
-        .set("entry_flux", page.entry_flux);
-    if (needs.several_lights()) {
-      gather.set("light", photons.light).set("entry_light", page.entry_light);
-    }
-    if (needs.glossy) {
-      gather.set("incoming", photons.incoming).set("entry_incoming", page.entry_incoming);
-    }
+        .set("entry_flux", page.entry_flux)
+        .set("entry_light", page.entry_light)
+        .set("entry_incoming", page.entry_incoming);
     gather.run(page.entry_count, work_group_size);
     if (release != nullptr) {
       context.finish();

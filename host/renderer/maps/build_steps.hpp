@@ -13,6 +13,7 @@
 #include "maps/map_store.hpp"
 #include "maps/map_tiling.hpp"
 #include "maps/photon_pages.hpp"
+#include "photile/device/build.h"
 #include "photile/device/map_shape.h"
 
 namespace photile::maps {

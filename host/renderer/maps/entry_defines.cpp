@@ -14,7 +14,7 @@ std::uint32_t bytes_per_entry(const SceneNeeds& needs) {
 
 void set_entry_defines(device::Defines& defines, const SceneNeeds& needs) {
   if (const std::uint32_t bytes = bytes_per_light(needs); bytes > 0) {
-    defines.set_word("LIGHT_INDEX", bytes == 1 ? "uchar" : "ushort");
+    defines.set("LIGHT_BYTES", static_cast<long long>(bytes));
   }
   if (needs.glossy) defines.set("GLOSSY");
 }

@@ -15,7 +15,7 @@ std::uint32_t bytes_per_light(const SceneNeeds& needs);
 /// "Records".
 std::uint32_t bytes_per_entry(const SceneNeeds& needs);
 
-/// LIGHT_INDEX and GLOSSY, each where the scene needs it.
+/// LIGHT_BYTES and GLOSSY, each where the scene needs it.
 void set_entry_defines(device::Defines& defines, const SceneNeeds& needs);
 
 }  // namespace photile::maps

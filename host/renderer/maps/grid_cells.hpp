@@ -1,4 +1,4 @@
-// Where a point falls in a grid, as kernels/grid/entry.clh computes it.
+// Where a point falls in a grid, as kernels/grid/cell.clh computes it.
 #pragma once
 
 #include <algorithm>

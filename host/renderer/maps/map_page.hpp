@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "device/context.hpp"
+#include "photile/device/constants.h"
 #include "photile/device/grid.h"
 #include "photile/device/kdtree.h"
 
@@ -67,8 +68,8 @@ struct MapPage : PageExtent, PageBuffers {};
 /// Cells of a page at most, and photons: kernels step over them in 32 bits.
 inline constexpr std::uint64_t max_items = std::uint64_t{1} << 31;
 
-/// Entries are read in vectors of up to 64 floats, which may reach this far beyond the last.
-inline constexpr std::uint32_t entry_padding = 64;
+/// Entries are read in vectors of up to so many floats, which may reach this far beyond the last.
+inline constexpr std::uint32_t entry_padding = PHOTILE_MOST_LANES;
 inline constexpr std::uint32_t most_entry_padding = 2 * entry_padding - 1;
 
 /// Distance of the planes of so many entries: a multiple of the widest vector, so that aligned

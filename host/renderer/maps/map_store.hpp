@@ -6,6 +6,7 @@
 #include "device/context.hpp"
 #include "maps/page_queue.hpp"
 #include "maps/resident_maps.hpp"
+#include "photile/device/constants.h"
 #include "photile/photon_maps.hpp"
 #include "photile/primary_hits.hpp"
 #include "photile/scene_needs.hpp"
@@ -40,9 +41,8 @@ struct MapStore {
 /// Work-items of a group in every kernel of build and estimate.
 inline constexpr std::size_t work_group_size = 64;
 
-/// That of the kernels whose work-items work together in local memory: kernels/shared/scan.clh,
-/// kernels/grid/sort_cells.cl.
-inline constexpr std::size_t group_size = 256;
+/// That of the kernels whose work-items work together in local memory.
+inline constexpr std::size_t group_size = PHOTILE_COOPERATIVE_GROUP;
 
 /// Whether such kernels are used: anywhere but on CPUs, where work-items of a group run in turn,
 /// and on devices of smaller groups.

@@ -8,7 +8,7 @@
 namespace photile::maps {
 
 /// Replaces `values` by their exclusive prefix sum. `kernels`: of a program that holds
-/// shared/scan.clh. With a zero appended by the caller, the last element becomes the total. Sums
+/// shared/scan.cl. With a zero appended by the caller, the last element becomes the total. Sums
 /// must stay below 2^32.
 void exclusive_prefix_sum(const device::KernelSet& kernels, device::Buffer<std::uint32_t>& values);
 

@@ -3,12 +3,16 @@
 #include <algorithm>
 
 #include "photile/defaults.hpp"
+#include "render/render_plan.hpp"
 
 namespace photile {
 namespace {
 
 /// Metres; no coarsest nodes lie farther apart, so that there are none but those.
 constexpr double no_detail = 1e30;
+
+/// Of each of its nodes that gather: neighbours smooth what so few leave.
+constexpr int first_rays = 16;
 
 }  // namespace
 
@@ -19,9 +23,16 @@ RenderParameters first_picture_parameters(const RenderParameters& asked) {
   first.passes = 1;
   first.radius = 0;
   first.least_neighbours = 0;
-  first.direct_rays = first.light_map_rays = 0;
   first.light_maps = LightMapMode::on;
-  first.light_map_detail = no_detail;
+  if (nodes_gather(asked)) {
+    first.neighbours = defaults::view_first_neighbours;
+    first.light_map_spacing = defaults::view_first_spacing;
+    first.light_map_detail = 0;
+    first.light_map_rays = std::min(asked.light_map_rays, first_rays);
+  } else {
+    first.direct_rays = first.light_map_rays = 0;
+    first.light_map_detail = no_detail;
+  }
   if (asked.maps == MapMode::naive) first.maps = MapMode::automatic;
   return first;
 }

@@ -1,4 +1,4 @@
-// A first picture for somebody who waits: few photons, kept at the coarsest nodes of light maps.
+// A first picture for somebody who waits: few photons, and nodes of light maps far apart.
 #pragma once
 
 #include "photile/renderer.hpp"
@@ -6,8 +6,9 @@
 namespace photile {
 
 /// What is asked of the first picture of those that these parameters ask for:
-/// defaults::view_first_photons paths, whose estimates value the coarsest nodes. Light straight
-/// from lamps is among them, whatever brings it later.
+/// defaults::view_first_photons paths. Nodes that gather lie half a metre apart, and closer where
+/// their light differs; otherwise estimates value the coarsest nodes alone, and light straight from
+/// lamps is among them, whatever brings it later.
 RenderParameters first_picture_parameters(const RenderParameters& asked);
 
 }  // namespace photile

@@ -63,9 +63,11 @@ RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progr
 }
 
 DrawnFrame SceneRenderer::draw(const Camera& camera, const Film& film,
-                               std::span<const glm::vec3> powers, double fill_seconds,
-                               std::span<glm::vec3> picture, Progress& progress) {
-  return impl_->frames().draw(camera, film, powers, fill_seconds, picture, progress);
+                               std::span<const glm::vec3> powers, const FrameFilling& filling,
+                               std::span<glm::vec3> picture, Progress& progress,
+                               SceneRenderer* coarser) {
+  return impl_->frames().draw(camera, film, powers, filling, picture, progress,
+                              coarser ? &coarser->impl_->frames() : nullptr);
 }
 
 void SceneRenderer::bound_light_maps(std::uint64_t bytes) {

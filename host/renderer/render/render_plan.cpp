@@ -188,9 +188,9 @@ LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const S
                                           const Photons& photons,
                                           std::span<const double> powers) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
-  LightMapParameters parameters =
-      cache::light_map_parameters(scene, photons, estimate.neighbours, estimate.radius,
-                                  used_.angle_degrees, used_.light_map_detail, powers);
+  LightMapParameters parameters = cache::light_map_parameters(
+      scene, photons, estimate.neighbours, estimate.radius, used_.angle_degrees,
+      used_.light_map_spacing, used_.light_map_detail, powers);
   parameters.processes = used_.processes;
   return parameters;
 }
@@ -199,7 +199,7 @@ LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& 
                                     const Photons& photons, std::span<const double> powers) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
   LightMapParameters parameters = cache::light_map_parameters(
-      scene, photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0, powers);
+      scene, photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0, 0, powers);
   // A point sees many ends: what their nodes are wrong by between each other cancels out.
   parameters.spacing *= 2;
   parameters.levels = 1;

@@ -23,7 +23,7 @@ struct OrderedPoints {
   std::uint32_t nodes = 0;
 };
 
-/// A left-balanced kd-tree: kernels/structures/left_balanced.clh. Splits the widest axis of each
+/// A left-balanced kd-tree: kernels/structures/left_balanced.cl. Splits the widest axis of each
 /// node's points; of points at one coordinate those of smaller indices are lower.
 OrderedPoints build_left_balanced(std::span<const glm::vec3> points);
 

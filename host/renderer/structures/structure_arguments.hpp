@@ -7,25 +7,21 @@
 
 namespace photile::maps {
 
-/// Sets the symbol that kernels/structures/query.clh knows the structure by.
-inline void set_structure_defines(device::Defines& defines, MapStructure structure) {
+/// The kernels that search the structure.
+inline const char* kernel_file(MapStructure structure) {
   switch (structure) {
     case MapStructure::kdtree_left_balanced:
-      defines.set("LEFT_BALANCED");
-      break;
+      return "structures/left_balanced.cl";
     case MapStructure::wide_bvh:
-      defines.set("WIDE_BVH");
-      break;
+      return "structures/wide_bvh.cl";
     case MapStructure::hashed_grid:
-      defines.set("HASHED_GRID");
-      break;
+      return "structures/hashed_grid.cl";
     default:
-      defines.set("KDTREE");
-      if (structure == MapStructure::kdtree_2d) defines.set("TREE_2D");
+      return "structures/kdtree.cl";
   }
 }
 
-/// Sets STRUCTURE_ARGUMENTS of kernels/structures/search.clh.
+/// Sets the members of Structure in kernels/structures/search.clh.
 inline void set_structure_arguments(device::Launch& launch, const MapPage& page) {
   launch.set("entry_count", page.entry_count)
       .set("root", page.tree_root)

@@ -23,16 +23,16 @@ class StructureQuery : public Query {
         context_(device::context_of(*store.device)),
         pace_(context_),
         parameters_(parameters),
+        file_(maps::kernel_file(store.parameters.structure)),
         sums_(store.needs, parameters.compiled_neighbours) {
     const std::uint32_t neighbours = parameters.neighbours;
     const std::uint32_t compiled_neighbours = parameters.compiled_neighbours;
-    maps::set_structure_defines(defines_, store.parameters.structure);
+    if (store.parameters.structure == MapStructure::kdtree_2d) defines_.set("TREE_2D");
     if (compiled_neighbours <= private_list_limit) {
       // Few sizes, so that few programs are compiled.
       defines_.set("LIST_CAPACITY",
                    static_cast<long long>(std::bit_ceil(std::max(compiled_neighbours, 16u))));
     } else {
-      defines_.set("LIST_IN_GLOBAL_MEMORY");
       constexpr std::uint64_t group = maps::work_group_size;
       const std::uint64_t bytes_per_item = std::uint64_t{neighbours} * 8;
       const std::uint64_t bytes = std::min(global_list_bytes, context_.memory_limit() / 8);
@@ -49,19 +49,20 @@ class StructureQuery : public Query {
     maps::set_entry_defines(defines, store_.needs);
     sums_.set_defines(defines);
     if (store_.needs.normal_maps) defines.set("NORMAL_MAPS");
-    set_density_defines(defines, parameters_.surface, parameters_.kernel);
-    device::Launch launch(context_, context_.kernel("structures/estimate.cl", "estimate", defines));
-    set_estimate_arguments(launch, store_, hits, parameters_, estimates);
+    set_density_defines(defines, parameters_.surface != nullptr, parameters_.kernel);
+    device::Launch launch(context_, context_.kernel(file_, "estimate_by_list", defines));
+    set_estimate_arguments(launch, hits, parameters_, estimates);
     run(launch, hits);
   }
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
-    device::Launch launch(
-        context_, context_.kernel("structures/nearest.cl", "nearest", page_defines(hits.page)));
-    set_page_arguments(launch, hits, parameters_);
-    set_normal_arguments(launch, store_, hits, nullptr);
-    launch.set("neighbours", photons).set("squared_radius", squared_radius);
+    device::Launch launch(context_,
+                          context_.kernel(file_, "nearest_by_list", page_defines(hits.page)));
+    set_page_arguments(launch, hits);
+    launch.set("neighbours", photons)
+        .set("squared_radius", squared_radius)
+        .set("visits", device::Buffer<std::uint32_t>());
     run(launch, hits);
   }
 
@@ -75,11 +76,12 @@ class StructureQuery : public Query {
   /// With the arguments of the structure.
   void run(device::Launch& launch, const PageHits& hits) {
     maps::set_structure_arguments(launch, hits.page);
-    if (list_entry_.size() > 0) {
-      launch.set("list_distance", list_distance_).set("list_entry", list_entry_);
-    }
+    launch.set("list_distance", list_distance_).set("list_entry", list_entry_);
+    PhotileQuery query = query_of(store_, hits, parameters_);
     pace_.run(hits.count, 1, [&](std::uint32_t first, std::uint32_t count) {
-      launch.set("first_hit", hits.first + first).set("hit_count", count);
+      query.first_hit = hits.first + first;
+      query.hit_count = count;
+      launch.set("query", query);
       launch.run_no_more(std::min<std::size_t>(count, work_items_), maps::work_group_size);
     });
   }
@@ -88,6 +90,7 @@ class StructureQuery : public Query {
   device::Context& context_;
   device::LaunchPace pace_;
   QueryParameters parameters_;
+  const char* file_;
   LightSums sums_;
   device::Defines defines_;
   std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();

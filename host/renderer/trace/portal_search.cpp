@@ -35,6 +35,8 @@ constexpr double outside_share = 0.4;
 constexpr std::size_t most_planes = 256;  ///< of the largest area
 constexpr double least_share = 0.02;      ///< of what escapes that a portal takes
 constexpr double wanted_share = 0.97;     ///< of what escapes that all take
+/// So much larger may a portal be that takes more than the narrowest.
+constexpr double roomier = 1.5;
 /// Of the disc of the bounding sphere: beyond, portals would gain little.
 constexpr double most_portal_area = 0.25;
 
@@ -230,7 +232,10 @@ std::vector<Opening> openings_of(const Scene& scene, const std::vector<Escape>& 
   return openings;
 }
 
-/// Those that together take most of what escapes, by as little area as can be.
+/// Those that together take most of what escapes, by little area: of about the narrowest, each is
+/// that which takes most. What lights a frame from outside, and the room from there, crosses the
+/// plane of the pane, and not that of the frame; where no portal is, light starts on the whole of
+/// the bounding sphere, and each of its photons weighs a hundred times as much as others.
 std::vector<Portal> narrowest(const std::vector<Opening>& openings, std::size_t escapes,
                               std::size_t least, double most_area) {
   std::vector<bool> taken(escapes, false);
@@ -239,17 +244,29 @@ std::vector<Portal> narrowest(const std::vector<Opening>& openings, std::size_t 
   std::size_t left = escapes;
   while (portals.size() < limits::max_portals &&
          static_cast<double>(left) > (1 - wanted_share) * static_cast<double>(escapes)) {
-    const Opening* best = nullptr;
+    const auto fresh_of = [&](const Opening& opening) {
+      return static_cast<std::size_t>(std::count_if(opening.rays.begin(), opening.rays.end(),
+                                                    [&](std::size_t ray) { return !taken[ray]; }));
+    };
+    const Opening* tightest = nullptr;
     double best_score = 0;
     for (const Opening& opening : openings) {
-      const auto fresh = static_cast<std::size_t>(std::count_if(
-          opening.rays.begin(), opening.rays.end(), [&](std::size_t ray) { return !taken[ray]; }));
+      const std::size_t fresh = fresh_of(opening);
       const double score = static_cast<double>(fresh) / opening.area;
       if (fresh < least || score <= best_score) continue;
-      best = &opening;
+      tightest = &opening;
       best_score = score;
     }
-    if (best == nullptr) break;
+    if (tightest == nullptr) break;
+    const Opening* best = tightest;
+    std::size_t most = fresh_of(*tightest);
+    for (const Opening& opening : openings) {
+      if (opening.area > roomier * tightest->area) continue;
+      const std::size_t fresh = fresh_of(opening);
+      if (fresh <= most) continue;
+      best = &opening;
+      most = fresh;
+    }
     for (const std::size_t ray : best->rays) {
       left -= taken[ray] ? 0 : 1;
       taken[ray] = true;

@@ -27,22 +27,18 @@
 #ifndef PHOTILE_DEVICE_BSDF_H
 #define PHOTILE_DEVICE_BSDF_H
 
-#ifdef __OPENCL_VERSION__
-#define PHOTILE_SQRT(x) sqrt(x)
-#else
+#include "photile/device/constants.h"
+
+#ifdef __cplusplus
 #include <cmath>
 #define PHOTILE_SQRT(x) std::sqrt(x)
+#else
+#define PHOTILE_SQRT(x) sqrt(x)
 #endif
-
-/// Smallest GGX alpha. Narrower lobes lose their peak to single precision and no density of photons
-/// would resolve them; smoother surfaces are mirrors.
-#define PHOTILE_MIN_GGX_ALPHA 0.02f
 
 #ifndef PHOTILE_REAL
 #define PHOTILE_REAL float
 #endif
-
-#define PHOTILE_PI 3.14159265358979f
 
 /// (1 - i.h)^5, Schlick's weight between F0 and F90. `i_dot_h` in [0, 1].
 static inline PHOTILE_REAL photile_schlick(PHOTILE_REAL i_dot_h) {

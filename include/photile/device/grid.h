@@ -4,11 +4,7 @@
 #ifndef PHOTILE_DEVICE_GRID_H
 #define PHOTILE_DEVICE_GRID_H
 
-#define PHOTILE_CELL_ASPECT 4
-
-/* Photons of a cell that are sorted by insertion; cells of more are sorted by a group on GPUs
-   (kernels/grid/sort_cells.cl). 16 to 64. */
-#define PHOTILE_INSERTION_LIMIT 48
+#include "photile/device/constants.h"
 
 /* Grid over the plane of a triangle or patch. A point p projects to
      u = (p - origin) . u_axis,  v = (p - origin) . v_axis      (metres)

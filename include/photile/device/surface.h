@@ -4,14 +4,7 @@
 #ifndef PHOTILE_DEVICE_SURFACE_H
 #define PHOTILE_DEVICE_SURFACE_H
 
-#define PHOTILE_SURFACE_WIDTH 8
-
-/* Height of the slab around a hit's plane in which surface and photons count, over the radius: with
-   0.1 thin curved shells go dark, without a slab plates a few centimetres below bleed through. */
-#define PHOTILE_SLAB 0.2f
-
-/* No path from the root to a node is longer, and no stack of a traversal deeper. */
-#define PHOTILE_SURFACE_STACK 160
+#include "photile/device/constants.h"
 
 #define PHOTILE_SURFACE_LEAF 0x80000000u /* in `child`: the index of a leaf follows */
 #define PHOTILE_SURFACE_NONE 0xFFFFFFFFu /* in `child`: there is none; its box is empty */

@@ -1,0 +1,20 @@
+/* What the kernels of the build are given, as C++ and OpenCL C both see it. */
+#ifndef PHOTILE_DEVICE_BUILD_H
+#define PHOTILE_DEVICE_BUILD_H
+
+/* A page of photons. Kernels take it by value, as the next. */
+typedef struct {
+  unsigned int photon_count;
+  unsigned int first_photon; /* index of the page's first photon among all photons */
+  unsigned int first_list;   /* number of the page's first list of candidate maps among all */
+  float squared_reach;       /* square of the radius, grown by the rounding of positions */
+} PhotilePhotonPage;
+
+/* Maps [first_map, last_map), and where these are a tile of one map the cells of that: columns
+   [first_column, last_column), rows [first_row, last_row). */
+typedef struct {
+  unsigned int first_map, last_map;
+  unsigned int first_column, first_row, last_column, last_row;
+} PhotileMapRange;
+
+#endif
