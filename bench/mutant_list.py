@@ -189,10 +189,10 @@ MUTANTS = (
            "  traced.caustics = traced.photons;\n"
            "  Maps maps{build(std::move(traced.photons), parameters, progress), {}, nullptr, std::move(found)};",
            (("cache", "gathering: the light of a caustic*"),)),
-    Mutant("radiance seen through water as bright as in it", "host/renderer/trace/scatter_specular.cpp",
+    Mutant("radiance seen through water as bright as in it", "host/renderer/trace/scatter.cpp",
            "if (material.thin) return 1;", "return 1;",
            (("render", "a pool shows*"), ("trace", "A lamp under water*"))),
-    Mutant("Fresnel's share swapped", "host/renderer/trace/scatter_specular.cpp",
+    Mutant("Fresnel's share swapped", "host/renderer/trace/scatter.cpp",
            "if (choice < boundary.reflectance)", "if (choice >= boundary.reflectance)",
            (("trace", "Glass*,Thin glass*"),)),
 )

@@ -10,7 +10,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
-#include "loading/luminaire_list.hpp"
+#include "loading/luminaires.hpp"
 #include "photile/image.hpp"
 #include "photile/limits.hpp"
 #include "view/moods.hpp"

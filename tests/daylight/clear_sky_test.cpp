@@ -1,9 +1,9 @@
 // The clear sky against another model, and its table by hand.
-#include "weather/clear_sky.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "weather/perez_sky.hpp"
 
 namespace photile::test {
 

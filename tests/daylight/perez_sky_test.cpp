@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "loading/sky_map.hpp"
+#include "loading/sky_situation.hpp"
 #include "weather/sky_patches.hpp"
 
 namespace photile::test {

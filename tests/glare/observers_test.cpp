@@ -1,7 +1,7 @@
 // Eyes and their directions.
-#include "glare/observers.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "glare/measure_glare.hpp"
 
 namespace photile::test {
 

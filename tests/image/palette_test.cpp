@@ -4,8 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "report/palette_colours.hpp"
-
 namespace photile::test {
 
 using namespace photile::report;

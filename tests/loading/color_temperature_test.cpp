@@ -1,9 +1,8 @@
 // Colours of light by temperature, against published chromaticities.
-#include "scene/color_temperature.hpp"
-
 #include <catch2/catch.hpp>
 #include <tuple>
 
+#include "scene/light_emission.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "loading/sky_map.hpp"
+#include "loading/sky_situation.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

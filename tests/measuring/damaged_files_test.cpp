@@ -7,7 +7,7 @@
 #include <random>
 #include <string_view>
 
-#include "measuring/sensor_files.hpp"
+#include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "temporary_folder.hpp"

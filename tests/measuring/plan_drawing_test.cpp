@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <regex>
 
-#include "report/illuminance_steps.hpp"
+#include "report/isolines.hpp"
 #include "report/palette.hpp"
 
 namespace photile::test {

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "measuring/sensor_files.hpp"
+#include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 

@@ -7,7 +7,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "measuring/furniture.hpp"
-#include "measuring/sensor_files.hpp"
+#include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
 #include "statistical_tests.hpp"
 #include "temporary_folder.hpp"

@@ -1,9 +1,9 @@
-#include "scene/photometry.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "scene/light_emission.hpp"
 
 namespace photile::test {
 namespace {

@@ -1,9 +1,8 @@
 // Parts of lit triangles that no photon reaches.
-#include "surface/dark_parts.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "photon_sets.hpp"
+#include "surface/dark_sides.hpp"
 
 namespace photile::test {
 namespace {

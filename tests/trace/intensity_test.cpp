@@ -7,7 +7,7 @@
 #include "photile/photon_tracer.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/intensity_sampler.hpp"
+#include "trace/lamp_intensity.hpp"
 
 namespace photile::test {
 

@@ -1,11 +1,10 @@
 // Paths along lobes, surface by surface.
-#include "trace/lobe_path.hpp"
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "test_scenes.hpp"
+#include "trace/eye_path.hpp"
 #include "trace/light_sampler.hpp"
 
 namespace photile::test {

@@ -1,6 +1,4 @@
 // Normal maps: which way they turn, and that surfaces under them reflect no more than they get.
-#include "trace/normal_map.hpp"
-
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
 
@@ -8,6 +6,7 @@
 #include "test_scenes.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/scatter.hpp"
+#include "trace/surface.hpp"
 
 namespace photile::test {
 

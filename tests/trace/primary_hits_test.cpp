@@ -7,9 +7,9 @@
 #include "photile/errors.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
+#include "trace/hit_batch.hpp"
 #include "trace/hit_order.hpp"
 #include "trace/ray_scene_impl.hpp"
-#include "trace/reflected_hits.hpp"
 
 namespace photile::test {
 namespace {

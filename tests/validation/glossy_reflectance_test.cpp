@@ -1,11 +1,10 @@
 // The reflectance of the glossy material in a white furnace against an integral over directions.
-#include "validation/glossy_reflectance.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "estimates_comparison.hpp"
+#include "validation/form_factors.hpp"
 
 namespace photile::test {
 namespace {

@@ -10,7 +10,6 @@
 #include "loading/relit_sky.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
-#include "weather/clear_sky.hpp"
 #include "weather/perez_sky.hpp"
 #include "weather_text.hpp"
 

@@ -1,9 +1,9 @@
 // Ranges of frames as render farms write them.
-#include "walk/frame_range.hpp"
-
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
+
+#include "walk/frame_names.hpp"
 
 namespace photile::test {
 

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include "cache/charts.hpp"
 #include "photile/errors.hpp"
 #include "trace/flush_denormals.hpp"
 
 namespace photile::bake {
+
 namespace {
 
 /// A lookup between the outermost texels stays within them; the border is for those that go astray.
@@ -252,6 +255,39 @@ std::vector<glm::vec3> BakedLight::layer(std::size_t layer) const {
     if (blend_[i].node[0] != none) texels[i] = blended(values, blend_[i], layer, layers);
   });
   return texels;
+}
+
+std::optional<Atlas> pack(std::span<TexelRectangle> rectangles, std::uint32_t most_side) {
+  std::vector<std::size_t> order(rectangles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(rectangles[b].height, rectangles[b].width, a) <
+           std::tuple(rectangles[a].height, rectangles[a].width, b);
+  });
+  double area = 0;
+  std::uint32_t widest = 1;
+  for (const TexelRectangle& rectangle : rectangles) {
+    area += double{static_cast<double>(rectangle.width)} * rectangle.height;
+    widest = std::max(widest, rectangle.width);
+  }
+  if (widest > most_side) return std::nullopt;
+  const double square = std::ceil(std::sqrt(area));
+  const auto width = static_cast<std::uint32_t>(
+      std::clamp(square, static_cast<double>(widest), static_cast<double>(most_side)));
+  std::uint64_t shelf = 0, x = 0, height = 0;
+  for (const std::size_t i : order) {
+    TexelRectangle& rectangle = rectangles[i];
+    if (x + rectangle.width > width) {
+      shelf = height;
+      x = 0;
+    }
+    if (x == 0) height = shelf + rectangle.height;
+    if (height > most_side) return std::nullopt;
+    rectangle.x = static_cast<std::uint32_t>(x);
+    rectangle.y = static_cast<std::uint32_t>(shelf);
+    x += rectangle.width;
+  }
+  return Atlas{width, static_cast<std::uint32_t>(std::max<std::uint64_t>(height, 1))};
 }
 
 }  // namespace photile::bake

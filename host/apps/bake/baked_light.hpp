@@ -4,16 +4,30 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "bake/atlas.hpp"
 #include "cache/node_sight.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::bake {
+
+struct TexelRectangle {
+  std::uint32_t x = 0, y = 0;  ///< its first texel
+  std::uint32_t width = 0, height = 0;
+};
+
+struct Atlas {
+  std::uint32_t width = 0, height = 0;
+};
+
+/// Places rectangles on shelves, the highest first (Coffman et al., "Performance bounds for
+/// level-oriented two-dimensional packing algorithms", 1980: next-fit decreasing height), on a
+/// picture about as wide as high. Nothing where no picture of this side holds them.
+std::optional<Atlas> pack(std::span<TexelRectangle> rectangles, std::uint32_t most_side);
 
 struct BakeParameters {
   double texel = 0;            ///< metres between texels, at most; 0 = as fine as the picture holds

@@ -25,7 +25,7 @@
 #include "photile/illuminance.hpp"
 #include "photile/light_groups.hpp"
 #include "photile/limits.hpp"
-#include "report/honeybee_year.hpp"
+#include "report/honeybee_files.hpp"
 #include "weather/weather_file.hpp"
 
 namespace photile::app {

@@ -25,7 +25,7 @@
 #include "measuring/measure_grids.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/room_surfaces.hpp"
-#include "measuring/sensor_files.hpp"
+#include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "report/daylight_tables.hpp"

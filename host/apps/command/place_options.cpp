@@ -8,7 +8,7 @@
 #include "command/validators.hpp"
 #include "common/run_files.hpp"
 #include "measuring/furniture.hpp"
-#include "measuring/sensor_files.hpp"
+#include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"

@@ -14,7 +14,7 @@
 #include "photile/light_groups.hpp"
 #include "report/false_colour_picture.hpp"
 #include "report/plan_surroundings.hpp"
-#include "report/scratch_folder.hpp"
+#include "report/print_page.hpp"
 #include "scene/material_reflectance.hpp"
 #include "view/moods.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
-#include "walk/frame_range.hpp"
+#include "walk/frame_names.hpp"
 
 namespace photile::app {
 namespace {

@@ -37,7 +37,6 @@
 #include "view/display.hpp"
 #include "walk/contact_sheet.hpp"
 #include "walk/frame_names.hpp"
-#include "walk/frame_range.hpp"
 
 namespace photile::app {
 namespace {

@@ -1,7 +1,7 @@
 // White furnaces: inside walls that all glow alike, every material has a simple answer.
 
 #include "validation/analytic_case.hpp"
-#include "validation/glossy_reflectance.hpp"
+#include "validation/form_factors.hpp"
 #include "validation/room.hpp"
 
 namespace photile::validation {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "loading/luminaire_list.hpp"
 #include "loading/luminaires.hpp"
 
 namespace photile::view {

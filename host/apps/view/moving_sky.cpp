@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "loading/relit_sky.hpp"
-#include "weather/clear_sky.hpp"
+#include "weather/perez_sky.hpp"
 #include "weather/sky_lights.hpp"
 
 namespace photile::view {

@@ -3,17 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "files/warnings.hpp"
-#include "gltf/json_check.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::gltf {
+
 namespace {
 
 /// The JSON text of a file: all of a .gltf, the first chunk of a .glb.
@@ -150,6 +155,176 @@ std::string decoded_uri(const std::string& uri) {
     if (escape) i += 2;
   }
   return decoded;
+}
+
+namespace {
+
+/// Where bytes are described: what is no number there would be read as another one.
+constexpr std::array<std::string_view, 3> of_bytes{"accessors", "bufferViews", "buffers"};
+/// Members of those that number parts of the file or constants of the format: 32 bits.
+constexpr std::array<std::string_view, 3> numbers{"buffer", "bufferView", "componentType"};
+/// Members of those that count bytes or elements: whole as JSON keeps numbers, 32 bits where an
+/// accessor is sparse.
+constexpr std::array<std::string_view, 4> sizes{"byteLength", "byteOffset", "byteStride", "count"};
+/// Members anywhere that number parts of the file. tinygltf cuts them off at 32 bits; others that
+/// are wrong name nothing, and nothing may ask for it.
+constexpr std::array<std::string_view, 11> indices{"camera",   "index",  "indices", "input",
+                                                   "material", "mesh",   "node",    "output",
+                                                   "sampler",  "source", "skin"};
+constexpr std::array<std::string_view, 3> lists{"children", "joints", "nodes"};
+
+constexpr std::int64_t most_int = std::numeric_limits<int>::max();
+constexpr std::uint64_t most_exact = std::uint64_t{1} << std::numeric_limits<double>::digits;
+constexpr std::uint64_t most_size = std::numeric_limits<std::uint64_t>::max();
+
+template <std::size_t count>
+bool is_one_of(const std::array<std::string_view, count>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Takes the parts of a JSON text in turn; false ends the reading, with `problem` set.
+class JsonCheck {
+ public:
+  using number_integer_t = nlohmann::json::number_integer_t;
+  using number_unsigned_t = nlohmann::json::number_unsigned_t;
+  using number_float_t = nlohmann::json::number_float_t;
+  using string_t = nlohmann::json::string_t;
+  using binary_t = nlohmann::json::binary_t;
+
+  std::string problem;
+
+  bool null() { return value(!is_whole(), "null"); }
+  bool boolean(bool) { return value(!is_whole(), "true or false"); }
+  bool number_integer(number_integer_t number) {
+    const bool fits = levels_.empty() || levels_.back().most == most_size || number >= -most_int;
+    return value(fits && !is_whole(), number);
+  }
+  bool number_float(number_float_t number, const string_t&) { return value(!is_whole(), number); }
+  bool number_unsigned(number_unsigned_t number) {
+    return value(levels_.empty() || number <= levels_.back().most, number);
+  }
+  bool string(string_t&) { return value(!is_whole(), "a text"); }
+  bool binary(binary_t&) { return value(!is_whole(), "binary"); }
+
+  bool start_object(std::size_t) { return enter(false); }
+  bool start_array(std::size_t) { return enter(true); }
+  bool end_object() { return leave(); }
+  bool end_array() { return leave(); }
+  bool key(string_t& name) {
+    Level& level = levels_.back();
+    level.key = name;
+    if (!level.free) set_wanted(level);
+    return true;
+  }
+
+  bool parse_error(std::size_t place, const std::string&, const nlohmann::json::exception& error) {
+    constexpr int number_overflow = 406;
+    problem = fmt::format("malformed glTF: what ends at byte {} is {}", place,
+                          error.id == number_overflow ? "too large a number" : "no JSON");
+    return false;
+  }
+
+ private:
+  /// An array or object that is open.
+  struct Level {
+    bool array, free;            ///< free: not of the format itself
+    std::string key = {};        ///< of the member that comes, in an object
+    std::uint64_t elements = 0;  ///< begun, in an array
+    /// Whether what comes is a whole number, and up to which.
+    bool whole = false;
+    std::uint64_t most = most_size;
+  };
+
+  /// The member of the n-th level from the innermost, which are objects.
+  std::string_view member(std::size_t n) const {
+    return n < levels_.size() ? std::string_view(levels_[levels_.size() - 1 - n].key) : "";
+  }
+
+  /// Whether what comes has to be a whole number.
+  bool is_whole() const { return !levels_.empty() && levels_.back().whole; }
+
+  void set_wanted(Level& level) const {
+    const bool bytes = is_one_of(of_bytes, levels_.front().key);
+    const bool number = bytes && is_one_of(numbers, level.key);
+    const bool size = bytes && is_one_of(sizes, level.key);
+    const bool sparse = member(1) == "sparse" || member(2) == "sparse";
+    level.whole = number || size;
+    const bool index = is_one_of(indices, level.key) || member(1) == "attributes";
+    level.most = number || (size && sparse) || index ? most_int : size ? most_exact : most_size;
+  }
+
+  void begin_value() {
+    if (!levels_.empty()) ++levels_.back().elements;
+  }
+
+  /// Shown where it is not what the format has there.
+  template <class Shown>
+  bool value(bool is_sound, const Shown& shown) {
+    begin_value();
+    if (is_sound) return true;
+    problem = fmt::format("malformed glTF: {} is {}, not a whole number from 0 to {}", place(),
+                          shown, levels_.back().most);
+    return false;
+  }
+
+  /// "bufferViews[0].byteOffset". Their names are plain where a number is wanted.
+  std::string place() const {
+    std::string text;
+    for (const Level& level : levels_) {
+      if (level.array) {
+        text += fmt::format("[{}]", level.elements - 1);
+      } else {
+        text += (text.empty() ? "" : ".") + level.key;
+      }
+    }
+    return text;
+  }
+
+  bool enter(bool array) {
+    if (is_whole()) return value(false, array ? "a list" : "an object");
+    begin_value();
+    if (levels_.size() == 2 && !check_count()) return false;
+    Level level{.array = array, .free = false};
+    if (!levels_.empty()) {
+      const Level& around = levels_.back();
+      const bool foreign = !around.array && (around.key == "extras" || around.key == "extensions");
+      level.free = around.free || foreign;
+      const bool list = array && !level.free && !around.array && is_one_of(lists, around.key);
+      if (list) level.most = most_int;
+    }
+    levels_.push_back(level);
+    if (levels_.size() <= static_cast<std::size_t>(limits::max_json_depth)) return true;
+    problem = fmt::format("JSON nested more than {} levels deep; export it again",
+                          limits::max_json_depth);
+    return false;
+  }
+
+  bool leave() {
+    levels_.pop_back();
+    return true;
+  }
+
+  /// Of the elements of an array of the outermost object.
+  bool check_count() {
+    const std::string& array = levels_.front().key;
+    const std::uint64_t most = array == "nodes"       ? limits::max_nodes
+                               : array == "materials" ? limits::max_materials - 1
+                                                      : most_size;
+    if (levels_.back().elements <= most) return true;
+    problem = fmt::format("more than {} {}, which is the limit; split the scene", most, array);
+    return false;
+  }
+
+  std::vector<Level> levels_;
+};
+
+}  // namespace
+
+void check_json(std::string_view json, const reading::ImportContext& context) {
+  JsonCheck check;
+  if (nlohmann::json::sax_parse(json, &check)) return;
+  const bool malformed = check.problem.starts_with("malformed");
+  throw context.error(check.problem + (malformed ? "; export it again" : ""));
 }
 
 }  // namespace photile::gltf

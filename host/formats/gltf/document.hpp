@@ -1,6 +1,8 @@
 // A glTF file, parsed and with its buffers read, before any of it is interpreted.
 #pragma once
 
+#include <string_view>
+
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
 
@@ -44,5 +46,12 @@ glm::dvec3 rgb_of(const std::vector<double>& values, const glm::dvec3& fallback)
 
 /// A URI with its percent escapes replaced by the bytes they stand for.
 std::string decoded_uri(const std::string& uri);
+
+/// Reads the text once, as a stream: whatever it says, that takes no memory but for its depth.
+/// tinygltf would build all of it, recursively, and read numbers that are out of their range as
+/// others. Errors: InputError where it is no JSON, is nested deeper than limits::max_json_depth,
+/// has more nodes or materials than the limits, or where a number, count or offset of the format is
+/// no whole number of its range.
+void check_json(std::string_view json, const reading::ImportContext& context);
 
 }  // namespace photile::gltf

@@ -8,14 +8,11 @@
 #include <optional>
 
 #include "gltf/document.hpp"
-#include "gltf/lamp_instances.hpp"
 #include "gltf/light_traits.hpp"
 #include "gltf/profiles.hpp"
 #include "photile/limits.hpp"
-#include "scene/color_temperature.hpp"
 #include "scene/coordinate_limit.hpp"
 #include "scene/light_emission.hpp"
-#include "scene/photometry.hpp"
 
 namespace photile::gltf {
 namespace {

@@ -9,7 +9,6 @@
 #include "files/warnings.hpp"
 #include "gltf/document.hpp"
 #include "gltf/pictures.hpp"
-#include "gltf/texture_reference.hpp"
 #include "photile/limits.hpp"
 #include "pictures/texture_store.hpp"
 #include "scene/surface_models.hpp"

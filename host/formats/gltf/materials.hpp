@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gltf/accessor.hpp"
-#include "gltf/texture_reference.hpp"
+#include "gltf/pictures.hpp"
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
 

@@ -9,14 +9,13 @@
 #include <utility>
 
 #include "gltf/document.hpp"
-#include "gltf/lamp_instances.hpp"
 #include "gltf/light_traits.hpp"
 #include "gltf/panels.hpp"
 #include "gltf/primitives.hpp"
 #include "gltf/vertices.hpp"
 #include "reading/instance_recorder.hpp"
 #include "reading/plain_material.hpp"
-#include "scene/material_needs.hpp"
+#include "scene/surface_models.hpp"
 
 namespace photile::gltf {
 namespace {

@@ -35,4 +35,7 @@ void add_gltf_cameras(const tinygltf::Model& model, const std::vector<NodeVisit>
 void add_gltf_surroundings(const tinygltf::Model& model, const AccessorReader& accessors,
                            reading::ImportContext& context);
 
+/// Fills the context's scene from its .gltf or .glb file. Errors: InputError.
+void import_gltf(reading::ImportContext& context);
+
 }  // namespace photile::gltf

@@ -1,6 +1,7 @@
 #include "loading/light_changes.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <string>
@@ -11,10 +12,12 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
-#include "scene/color_temperature.hpp"
+#include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
+#include "scene/material_reflectance.hpp"
 
 namespace photile::loading {
+
 namespace {
 
 /// The light called `name` that a `change` is for. Errors: UsageError that lists the lights there
@@ -76,6 +79,41 @@ void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperat
     }
     light.color = glm::vec3(scene::color_of_temperature(temperature.kelvin));
   }
+}
+
+namespace {
+
+std::string material_names(const Scene& scene) {
+  constexpr std::size_t most = 20;
+  std::string names;
+  for (std::size_t i = 0; i < scene.materials.size() && i < most; ++i) {
+    names += (i == 0 ? "'" : ", '") + scene.materials[i].name + "'";
+  }
+  return names + (scene.materials.size() > most ? " ..." : "");
+}
+
+void apply(Scene& scene, const ReflectanceChange& change) {
+  bool found = false;
+  for (Material& material : scene.materials) {
+    if (::fnmatch(change.glob.c_str(), material.name.c_str(), 0) != 0) continue;
+    found = true;
+    if (scene::set_reflectance(scene, material, change.share)) continue;
+    throw UsageError(fmt::format(
+        "reflectance of '{}': {:g} cannot be had by making its colour brighter or darker: it is "
+        "glass, its gloss reflects more alone (--set lambertian=on removes that) or a channel "
+        "exceeds 1",
+        material.name, change.share));
+  }
+  if (!found) {
+    throw UsageError(fmt::format("reflectance of '{}': there is no such material; there are {}",
+                                 change.glob, material_names(scene)));
+  }
+}
+
+}  // namespace
+
+void apply_reflectances(Scene& scene, std::span<const ReflectanceChange> changes) {
+  for (const ReflectanceChange& change : changes) apply(scene, change);
 }
 
 }  // namespace photile::loading

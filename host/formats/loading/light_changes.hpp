@@ -24,4 +24,8 @@ void apply_profiles(Scene& scene, std::span<const LightProfile> profiles,
 /// Errors: UsageError for a light that is not there, or whose colours come from a picture.
 void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperatures);
 
+/// Gives materials the reflectances that are asked for, in order. Errors: UsageError naming a
+/// pattern that matches no material, or a material that cannot have that reflectance.
+void apply_reflectances(Scene& scene, std::span<const ReflectanceChange> changes);
+
 }  // namespace photile::loading

@@ -7,12 +7,11 @@
 #include <utility>
 
 #include "common/ascii_text.hpp"
-#include "gltf/gltf_import.hpp"
-#include "gltf/lamp_instances.hpp"
+#include "gltf/light_traits.hpp"
+#include "gltf/steps.hpp"
 #include "loading/finishing.hpp"
 #include "loading/light_changes.hpp"
 #include "loading/luminaires.hpp"
-#include "loading/material_changes.hpp"
 #include "loading/sourced_scene.hpp"
 #include "loading/up_axis.hpp"
 #include "obj/obj_import.hpp"
@@ -21,8 +20,8 @@
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"
 #include "scene/default_camera.hpp"
+#include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
-#include "scene/photometry.hpp"
 #include "trace/portal_search.hpp"
 
 namespace photile {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "photile/errors.hpp"
-#include "weather/clear_sky.hpp"
+#include "weather/perez_sky.hpp"
 #include "weather/sky_lights.hpp"
 #include "weather/sky_patches.hpp"
 #include "weather/sun_position.hpp"

@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "loading/finishing.hpp"
-#include "loading/sky_map.hpp"
 #include "loading/sky_situation.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "pictures/radiance_picture.hpp"
+#include "pictures/texture_decoder.hpp"
 #include "scene/light_emission.hpp"
 #include "weather/sky_lights.hpp"
 

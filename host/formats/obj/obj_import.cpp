@@ -9,7 +9,6 @@
 
 #include "files/warnings.hpp"
 #include "obj/mtl_materials.hpp"
-#include "obj/obj_libraries.hpp"
 #include "obj/obj_reader.hpp"
 #include "obj/obj_text.hpp"
 #include "photile/limits.hpp"
@@ -17,8 +16,8 @@
 #include "reading/polygon_triangulator.hpp"
 #include "reading/scene_origin.hpp"
 #include "scene/coordinate_limit.hpp"
-#include "scene/material_needs.hpp"
 #include "scene/mesh_builder.hpp"
+#include "scene/surface_models.hpp"
 
 namespace photile::obj {
 namespace {

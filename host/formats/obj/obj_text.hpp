@@ -1,11 +1,15 @@
 // What tinyobjloader passes over in silence, found by a look at the first word of each line.
 #pragma once
 
+#include <tiny_obj_loader.h>
+
 #include <cstdint>
 #include <map>
 #include <string>
 #include <unordered_set>
 #include <vector>
+
+#include "reading/import_context.hpp"
 
 namespace photile::obj {
 
@@ -22,5 +26,13 @@ struct ObjTextFindings {
 /// the OBJ format asks for and tinyobjloader does not do. Errors: ResourceError when the bytes are
 /// no text.
 ObjTextFindings examine_obj_text(std::string& text);
+
+/// The materials of the libraries that mtllib statements name, from the scene's folder, in their
+/// order. A statement may name several files. Names with blanks are written with backslashes before
+/// them or, by most exporters, without: the file that the whole statement names comes first.
+///   statements   what follows each `mtllib`
+/// Libraries that cannot be read are named in a warning.
+std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::string>& statements,
+                                                    reading::ImportContext& context);
 
 }  // namespace photile::obj

@@ -8,7 +8,6 @@
 
 #include "files/warnings.hpp"
 #include "photile/limits.hpp"
-#include "photometry/photometric_planes.hpp"
 #include "photometry/photometric_text.hpp"
 
 namespace photile::photometry {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "photile/environment_map.hpp"
-#include "pictures/radiance_picture.hpp"
+#include "pictures/texture_decoder.hpp"
 
 namespace photile::pictures {
 

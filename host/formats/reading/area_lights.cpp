@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include "photile/errors.hpp"
-#include "scene/color_temperature.hpp"
 #include "scene/light_emission.hpp"
-#include "scene/photometry.hpp"
 
 namespace photile::reading {
 

@@ -40,4 +40,8 @@ PreparedPhotons load(const std::filesystem::path& file, const Scene& scene,
 /// foreign or doubled, or the shards that are missing; OutputError.
 void merge(std::span<const std::filesystem::path> files, const std::filesystem::path& output);
 
+/// "" where all indices and sizes fit one another and the scene, and all numbers are finite; else
+/// what does not.
+std::string problem_of(const PreparedPhotons& prepared, const Scene& scene);
+
 }  // namespace photile::saved_maps

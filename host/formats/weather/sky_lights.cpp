@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "photile/defaults.hpp"
-#include "scene/photometry.hpp"
+#include "scene/light_emission.hpp"
 
 namespace photile::weather {
 namespace {

@@ -12,7 +12,6 @@
 #include "photile/defaults.hpp"
 #include "photile/primary_hits.hpp"
 #include "trace/flush_denormals.hpp"
-#include "trace/lamp_axes.hpp"
 #include "trace/lamp_intensity.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"

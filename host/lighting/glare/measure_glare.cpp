@@ -1,5 +1,7 @@
 #include "glare/measure_glare.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -9,6 +11,7 @@
 #include "photile/scene_renderer.hpp"
 
 namespace photile::glare {
+
 namespace {
 
 /// Sensors 2 i and 2 i + 1 are observer i's eye, without and with what hides lamps from it.
@@ -141,6 +144,32 @@ std::vector<ObserverGlare> measure_glare(const Scene& scene, std::span<const Obs
   progress.end();
   if (parameters.by_pictures) take_pictures(scene, mix, devices, parameters, keep, all, progress);
   return all;
+}
+
+std::vector<Observer> observers_at(const measuring::SensorGrid& points,
+                                   const measuring::PlanAxes& axes) {
+  std::vector<Observer> observers;
+  for (std::size_t i = 0; i < points.sensors.size(); ++i) {
+    const Sensor& point = points.sensors[i];
+    observers.push_back(Observer::looking(fmt::format("{} {}", points.name, i + 1), point.position,
+                                          point.normal, axes.up));
+  }
+  return observers;
+}
+
+std::vector<Observer> observers_on(const measuring::SensorGrid& plane,
+                                   const measuring::PlanAxes& axes, int directions) {
+  std::vector<Observer> observers;
+  for (std::size_t i = 0; i < plane.sensors.size(); ++i) {
+    for (int direction = 0; direction < directions; ++direction) {
+      const double turn = glm::two_pi<double>() * direction / directions;
+      observers.push_back(Observer::looking(
+          fmt::format("{} {}, {:g} degrees", plane.name, i + 1, 360.0 * direction / directions),
+          plane.sensors[i].position, std::cos(turn) * axes.ahead + std::sin(turn) * axes.right,
+          axes.up));
+    }
+  }
+  return observers;
 }
 
 }  // namespace photile::glare

@@ -9,10 +9,13 @@
 
 #include "glare/luminaires.hpp"
 #include "glare/picture_sources.hpp"
+#include "glare/position_index.hpp"
+#include "measuring/sensor_grid.hpp"
 #include "photile/device.hpp"
 #include "photile/illuminance.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/progress.hpp"
+#include "trace/room.hpp"
 
 namespace photile::glare {
 
@@ -59,5 +62,16 @@ std::vector<ObserverGlare> measure_glare(const Scene& scene, std::span<const Obs
 /// The camera of an observer's pictures: 180 degrees of the angular projection, in the scene's
 /// coordinates.
 Camera eye_of(const Scene& scene, const Observer& observer);
+
+/// An observer at each point, who looks where it faces. Names are the grid's with the number of the
+/// point, from 1.
+std::vector<Observer> observers_at(const measuring::SensorGrid& points,
+                                   const measuring::PlanAxes& axes);
+
+/// At each point of a level plane one who looks in each of several directions, which are spread
+/// evenly round the level and begin with `ahead`: the four of EN 12464-1 are along the walls of a
+/// room that stands along the axes. Names say "plane 3, 90 degrees", clockwise as seen from above.
+std::vector<Observer> observers_on(const measuring::SensorGrid& plane,
+                                   const measuring::PlanAxes& axes, int directions);
 
 }  // namespace photile::glare

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "measuring/readings.hpp"
+#include "measuring/measurement.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/device.hpp"
 #include "photile/illuminance.hpp"

@@ -1,7 +1,15 @@
 #include "measuring/measurement.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <cstddef>
+#include <glm/gtc/constants.hpp>
 #include <utility>
+
+#include "image/light_change.hpp"
+#include "photile/errors.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::measuring {
 
@@ -26,6 +34,38 @@ Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readin
     }
   }
   return result;
+}
+
+void Readings::add(const LightLayers& layers, const LightMix& mix, double factor) {
+  const LightLayers dense = layers.sparse() ? layers.dense() : layers;
+  auto& repeat = repeats_.emplace_back();
+  for (const LightLayers::Layer& layer : dense.layers) {
+    const MixedLight& light = mix.lights[image::index_of(mix, layer.light)];
+    const double lumens = light.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
+    const glm::dvec3 scale =
+        factor * glm::pi<double>() * light.power * lumens * glm::dvec3(light.tint);
+    std::vector<float>& values = repeat.emplace_back(sensors_);
+    std::size_t lost = 0;
+    for (std::size_t sensor = 0; sensor < sensors_; ++sensor) {
+      values[sensor] = static_cast<float>(luminance(scale * glm::dvec3(layer.radiance[sensor])));
+      lost += std::isfinite(values[sensor]) ? 0 : 1;
+    }
+    if (lost > 0) {
+      throw InputError(
+          fmt::format("light '{}': its lux at {} of {} points are beyond any number; turn it down",
+                      layer.light, lost, sensors_));
+    }
+  }
+}
+
+std::vector<float> Readings::total(std::size_t repeat) const {
+  std::vector<double> sums(sensors_);
+  for (const auto& light : repeats_[repeat]) {
+    for (std::size_t sensor = 0; sensor < sensors_; ++sensor) {
+      sums[sensor] += static_cast<double>(light[sensor]);
+    }
+  }
+  return {sums.begin(), sums.end()};
 }
 
 }  // namespace photile::measuring

@@ -1,12 +1,24 @@
 #include "measuring/sensor_grid.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/ascii_text.hpp"
+#include "common/input_file.hpp"
+#include "common/json_object.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::measuring {
+
 namespace {
 
 int whole(double count) { return static_cast<int>(std::clamp(std::round(count), 1.0, 1e6)); }
@@ -49,6 +61,165 @@ PointCounts points_of_en12464(double u, double v) {
   const double spacing = std::min(10.0, 0.2 * std::pow(5.0, std::log10(d)));
   const double resulting = d / whole(d / spacing);
   return {whole(u / resulting), whole(v / resulting)};
+}
+
+namespace {
+
+using nlohmann::json;
+
+/// Cosine between sides that count as at a right angle.
+constexpr double right_angle_slack = 1e-6;
+
+PointCounts counts_of(const JsonObject& plane, double u, double v) {
+  if (plane.has("columns") || plane.has("rows")) {
+    if (plane.has("spacing")) plane.refuse("'spacing' and 'columns'; remove one of them");
+    return {plane.count("columns", 1, limits::max_sensors),
+            plane.count("rows", 1, limits::max_sensors)};
+  }
+  if (!plane.has("spacing")) return points_of_en12464(u, v);
+  const double spacing = plane.metres("spacing");
+  const double columns = std::max(1.0, std::round(u / spacing));
+  const double rows = std::max(1.0, std::round(v / spacing));
+  if (columns * rows > static_cast<double>(limits::max_sensors)) {
+    plane.refuse(fmt::format("'spacing' makes more than {} points", limits::max_sensors));
+  }
+  return {static_cast<int>(columns), static_cast<int>(rows)};
+}
+
+SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
+  PlaneLayout layout;
+  layout.origin = plane.vector("origin");
+  layout.u = plane.vector("u");
+  layout.v = plane.vector("v");
+  const double u = glm::length(layout.u), v = glm::length(layout.v);
+  if (!(u > 0) || !(v > 0)) plane.refuse("'u' or 'v' has no length");
+  if (std::abs(glm::dot(layout.u, layout.v)) > right_angle_slack * u * v) {
+    plane.refuse("'u' and 'v' are not at a right angle");
+  }
+  const PointCounts counts = counts_of(plane, u, v);
+  layout.columns = counts.columns;
+  layout.rows = counts.rows;
+  const std::uint64_t cells =
+      static_cast<std::uint64_t>(layout.columns) * static_cast<std::uint64_t>(layout.rows);
+  if (cells > limits::max_sensors) {
+    plane.refuse(fmt::format("{} points are more than {}", cells, limits::max_sensors));
+  }
+  layout.cells.resize(cells);
+  std::iota(layout.cells.begin(), layout.cells.end(), 0u);
+  return grid_on_plane(plane.text("name", name), std::move(layout));
+}
+
+/// The band of so many metres around a task, as a grid of cells like the task's.
+SensorGrid surroundings_of(const JsonObject& plane, const SensorGrid& task) {
+  const double band = plane.metres("surroundings");
+  const PlaneLayout& inner = *task.layout;
+  const double across = glm::length(inner.u), along = glm::length(inner.v);
+  const glm::dvec3 u = inner.u / across, v = inner.v / along;
+  PlaneLayout outer;
+  outer.origin = inner.origin - band * (u + v);
+  outer.u = (across + 2 * band) * u;
+  outer.v = (along + 2 * band) * v;
+  const double spacing = std::min(inner.spacing(), band);
+  const double columns = std::max(1.0, std::round((across + 2 * band) / spacing));
+  const double rows = std::max(1.0, std::round((along + 2 * band) / spacing));
+  if (!(columns * rows <= 2.0 * limits::max_sensors)) {  // of which the task is a part
+    plane.refuse(fmt::format("'surroundings' makes more than {} points", limits::max_sensors));
+  }
+  outer.columns = static_cast<int>(columns);
+  outer.rows = static_cast<int>(rows);
+  const auto cells =
+      static_cast<std::uint32_t>(outer.columns) * static_cast<std::uint32_t>(outer.rows);
+  for (std::uint32_t cell = 0; cell < cells; ++cell) {
+    const glm::dvec3 from = outer.middle_of(cell) - inner.origin;
+    const double x = glm::dot(from, u), y = glm::dot(from, v);
+    if (x > 0 && x < across && y > 0 && y < along) continue;
+    outer.cells.push_back(cell);
+  }
+  SensorGrid grid = grid_on_plane(task.name + " surroundings", std::move(outer));
+  grid.role = GridRole::surroundings;
+  return grid;
+}
+
+}  // namespace
+
+std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
+  const json content = read_input_json(file);
+  const json list = content.is_array() ? content : json::array({content});
+  if (list.empty()) throw InputError(fmt::format("{}: holds no plane", file.string()));
+  std::vector<SensorGrid> grids;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string number = list.size() > 1 ? std::to_string(i + 1) : "";
+    const JsonObject plane(
+        list[i], fmt::format("{}: plane {}", file.string(), i + 1),
+        {"name", "origin", "u", "v", "spacing", "columns", "rows", "surroundings"});
+    grids.push_back(grid_of(plane, file.stem().string() + number));
+    if (!plane.has("surroundings")) continue;
+    SensorGrid around = surroundings_of(plane, grids.back());
+    if (around.sensors.size() > limits::max_sensors) {
+      plane.refuse(fmt::format("'surroundings' makes more than {} points", limits::max_sensors));
+    }
+    grids.push_back(std::move(around));
+  }
+  return grids;
+}
+
+namespace {
+
+/// The words of a line.
+std::vector<std::string_view> words_of(std::string_view line) {
+  constexpr std::string_view separators = " \t,";
+  std::vector<std::string_view> words;
+  std::size_t first = 0;
+  while ((first = line.find_first_not_of(separators, first)) != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(separators, first), line.size());
+    words.push_back(line.substr(first, end - first));
+    first = end;
+  }
+  return words;
+}
+
+Sensor sensor_of(const std::vector<std::string_view>& words, const std::string& where) {
+  if (words.size() != 6) {
+    throw InputError(
+        fmt::format("{}: {} numbers where a point has 6, x y z dx dy dz", where, words.size()));
+  }
+  std::array<double, 6> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto number = parse_signed(words[i]);
+    if (!number || std::abs(*number) > limits::max_coordinate) {
+      throw InputError(
+          fmt::format("{}: '{}' is no number of metres; write x y z dx dy dz", where, words[i]));
+    }
+    numbers[i] = *number;
+  }
+  const glm::dvec3 facing(numbers[3], numbers[4], numbers[5]);
+  const double length = glm::length(facing);
+  if (!(length > 0)) {
+    throw InputError(fmt::format("{}: the direction is 0 0 0; it has to face somewhere", where));
+  }
+  return {{numbers[0], numbers[1], numbers[2]}, facing / length};
+}
+
+}  // namespace
+
+SensorGrid read_points(const std::filesystem::path& file) {
+  const std::string text = read_input_text(file);
+  SensorGrid grid{file.stem().string(), {}, {}};
+  std::size_t number = 0;
+  for (const std::string_view line : lines_of(text)) {
+    const auto words = words_of(line);
+    ++number;
+    if (words.empty() || words.front().starts_with('#')) continue;
+    grid.sensors.push_back(sensor_of(words, fmt::format("{}: line {}", file.string(), number)));
+    if (grid.sensors.size() > limits::max_sensors) {
+      throw InputError(fmt::format("{}: more than {} points; split the file", file.string(),
+                                   limits::max_sensors));
+    }
+  }
+  if (grid.sensors.empty()) {
+    throw InputError(fmt::format("{}: no points; each is a line x y z dx dy dz", file.string()));
+  }
+  return grid;
 }
 
 }  // namespace photile::measuring

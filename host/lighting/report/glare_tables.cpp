@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "report/csv_field.hpp"
+#include "report/number_text.hpp"
 
 namespace photile::report {
 namespace {

@@ -3,12 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "photile/errors.hpp"
 
 namespace photile::report {
+
 namespace {
 
 /// As honeybee cleans identifiers: letters, digits, '.', '_' and '-'.
@@ -68,6 +75,142 @@ std::map<std::string, std::string> honeybee_files(const measuring::Measurement& 
   files["grids_info.json"] =
       grids.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   files["grid_summary.csv"] = summary;
+  return files;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t hours_of_common_year = 8'760;
+constexpr const char* group_of_blinds = "blinds";
+
+/// Four digits, or all before the point.
+void append_lux(std::string& text, float lux) {
+  struct Form {
+    float below;
+    int decimals;
+    double scale;
+  };
+  constexpr std::array<Form, 5> forms{
+      {{1, 4, 1e4}, {10, 3, 1e3}, {100, 2, 1e2}, {1000, 1, 10}, {1e18f, 0, 1}}};
+  const Form* form = forms.data();
+  while (lux >= form->below && form + 1 < forms.data() + forms.size()) ++form;
+  std::array<char, 24> digits{};
+  const auto number = static_cast<std::uint64_t>(double{lux} * form->scale + 0.5);
+  char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+  const auto count = static_cast<int>(end - digits.data());
+  if (number == 0 || form->decimals == 0) {
+    text.append(digits.data(), end);
+    return;
+  }
+  const int whole = std::max(0, count - form->decimals);
+  if (whole == 0) text += '0';
+  text.append(digits.data(), static_cast<std::size_t>(whole));
+  text += '.';
+  text.append(static_cast<std::size_t>(std::max(0, form->decimals - count)), '0');
+  text.append(digits.data() + whole, static_cast<std::size_t>(count - whole));
+}
+
+/// The hours with the sun up, of one profile.
+class Profile {
+ public:
+  Profile(std::span<const float> lux, std::size_t sensors, std::span<const std::size_t> up)
+      : lux_(lux), sensors_(sensors), hours_(sensors > 0 ? lux.size() / sensors : 0), up_(up) {}
+
+  std::string lines() const {
+    std::string text;
+    text.reserve(6 * sensors_ * up_.size());
+    for (std::size_t sensor = 0; sensor < sensors_; ++sensor) {
+      for (std::size_t i = 0; i < up_.size(); ++i) {
+        if (i > 0) text += ' ';
+        append_lux(text, lux_[sensor * hours_ + up_[i]]);
+      }
+      text += '\n';
+    }
+    return text;
+  }
+
+  /// NumPy's format, version 1.0.
+  std::string array() const {
+    static_assert(std::endian::native == std::endian::little);
+    std::string head = fmt::format(
+        "{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", sensors_, up_.size());
+    constexpr std::size_t before = 10, alignment = 64;
+    head.append(alignment - (before + head.size() + 1) % alignment, ' ');
+    head += '\n';
+    std::string text("\x93NUMPY\x01\x00", 8);
+    text += static_cast<char>(head.size() & 0xFF);
+    text += static_cast<char>(head.size() >> 8);
+    text += head;
+    std::vector<float> row(up_.size());
+    for (std::size_t sensor = 0; sensor < sensors_; ++sensor) {
+      for (std::size_t i = 0; i < up_.size(); ++i) row[i] = lux_[sensor * hours_ + up_[i]];
+      text.append(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(float));
+    }
+    return text;
+  }
+
+ private:
+  std::span<const float> lux_;
+  std::size_t sensors_, hours_;
+  std::span<const std::size_t> up_;
+};
+
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::map<std::string, std::string> annual_files(const DaylightResults& results,
+                                                const std::vector<daylight::SkyHour>& hours) {
+  std::map<std::string, std::string> files;
+  std::vector<std::size_t> up;
+  for (std::size_t h = 0; h < hours.size(); ++h) {
+    if (!(hours[h].sun.elevation > 0)) continue;
+    up.push_back(h);
+    files["sun-up-hours.txt"] += fmt::format("{:g}\n", static_cast<double>(h) + 0.5);
+  }
+  std::vector<measuring::SensorGrid> named;
+  for (const GridDaylight& grid : results.grids) named.push_back(grid.grid);
+  const std::vector<std::string> names = honeybee_names(named);
+  const bool with_blinds = !results.states.empty();
+  Json info = Json::array(), states = Json::object();
+  const auto add_arrays = [&](const std::string& folder, const std::string& identifier,
+                              const GridDaylight& grid) {
+    const std::size_t count = grid.points.size();
+    files[folder + "/total/" + identifier + ".npy"] = Profile(grid.lux, count, up).array();
+    if (!grid.sun.empty())
+      files[folder + "/direct/" + identifier + ".npy"] = Profile(grid.sun, count, up).array();
+  };
+  for (std::size_t g = 0; g < results.grids.size(); ++g) {
+    const GridDaylight& grid = results.grids[g];
+    const std::size_t count = grid.points.size();
+    const std::string identifier = names[g].substr(0, names[g].size() - 4);
+    files[identifier + ".ill"] = Profile(grid.lux, count, up).lines();
+    if (!grid.sun.empty()) files[identifier + "_direct.ill"] = Profile(grid.sun, count, up).lines();
+    const char* const path = with_blinds ? group_of_blinds : "__static_apertures__";
+    for (std::size_t state = 0; state < results.states.size(); ++state) {
+      const std::string name = fmt::format("{}_{}", state, group_of_blinds);
+      states[identifier][group_of_blinds].push_back(name);
+      add_arrays(std::string(path) + "/" + name, identifier, results.states[state].grids[g]);
+    }
+    if (!with_blinds) add_arrays(std::string(path) + "/default", identifier, grid);
+    info.push_back({{"name", grid.grid.name},
+                    {"identifier", identifier},
+                    {"full_id", identifier},
+                    {"group", ""},
+                    {"count", count},
+                    {"light_path", Json::array({Json::array({path})})}});
+  }
+  files["grids_info.json"] = text_of(info);
+  files["grid_states.json"] = text_of(states);
+  if (with_blinds && hours.size() == hours_of_common_year) {
+    files["states_schedule.json"] = text_of({{group_of_blinds,
+                                              {{"identifier", group_of_blinds},
+                                               {"schedule", results.state_of_hour},
+                                               {"is_static", false}}}});
+  }
   return files;
 }
 

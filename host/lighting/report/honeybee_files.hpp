@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "measuring/measurement.hpp"
+#include "report/daylight_tables.hpp"
 
 namespace photile::report {
 
@@ -22,5 +23,17 @@ std::vector<std::string> honeybee_names(const std::vector<measuring::SensorGrid>
 /// honeybee-radiance-postprocess writes it (uniformity in per cent).
 /// Errors: UsageError where two grids would share a name.
 std::map<std::string, std::string> honeybee_files(const measuring::Measurement& measurement);
+
+/// By path in the folder:
+/// - `grids_info.json`, `sun-up-hours.txt` (hours of the year);
+/// - `<grid>.ill`, a line for each sensor with the lux of each hour with the sun up, and
+///   `<grid>_direct.ill` of the sun alone, where it is known;
+/// - the same as NumPy arrays of floats, which honeybee-radiance-postprocess reads:
+///   `__static_apertures__/default/total/<grid>.npy` and `.../direct/<grid>.npy`. Blinds are an
+///   aperture group of the name `blinds`: `blinds/<state>/total/<grid>.npy` and so on, with
+///   `grid_states.json` and, of a common year, `states_schedule.json`.
+/// Errors: UsageError where two grids have one name.
+std::map<std::string, std::string> annual_files(const DaylightResults& results,
+                                                const std::vector<daylight::SkyHour>& hours);
 
 }  // namespace photile::report

@@ -27,4 +27,15 @@ inline std::string text_with_error(double value, double error) {
                      unit * std::round(error / unit), decimals);
 }
 
+/// A field as RFC 4180 has it: quoted where it must be.
+inline std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
 }  // namespace photile::report

@@ -8,8 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/xml_text.hpp"
-#include "report/illuminance_steps.hpp"
+#include "common/ascii_text.hpp"
 #include "report/isolines.hpp"
 #include "report/number_text.hpp"
 

@@ -1,15 +1,18 @@
 #include "report/print_page.hpp"
 
+#include <stdlib.h>
+
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 
 #include "common/output_file.hpp"
 #include "photile/errors.hpp"
-#include "report/scratch_folder.hpp"
 
 namespace photile::report {
+
 namespace {
 
 /// In quotes for the shell.
@@ -39,6 +42,20 @@ std::string pdf_of(const std::string& html) {
         "print that");
   }
   return pdf;
+}
+
+ScratchFolder::ScratchFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "photile-XXXXXX").string();
+  if (!mkdtemp(name.data())) {
+    throw OutputError(name +
+                      ": cannot make a temporary folder; set TMPDIR to one that can be written");
+  }
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace photile::report

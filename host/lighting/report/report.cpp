@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/xml_text.hpp"
+#include "common/ascii_text.hpp"
 #include "report/number_text.hpp"
 #include "report/plan_drawing.hpp"
 

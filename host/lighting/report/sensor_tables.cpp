@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "report/csv_field.hpp"
 #include "report/number_text.hpp"
 
 namespace photile::report {

@@ -50,4 +50,26 @@ std::optional<Number> parse_number(std::string_view text, int base = 10) {
 /// The same, where a leading + is allowed.
 std::optional<double> parse_signed(std::string_view text);
 
+/// `text` as content or as an attribute's value in double quotes. Control characters, which XML
+/// cannot hold, become question marks.
+inline std::string escaped_xml(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += static_cast<unsigned char>(c) < ' ' ? '?' : c;
+    }
+  }
+  return result;
+}
+
 }  // namespace photile

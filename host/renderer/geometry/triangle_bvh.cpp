@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "geometry/morton_code.hpp"
+#include "geometry/radix_sort.hpp"
 
 namespace photile::geometry {
 namespace {

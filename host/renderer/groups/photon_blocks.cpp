@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "geometry/box.hpp"
-#include "geometry/morton_code.hpp"
 #include "geometry/radix_sort.hpp"
 
 namespace photile::groups {

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/glm.hpp>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "photile/image.hpp"
+#include "photile/light_layers.hpp"
 
 namespace photile::image {
 
@@ -32,5 +35,10 @@ class ImageRows : public ChannelRows {
  private:
   std::shared_ptr<const Image> image_;
 };
+
+/// Adds up the layers, each times its scale, from a row on: as many rows as the picture has room
+/// for. `scales` has one per layer, power x tint.
+void combine_rows(const LightLayers& layers, std::span<const glm::vec3> scales, int row,
+                  std::span<glm::vec3> picture);
 
 }  // namespace photile::image

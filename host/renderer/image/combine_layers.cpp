@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "image/combine_rows.hpp"
+#include "image/channel_rows.hpp"
 #include "image/light_change.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_mix.hpp"

@@ -16,7 +16,7 @@
 
 #include "image/decoder.hpp"
 #include "image/exr_headers.hpp"
-#include "image/unchecked_bytes.hpp"
+#include "image/picture_checks.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::image {

@@ -9,7 +9,7 @@
 #include "image/srgb.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "scene/color_temperature.hpp"
+#include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 
 namespace photile {

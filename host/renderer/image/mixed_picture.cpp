@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "image/combine_rows.hpp"
+#include "image/channel_rows.hpp"
+#include "image/layer_set.hpp"
 #include "image/light_change.hpp"
-#include "image/light_records.hpp"
 #include "photile/layered_picture.hpp"
 
 namespace photile {

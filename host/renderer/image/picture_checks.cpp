@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "common/ascii_text.hpp"
-#include "image/unchecked_bytes.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::image {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "image/decoder.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::image {
 
@@ -23,5 +24,12 @@ void check_shape(const PictureShape& shape, std::size_t encoded);
 /// Of a picture that OpenImageIO is to open, what its reader would take memory for first, read as
 /// another picture, or leave the memory for. Errors: DecodeError.
 void check_encoded(PictureFormat format, Encoded bytes);
+
+/// Decoded bytes that are not worth a check. Fuzzers take fewer: an input is to take microseconds.
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+inline constexpr std::uint64_t unchecked_bytes = 1ull << 20;
+#else
+inline constexpr std::uint64_t unchecked_bytes = limits::unchecked_image_bytes;
+#endif
 
 }  // namespace photile::image

@@ -2,7 +2,12 @@
 
 #include <png.h>
 
+#include <cstdint>
 #include <vector>
+
+#include "common/output_file.hpp"
+#include "image/srgb.hpp"
+#include "photile/image.hpp"
 
 namespace photile::image {
 
@@ -23,3 +28,19 @@ void encode_png(OutputFile& output, int width, int height, std::span<const std::
 }
 
 }  // namespace photile::image
+
+namespace photile {
+
+void write_png(const std::filesystem::path& file, const Image& display_referred) {
+  OutputFile output(file);
+  for (const char* channel : {"R", "G", "B"}) {
+    const std::vector<float>* plane = display_referred.find(channel);
+    if (!plane) output.fail("the picture has no channels R, G, B");
+    if (plane->empty()) output.fail("the picture has no pixels");
+  }
+  const std::vector<std::uint8_t> texels = image::srgb8_texels(display_referred);
+  image::encode_png(output, display_referred.width, display_referred.height, texels);
+  output.commit();
+}
+
+}  // namespace photile

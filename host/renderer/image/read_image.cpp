@@ -3,8 +3,10 @@
 
 #include "image/picture_file.hpp"
 #include "photile/errors.hpp"
+#include "photile/image.hpp"
 
 namespace photile {
+
 namespace {
 
 constexpr int rows_per_channel_read = 256;
@@ -45,6 +47,17 @@ Image read_image(const std::filesystem::path& file) {
   } catch (const std::bad_alloc&) {
     throw InputError(file.string() + ": there is not enough memory to read it; scale it down");
   }
+}
+
+const std::vector<float>* Image::find(const std::string& channel) const {
+  const auto found = std::find(channel_names.begin(), channel_names.end(), channel);
+  if (found == channel_names.end()) return nullptr;
+  return &channels[static_cast<std::size_t>(found - channel_names.begin())];
+}
+
+std::vector<float>& Image::add(const std::string& channel) {
+  channel_names.push_back(channel);
+  return channels.emplace_back(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
 }
 
 }  // namespace photile

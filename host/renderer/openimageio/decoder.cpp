@@ -1,3 +1,5 @@
+#include "image/decoder.hpp"
+
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -5,7 +7,6 @@
 #include <memory>
 #include <string>
 
-#include "image/openimageio_decoder.hpp"
 #include "openimageio/silence.hpp"
 #include "photile/limits.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "photile/errors.hpp"
-#include "trace/reflected_hits.hpp"
+#include "trace/hit_batch.hpp"
 #include "trace/sensor_hits.hpp"
 
 namespace photile {

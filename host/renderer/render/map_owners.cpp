@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "geometry/box.hpp"
-#include "geometry/morton_code.hpp"
+#include "geometry/radix_sort.hpp"
 #include "maps/candidate_maps.hpp"
 
 namespace photile {

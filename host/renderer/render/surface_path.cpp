@@ -5,7 +5,6 @@
 
 #include "photile/defaults.hpp"
 #include "trace/holes.hpp"
-#include "trace/largest.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/receiver.hpp"
 #include "trace/sampling.hpp"

@@ -1,6 +1,7 @@
 // What lights emit, from what people know of them.
 #pragma once
 
+#include <glm/glm.hpp>
 #include <string>
 
 #include "photile/scene.hpp"
@@ -21,5 +22,29 @@ double distant_flux(double irradiance, double angular_diameter, double radius);
 
 /// Adds a light that is a map of all that surrounds the scene, which must have its triangles.
 void add_environment_light(const std::string& name, EnvironmentMap map, Scene& scene);
+
+/// Flux of a surface of `area` that emits `radiance` uniformly over the hemisphere of each side.
+double area_flux(double radiance, double area, bool two_sided);
+
+/// Flux of a point light of uniform `intensity`.
+double point_flux(double intensity);
+
+/// Flux of a spot light as KHR_lights_punctual defines it: `intensity` up to the inner cone angle,
+/// then the square of a ramp that is linear in the cosine, zero from the outer cone angle on.
+/// Angles in radians from the axis, 0 <= inner <= outer <= pi/2.
+double spot_flux(double intensity, double inner_cone_angle, double outer_cone_angle);
+
+/// Flux of parallel light of `irradiance` through a disc of `radius` that faces it.
+double directional_flux(double irradiance, double radius);
+
+/// CIE 1931 chromaticity (x, y) of light of a correlated colour temperature in kelvin, from
+/// limits::min_color_temperature to limits::max_color_temperature: the reference illuminants of
+/// ANSI/IES TM-30. Up to 4000 K a black body (Krystek 1985, within 1e-4), from 5000 K CIE daylight
+/// (CIE 15, extrapolated above 25000 K), between them a mix.
+glm::dvec2 chromaticity_of_temperature(double kelvin);
+
+/// Linear Rec.709 of that light at luminance 1. Below about 1900 K its blue lies outside the gamut
+/// and is 0.
+glm::dvec3 color_of_temperature(double kelvin);
 
 }  // namespace photile::scene

@@ -11,8 +11,8 @@
 #include "scene/default_camera.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
-#include "scene/material_needs.hpp"
 #include "scene/mesh_builder.hpp"
+#include "scene/surface_models.hpp"
 
 namespace photile {
 

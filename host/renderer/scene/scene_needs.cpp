@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photile/light_groups.hpp"
-#include "scene/material_needs.hpp"
+#include "scene/surface_models.hpp"
 
 namespace photile {
 namespace {

@@ -1,7 +1,10 @@
 // How the material models of the file formats map to photile's.
 #pragma once
 
+#include <span>
+
 #include "photile/scene.hpp"
+#include "photile/scene_needs.hpp"
 
 namespace photile::scene {
 
@@ -46,5 +49,13 @@ void set_metallic_roughness(const MetallicRoughness& model, Material& material);
 
 /// Scales diffuse and specular together where their sum exceeds 1 in a channel. True if it did.
 bool conserve_energy(Material& material);
+
+/// What any of these materials asks for, whether or not a triangle has it: importers must choose
+/// what to read of a mesh before the first triangle. light_count stays 0.
+SceneNeeds needs_of_materials(std::span<const Material> materials);
+
+/// Lets go of shading normals where none is asked for: all are those of their triangles, or lie on
+/// what scatters no light, and no material that the needs tell of is specular or glossy.
+void drop_flat_normals(Scene& scene, const SceneNeeds& of_materials);
 
 }  // namespace photile::scene

@@ -1,8 +1,16 @@
 #include "surface/dark_sides.hpp"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <glm/gtc/constants.hpp>
+
 #include "surface/disjoint_sets.hpp"
 
 namespace photile::surface {
+
 namespace {
 
 constexpr double least_on_a_piece = 40;    ///< photons, of what is judged together
@@ -54,6 +62,128 @@ std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
     dark[s] = dark[original] != 0 && expected_on_piece[pieces.find(original)] >= least_on_a_piece;
   }
   return dark;
+}
+
+namespace {
+
+constexpr double least_on_a_half = 12;     ///< photons, as dense as on the denser half of the whole
+constexpr std::size_t least_found = 10;    ///< on a triangle: by chance they lie on one half in 500
+constexpr double least_of_a_disc = 0.001;  ///< area of a half
+
+using FlatCorners = std::array<glm::dvec2, 3>;  ///< in the plane of the triangle
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// Brings the places for which `is_first` holds before the others; returns how many they are. On
+/// which side of a cut photons lie cannot be foreseen: std::partition, which branches, takes four
+/// times as long.
+template <class IsFirst>
+std::size_t partition(std::span<glm::dvec2> places, const IsFirst& is_first) {
+  std::size_t first = 0;
+  for (glm::dvec2& here : places) {
+    const glm::dvec2 place = here;
+    here = places[first];
+    places[first] = place;
+    first += is_first(place) ? 1 : 0;
+  }
+  return first;
+}
+
+class PartFinder {
+ public:
+  PartFinder(const SurfaceMesh& mesh, const Photons& photons, double least_area)
+      : mesh_(mesh), photons_(photons), least_area_(least_area) {}
+
+  void find_on(std::uint32_t s, std::vector<DarkPart>& parts) const {
+    const std::uint32_t first = photons_.first_of[s], last = photons_.first_of[s + 1];
+    if (last - first < least_found) return;
+    const std::uint32_t triangle = triangle_of(s);
+    const double area = triangle_area(mesh_.scene, triangle);
+    if (!(area >= 2 * least_area_)) return;
+    const auto corners = mesh_.scene.corners(triangle);
+    const glm::dvec3 origin(corners[0]);
+    const glm::dvec3 u = glm::normalize(glm::dvec3(corners[1]) - origin);
+    const glm::dvec3 v = glm::cross(mesh_.normal[triangle], u);
+    const auto in_plane = [&](const glm::vec3& p) {
+      const glm::dvec3 offset = glm::dvec3(p) - origin;
+      return glm::dvec2(glm::dot(offset, u), glm::dot(offset, v));
+    };
+    std::vector<glm::dvec2> places;
+    places.reserve(last - first);
+    for (std::uint32_t i = first; i < last; ++i) places.push_back(in_plane(photons_.position[i]));
+    std::vector<FlatCorners> found;
+    halve({in_plane(corners[0]), in_plane(corners[1]), in_plane(corners[2])}, places,
+          (last - first) / area, found);
+    for (const FlatCorners& part : found) {
+      const auto at = [&](const glm::dvec2& p) { return glm::vec3(origin + p.x * u + p.y * v); };
+      parts.push_back({{at(part[0]), at(part[1]), at(part[2])}, s});
+    }
+  }
+
+ private:
+  /// Looks for dark parts of a triangle.
+  ///   density   of photons where light falls, to a square metre
+  void halve(FlatCorners corner, std::span<glm::dvec2> places, double density,
+             std::vector<FlatCorners>& found) const {
+    const double area =
+        std::abs(cross(corner[1] - corner[0], corner[2] - corner[0])) / 4;  // a half
+    const double expected = density * area;
+    if (expected < least_on_a_half || places.size() < least_found || area < least_area_) return;
+    const auto length = [&](int i) { return glm::distance(corner[i], corner[(i + 1) % 3]); };
+    int longest = 0;
+    for (const int i : {1, 2}) {
+      if (length(i) > length(longest)) longest = i;
+    }
+    std::rotate(corner.begin(), corner.begin() + longest, corner.end());
+    const auto& [a, b, c] = corner;
+    const glm::dvec2 middle = 0.5 * (a + b), cut = middle - c;
+    const double side_of_a = cross(cut, a - c);
+    const glm::dvec2 apex = c;  // of its own: what is written to places cannot change it
+    const std::size_t split = partition(places, [cut, apex, side_of_a](const glm::dvec2& p) {
+      return cross(cut, p - apex) * side_of_a >= 0;
+    });
+    const std::array<FlatCorners, 2> halves{{{c, a, middle}, {b, c, middle}}};
+    const std::array<std::span<glm::dvec2>, 2> parts{places.first(split), places.subspan(split)};
+    const double denser = static_cast<double>(std::max(parts[0].size(), parts[1].size())) / area;
+    for (int i = 0; i < 2; ++i) {
+      if (static_cast<double>(parts[i].size()) <= most_found_in_the_dark * expected) {
+        found.push_back(halves[i]);
+      } else {
+        halve(halves[i], parts[i], denser, found);
+      }
+    }
+  }
+
+  const SurfaceMesh& mesh_;
+  const Photons& photons_;
+  double least_area_;
+};
+
+}  // namespace
+
+std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
+                                      std::span<const std::uint8_t> dark, double radius) {
+  const std::size_t sides = mesh.original.size();
+  // Photons on coincident triangles may lie on either: which part of one is empty says nothing.
+  std::vector<std::uint8_t> shared(sides, 0);
+  for (std::uint32_t s = 0; s < sides; ++s) {
+    if (mesh.original[s] != s) shared[s] = shared[mesh.original[s]] = 1;
+  }
+  const PartFinder finder(mesh, photons, least_of_a_disc * glm::pi<double>() * radius * radius);
+  std::vector<std::vector<DarkPart>> of_side(sides);
+  tbb::parallel_for(std::size_t{0}, sides, [&](std::size_t i) {
+    const auto s = static_cast<std::uint32_t>(i);
+    const bool answers = !photons.of_all || photons.of_all->own[s] != 0;
+    if (answers && shared[s] == 0 && dark[s] == 0) finder.find_on(s, of_side[s]);
+  });
+  std::vector<DarkPart> parts;
+  for (const auto& more : of_side) parts.insert(parts.end(), more.begin(), more.end());
+  if (!photons.of_all) return parts;
+  parts = photons.of_all->processes->gather_values<DarkPart>(parts);
+  std::stable_sort(parts.begin(), parts.end(), [](const DarkPart& a, const DarkPart& b) {
+    return a.sided_triangle < b.sided_triangle;
+  });
+  return parts;
 }
 
 }  // namespace photile::surface

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "photile/photons.hpp"
+#include "photile/surface_index.hpp"
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
 
@@ -23,5 +25,14 @@ std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
                                           std::span<const Connection> connections,
                                           const Sheets& sheets,
                                           std::span<const std::uint32_t> landed);
+
+/// Halves triangles, across the middles of their longest edges, as long as a half would hold 12
+/// photons, were they as dense there as on the denser half of what it is a half of, and is not
+/// smaller than a thousandth of the largest disc. A half on which next to none landed is a dark
+/// part. In the order of the sided triangles.
+///   photons   sorted by sided triangle; several processes find those of all together
+///   dark      sides that are dark as a whole: have no parts
+std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
+                                      std::span<const std::uint8_t> dark, double radius);
 
 }  // namespace photile::surface

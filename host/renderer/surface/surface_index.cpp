@@ -8,7 +8,6 @@
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene_builder.hpp"
-#include "surface/dark_parts.hpp"
 #include "surface/dark_sides.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"

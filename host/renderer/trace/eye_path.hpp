@@ -128,4 +128,19 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
 void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record,
                     EyeRecord& reflected);
 
+/// Where a sample of a pixel has its random numbers from.
+struct PixelSample {
+  const RandomStream& of_pixel;  ///< sequences that all samples of the pixel share
+  std::uint32_t index;           ///< of the sample, into them
+  std::uint64_t path;            ///< of the sample alone, as RandomStream numbers them
+  std::uint32_t ray = 0;         ///< of those that follow the sample's first lobe
+};
+
+/// Follows the lobe of `end`, and those of the surfaces met, and appends what each reflects beside
+/// its lobe to `record`, and lamps seen in lobes: at each surface a lamp is looked at, and one
+/// direction of the lobe is followed; what both would find is weighed by the power heuristic (Veach
+/// and Guibas 1995). Directions are those of visible normals (ggx.hpp). What reflects little goes
+/// on by Russian roulette.
+void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, EyeRecord& record);
+
 }  // namespace photile::trace

@@ -10,7 +10,6 @@
 #include "trace/direct_light.hpp"
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_point.hpp"
-#include "trace/largest.hpp"
 #include "trace/sampling.hpp"
 #include "trace/sobol.hpp"
 

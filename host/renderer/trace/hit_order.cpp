@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "geometry/morton_code.hpp"
 #include "geometry/radix_sort.hpp"
 
 namespace photile::trace {

@@ -9,7 +9,7 @@
 #include "photile/scene.hpp"
 #include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"
-#include "trace/intensity_sampler.hpp"
+#include "trace/lamp_intensity.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"

@@ -4,7 +4,7 @@
 
 #include "photile/defaults.hpp"
 #include "trace/holes.hpp"
-#include "trace/largest.hpp"
+#include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/surface.hpp"
 

@@ -15,7 +15,6 @@
 #include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
 #include "trace/light_sampler.hpp"
-#include "trace/reflected_hits.hpp"
 
 namespace photile {
 

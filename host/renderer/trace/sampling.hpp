@@ -62,4 +62,7 @@ inline float power_heuristic(float density, float other) {
   return 1.0f / (1.0f + ratio * ratio);
 }
 
+inline float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+inline double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
+
 }  // namespace photile::trace

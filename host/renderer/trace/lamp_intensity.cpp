@@ -1,4 +1,4 @@
-#include "trace/intensity_sampler.hpp"
+#include "trace/lamp_intensity.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "gltf/gltf_import.hpp"
+#include "gltf/steps.hpp"
 
 #include "gltf/accessor.hpp"
 #include "gltf/document.hpp"
@@ -6,7 +6,6 @@
 #include "gltf/materials.hpp"
 #include "gltf/meshes.hpp"
 #include "gltf/nodes.hpp"
-#include "gltf/steps.hpp"
 
 namespace photile::gltf {
 
