@@ -4,7 +4,7 @@
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
-#include "command/progress_bar.hpp"
+#include "command/terminal_progress.hpp"
 #include "file_folder.hpp"
 
 namespace photile::test {

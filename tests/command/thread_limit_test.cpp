@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "command/threads.hpp"
+#include "command/processes.hpp"
 
 namespace photile::test {
 namespace {

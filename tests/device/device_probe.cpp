@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "command/exit_code.hpp"
+#include "command/command_line.hpp"
 #include "device/launch.hpp"
 #include "device/program_source.hpp"
 

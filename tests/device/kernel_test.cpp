@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "command/exit_code.hpp"
+#include "command/command_line.hpp"
 #include "device/launch.hpp"
 #include "device/program_source.hpp"
 

@@ -15,7 +15,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "command/exit_code.hpp"
+#include "command/command_line.hpp"
 #include "estimate/photon_estimate.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"

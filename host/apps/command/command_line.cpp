@@ -11,13 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "command/commands.hpp"
-#include "command/exit_code.hpp"
 #include "command/processes.hpp"
 #include "command/setting_options.hpp"
-#include "command/signals.hpp"
-#include "command/terminal.hpp"
-#include "command/version.hpp"
+#include "command/terminal_progress.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"
 

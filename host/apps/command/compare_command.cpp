@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "command/commands.hpp"
-#include "command/mood_options.hpp"
+#include "command/command_line.hpp"
 #include "command/number_format.hpp"
 #include "command/output_files.hpp"
-#include "command/signals.hpp"
-#include "command/tone_mapping_options.hpp"
+#include "command/picture_outputs.hpp"
+#include "command/processes.hpp"
+#include "command/scene_options.hpp"
 #include "command/validators.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"

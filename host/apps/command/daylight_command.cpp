@@ -9,14 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/daylight_results.hpp"
 #include "command/output_files.hpp"
-#include "command/run_notes.hpp"
+#include "command/processes.hpp"
 #include "command/sensor_options.hpp"
-#include "command/signals.hpp"
+#include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/threads.hpp"
 #include "command/validators.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"

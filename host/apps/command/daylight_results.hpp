@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "command/place_options.hpp"
 #include "command/render_options.hpp"
+#include "command/sensor_options.hpp"
 #include "daylight/sky_states.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/defaults.hpp"

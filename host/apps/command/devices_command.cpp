@@ -7,9 +7,9 @@
 #include <set>
 #include <string>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/number_format.hpp"
-#include "command/signals.hpp"
+#include "command/processes.hpp"
 #include "command/terminal_progress.hpp"
 #include "photile/device.hpp"
 #include "photile/device_test.hpp"

@@ -6,17 +6,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/output_files.hpp"
-#include "command/place_options.hpp"
+#include "command/processes.hpp"
 #include "command/render_options.hpp"
-#include "command/run_notes.hpp"
 #include "command/sensor_options.hpp"
-#include "command/signals.hpp"
+#include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/threads.hpp"
 #include "command/validators.hpp"
-#include "command/version.hpp"
 #include "common/ascii_text.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"

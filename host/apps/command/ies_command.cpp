@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/output_files.hpp"
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"

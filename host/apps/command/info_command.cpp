@@ -5,7 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/scene_options.hpp"
 #include "command/scene_report.hpp"
 #include "command/setting_options.hpp"

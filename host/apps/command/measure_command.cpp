@@ -8,18 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/measure_outputs.hpp"
 #include "command/output_files.hpp"
-#include "command/place_options.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/report_contents.hpp"
-#include "command/run_notes.hpp"
 #include "command/sensor_options.hpp"
-#include "command/signals.hpp"
+#include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/threads.hpp"
 #include "command/validators.hpp"
 #include "common/run_files.hpp"
 #include "measuring/measure_grids.hpp"

@@ -8,11 +8,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "command/command_line.hpp"
 #include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/report_contents.hpp"
 #include "command/validators.hpp"
-#include "command/version.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"

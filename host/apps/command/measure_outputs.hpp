@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "command/false_colour_options.hpp"
+#include "command/picture_outputs.hpp"
 #include "measuring/measure_grids.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"

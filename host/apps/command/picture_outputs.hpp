@@ -1,19 +1,43 @@
-// The pictures that a command writes: which files, checked early, written late.
+// The pictures that a command writes: how they are shown, which files, checked early, written late.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "command/false_colour_options.hpp"
+#include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/progress.hpp"
+#include "report/false_colour.hpp"
 
 namespace CLI {
 class App;
 }
 
 namespace photile::app {
+
+/// Adds --view.
+void add_view_option(CLI::App& command, DisplayView& view, const std::string& group);
+
+/// Adds --exposure and --view.
+void add_tone_mapping_options(CLI::App& command, ToneMapping& parameters, const std::string& group);
+
+/// As typed, checked against the limits.
+struct FalseColourOptions {
+  report::FalseColour colours;  ///< but for the top of the scale; no label: the unit
+  std::string scale;            ///< top, or "auto"
+
+  FalseColourOptions();
+
+  /// What they ask for where values are in `unit`.
+  report::FalseColour of(const std::string& unit) const;
+};
+
+/// Adds --scale.
+void add_scale_option(CLI::App& command, FalseColourOptions& options, const std::string& group);
+
+/// Adds all of them to a subcommand.
+void add_false_colour_options(CLI::App& command, FalseColourOptions& options);
 
 struct PictureOptions {
   std::vector<std::string> outputs;  ///< -o: .exr, .png or .hdr

@@ -1,9 +1,13 @@
 #include "command/processes.hpp"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
+#include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 #include "common/module.hpp"
@@ -11,6 +15,54 @@
 #include "photile/errors.hpp"
 
 namespace photile::app {
+
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
+
+void request_stop(int) { stop.store(true, std::memory_order_relaxed); }
+
+}  // namespace
+
+void handle_signals() {
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  // SA_RESETHAND: the second signal has its default action, for a stage that takes too long to
+  // stop.
+  action.sa_flags = SA_RESETHAND | SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+bool stop_requested() { return stop.load(std::memory_order_relaxed); }
+
+void throw_if_stop_requested() {
+  if (stop_requested()) throw Interrupted();
+}
+
+struct ThreadLimit::Impl {
+  explicit Impl(int count)
+      : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)) {}
+
+  /// Made in its place: TBB knows it by its address, and a copy would limit nothing.
+  const tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int count) {
+  if (count == 0) return;
+  impl_ = std::make_unique<Impl>(count);
+  // What the user set in the environment stays. PoCL before 4 knows the first name, later ones the
+  // second.
+  for (const char* variable : {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"}) {
+    setenv(variable, std::to_string(count).c_str(), 0);
+  }
+}
+
+ThreadLimit::~ThreadLimit() = default;
+
 namespace {
 
 Communicator* communicator = nullptr;

@@ -1,7 +1,9 @@
-// Processes that mpirun or srun have started together.
+// The process that runs the command: its signals, its threads, and those that mpirun or srun have
+// started with it.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +11,28 @@
 #include "photile/communicator.hpp"
 
 namespace photile::app {
+
+/// From now on SIGINT and SIGTERM ask the running command to stop at its next safe point; a second
+/// signal ends the process at once. A file-size limit becomes a write error instead of a signal.
+void handle_signals();
+
+/// True once a signal asked to stop.
+bool stop_requested();
+
+/// Throws Interrupted once a signal asked to stop.
+void throw_if_stop_requested();
+
+/// While it lives, TBB uses at most `count` threads (0: as many as there are cores), and so does a
+/// PoCL device that is opened later. The picture does not depend on it.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int count);
+  ~ThreadLimit();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// Finds out whether mpirun or srun has started this process, and if so loads host/cluster. To be
 /// called once, before the command line is read.

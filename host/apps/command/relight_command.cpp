@@ -5,14 +5,13 @@
 #include <memory>
 #include <optional>
 
-#include "command/commands.hpp"
-#include "command/mood_options.hpp"
+#include "command/command_line.hpp"
 #include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/picture_outputs.hpp"
+#include "command/processes.hpp"
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
-#include "command/signals.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/run_files.hpp"
 #include "loading/relit_sky.hpp"

@@ -10,19 +10,16 @@
 #include <utility>
 #include <vector>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/quality_options.hpp"
 #include "command/render_options.hpp"
-#include "command/run_notes.hpp"
 #include "command/run_record.hpp"
 #include "command/saved_maps_option.hpp"
-#include "command/signals.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/threads.hpp"
 #include "common/output_file.hpp"
 #include "device/context.hpp"
 #include "image/glare.hpp"

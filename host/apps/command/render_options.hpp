@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "command/mood_options.hpp"
 #include "command/picture_outputs.hpp"
 #include "command/quality_options.hpp"
+#include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
 #include "photile/camera.hpp"
 #include "photile/defaults.hpp"

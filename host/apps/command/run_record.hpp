@@ -3,15 +3,18 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "device/context.hpp"
+#include "photile/camera.hpp"
 #include "photile/device.hpp"
 #include "photile/image.hpp"
 #include "photile/light_mix.hpp"
 #include "photile/renderer.hpp"
+#include "photile/scene.hpp"
 #include "photile/settings.hpp"
 #include "photile/statistics.hpp"
 #include "render/refinement.hpp"
@@ -56,5 +59,23 @@ nlohmann::json run_json(const RunRecord& record);
 
 /// Largest memory that the process has had so far, bytes.
 std::uint64_t peak_host_bytes();
+
+/// A digest of all that light in the scene depends on.
+std::string digest_of(const Scene& scene);
+
+/// A digest of everything that a frame's pixels depend on: the scene, photile's version, the
+/// record's parameters and lights, and the camera.
+std::string frame_settings(const std::string& scene_digest, const RunRecord& record,
+                           const Camera& camera);
+
+/// Sets the attribute `photile.settings`.
+void set_settings(PictureHeader& picture, const std::string& settings);
+
+/// Whether there is such a picture with these settings, and whole: its pixels are read, for copies
+/// may have been cut and disks fail.
+bool is_finished(const std::filesystem::path& picture, const std::string& settings);
+
+/// Whether there is a picture of which every pixel can be read.
+bool is_whole(const std::filesystem::path& picture);
 
 }  // namespace photile::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "command/version.hpp"
+#include "command/command_line.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_session.hpp"
 #include "render/setting.hpp"

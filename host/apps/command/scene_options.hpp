@@ -1,8 +1,11 @@
-// How a scene file is read; every command that loads a scene has these options.
+// How a scene file is read, and which lights are added to it or changed.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
+#include "photile/light_mix.hpp"
 #include "photile/scene.hpp"
 
 namespace CLI {
@@ -20,5 +23,37 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
 
 /// Adds --site, --time and --weather.
 void add_situation_options(CLI::App& command, SkySituation& situation, const std::string& group);
+
+struct MoodOptions {
+  std::string mood;     ///< "" = none
+  std::string file;     ///< "" = beside the scene
+  bool edited = false;  ///< the run may write the file, too
+
+  bool asked() const { return !mood.empty(); }
+};
+
+/// Adds --mood and --moods.
+void add_mood_options(CLI::App& command, MoodOptions& options, const std::string& group);
+
+/// The file of moods: the one that is given, else the first that exists of those beside `scene` and
+/// `picture` (either may be empty). Errors: UsageError where there is none.
+std::filesystem::path moods_file(const std::string& given, const std::filesystem::path& scene,
+                                 const std::filesystem::path& picture = {});
+
+/// What a mood changes in a mix; nothing where none is asked for. Lights that it does not name keep
+/// their settings. Errors: UsageError where there is no such mood (the message lists those there
+/// are), those of moods_file and note_input; InputError for a damaged file.
+std::vector<LightChange> changes_of(const MoodOptions& options, const LightMix& mix,
+                                    const std::filesystem::path& scene,
+                                    const std::filesystem::path& picture = {});
+
+/// The same for the lights of a picture: without --moods the file beside the picture's scene, if it
+/// lies in the same folder, or beside the picture. Errors: as above; those of read_header.
+std::vector<LightChange> mood_of_picture(const MoodOptions& options,
+                                         const std::filesystem::path& picture);
+
+/// Both, in this order: a mood, and what --light changes in it.
+std::vector<LightChange> joined(std::vector<LightChange> mood,
+                                const std::vector<LightChange>& lights);
 
 }  // namespace photile::app

@@ -1,11 +1,116 @@
 #include "command/sensor_options.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <utility>
 
 #include "command/validators.hpp"
+#include "common/run_files.hpp"
+#include "measuring/furniture.hpp"
+#include "measuring/sensor_grid.hpp"
+#include "measuring/working_plane.hpp"
+#include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::app {
+
+void add_plane_options(CLI::App& command, PlaneOptions& options) {
+  command
+      .add_option("--inside", options.inside,
+                  "a point in the room whose floor is followed; default: the first camera's room")
+      ->type_name("X,Y,Z")
+      ->delimiter(',')
+      ->expected(3)
+      ->group("Places");
+  command.add_option("--wall-band", options.wall_band, "metres left out along the walls")
+      ->type_name("M")
+      ->transform(number_between(0, limits::max_coordinate))
+      ->capture_default_str()
+      ->group("Places");
+  command.add_option("--spacing", options.spacing, "metres; default: that of EN 12464-1")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Places");
+  command
+      .add_option("--clearance", options.clearance,
+                  "leaves out points inside furniture, or with a surface less than M before or "
+                  "behind them")
+      ->type_name("M")
+      ->transform(positive_number())
+      ->group("Places");
+}
+
+void add_place_options(CLI::App& command, PlaceOptions& options) {
+  const auto files = [&](const char* name, std::vector<std::string>& names, const char* what) {
+    command.add_option(name, names, what)
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->group("Places");
+  };
+  files("--grid", options.planes, "planes of points as JSON; repeatable");
+  files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
+  command
+      .add_option("--plane", options.plane.height,
+                  "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
+      ->type_name("HEIGHT")
+      ->group("Places");
+  add_plane_options(command, options.plane);
+}
+
+void note_places(const PlaceOptions& options) {
+  for (const auto& file : options.planes) note_input(file);
+  for (const auto& file : options.points) note_input(file);
+}
+
+std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene) {
+  std::vector<measuring::SensorGrid> grids;
+  for (const auto& file : options.planes) {
+    for (auto& grid : measuring::read_planes(file)) grids.push_back(std::move(grid));
+  }
+  for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
+  if (!options.plane.height.empty()) grids.push_back(plane_of(options.plane, scene));
+  return grids;
+}
+
+measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height) {
+  measuring::WorkingPlane plane = measuring::parse_working_plane(height);
+  plane.wall_band = options.wall_band;
+  plane.spacing = options.spacing;
+  if (!options.inside.empty()) {
+    plane.inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
+  }
+  return plane;
+}
+
+measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene) {
+  return measuring::working_plane_grid(scene, plane_at(options, options.height));
+}
+
+void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
+                        measuring::SensorGrid& grid, Progress& progress) {
+  if (!grid.remark.empty()) {
+    progress.note(fmt::format("warning: {}: {}", grid.name, grid.remark));
+  }
+  const std::size_t all = grid.sensors.size();
+  const std::size_t blank = measuring::leave_out_furniture(scene, options.clearance, grid);
+  if (grid.sensors.empty()) {
+    throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
+                                 options.clearance, all, grid.name));
+  }
+  if (blank == 0) return;
+  if (options.clearance > 0) {
+    progress.note(
+        fmt::format("{}: {} of {} points lie in furniture, or less than {} m from some; "
+                    "they are left out",
+                    grid.name, blank, all, options.clearance));
+  } else {
+    progress.note(
+        fmt::format("{}: {} of {} points are blank: they lie inside a solid or beyond the "
+                    "walls that the others stand within",
+                    grid.name, blank, all));
+  }
+}
 
 void add_sensor_options(CLI::App& command, MeasuringParameters& parameters,
                         const std::string& group) {

@@ -1,15 +1,61 @@
-// The options of how sensors are read, which measure, daylight and glare share.
+// Where a command measures, and by how many rays.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "measuring/measure_grids.hpp"
+#include "measuring/sensor_grid.hpp"
+#include "measuring/working_plane.hpp"
+#include "photile/defaults.hpp"
+#include "photile/progress.hpp"
+#include "photile/scene.hpp"
 
 namespace CLI {
 class App;
 }
 
 namespace photile::app {
+
+struct PlaneOptions {
+  std::string height;  ///< of the working plane; "" = none
+  double wall_band = defaults::wall_band;
+  double spacing = 0;          ///< metres; 0 = that of EN 12464-1
+  std::vector<double> inside;  ///< a point in the room; empty = by the camera
+  double clearance = 0;        ///< metres; 0 = furniture is not looked for
+};
+
+/// Places of sensors.
+struct PlaceOptions {
+  std::vector<std::string> planes, points;  ///< files
+  PlaneOptions plane;
+
+  bool empty() const { return planes.empty() && points.empty() && plane.height.empty(); }
+};
+
+/// Adds --inside, --wall-band, --spacing and --clearance, in the group Places.
+void add_plane_options(CLI::App& command, PlaneOptions& options);
+
+/// Adds --grid, --points, --plane and those of add_plane_options.
+void add_place_options(CLI::App& command, PlaceOptions& options);
+
+/// Notes the files that will be read. Errors: those of note_input.
+void note_places(const PlaceOptions& options);
+
+/// The grids of the files, and the working plane's. Errors: those of the readers and of plane_of.
+std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene);
+
+/// What these options say of a level at `height`. Errors: those of parse_working_plane.
+measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height);
+
+/// The grid over the floor. Errors: those of parse_working_plane and working_plane_grid.
+measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene);
+
+/// Makes points blank that lie inside solids or beyond the walls, and those nearer to furniture
+/// than
+/// --clearance, and tells how many there are. Errors: UsageError where no point is left.
+void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
+                        measuring::SensorGrid& grid, Progress& progress);
 
 /// Adds --rays and --repeats.
 void add_sensor_options(CLI::App& command, MeasuringParameters& parameters,

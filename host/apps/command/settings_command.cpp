@@ -2,7 +2,7 @@
 #include <iostream>
 #include <memory>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/setting_options.hpp"
 
 namespace photile::app {

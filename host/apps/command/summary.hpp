@@ -1,14 +1,29 @@
-// What a run took: the time before its first line, and the tables at its end.
+// What a command tells before it starts, and what its run took.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "command/render_options.hpp"
 #include "command/run_record.hpp"
 #include "device/context.hpp"
+#include "photile/device.hpp"
+#include "photile/light_mix.hpp"
+#include "photile/progress.hpp"
+#include "photile/scene.hpp"
 #include "photile/statistics.hpp"
 
 namespace photile::app {
+
+/// A line for the device.
+void tell_device(const DeviceInfo& device, Progress& progress);
+
+/// What the scene holds, and the first of its warnings.
+void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress);
+
+/// Opens the devices that photon maps need, and tells them; none for paths. Errors: those of
+/// open_devices.
+std::vector<Device> devices_for(const RenderOptions& options, Progress& progress);
 
 /// What the loading of its libraries took: to be asked for in the beginning. Wall clock to a
 /// hundredth of a second; processor seconds where the system does not tell.

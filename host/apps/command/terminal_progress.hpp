@@ -1,21 +1,52 @@
-// Progress on standard error: a bar on a terminal, plain lines otherwise.
+// Standard error: single lines, and progress as a bar on a terminal, as plain lines otherwise.
 #pragma once
 
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
 
-#include "command/progress_bar.hpp"
 #include "photile/progress.hpp"
 #include "photile/statistics.hpp"
 
 namespace photile::app {
 
+bool stderr_is_terminal();
+
+/// Columns of the terminal on standard error; 80 where it does not say.
+int terminal_width();
+
+/// Writes `line` and a line feed to standard error.
+void print_line(const std::string& line);
+
+/// Writes "photile: error: ..." as one line to standard error; in colour on a terminal unless the
+/// environment variable NO_COLOR is set.
+void print_error(const std::string& message);
+
+/// How far a stage is.
+struct StageProgress {
+  std::string stage;
+  std::uint64_t done = 0;
+  std::uint64_t total = 0;  ///< 0 where it is not known
+  std::string unit;         ///< what is counted: "paths", "triangles", ...
+  double seconds = 0;       ///< since the stage began
+};
+
+/// "trace photons  [=====>    ]  52%  4.1 s | 3.8 s  1.9M paths/s" (elapsed | remaining), at most
+/// `width` - 1 characters: a full last column would wrap on some terminals.
+std::string progress_bar(const StageProgress& progress, int width);
+
+/// "trace photons: 52%, 4.1 s, 3.8 s left", for an output that is no terminal.
+std::string progress_text(const StageProgress& progress);
+
+/// "trace photons: 7.90 s, 1.9M paths/s", once the stage is complete.
+std::string completed_text(const StageProgress& progress);
+
 /// Draws the current stage from a thread of its own, so that the clock runs on while a stage waits
-/// for the device. Cancelled by SIGINT and SIGTERM (app/signals.hpp). One stage at a time.
+/// for the device. Cancelled by SIGINT and SIGTERM (processes.hpp). One stage at a time.
 class TerminalProgress : public Progress {
  public:
   /// `quiet`: stages and notes print nothing.

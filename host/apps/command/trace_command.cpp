@@ -8,16 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/output_files.hpp"
+#include "command/processes.hpp"
 #include "command/render_options.hpp"
-#include "command/run_notes.hpp"
 #include "command/saved_maps_option.hpp"
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
-#include "command/signals.hpp"
+#include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/threads.hpp"
 #include "command/validators.hpp"
 #include "common/run_files.hpp"
 #include "photile/limits.hpp"

@@ -10,16 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "command/commands.hpp"
+#include "command/command_line.hpp"
 #include "command/number_format.hpp"
 #include "command/output_files.hpp"
+#include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/setting_options.hpp"
-#include "command/signals.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/threads.hpp"
 #include "command/validators.hpp"
-#include "command/version.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
 #include "photile/errors.hpp"

@@ -12,18 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "command/commands.hpp"
-#include "command/frame_record.hpp"
+#include "command/command_line.hpp"
 #include "command/output_files.hpp"
+#include "command/picture_outputs.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
-#include "command/run_notes.hpp"
 #include "command/run_record.hpp"
 #include "command/saved_maps_option.hpp"
-#include "command/signals.hpp"
+#include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/threads.hpp"
-#include "command/tone_mapping_options.hpp"
 #include "command/validators.hpp"
 #include "common/run_files.hpp"
 #include "gltf/animation.hpp"
