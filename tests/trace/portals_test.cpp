@@ -171,10 +171,7 @@ TEST_CASE("each of two windows is found once", "[portals]") {
   }
 }
 
-TEST_CASE(
-    "what lights a window's frame from outside comes by the portal that is found: no photon in the "
-    "room weighs many times as much as others",
-    "[portals]") {
+TEST_CASE("light on the outer side of a frame comes by the portal that is found", "[portals]") {
   // In a reveal of 30 cm, a pane at its outer end, and bars of a frame 5 cm behind it.
   SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.5f)));
   const std::uint32_t white = builder.add(diffuse(glm::vec3(0.8f)));
