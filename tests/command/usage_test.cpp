@@ -124,8 +124,8 @@ TEST_CASE("the version names photile and what it was built with") {
 }
 
 TEST_CASE("the help of a command shows the settings of its usual quality") {
-  const auto [command, usual] =
-      GENERATE(table<std::string, Quality>({{"render", Quality::good}, {"view", Quality::draft}}));
+  const auto [command, usual] = GENERATE(table<std::string, Quality>(
+      {{"render", Quality::good}, {"view", Quality::good}, {"trade", Quality::draft}}));
   RenderParameters parameters;
   set_quality(parameters, usual);
   const Outcome outcome = run_photile({command, "--help"});

@@ -11,9 +11,6 @@ namespace {
 /// Metres; no coarsest nodes lie farther apart, so that there are none but those.
 constexpr double no_detail = 1e30;
 
-/// Of each of its nodes that gather: neighbours smooth what so few leave.
-constexpr int first_rays = 16;
-
 }  // namespace
 
 RenderParameters first_picture_parameters(const RenderParameters& asked) {
@@ -27,8 +24,7 @@ RenderParameters first_picture_parameters(const RenderParameters& asked) {
   if (nodes_gather(asked)) {
     first.neighbours = defaults::view_first_neighbours;
     first.light_map_spacing = defaults::view_first_spacing;
-    first.light_map_detail = 0;
-    first.light_map_rays = std::min(asked.light_map_rays, first_rays);
+    first.light_map_detail = defaults::view_first_spacing / 4;
   } else {
     first.direct_rays = first.light_map_rays = 0;
     first.light_map_detail = no_detail;
