@@ -105,7 +105,6 @@ inline constexpr float photons_per_cell = 4.0f;  ///< aimed at; about 4 is best 
 
 // Primary rays
 inline constexpr int max_specular_depth = 16;  ///< mirrors and glass followed by a primary ray
-inline constexpr int direct_rays = 1;          ///< looks at lamps from a hit, where rays do that
 
 // Denoising
 inline constexpr int denoising_samples = 16;  ///< primary rays a pixel that guides are traced by
@@ -119,7 +118,6 @@ inline constexpr int reference_samples = 1024;  ///< paths per pixel
 
 // The walkthrough: what is aimed at while moving, and how far a picture is refined at rest
 inline constexpr double view_frames_per_second = 30;
-inline constexpr int view_samples_per_pixel = 16;
 /// Paths of the first picture, k of its estimates, and metres between its coarsest nodes: ends of
 /// rays that gather average over many estimates.
 inline constexpr std::uint64_t view_first_photons = 32'768;
