@@ -33,7 +33,11 @@ void write_picture(const std::string& file) {
   Image picture;
   picture.width = picture.height = 4;
   for (const char* channel : {"R", "G", "B"}) picture.add(channel).assign(16, 0.5f);
-  (file.ends_with(".png") ? write_png : write_exr)(file, picture);
+  if (file.ends_with(".png")) {
+    write_png(file, picture);
+  } else {
+    write_exr(file, picture);
+  }
 }
 
 /// The box, its walls with a texture.

@@ -15,7 +15,7 @@ constexpr double slack = 1e-3;
 
 /// CHECKs that a mean of 16 seeds is what was expected: Student's t, two-sided 1e-6 (7.90; the
 /// noise is that of 2.947). FAILs where a deviation of `delta` could be missed.
-void check(const ValidationRow& row, const Measured& measured, double delta) {
+void check(const ValidationRow& row, const validation::Measured& measured, double delta) {
   const double error = measured.noise / 2.947;
   INFO(row.name << ", " << row.place << ": expected " << row.expected << ", error "
                 << measured.error << " +- " << error);

@@ -21,7 +21,7 @@ std::vector<double> values(double mean, double scatter) {
 }  // namespace
 
 TEST_CASE("the noise of a reading is the 99% interval of its mean") {
-  const Measured result = measured(values(200, 4), 100);
+  const validation::Measured result = measured(values(200, 4), 100);
   CHECK(result.value == Approx(200));
   CHECK(result.error == Approx(1));
   CHECK(result.noise == Approx(2.947 * 4 / std::sqrt(16.0) / 100));  // t table, 15 degrees
