@@ -16,6 +16,7 @@
 #include "estimate/reflected_radiance.hpp"
 #include "render/path_estimate.hpp"
 #include "support/bench_record.hpp"
+#include "support/gathering_photons.hpp"
 #include "support/workload.hpp"
 
 namespace {
