@@ -1,9 +1,8 @@
 # photile_embed_kernels(<target>): compiles the texts of kernels/**/*.cl, kernels/**/*.clh and
 # include/photile/device/*.h into <target>, as host/renderer/device/embedded_files.hpp declares them. A kernel
 # is known by its path below kernels/, a shared header by "photile/device/<name>".
-set(_PHOTILE_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed_files.cmake)
-
 function(photile_embed_kernels target)
+  set(script ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/embed_files.cmake)
   set(kernel_root ${PROJECT_SOURCE_DIR}/kernels)
   set(header_root ${PROJECT_SOURCE_DIR}/include)
   file(GLOB_RECURSE kernels CONFIGURE_DEPENDS ${kernel_root}/*.cl ${kernel_root}/*.clh)
@@ -25,8 +24,8 @@ function(photile_embed_kernels target)
 
   set(output ${CMAKE_CURRENT_BINARY_DIR}/embedded_files.cpp)
   add_custom_command(OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} -DLIST=${list_file} -DOUTPUT=${output} -P ${_PHOTILE_EMBED_SCRIPT}
-    DEPENDS ${kernels} ${headers} ${list_file} ${_PHOTILE_EMBED_SCRIPT}
+    COMMAND ${CMAKE_COMMAND} -DLIST=${list_file} -DOUTPUT=${output} -P ${script}
+    DEPENDS ${kernels} ${headers} ${list_file} ${script}
     COMMENT "Embedding the kernels" VERBATIM)
   # The command belongs to this folder, the library to another: a target of its own orders them.
   add_custom_target(${target}_embedded_kernels DEPENDS ${output})
