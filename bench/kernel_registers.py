@@ -21,7 +21,7 @@ from report_section import replace_section
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/kernels.md"
 
-# Of each work-group: the kernels that ask for none run in groups of this (host/renderer/maps/work_groups.hpp).
+# The work-items of a group, of kernels that ask for no number of their own (maps/map_store.hpp).
 GROUP = 64
 
 

@@ -29,6 +29,8 @@ inline constexpr std::array all_estimate_strategies = {EstimateStrategy::select,
 /// "select", "lanes".
 std::string_view name_of(EstimateStrategy strategy);
 
+/// Which kernel an estimate runs, and how wide. Speed alone depends on it, but float sums depend on
+/// their order, and so the last bits of a picture.
 struct EstimateTuning {
   EstimateStrategy strategy = EstimateStrategy::select;
   int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16; of `lanes` 16, 32 or 64 work-items

@@ -1,5 +1,5 @@
-// A picture of light layers whose pixels are made when they are asked for, so that a picture of
-// hundreds of lights is never whole in memory.
+// Relighting, and a picture of light layers whose pixels are made when they are asked for, so that
+// a picture of hundreds of lights is never whole in memory.
 #pragma once
 
 #include <array>

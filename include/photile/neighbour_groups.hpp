@@ -1,4 +1,6 @@
-// Neighbour groups: which sided triangles share photons (Graglia et al. 2012, section 2.1).
+// Neighbour groups: which sided triangles share photons (Graglia et al. 2012, section 2.1), and
+// patches of them that share one map, so that a photon on fine triangles does not enter dozens of
+// maps.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Stored photons: a structure of arrays, ready for the device.
+// Photon paths from the lights, and the photons they leave: a structure of arrays, ready for the
+// device.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A scene prepared for ray tracing.
+// A scene prepared for ray tracing, and what the camera sees of it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The whole method in one call: trace, group, build, estimate.
+// Pictures: the whole method in one call, many from the same photons, by paths, and without noise.
 #pragma once
 
 #include <array>
@@ -118,6 +118,8 @@ RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> 
 RenderResult render(const Scene& scene, const Camera& camera, Device& device,
                     const RenderParameters& parameters, Progress& progress = Progress::none());
 
+/// A picture by path tracing: unbiased, without photons and without an OpenCL device. It is the
+/// reference for photon maps.
 struct PathTracerResult {
   LightLayers layers;
   RunStatistics statistics;
@@ -137,6 +139,7 @@ PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
 /// Whether lights of the scene have such caustics, which path tracing leaves out.
 bool has_unseen_caustics(const Scene& scene);
 
+/// What all settings of a rendering follow, where nothing else is said.
 enum class Quality {
   draft,  ///< the photon estimate at each hit: quick, mottled
   good,   ///< light maps whose nodes gather: clean to the eye

@@ -237,7 +237,7 @@ enum class LightKind : std::uint8_t { area, point, spot, directional, environmen
 /// A light. Its photons carry `color` with luminance 1, so that `power` alone scales its layer.
 struct Light {
   std::string name;   ///< unique; no dots; at most limits::max_light_name_bytes bytes
-  std::string group;  ///< of light_groups.hpp; "" = a layer of its own
+  std::string group;  ///< as LightGroups; "" = a layer of its own
   LightKind kind = LightKind::area;
   glm::vec3 color{1.0f};  ///< linear RGB scaled to luminance 1; of a picture: that of its mean
   /// Emitted flux in `Scene::unit`s (luminance-weighted). For directional lights and environments:
@@ -442,7 +442,7 @@ struct SceneLoadOptions {
 /// light outside it.
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
-/// Up to this many layers (see light_groups.hpp) each has a value at every hit and pixel. With
+/// Up to this many layers (see light_layers.hpp) each has a value at every hit and pixel. With
 /// more, memory and time grow with the lights that reach a hit, not with all.
 inline constexpr std::uint32_t max_dense_lights = 8;
 

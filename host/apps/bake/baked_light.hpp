@@ -15,6 +15,7 @@
 
 namespace photile::bake {
 
+/// A rectangle of a picture, in texels.
 struct TexelRectangle {
   std::uint32_t x = 0, y = 0;  ///< its first texel
   std::uint32_t width = 0, height = 0;

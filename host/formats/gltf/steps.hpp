@@ -1,4 +1,4 @@
-// The smaller steps of a glTF import, in their order.
+// A glTF import, and the smaller of its steps in their order.
 #pragma once
 
 #include <vector>

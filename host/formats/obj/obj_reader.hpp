@@ -29,7 +29,7 @@ struct ObjFile {
   std::vector<std::string> material_names;  ///< as usemtl names them
 };
 
-/// Reads `text`, without the material libraries that it names (obj_libraries.hpp). Errors:
+/// Reads `text`, without the material libraries that it names (obj_text.hpp). Errors:
 /// InputError naming the face with an impossible vertex index.
 ObjFile read_obj(std::string& text, reading::ImportContext& context);
 

@@ -1,4 +1,4 @@
-// What tinyobjloader passes over in silence, found by a look at the first word of each line.
+// What tinyobjloader passes over in silence: lines by their first words, and material libraries.
 #pragma once
 
 #include <tiny_obj_loader.h>

@@ -11,6 +11,7 @@
 
 namespace photile::pictures {
 
+/// A picture of radiance, whatever its unit.
 struct RadiancePicture {
   int width = 0, height = 0;
   std::vector<glm::vec3> texels;  ///< linear RGB, row 0 at the top; finite and not negative

@@ -219,7 +219,7 @@ GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
                                                   const NodeBatch& batch,
                                                   std::span<const std::uint32_t> fine,
                                                   const NoiseTolerance& tolerated) const {
-  return cache::means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+  return means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
     const std::uint32_t node = fine[i];
     mean.add_own(raw, raw_of_.at(batch.number[node]));
     for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
@@ -236,12 +236,12 @@ GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
                                             std::span<const std::uint32_t> fine,
                                             const NoiseTolerance& tolerated) const {
   const GatheredIrradiance expected =
-      cache::means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+      means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
         for (const std::uint64_t parent : batch.parents[fine[i]]) {
           mean.add_own(known, row_of_.at(parent));
         }
       });
-  return cache::means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
+  return means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
     mean.add_own(found, i);
     mean.add_other(expected, i, tolerated, defaults::weight_of_parents);
   });

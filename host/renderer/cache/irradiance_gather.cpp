@@ -26,10 +26,6 @@
 namespace photile::cache {
 namespace {
 
-using cache::BatchSums;
-using cache::EndLight;
-using cache::IndirectLight;
-
 /// Enough to fill a device with new nodes, little enough to stay in the processor's caches.
 constexpr std::size_t rays_at_a_time = std::size_t{1} << 16;
 /// Large enough to make a task's cost vanish, small enough to share work.

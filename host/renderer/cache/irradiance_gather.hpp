@@ -83,7 +83,7 @@ class IrradianceGather {
                             const Progress& progress = Progress::none());
 
   /// What rays find where they end.
-  cache::EndLight& ends() { return ends_; }
+  EndLight& ends() { return ends_; }
 
   /// Of the light maps where rays end; `forget` empties them.
   std::uint64_t bytes() const { return ends_.bytes(); }
@@ -111,7 +111,7 @@ class IrradianceGather {
   trace::LightSampler lamps_;
   std::vector<glm::vec3> emitted_;  ///< per light
   std::vector<double> layer_powers_;
-  cache::EndLight ends_;
+  EndLight ends_;
   Costs costs_;
 };
 

@@ -374,8 +374,8 @@ std::optional<glm::vec3> LightMapFrames::known_irradiance(const View& view,
   };
   const glm::vec3 sum(blended(light));
   if (mixed_.by_normal().empty()) return sum;
-  return cache::turned(sum, blended(mixed_.by_normal()),
-                       trace::shading_normal(scene_, sided_triangle, position));
+  return turned(sum, blended(mixed_.by_normal()),
+                trace::shading_normal(scene_, sided_triangle, position));
 }
 
 /// A ray that goes on: traced anew, with all that it meets.

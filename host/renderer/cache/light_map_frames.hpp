@@ -54,7 +54,7 @@ class LightMapFrames {
   };
   /// Where a cell is seen whose nodes are not valued.
   struct MissingPlace {
-    cache::MissingCell cell;
+    MissingCell cell;
     bool empty;      ///< without a coarser level
     float distance;  ///< from the eye, metres
     glm::vec3 position;
@@ -95,7 +95,7 @@ class LightMapFrames {
   std::vector<std::uint32_t> layer_of_;  ///< per light
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1
   trace::DistantLights distant_;
-  cache::NodeMix mixed_;
+  NodeMix mixed_;
   std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none
   std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
   mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell

@@ -173,7 +173,7 @@ class Blend {
     for_each_corner([&](ByNormal& light, std::size_t layer, std::size_t, float) {
       if (light.irradiance == glm::vec3(0.0f)) return;
       writer.add(static_cast<std::uint32_t>(layer), light.irradiance,
-                 reflects * cache::turned(light.irradiance, light.by_normal, normal));
+                 reflects * turned(light.irradiance, light.by_normal, normal));
       light = {};
     });
   }
@@ -245,8 +245,7 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 }
 
 SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-                           estimate::LightAtPoints& elsewhere, NodeSource& source,
-                           cache::EndLight* ends)
+                           estimate::LightAtPoints& elsewhere, NodeSource& source, EndLight* ends)
     : scene_(rays.scene()),
       needs_(rays.needs()),
       shared_(parameters.processes != nullptr),

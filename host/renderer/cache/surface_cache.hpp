@@ -69,7 +69,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   ///               where PrimaryHits::coarse says that it suffices; null where photons value nodes:
   ///               the coarsest nodes are read there
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-               estimate::LightAtPoints& elsewhere, NodeSource& source, cache::EndLight* ends);
+               estimate::LightAtPoints& elsewhere, NodeSource& source, EndLight* ends);
 
   /// Of points in any order.
   Estimates at(const PrimaryHits& points, const Progress& progress) override;
@@ -86,7 +86,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
   NodeSource& source() { return source_; }
-  const cache::NodeSight& sight() const { return sight_; }
+  const NodeSight& sight() const { return sight_; }
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
@@ -114,9 +114,9 @@ class SurfaceCache : public estimate::LightAtPoints {
   const double neighbours_;  ///< of a photon estimate
   estimate::LightAtPoints& elsewhere_;
   NodeSource& source_;
-  cache::EndLight* ends_;
+  EndLight* ends_;
   LightMaps maps_;
-  cache::NodeSight sight_;
+  NodeSight sight_;
   std::uint64_t hits_alone_ = 0;
   ErrorSum errors_read_;
   TimeTaken fill_time_;

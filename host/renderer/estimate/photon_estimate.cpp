@@ -61,8 +61,7 @@ PhotonEstimate::PhotonEstimate(std::span<Device> devices, const Scene& scene, Pa
 Estimates PhotonEstimate::at(const PrimaryHits& points, const Progress&) {
   const std::vector<std::uint32_t> order = order_of(points);
   if (order.empty()) return estimate(points);
-  return estimate::restored(estimate(estimate::reordered(points, 0, order)), order,
-                            layer_powers_.size());
+  return restored(estimate(reordered(points, 0, order)), order, layer_powers_.size());
 }
 
 std::vector<std::uint32_t> PhotonEstimate::order_of(const PrimaryHits& points) const {
@@ -114,8 +113,7 @@ Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
   for (std::size_t first = 0; first < lit.size(); first += lists_at_a_time) {
     const std::span<const std::uint32_t> chosen =
         std::span(lit).subspan(first, std::min(lists_at_a_time, lit.size() - first));
-    const NeighbourLists near =
-        level.estimators.front().nearest(estimate::reordered(points, 0, chosen));
+    const NeighbourLists near = level.estimators.front().nearest(reordered(points, 0, chosen));
     seen_->leave_out_hidden(points, chosen, near, result);
   }
   return result;

@@ -66,15 +66,15 @@ class Decoder {
 /// Errors: DecodeError; UsageError where OpenImageIO's module is not installed.
 std::unique_ptr<Decoder> open_picture(const std::string& name, Encoded bytes);
 
-/// Its first part. Errors: DecodeError.
+/// Opens the first part of an EXR. Errors: DecodeError.
 std::unique_ptr<Decoder> open_exr(Encoded bytes);
 
 }  // namespace photile::image
 
 extern "C" {
 
-/// Opens a picture of any format but EXR, which `bytes` must outlive; the caller deletes it.
-/// Errors: DecodeError.
+/// OpenImageIO's readers, in a module of their own (host/renderer/openimageio): opens a picture of
+/// any format but EXR, which `bytes` must outlive; the caller deletes it. Errors: DecodeError.
 __attribute__((visibility("default"))) photile::image::Decoder* photile_openimageio_decoder(
     photile::image::PictureFormat format, photile::image::Encoded bytes);
 

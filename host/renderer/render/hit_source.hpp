@@ -41,7 +41,7 @@ class CameraHits : public HitSource {
   LightLayers* errors_;
 };
 
-/// What a camera sees by reflection alone (trace/reflected_hits.hpp).
+/// What a camera sees by reflection alone (trace/hit_batch.hpp).
 class ReflectedHits : public HitSource {
  public:
   explicit ReflectedHits(const Camera& camera) : camera_(camera) {}

@@ -1,4 +1,6 @@
-// What lights emit, from what people know of them.
+// What lights emit, from what people know of them: flux in closed form, and colour. SI units:
+// radiance (or luminance) per square metre and steradian, intensity per steradian, irradiance per
+// square metre.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -139,8 +139,8 @@ struct PixelSample {
 /// Follows the lobe of `end`, and those of the surfaces met, and appends what each reflects beside
 /// its lobe to `record`, and lamps seen in lobes: at each surface a lamp is looked at, and one
 /// direction of the lobe is followed; what both would find is weighed by the power heuristic (Veach
-/// and Guibas 1995). Directions are those of visible normals (ggx.hpp). What reflects little goes
-/// on by Russian roulette.
+/// and Guibas 1995). Directions are those of visible normals (opaque_bsdf.hpp). What reflects
+/// little goes on by Russian roulette.
 void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, EyeRecord& record);
 
 }  // namespace photile::trace

@@ -1,4 +1,4 @@
-// What lamps without surface send in a direction.
+// What lamps without surface send in a direction, and where their photons go.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -40,6 +40,7 @@ inline double candela_per_lumen(const Scene& scene, const Light& lamp,
   return 0.25 * glm::one_over_pi<double>();
 }
 
+/// Directions of photons from a lamp whose intensities were measured.
 class IntensitySampler {
  public:
   /// References are kept. `light` has a distribution that emits something.

@@ -102,7 +102,8 @@ class OpaqueBsdf {
 };
 
 /// A microfacet normal as seen from unit direction `view` (view.z > 0), both in the frame of the
-/// shading normal. Its density is G1 (view.normal) D / view.z per steradian.
+/// shading normal (Heitz, "Sampling the GGX distribution of visible normals", JCGT 2018). Its
+/// density is G1 (view.normal) D / view.z per steradian.
 glm::vec3 sample_ggx_visible_normal(const glm::vec3& view, float alpha, float u1, float u2);
 
 /// Density per steradian of directions reflected about such a normal: G1 D / (4 n.view).

@@ -10,7 +10,9 @@ namespace photile::trace {
 using PhiloxCounter = std::array<std::uint32_t, 4>;
 using PhiloxKey = std::array<std::uint32_t, 2>;
 
-/// Four random words: a bijection of the counter for every key.
+/// Four random words of Philox4x32-10, the counter-based generator of Salmon, Moraes, Dror and
+/// Shaw, "Parallel random numbers: as easy as 1, 2, 3" (2011): a bijection of the counter for every
+/// key. Any number of any path is computed from its counter, whatever order threads trace paths in.
 constexpr PhiloxCounter philox4x32_10(PhiloxCounter counter, PhiloxKey key) {
   for (int round = 0; round < 10; ++round) {
     const std::uint64_t product0 = std::uint64_t{0xD2511F53u} * counter[0];
