@@ -171,24 +171,27 @@ def book(thick, tall, deep, spine):
 
 
 def row_of_books(first, last, bottom, back, height, seed, depth=(0.15, 0.20)):
-    """Books along x between two positions on a board: (covers, pages). The last one leans on the others."""
+    """Books along x between two positions on a board: (covers, pages). Those of one height are one solid, whose
+    picture tells them apart; a last one leans on the others."""
     source = random.Random(seed)
     covers, pages = Shape(), Shape()
     x = first
-    while True:
-        thick = source.uniform(0.018, 0.045)
-        tall, deep = height * source.uniform(0.68, 0.95), source.uniform(*depth)
-        parts = book(thick, tall, deep, source.randrange(BOOK_SPINES))
-        if x + thick > last:
-            lean = 9
-            c, s = math.cos(math.radians(lean)), math.sin(math.radians(lean))
-            for target, part in zip((covers, pages), parts):
-                target.add(part.moved(thick / 2, 0, 0).turned("z", lean)
-                           .moved(x + tall * s + 0.002, bottom + 0.001, back))
-            return covers, pages
-        for target, part in zip((covers, pages), parts):
-            target.add(part.moved(x + thick / 2, bottom + 0.001, back + source.uniform(0, 0.012)))
+    while x + 0.05 < last:
+        count = source.randrange(2, 6)
+        thick = min(count * source.uniform(0.024, 0.034), last - x)
+        tall, deep, spine = height * source.uniform(0.68, 0.95), source.uniform(*depth), source.randrange(BOOK_SPINES)
+        rows = box((thick, tall, deep), (0, 0, deep / 2))
+        u0, u1 = spine / BOOK_SPINES, (spine + count) / BOOK_SPINES
+        rows.uvs = [(u0 + (u1 - u0) * (0.5 + p[0] / thick), 0.93 * (1 - p[1] / tall)) if n[2] > 0.5 else (u0 + 0.016, 0.97)
+                    for p, n in zip(rows.positions, rows.normals)]
+        covers.add(rows.moved(x + thick / 2, bottom + 0.001, back))
+        pages.add(box((thick - 0.006, 0.0015, deep - 0.012), (x + thick / 2, bottom + tall + 0.0008, back + deep / 2 - 0.004)))
         x += thick + 0.0012
+    tall, lean = height * 0.7, 9
+    c, s = math.cos(math.radians(lean)), math.sin(math.radians(lean))
+    for target, part in zip((covers, pages), book(0.028, tall, depth[0], source.randrange(BOOK_SPINES))):
+        target.add(part.moved(0.014, 0, 0).turned("z", lean).moved(x + tall * s + 0.002, bottom + 0.001, back))
+    return covers, pages
 
 
 def pile_of_books(count, seed, width=0.16, length=0.23):

@@ -111,15 +111,13 @@ def _mouldings(room):
     door_from, door_to = DOOR_X - 0.535, DOOR_X + 0.535
     path = [(door_to, GAP, DEPTH), *[(x, GAP, z) for x, _, z in around[1:]], (0, GAP, DEPTH), (door_from, GAP, DEPTH)]
     skirting = moulding(board, path, closed=False)
-    cove = [(0.074 - 0.052 * math.cos(math.pi / 2 * k / 8), 0.028 + 0.052 * math.sin(math.pi / 2 * k / 8))
-            for k in range(9)]
-    crown = [(GAP, 0.0), (0.014, 0.0), (0.020, 0.008), (0.022, 0.022), *cove, (0.084, 0.082), (0.090, 0.088),
-             (0.090, 0.104), (GAP, 0.104)]
+    crown = [(GAP, 0.0), (0.016, 0.0), (0.020, 0.018), (0.040, 0.036), (0.074, 0.084), (0.090, 0.088), (0.090, 0.104),
+             (GAP, 0.104)]
     crown = moulding(crown, [(x, HEIGHT - 0.104 - GAP, z) for x, _, z in around])
     room.add("skirting", (room.white_wood, skirting))
     room.add("crown moulding", (room.ceiling_paint, crown))
 
-    ridge = [(0.0, GAP), (0.026, GAP), (0.026, 0.005), (0.021, 0.012), (0.014, 0.014), (0.007, 0.011), (0.0, 0.005)]
+    ridge = [(0.0, GAP), (0.026, GAP), (0.020, 0.013), (0.006, 0.013)]
     panels = Shape()
     for z0, z1, y0, y1 in ((0.22, 0.92, 0.30, 2.42), (SOFA_Z - 0.92, SOFA_Z + 0.92, 0.30, 2.42),
                            (3.40, 4.28, 0.30, 2.42)):
@@ -162,7 +160,7 @@ def _curtains(room):
     d = room.document
     cloth_of = d.matte("curtain", (0.60, 0.54, 0.44))
     high, rod_y, z = 2.425, 2.442, 0.105
-    hanging = [d.mesh(f"curtain {k}", (cloth_of, cloth.curtain(0.36, high - 0.015, 5, 0.034, seed=k))) for k in (1, 2)]
+    hanging = [d.mesh(f"curtain {k}", (cloth_of, cloth.curtain(0.36, high - 0.015, 4, 0.036, seed=k))) for k in (1, 2)]
     rods = Shape()
     for number, (x0, _, x1, _) in enumerate(WINDOWS):
         first, last = x0 - 0.27, x1 + 0.27
@@ -283,7 +281,7 @@ def _console(room):
 
     at = (2.62, GAP, 0.50)
     pot, earth = plants.pot(0.165, 0.30)
-    wood, leaves = plants.fig_tree(1.35)
+    wood, leaves = plants.fig_tree(1.35, leaves=54, spread=0.29)
     room.add("tree", (room.white_ceramic, pot.moved(*at)),
              (d.matte("earth", (0.045, 0.030, 0.020)), earth.moved(*at)),
              (room.stems, wood.moved(at[0], 0.275, at[2])), (room.leaves, leaves.moved(at[0], 0.275, at[2])))
@@ -316,7 +314,7 @@ def _shelf(room):
     shelf, tops = furniture.shelf(0.98, 2.05, 0.30, 5)
     covers, pages = Shape(), Shape()
     for level, (bottom, first, last) in enumerate(zip(tops, (-0.45, -0.10, -0.45, -0.45, -0.08),
-                                                      (0.32, 0.38, 0.02, 0.36, 0.40))):
+                                                      (0.30, 0.36, 0.0, 0.34, 0.36))):
         for target, more in zip((covers, pages), furniture.row_of_books(first, last, bottom, 0.035, 0.32, level + 3)):
             target.add(more)
     for level, x in ((1, -0.30), (2, 0.27)):

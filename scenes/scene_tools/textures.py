@@ -327,7 +327,8 @@ def book_spines(width=512, height=128, seed=9):
                         rgb = ink
                     elif first <= y < last and one * 0.3 < x < one * 0.7 and letters[y // 2 * 2]:
                         rgb = ink
-                rows[y][number * one + x] = _encoded(rgb)
+                round_off = 0.45 if x == 0 else 0.8 if x in (1, one - 1) else 1.0
+                rows[y][number * one + x] = _encoded([c * round_off for c in rgb])
     return rows
 
 
