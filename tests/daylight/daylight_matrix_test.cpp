@@ -10,7 +10,7 @@
 #include "room_with_window.hpp"
 #include "trace/distant_light.hpp"
 #include "validation/form_factors.hpp"
-#include "weather/sky_lights.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile::test {
 

@@ -11,7 +11,7 @@
 #include "glare/measure_glare.hpp"
 #include "loading/finishing.hpp"
 #include "loading/light_changes.hpp"
-#include "loading/up_axis.hpp"
+#include "loading/load_scene.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
@@ -22,7 +22,7 @@
 #include "test_scenes.hpp"
 #include "view/moods.hpp"
 #include "walk/frame_names.hpp"
-#include "weather/sun_position.hpp"
+#include "weather/perez_sky.hpp"
 
 namespace photile::test {
 namespace {

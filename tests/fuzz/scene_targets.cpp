@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "fuzz_files.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "photometry/photometric_file.hpp"
-#include "pictures/texture_decoder.hpp"
+#include "pictures/textures.hpp"
 #include "reading/camera_path.hpp"
 
 namespace photile::test {

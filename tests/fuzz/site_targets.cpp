@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "daylight/occupancy.hpp"
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "fuzz_files.hpp"
 #include "loading/luminaires.hpp"
 #include "measuring/requirements.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "gltf/document.hpp"
-#include "gltf/steps.hpp"
+#include "gltf/gltf_import.hpp"
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 

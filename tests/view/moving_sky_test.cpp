@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "common/output_file.hpp"
-#include "loading/relit_sky.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 #include "weather/perez_sky.hpp"

@@ -12,7 +12,7 @@
 #include "common/ascii_text.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "glare/ugr_table.hpp"
 #include "loading/light_changes.hpp"
 #include "photile/errors.hpp"

@@ -14,7 +14,7 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/run_files.hpp"
-#include "loading/relit_sky.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 

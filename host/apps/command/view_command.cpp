@@ -15,7 +15,7 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "loading/sourced_scene.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "view/moving_sky.hpp"
 #include "view/viewer.hpp"

@@ -23,7 +23,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/run_files.hpp"
-#include "gltf/animation.hpp"
+#include "gltf/cameras.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"

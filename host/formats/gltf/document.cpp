@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::gltf {

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "gltf/document.hpp"
+#include "gltf/lights.hpp"
 #include "gltf/panels.hpp"
-#include "gltf/profiles.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::gltf {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::loading {

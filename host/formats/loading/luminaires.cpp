@@ -15,7 +15,7 @@
 #include "common/input_file.hpp"
 #include "common/json_object.hpp"
 #include "common/output_file.hpp"
-#include "files/scene_folder.hpp"
+#include "files/scene_files.hpp"
 #include "gltf/panels.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"

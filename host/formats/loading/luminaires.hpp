@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::loading {

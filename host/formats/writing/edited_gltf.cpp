@@ -11,9 +11,9 @@
 #include <set>
 
 #include "common/output_file.hpp"
-#include "files/scene_folder.hpp"
+#include "files/scene_files.hpp"
 #include "photile/errors.hpp"
-#include "writing/light_setting.hpp"
+#include "writing/edited_scene.hpp"
 
 namespace photile::writing {
 namespace {

@@ -1,13 +1,29 @@
-// Which way is up in a scene file: OBJ files do not say it, and some glTF files have it wrong.
+// A scene that remembers where in its file each light comes from, for those who edit lights.
 #pragma once
 
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
+#include <vector>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
+#include "loading/luminaires.hpp"
 #include "photile/scene.hpp"
+#include "reading/area_lights.hpp"
 
 namespace photile::loading {
+
+/// A scene with the source of each of its lights.
+struct SourcedScene {
+  Scene scene;
+  std::vector<reading::LightSource> sources;
+  std::vector<PlacedLuminaires> luminaires;  ///< of each entry of the list of luminaires
+};
+
+/// load_scene, which keeps no sources. Errors: the same.
+SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLoadOptions& options);
+
+// Which way is up in a scene file: OBJ files do not say it, and some glTF files have it wrong.
 
 /// The rotation after which `up` ("x" to "-z", "" = "y") points along y. With "z", as CAD programs
 /// have it, x stays and the file's y becomes -z, north. Errors: UsageError for another word.

@@ -1,12 +1,18 @@
 // Pictures of a scene, decoded.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "files/scene_files.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::pictures {
@@ -44,5 +50,44 @@ RadiancePicture decode_radiance(const std::string& name, std::span<const unsigne
 /// packed as RGBD: colour / alpha, an alpha of 0 counting as the least there is. Errors:
 /// ResourceError naming the picture and the reason.
 RadiancePicture decode_rgbd(const std::string& name, std::span<const unsigned char> bytes);
+
+// The textures of a scene, each decoded once.
+
+class TextureStore {
+ public:
+  TextureStore(Scene& scene, files::SceneFolder& folder) : scene_(scene), folder_(folder) {}
+
+  /// Index in Scene::textures of a picture file named by the scene. Errors: ResourceError.
+  std::uint32_t from_file(const std::string& name, TextureContent content = TextureContent::color);
+
+  /// The same for a picture inside the scene file; `name` tells it from others. Errors:
+  /// ResourceError.
+  std::uint32_t from_memory(const std::string& name, std::span<const unsigned char> bytes,
+                            TextureContent content = TextureContent::color);
+
+ private:
+  using Key = std::pair<std::string, TextureContent>;
+  std::uint32_t add(const Key& key, std::span<const unsigned char> bytes);
+
+  Scene& scene_;
+  files::SceneFolder& folder_;
+  std::map<Key, std::uint32_t> index_;
+};
+
+/// Makes the lack of a texture visible but harmless: a mid-grey Lambertian part.
+void use_missing_texture_colour(Material& material);
+
+// Surroundings on the six faces of a cube.
+
+/// Faces +x, -x, +y, -y, +z, -z, each as an observer in the middle sees it: with +y at the top; of
+/// +y -z at the top, and of -y +z. All are square and of one size, of a texel at least.
+using CubeMap = std::array<RadiancePicture, 6>;
+
+/// Texel of a unit direction.
+const glm::vec3& radiance_towards(const CubeMap& cube, const glm::dvec3& direction);
+
+/// The cube, turned by `rotation`, as an equirectangular map of about the same resolution: each
+/// texel is the mean over its solid angle, by 4 x 4 samples.
+EnvironmentMap environment_of(const CubeMap& cube, const glm::dquat& rotation, std::string name);
 
 }  // namespace photile::pictures

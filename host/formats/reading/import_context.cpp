@@ -1,11 +1,12 @@
-#include "reading/plain_material.hpp"
+#include "reading/import_context.hpp"
 
 #include <utility>
 
-#include "pictures/texture_store.hpp"
+#include "pictures/textures.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile::reading {
+
 namespace {
 
 Material without_textures(const Scene& scene, Material material) {

@@ -16,7 +16,7 @@ namespace photile::gltf {
 void check_scene_size(const tinygltf::Model& model, const AccessorReader& accessors,
                       const std::vector<NodeVisit>& visits, const reading::ImportContext& context);
 
-/// Chooses Scene::origin (scene_origin.hpp) and moves the visited nodes there, with all that hangs
+/// Chooses Scene::origin (triangles.hpp) and moves the visited nodes there, with all that hangs
 /// on them: meshes, cameras, lights. Reads every mesh once more. Errors: InputError.
 void move_to_origin(const tinygltf::Model& model, const AccessorReader& accessors,
                     std::vector<NodeVisit>& visits, reading::ImportContext& context);
