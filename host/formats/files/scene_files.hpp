@@ -1,4 +1,5 @@
-// What an import finds wrong and goes on with, or leaves to the importer.
+// The scene file and the files that it names, read without being led elsewhere, and what is found
+// wrong in them.
 #pragma once
 
 #include <cstddef>
@@ -43,8 +44,6 @@ class Warnings {
   std::vector<Entry> entries_;
   std::map<std::pair<std::string, std::string>, std::size_t> index_;  ///< by kind and message
 };
-
-// Reading the scene file and the files it names, without being led elsewhere.
 
 /// The bytes of a regular file. Errors: ResourceError with the reason, without the name; those of
 /// note_input.

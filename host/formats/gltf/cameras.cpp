@@ -15,8 +15,6 @@
 
 #include "gltf/accessor.hpp"
 #include "gltf/document.hpp"
-#include "gltf/gltf_import.hpp"
-#include "gltf/nodes.hpp"
 #include "photile/scene.hpp"
 #include "scene/coordinate_limit.hpp"
 #include "scene/interpolation.hpp"

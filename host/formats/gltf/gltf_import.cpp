@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "files/scene_files.hpp"
-#include "gltf/accessor.hpp"
+#include "gltf/cameras.hpp"
 #include "gltf/document.hpp"
 #include "gltf/lights.hpp"
 #include "gltf/materials.hpp"
@@ -24,24 +24,6 @@
 #include "scene/light_emission.hpp"
 
 namespace photile::gltf {
-
-void import_gltf(reading::ImportContext& context) {
-  const tinygltf::Model model = read_gltf(context);
-  const AccessorReader accessors(model, context);
-  context.scene.unit = PowerUnit::lumen;
-  const std::vector<MaterialCoordinates> coordinates =
-      add_gltf_materials(model, accessors, context);
-  std::vector<NodeVisit> visits = visit_nodes(model, context);
-  for (const NodeVisit& visit : visits) {
-    context.visited_nodes.push_back(static_cast<std::uint32_t>(visit.node));
-  }
-  check_scene_size(model, accessors, visits, context);
-  move_to_origin(model, accessors, visits, context);
-  add_gltf_cameras(model, visits, context);
-  add_gltf_lights(model, accessors, visits, context);
-  add_gltf_meshes(model, accessors, visits, coordinates, context);
-  add_gltf_surroundings(model, accessors, context);
-}
 
 namespace {
 
@@ -139,8 +121,8 @@ void add_triangles(const reading::LocalMesh& local, const glm::dmat4& world,
   }
 }
 
-}  // namespace
-
+/// Chooses Scene::origin (reading/triangles.hpp) and moves the visited nodes there, with all that
+/// hangs on them: meshes, cameras, lights. Reads every mesh once more. Errors: InputError.
 void move_to_origin(const tinygltf::Model& model, const AccessorReader& accessors,
                     std::vector<NodeVisit>& visits, reading::ImportContext& context) {
   std::map<int, std::vector<const NodeVisit*>> visits_of;  // each mesh is read once
@@ -158,8 +140,6 @@ void move_to_origin(const tinygltf::Model& model, const AccessorReader& accessor
   context.scene.origin = origin.best();
   for (NodeVisit& visit : visits) visit.world[3] -= glm::dvec4(context.scene.origin, 0.0);
 }
-
-namespace {
 
 constexpr const char* extension_name = "EXT_lights_image_based";
 
@@ -245,8 +225,12 @@ void add_light(const tinygltf::Value& light, const tinygltf::Model& model,
   context.light_sources.push_back({reading::LightSource::Kind::picture, none, none});
 }
 
-}  // namespace
-
+/// Adds the environment light of the scene that is loaded, if it has one; triangles must be there.
+/// The sharpest of its cube maps is what surrounds the scene: the others, and the coefficients of
+/// irradiance, are the same light blurred for programs that do not trace it. Its values times
+/// `intensity` are taken as cd/m2; PNGs with alpha are RGBD, linear value = sRGB-decoded RGB /
+/// alpha. Surroundings that cannot be read are named in a warning. Errors: InputError where there
+/// is no such light.
 void add_gltf_surroundings(const tinygltf::Model& model, const AccessorReader& accessors,
                            reading::ImportContext& context) {
   const tinygltf::Value* light = light_of_scene(model, context);
@@ -258,6 +242,26 @@ void add_gltf_surroundings(const tinygltf::Model& model, const AccessorReader& a
         fmt::format("{}: {}; the surroundings are dark; give them as an environment picture",
                     extension_name, error.what()));
   }
+}
+
+}  // namespace
+
+void import_gltf(reading::ImportContext& context) {
+  const tinygltf::Model model = read_gltf(context);
+  const AccessorReader accessors(model, context);
+  context.scene.unit = PowerUnit::lumen;
+  const std::vector<MaterialCoordinates> coordinates =
+      add_gltf_materials(model, accessors, context);
+  std::vector<NodeVisit> visits = visit_nodes(model, context);
+  for (const NodeVisit& visit : visits) {
+    context.visited_nodes.push_back(static_cast<std::uint32_t>(visit.node));
+  }
+  check_scene_size(model, accessors, visits, context);
+  move_to_origin(model, accessors, visits, context);
+  add_gltf_cameras(model, visits, context);
+  add_gltf_lights(model, accessors, visits, context);
+  add_gltf_meshes(model, accessors, visits, coordinates, context);
+  add_gltf_surroundings(model, accessors, context);
 }
 
 }  // namespace photile::gltf

@@ -105,6 +105,39 @@ bool has_profile(const tinygltf::Node& node) {
   return !string_member(node.extras, ies_extra).empty();
 }
 
+namespace {
+
+/// What a node says about the intensities of its light.
+struct NodeProfile {
+  std::uint32_t distribution;    ///< into Scene::distributions
+  double multiplier = 1;         ///< of the intensities
+  glm::dvec3 color{1.0};         ///< linear RGB; multiplies the intensities, too
+  bool colored_by_node = false;  ///< `color` is the node's own, not that of another light there
+};
+
+/// Reads each photometric file once.
+class GltfProfiles {
+ public:
+  /// References are kept.
+  GltfProfiles(const tinygltf::Model& model, const AccessorReader& accessors,
+               reading::ImportContext& context)
+      : model_(model), accessors_(accessors), context_(context) {}
+
+  /// The profile of a node's light, or nothing. Errors: InputError for a file that is missing or
+  /// malformed, or a light that does not exist.
+  std::optional<NodeProfile> of(int node);
+
+ private:
+  std::uint32_t from_extension(double light, const std::string& node);
+  template <class Read>
+  std::uint32_t find_or_read(const std::string& key, const Read& read);
+
+  const tinygltf::Model& model_;
+  const AccessorReader& accessors_;
+  reading::ImportContext& context_;
+  std::map<std::string, std::uint32_t> index_;
+};
+
 template <class Read>
 std::uint32_t GltfProfiles::find_or_read(const std::string& key, const Read& read) {
   if (const auto found = index_.find(key); found != index_.end()) return found->second;
@@ -160,8 +193,6 @@ std::optional<NodeProfile> GltfProfiles::of(int number) {
     throw context_.error(error.what());
   }
 }
-
-namespace {
 
 void set_cone(const tinygltf::SpotLight& spot, Light& light, files::Warnings& warnings) {
   constexpr double largest = std::numbers::pi / 2.0;

@@ -21,8 +21,7 @@ std::string name_of(const tinygltf::Image& image, std::size_t number) {
   return fmt::format("image {}{}", number, image.name.empty() ? "" : " " + image.name);
 }
 
-}  // namespace
-
+/// Index in Scene::textures of an image of the file. Errors: ResourceError where it cannot be read.
 std::uint32_t texture_picture(const tinygltf::Model& model, std::size_t number,
                               const AccessorReader& accessors, pictures::TextureContent content,
                               pictures::TextureStore& textures) {
@@ -34,6 +33,8 @@ std::uint32_t texture_picture(const tinygltf::Model& model, std::size_t number,
   if (!image.image.empty()) return textures.from_memory(name, image.image, content);
   return textures.from_file(decoded_uri(image.uri), content);
 }
+
+}  // namespace
 
 pictures::RadiancePicture rgbd_picture(const tinygltf::Model& model, std::size_t number,
                                        const AccessorReader& accessors,
@@ -66,13 +67,19 @@ TextureCoordinates coordinates_of(int set, const tinygltf::Value* transform) {
   return result;
 }
 
+/// A texture as a material names it.
+struct TextureReference {
+  int index = -1;  ///< as the file has it: there need not be such a texture
+  TextureCoordinates coordinates;
+
+  bool given() const { return index != -1; }
+};
+
 template <class Info>
 TextureReference reference(const Info& info) {
   return {info.index,
           coordinates_of(info.texCoord, find_extension(info.extensions, transform_name))};
 }
-
-}  // namespace
 
 TextureReference reference_of(const tinygltf::TextureInfo& info) { return reference(info); }
 TextureReference reference_of(const tinygltf::NormalTextureInfo& info) { return reference(info); }
@@ -80,6 +87,7 @@ TextureReference reference_of(const tinygltf::OcclusionTextureInfo& info) {
   return reference(info);
 }
 
+/// Of the member `name` of an extension; not given where it is absent.
 TextureReference reference_of(const tinygltf::Value& extension, const std::string& name) {
   if (!extension.Has(name) || !extension.Get(name).IsObject()) return {};
   const tinygltf::Value& info = extension.Get(name);
@@ -90,8 +98,6 @@ TextureReference reference_of(const tinygltf::Value& extension, const std::strin
   return {integer_member(info, "index", -1),
           coordinates_of(integer_member(info, "texCoord", 0), transform)};
 }
-
-namespace {
 
 /// From this transmission factor on a surface counts as glass.
 constexpr double glass_transmission = 0.5;

@@ -1,4 +1,4 @@
-// The pictures of a glTF file, wherever it keeps them.
+// The materials and pictures of a glTF file become the scene's.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,6 @@
 
 namespace photile::gltf {
 
-/// Index in Scene::textures of an image of the file. Errors: ResourceError where it cannot be read.
-std::uint32_t texture_picture(const tinygltf::Model& model, std::size_t image,
-                              const AccessorReader& accessors, pictures::TextureContent content,
-                              pictures::TextureStore& textures);
-
 /// An image whose colours RGBD may stretch: decode_rgbd. Errors: ResourceError.
 pictures::RadiancePicture rgbd_picture(const tinygltf::Model& model, std::size_t image,
                                        const AccessorReader& accessors, files::SceneFolder& folder);
@@ -33,23 +28,6 @@ struct TextureCoordinates {
   glm::dvec2 operator()(const glm::dvec2& uv) const { return linear * uv + offset; }
   bool operator==(const TextureCoordinates& other) const = default;
 };
-
-/// A texture as a material names it.
-struct TextureReference {
-  int index = -1;  ///< as the file has it: there need not be such a texture
-  TextureCoordinates coordinates;
-
-  bool given() const { return index != -1; }
-};
-
-TextureReference reference_of(const tinygltf::TextureInfo& info);
-TextureReference reference_of(const tinygltf::NormalTextureInfo& info);
-TextureReference reference_of(const tinygltf::OcclusionTextureInfo& info);
-
-/// Of the member `name` of an extension; not given where it is absent.
-TextureReference reference_of(const tinygltf::Value& extension, const std::string& name);
-
-// glTF materials to photile's.
 
 /// Those of a material's emission, and those that its other textures share.
 struct MaterialCoordinates {

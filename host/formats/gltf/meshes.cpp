@@ -18,23 +18,15 @@
 
 namespace photile::gltf {
 
+namespace {
+
+/// Whether a primitive's mode makes triangles.
 bool has_triangles(int mode) {
   return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
          mode == TINYGLTF_MODE_TRIANGLE_FAN;
 }
 
-int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
-  const auto found = primitive.attributes.find(name);
-  return found == primitive.attributes.end() ? -1 : found->second;
-}
-
-bool is_usable(const tinygltf::Primitive& primitive, const std::string& use,
-               const AccessorReader& accessors) {
-  const int position = attribute(primitive, "POSITION");
-  return has_triangles(primitive.mode) && position >= 0 &&
-         accessors.has_data(position, "POSITION of " + use);
-}
-
+/// Corner numbers of the triangles that a primitive's mode makes of its index list.
 std::vector<std::array<std::uint32_t, 3>> assemble(const std::vector<std::uint32_t>& indices,
                                                    int mode) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -57,6 +49,8 @@ std::vector<std::array<std::uint32_t, 3>> assemble(const std::vector<std::uint32
   return triangles;
 }
 
+/// The index list of a primitive of so many corners; 0, 1, 2 ... where it has none. `use` names the
+/// mesh in errors. Errors: InputError for an index beyond the corners.
 std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
                                         std::size_t corner_count, const std::string& use,
                                         const AccessorReader& accessors,
@@ -74,6 +68,20 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
     }
   }
   return indices;
+}
+
+}  // namespace
+
+int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
+  const auto found = primitive.attributes.find(name);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+bool is_usable(const tinygltf::Primitive& primitive, const std::string& use,
+               const AccessorReader& accessors) {
+  const int position = attribute(primitive, "POSITION");
+  return has_triangles(primitive.mode) && position >= 0 &&
+         accessors.has_data(position, "POSITION of " + use);
 }
 
 std::string name_of_mesh(const tinygltf::Model& model, int mesh) {
@@ -120,7 +128,29 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
-}  // namespace
+/// As the file has them, one after another: 3 floats a vertex, of tangents 4, of coordinates 2. All
+/// but the positions are empty where they are absent or not wanted.
+struct VertexAttributes {
+  std::vector<float> positions, normals, tangents, uv, emission_uv;
+};
+
+/// Each vertex is placed when a triangle asks for it: all of them at once would take several times
+/// the memory of the file, which takes longer to get than to fill.
+class PlacedVertices {
+ public:
+  /// `coordinates` is kept.
+  PlacedVertices(VertexAttributes attributes, const MaterialCoordinates& coordinates,
+                 const glm::dmat4& world);
+
+  std::size_t size() const { return attributes_.positions.size() / 3; }
+  scene::Corner operator[](std::uint32_t vertex) const;
+
+ private:
+  VertexAttributes attributes_;
+  const MaterialCoordinates& coordinates_;
+  glm::dmat4 world_;
+  glm::dmat3 normal_matrix_;
+};
 
 PlacedVertices::PlacedVertices(VertexAttributes attributes, const MaterialCoordinates& coordinates,
                                const glm::dmat4& world)

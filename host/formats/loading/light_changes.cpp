@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "files/scene_files.hpp"
-#include "loading/finishing.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"

@@ -1,4 +1,4 @@
-// What the user changes in the lights of a scene while it is loaded.
+// What the options change in the lights and materials of a scene while it is loaded.
 #pragma once
 
 #include <span>
@@ -7,6 +7,11 @@
 #include "photile/scene.hpp"
 
 namespace photile::loading {
+
+/// Sets Light::group of the lights that each grouping matches, one grouping after the other. Names
+/// of lights must be final. Errors: UsageError when one matches no light (the message lists those
+/// there are), or when a group bears the name of a light outside it.
+void group_lights(Scene& scene, std::span<const LightGrouping> groupings);
 
 /// Reads a photometric file that the user names. Errors: InputError for one that is missing or
 /// malformed.

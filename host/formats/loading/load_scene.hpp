@@ -1,4 +1,4 @@
-// A scene that remembers where in its file each light comes from, for those who edit lights.
+// A scene file with its options becomes a scene that knows where in the file each light comes from.
 #pragma once
 
 #include <filesystem>

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "loading/finishing.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "pictures/textures.hpp"

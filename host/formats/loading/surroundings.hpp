@@ -1,4 +1,4 @@
-// The sun and the sky that options ask for, once their place, time and weather are known.
+// What surrounds a scene by its options: a picture, the sun, the sky of a place and an hour.
 #pragma once
 
 #include <cstddef>
@@ -43,6 +43,12 @@ EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_su
 
 /// Unit direction towards a sun: north is -z, east +x, up +y.
 glm::dvec3 direction_to(const Sun& sun);
+
+/// Adds the lights "environment", "sun" and "sky" that the options ask for; triangles must be
+/// there. Errors: InputError for a picture that is missing, malformed, not in floating point, black
+/// or has texels that are NaN, infinite or negative; UsageError for a clear sky without a sun above
+/// the horizon.
+void add_surroundings(Scene& scene, const SceneLoadOptions& options);
 
 // The sky of another hour for a picture whose sky is patches.
 

@@ -59,4 +59,7 @@ ObjTextFindings examine_obj_text(std::string& text);
 std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::string>& statements,
                                                     reading::ImportContext& context);
 
+/// Fills the context's scene from its OBJ file. Errors: InputError.
+void import_obj(reading::ImportContext& context);
+
 }  // namespace photile::obj

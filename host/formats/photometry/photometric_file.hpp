@@ -1,4 +1,4 @@
-// Photometric files of either format.
+// Photometric files: ANSI/IES LM-63 from 1986 to 2019 (.ies), and EULUMDAT, those of Europe (.ldt).
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,7 @@ namespace photile::photometry {
 IntensityDistribution read_photometry(const std::string& name, std::span<const unsigned char> bytes,
                                       files::Warnings& warnings);
 
-// Numbers in the text of photometric files, whatever the locale says.
-
-/// Reads numbers separated by blanks, commas or ends of lines.
+/// Reads numbers separated by blanks, commas or ends of lines, whatever the locale says.
 class NumberReader {
  public:
   /// `lines` must outlive this; reading starts at line `first`, counted from 0.
@@ -60,8 +58,6 @@ struct MeasuredPlane {
 /// of which the last may be missing. Azimuths ascend. Errors: ResourceError for any other range.
 std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths);
 
-// Photometric files of the IES: ANSI/IES LM-63 from 1986 to 2019.
-
 /// Reads an LM-63 file of photometric type A, B or C. Intensities are the candela values times the
 /// multiplier and the ballast factor, and in files of 1986 and 1991 times the ballast-lamp factor:
 /// where the rated lumens of the lamps count, they count already, and in absolute
@@ -73,8 +69,6 @@ std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths
 /// Errors: ResourceError with the line and what is wrong.
 IntensityDistribution read_ies(const std::string& name, std::string_view text,
                                files::Warnings& warnings);
-
-// EULUMDAT, the photometric files of Europe (.ldt).
 
 /// Reads an EULUMDAT file (Stockmar 1990). Intensities, in cd per 1000 lm, are multiplied by the
 /// flux of the first set of lamps and by the file's conversion factor. Decimal commas count as

@@ -1,4 +1,4 @@
-// Pictures of a scene, decoded.
+// Pictures of a scene, decoded: textures, and surroundings on the six faces of a cube.
 #pragma once
 
 #include <array>
@@ -51,8 +51,7 @@ RadiancePicture decode_radiance(const std::string& name, std::span<const unsigne
 /// ResourceError naming the picture and the reason.
 RadiancePicture decode_rgbd(const std::string& name, std::span<const unsigned char> bytes);
 
-// The textures of a scene, each decoded once.
-
+/// The textures of a scene, each decoded once.
 class TextureStore {
  public:
   TextureStore(Scene& scene, files::SceneFolder& folder) : scene_(scene), folder_(folder) {}
@@ -76,8 +75,6 @@ class TextureStore {
 
 /// Makes the lack of a texture visible but harmless: a mid-grey Lambertian part.
 void use_missing_texture_colour(Material& material);
-
-// Surroundings on the six faces of a cube.
 
 /// Faces +x, -x, +y, -y, +z, -z, each as an observer in the middle sees it: with +y at the top; of
 /// +y -z at the top, and of -y +z. All are square and of one size, of a texel at least.

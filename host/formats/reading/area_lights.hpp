@@ -1,4 +1,4 @@
-// Where in its file a light comes from.
+// Emissive triangles become area lights, and each light keeps where in its file it comes from.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 
 namespace photile::reading {
 
+/// Where in its file a light comes from.
 struct LightSource {
   enum class Kind : std::uint8_t {
     node,         ///< KHR_lights_punctual or photometric data at a glTF node
@@ -38,8 +39,6 @@ struct LightTraits {
   double kelvin = 0;      ///< 0 = not given
   std::string lamp = {};  ///< as LightSource::lamp
 };
-
-// Emissive triangles, gathered to area lights.
 
 /// Panels count as objects of their own, after all visits of nodes.
 inline constexpr std::uint64_t first_panel_object = limits::max_node_visits;

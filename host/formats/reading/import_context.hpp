@@ -36,8 +36,6 @@ inline bool has_emission_texture(const ImportContext& context) {
                      [](const Emission& emission) { return emission.texture != none; });
 }
 
-// Materials of surfaces whose textures cannot be placed.
-
 /// Materials as surfaces without texture coordinates have them: mid grey in place of a base-colour
 /// texture, as where its file is missing, the factors alone in place of all others, and no normal
 /// map.

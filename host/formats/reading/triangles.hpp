@@ -1,4 +1,5 @@
-// Splits a polygon into triangles by ear clipping.
+// Triangles of scene files: polygons are split, the origin of their coordinates is chosen, and
+// meshes that several nodes place are shared.
 #pragma once
 
 #include <array>
@@ -27,8 +28,6 @@ struct Triangulation {
 /// number of concave corners.
 Triangulation triangulate_polygon(std::span<const glm::dvec3> corners);
 
-// Where the positions of a scene are counted from.
-
 /// Finds the origin of a scene (Scene::origin) from its triangles, before they are rounded to
 /// float.
 ///
@@ -53,8 +52,6 @@ class SceneOrigin {
   glm::dvec3 sum_{0.0};  ///< weight x corner
   double squares_ = 0;   ///< weight x squared distance from (0, 0, 0)
 };
-
-// Meshes that several nodes place: what the ray tracing structure may share.
 
 /// Triangles as the file has them, in the mesh's own space.
 struct LocalMesh {

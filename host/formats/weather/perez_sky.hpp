@@ -1,4 +1,5 @@
-// Where the sun stands in the sky of a place.
+// Where the sun stands in the sky of a place, and the all-weather sky of Perez, Seals and
+// Michalsky.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +22,6 @@ SunPosition sun_position(const Site& site, const LocalTime& time);
 
 /// Days from the start of the year, 1 for the first of January.
 int day_of_year(const LocalTime& time);
-
-// The all-weather sky of Perez, Seals and Michalsky.
 
 /// What a weather station measures.
 struct SkyIrradiance {

@@ -115,6 +115,12 @@ namespace {
 
 using std::numbers::pi;
 
+/// Flux that a patch of this solid angle and 1 cd/m2 sends through the disc of the scene's bounding
+/// sphere.
+double patch_flux(const Scene& scene, double solid_angle) {
+  return scene::directional_flux(solid_angle, bounding_sphere(scene).radius);
+}
+
 void add_patch(std::string name, const glm::dvec4& bounds, Scene& scene) {
   Light light;
   light.name = std::move(name);
@@ -157,10 +163,6 @@ std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const S
   }
   luminances.push_back(defaults::ground_reflectance * on_ground / pi);
   return luminances;
-}
-
-double patch_flux(const Scene& scene, double solid_angle) {
-  return scene::directional_flux(solid_angle, bounding_sphere(scene).radius);
 }
 
 }  // namespace photile::weather

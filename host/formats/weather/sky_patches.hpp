@@ -1,4 +1,4 @@
-// The sky in patches: Tregenza's 145, or Reinhart's finer ones.
+// The sky in patches, Tregenza's 145 or Reinhart's finer ones, and as lights of a scene.
 #pragma once
 
 #include <cstdint>
@@ -76,13 +76,12 @@ class SkyInPatches {
   std::vector<float> sines_;        ///< of the middles' elevations
 };
 
-// Patches of the sky as lights of a scene, a layer each.
-
 /// "sky_0001" and so on; "ground" is what lies below the horizon.
 std::string patch_name(std::size_t patch);
 
-/// Adds a light for each patch, even and white, and one for the ground below the horizon. Each has
-/// the power that it has at 1 cd/m2 (or W/(m2 sr)). Returns the number of the first.
+/// Adds a light and a layer for each patch, even and white, and one for the ground below the
+/// horizon. Each has the power that it has at 1 cd/m2 (or W/(m2 sr)). Returns the number of the
+/// first.
 ///   north   radians clockwise from -z
 std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, Scene& scene);
 
@@ -91,9 +90,5 @@ std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, S
 ///   day   of the year, from 1
 std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const SunPosition& sun,
                                    const SkyIrradiance& irradiance, int day);
-
-/// Flux that a patch of this solid angle and 1 cd/m2 sends through the disc of the scene's bounding
-/// sphere.
-double patch_flux(const Scene& scene, double solid_angle);
 
 }  // namespace photile::weather

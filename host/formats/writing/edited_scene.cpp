@@ -97,25 +97,6 @@ void refuse_taken(const std::filesystem::path& file) {
       fmt::format("{}: is there already; remove it, or take another name", file.string()));
 }
 
-EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLoadOptions& options,
-                               const LightMix& mix, const std::string& name) {
-  EditedScene copy;
-  const std::string clean = scene::clean_light_name(name, limits::max_light_name_bytes);
-  copy.file = scene;
-  copy.file.replace_filename(
-      fmt::format("{}.{}{}", scene.stem().string(), clean, scene.extension().string()));
-  refuse_taken(copy.file);
-  const std::vector<LightSetting> settings =
-      settings_of(loading::load_sourced_scene(scene, options), options, mix, copy.left_out);
-  if (settings.empty()) throw OutputError(fmt::format("{}: has no light to set", scene.string()));
-  if (settings.front().source.node == none) {
-    write_lit_obj(scene, copy.file, settings, copy.left_out);
-  } else {
-    write_lit_gltf(scene, copy.file, settings, options, copy.left_out);
-  }
-  return copy;
-}
-
 // OBJ: the text of the file with a library of its own, in which lamps have other Ke.
 
 namespace {
@@ -192,8 +173,7 @@ std::string lit_library(const std::vector<std::string>& lines,
   return text;
 }
 
-}  // namespace
-
+/// Writes `copy` and its library, the name of which is that of the copy.
 void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::path& copy,
                    std::span<const LightSetting> settings, std::vector<std::string>& left_out) {
   files::SceneFolder folder(scene, true);
@@ -222,6 +202,27 @@ void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::pa
   }
   write_file(library, lit_library(lines, settings_of(settings, left_out)));
   write_file(copy, text);
+}
+
+}  // namespace
+
+EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLoadOptions& options,
+                               const LightMix& mix, const std::string& name) {
+  EditedScene copy;
+  const std::string clean = scene::clean_light_name(name, limits::max_light_name_bytes);
+  copy.file = scene;
+  copy.file.replace_filename(
+      fmt::format("{}.{}{}", scene.stem().string(), clean, scene.extension().string()));
+  refuse_taken(copy.file);
+  const std::vector<LightSetting> settings =
+      settings_of(loading::load_sourced_scene(scene, options), options, mix, copy.left_out);
+  if (settings.empty()) throw OutputError(fmt::format("{}: has no light to set", scene.string()));
+  if (settings.front().source.node == none) {
+    write_lit_obj(scene, copy.file, settings, copy.left_out);
+  } else {
+    write_lit_gltf(scene, copy.file, settings, options, copy.left_out);
+  }
+  return copy;
 }
 
 }  // namespace photile::writing

@@ -1,4 +1,5 @@
-// A light as a copy of its file is to have it, and the writers of such copies.
+// A copy of a scene's file with other lights: the call, and a light as the writers of copies set
+// it.
 #pragma once
 
 #include <filesystem>
@@ -36,18 +37,14 @@ struct LightSetting {
   }
 };
 
-/// Write `copy` and, of an OBJ file, its material library. `left_out` gets a line for each light
+/// Writes `copy`. `left_out` gets a line for each light
 /// that cannot be set. Errors: InputError, OutputError.
 void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::path& copy,
                     std::span<const LightSetting> settings, const SceneLoadOptions& options,
                     std::vector<std::string>& left_out);
-void write_lit_obj(const std::filesystem::path& scene, const std::filesystem::path& copy,
-                   std::span<const LightSetting> settings, std::vector<std::string>& left_out);
 
 /// Errors: OutputError where there is such a file: no copy is written over another file.
 void refuse_taken(const std::filesystem::path& file);
-
-// A copy of a scene's file with other lights.
 
 struct EditedScene {
   std::filesystem::path file;
